@@ -219,14 +219,15 @@ impl ConsoleModel {
         self.trail.push_back((at, sample));
     }
 
-    /// Selects the next aspect in this order for the belief chart; after the last one, none.
-    pub fn focus_next_belief(&mut self, ranked: &[usize]) {
-        let at = self.belief_focus.and_then(|focus| ranked.iter().position(|&aspect| aspect == focus.index()));
+    /// Shows the next aspect in this order over time, at full size; after the last one, all panels.
+    pub fn focus_next_belief(&mut self, ranked: &[AspectId]) {
+        let at = self.belief_focus.and_then(|focus| ranked.iter().position(|&aspect| aspect == focus));
         let next = match (self.belief_focus, at) {
             (None, _) => ranked.first(),
             (Some(_), at) => at.and_then(|at| ranked.get(at + 1)),
         };
-        self.belief_focus = next.map(|&aspect| AspectId(aspect as u8));
+        self.belief_focus = next.copied();
+        self.alone = next.map(|_| Panel::Belief);
     }
 
     /// Whether a timeline entry is an error of the human.

@@ -22,7 +22,11 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
         }
         ManualAction::Correct => ask(model, PickerQuestion::Place),
         ManualAction::HoldRobot if session.robot.held => {
-            send(model, session, Event::RobotReleased { by }, NoticeLevel::Done, "the robot goes on by itself")
+            let words = match session.robot.stopped {
+                true => "the robot is released, and still stopped",
+                false => "the robot goes on by itself",
+            };
+            send(model, session, Event::RobotReleased { by }, NoticeLevel::Done, words)
         }
         ManualAction::HoldRobot => {
             send(model, session, Event::RobotHeld { by }, NoticeLevel::Done, "the robot is held")

@@ -98,6 +98,10 @@ pub enum PanelKey {
     Back,
     /// Scroll forward in time.
     Forward,
+    /// Show an earlier part of the timeline.
+    Earlier,
+    /// Show a later part of the timeline.
+    Later,
 }
 
 /// A key of the rater.

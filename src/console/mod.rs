@@ -2,6 +2,7 @@
 //! Whatever affects participant, robot or analysis becomes an event; everything else stays in the [`ConsoleModel`].
 
 pub mod arrange;
+mod beliefs;
 pub mod chord;
 pub mod coding;
 pub mod compared;

@@ -23,7 +23,10 @@ pub fn look(model: &mut ConsoleModel, session: &Session, look: PanelKey) {
     let seen: Vec<Panel> = Panel::ALL.into_iter().filter(may_be_seen).collect();
     let at = model.alone.and_then(|alone| seen.iter().position(|panel| *panel == alone));
     match look {
-        PanelKey::All => (model.alone, model.events_back, model.timeline_back_s) = (None, 0, 0),
+        PanelKey::All => {
+            (model.alone, model.events_back, model.timeline_back_s) = (None, 0, 0);
+            model.belief_focus = None;
+        }
         PanelKey::Next => model.alone = seen.get(at.map_or(0, |at| at + 1)).copied(),
         PanelKey::Last => {
             let before = at.map_or(Some(seen.len() - 1), |at| at.checked_sub(1));
@@ -31,12 +34,14 @@ pub fn look(model: &mut ConsoleModel, session: &Session, look: PanelKey) {
         }
         PanelKey::Back => scroll(model, session, model.alone, 1),
         PanelKey::Forward => scroll(model, session, model.alone, -1),
+        PanelKey::Earlier => scroll(model, session, Some(Panel::Timeline), 1),
+        PanelKey::Later => scroll(model, session, Some(Panel::Timeline), -1),
     }
 }
 
 /// Turns the pages of the help.
 pub fn leaf(model: &mut ConsoleModel, look: PanelKey) {
-    let is_forward = matches!(look, PanelKey::Next | PanelKey::Forward);
+    let is_forward = matches!(look, PanelKey::Next | PanelKey::Forward | PanelKey::Later);
     model.help_from = match is_forward {
         true => (model.help_from + 1).min(help_pages(model)),
         false => model.help_from.saturating_sub(1),

@@ -41,7 +41,7 @@ fn robot(session: &Session, model: &ConsoleModel) -> PreflightCheck {
     match (session.robot.stopped, session.robot.held) {
         (true, _) => {
             let resume = key(model, &KeyAction::ResumeRobot);
-            PreflightCheck::new("robot", PreflightVerdict::Failed, "stopped", format!("{resume} lets it go on"))
+            PreflightCheck::new("robot", PreflightVerdict::Failed, "stopped", format!("{resume} resumes it"))
         }
         (false, true) => {
             let release = key(model, &KeyAction::Hand(ManualAction::HoldRobot));

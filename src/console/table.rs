@@ -135,7 +135,8 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         None,
     )));
     lines.extend(buttons(kitchen));
-    lines.extend(looks(Right, Left));
+    lines.extend(looks(&[KeyChord::ctrl('w')]));
+    lines.extend(times());
     lines.extend(differences());
     lines.extend([
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
@@ -186,7 +187,7 @@ pub fn replay() -> Vec<KeyBinding> {
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
         line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "this help", Some("help")),
     ];
-    lines.extend(looks(Tab, BackTab));
+    lines.extend(looks(&[KeyChord::plain(Tab), KeyChord::ctrl('w')]));
     lines.extend(differences());
     lines.extend(codes());
     lines.extend(moves.map(|(name, keys, to, help, footer)| of_move(name, &keys, to, help, footer)));
@@ -236,14 +237,24 @@ fn differences() -> [KeyBinding; 3] {
 }
 
 /// What is on the screen.
-fn looks(next: KeyCode, last: KeyCode) -> [KeyBinding; 5] {
+fn looks(next: &[KeyChord]) -> [KeyBinding; 5] {
     let look = |name, code, look, help, footer| line(name, &plain(code), KeyAction::Look(look), CONSOLE, help, footer);
+    let panels = "the next panel alone";
     [
-        look("next_panel", next, PanelKey::Next, "the next panel alone", Some("panels")),
-        look("last_panel", last, PanelKey::Last, "the panel before, alone", None),
+        line("next_panel", next, KeyAction::Look(PanelKey::Next), CONSOLE, panels, Some("panels")),
+        look("last_panel", BackTab, PanelKey::Last, "the panel before, alone", None),
         look("all_panels", Esc, PanelKey::All, "all panels, and now again", Some("all panels")),
         look("back", Up, PanelKey::Back, "further back in events or timeline", None),
         look("forward", Down, PanelKey::Forward, "forward again", None),
+    ]
+}
+
+/// Left and right go through time: here on the timeline, in a recording from event to event.
+fn times() -> [KeyBinding; 2] {
+    let time = |name, code, look, help| line(name, &plain(code), KeyAction::Look(look), CONSOLE, help, None);
+    [
+        time("earlier", Left, PanelKey::Earlier, "the timeline five seconds earlier"),
+        time("later", Right, PanelKey::Later, "the timeline later, up to now"),
     ]
 }
 

@@ -3,6 +3,7 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use super::arrange::KitchenMap;
+use super::beliefs::beliefs;
 use super::chord::KeyChord;
 use super::coding;
 use super::compared::ComparisonKey;
@@ -20,9 +21,8 @@ use super::sending::{resume_robot, send};
 use super::view::dialog::{help_pages, report_rest};
 use super::view::regions::Regions;
 use crate::communication::Sender;
-use crate::history::belief_track;
 use crate::history::wording;
-use crate::kitchen::Agent;
+use crate::kitchen::{Agent, AspectId};
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::offers;
 use crate::session::settings::{ParticipantKind, Visibility};
@@ -263,10 +263,10 @@ fn answer(
 fn report(model: &mut ConsoleModel, code: KeyCode, action: Option<KeyAction>) {
     match (code, action) {
         (KeyCode::Enter, _) | (_, Some(KeyAction::Quit)) => model.dialog = None,
-        (_, Some(KeyAction::Look(PanelKey::Back | PanelKey::Last))) => {
+        (_, Some(KeyAction::Look(PanelKey::Back | PanelKey::Last | PanelKey::Earlier))) => {
             model.help_from = model.help_from.saturating_sub(1)
         }
-        (_, Some(KeyAction::Look(PanelKey::Forward | PanelKey::Next))) => {
+        (_, Some(KeyAction::Look(PanelKey::Forward | PanelKey::Next | PanelKey::Later))) => {
             model.help_from = (model.help_from + 1).min(report_rest(model));
         }
         _ => {}
@@ -339,16 +339,15 @@ fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option
             panels::look(model, session, at);
             None
         }
-        KeyAction::Belief if Regions::showing(model.size, session, model).belief.area() == 0 => {
-            let words = match session.spec.console.visibility >= Visibility::Belief {
-                true => "the belief is not on the screen: esc shows all panels",
-                false => "the belief is not shown in this session",
-            };
-            model.say(NoticeLevel::Refused, words);
+        KeyAction::Belief if session.spec.console.visibility < Visibility::Belief => {
+            model.say(NoticeLevel::Refused, "the belief is not shown in this session");
             None
         }
         KeyAction::Belief => {
-            let ranked = belief_track::ranked(model.belief.until(model.now));
+            let ranked: Vec<AspectId> = beliefs(session, model).iter().map(|belief| belief.aspect).collect();
+            if ranked.is_empty() {
+                model.say(NoticeLevel::Refused, "the belief is estimated from the trial's start on");
+            }
             model.focus_next_belief(&ranked);
             None
         }

@@ -63,7 +63,7 @@ pub fn describe(findings: &DoctorReport) -> String {
             PreflightVerdict::Warning => "warn  ",
             PreflightVerdict::Failed => "FAILED",
         };
-        let remedy = check.remedy.as_ref().map_or(String::new(), |remedy| format!("{:26}mend: {remedy}\n", ""));
+        let remedy = check.remedy.as_ref().map_or(String::new(), |remedy| format!("{:26}fix: {remedy}\n", ""));
         format!("{mark}  {:<16}  {}\n{remedy}", check.name, check.found)
     };
     findings.checks.iter().map(line).collect()

@@ -121,16 +121,6 @@ impl BeliefHistory {
     }
 }
 
-/// Aspects ordered by relevance at the last snapshot: false beliefs first, the longest first, then the others in their order.
-pub fn ranked(moments: &[BeliefSnapshot]) -> Vec<usize> {
-    let Some(last) = moments.last() else { return Vec::new() };
-    let mut wrong: Vec<(SessionTime, usize)> =
-        (0..last.held.len()).filter_map(|aspect| Some((wrong_since(moments, aspect)?, aspect))).collect();
-    wrong.sort_unstable();
-    let right = (0..last.held.len()).filter(|&aspect| !last.held[aspect].is_false());
-    wrong.iter().map(|&(_, aspect)| aspect).chain(right).collect()
-}
-
 /// Start of the present false belief about an aspect; `None` if the belief is right.
 pub fn wrong_since(moments: &[BeliefSnapshot], aspect: usize) -> Option<SessionTime> {
     moments.last()?.wrong_since[aspect]

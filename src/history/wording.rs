@@ -198,7 +198,8 @@ pub fn arm_phase(phase: ArmPhase) -> &'static str {
     }
 }
 
-fn trial(phase: Phase) -> &'static str {
+/// The state of the trial in a few words: "over: time is up".
+pub fn trial(phase: Phase) -> &'static str {
     match phase {
         Phase::Ready => "ready",
         Phase::Running => "runs",

@@ -186,8 +186,11 @@ pub fn describe(figures: &CodesSummary) -> String {
     let mut text = String::new();
     for one in &figures.recordings {
         let coded: Vec<String> = one.coded.iter().map(|(rater, number)| format!("{rater} {number}")).collect();
-        let coded = if coded.is_empty() { "nobody has coded any".to_string() } else { coded.join(", ") };
-        text += &format!("{}: {}, coded: {coded}\n", one.recording, count(one.errors, "error", "errors"));
+        let coded = match coded.is_empty() {
+            true => "no rater has coded this recording yet".to_string(),
+            false => format!("coded: {}", coded.join(", ")),
+        };
+        text += &format!("{}: {}, {coded}\n", one.recording, count(one.errors, "error", "errors"));
     }
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     for pair in figures.agreements.iter().chain(&figures.known) {

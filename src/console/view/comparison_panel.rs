@@ -1,11 +1,12 @@
 //! The comparison of wizard and assistants: lanes on one time axis, joined matches, statistics, and differences.
 
 use ratatui::layout::Rect;
+use ratatui::style::Modifier;
 
 use super::paint::{Painter, width};
 use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
 use super::theme::TextRole;
-use super::timeline::{axis, until};
+use super::timeline::{axis, columns_ago};
 use crate::base::time::SessionTime;
 use crate::console::compared::ComparisonKey;
 use crate::console::console_model::ConsoleModel;
@@ -18,19 +19,6 @@ const COLUMN_S: f64 = 1.0;
 const LABELS: u16 = 10;
 
 const TITLE: &str = "Wizard and assistant";
-/// Width of the remark at the right of the title line.
-const REMARK: u16 = 32;
-
-/// Free area in the comparison's title line.
-pub(super) fn title_room(regions: &Regions) -> Option<Rect> {
-    let area = regions.comparison;
-    if regions.room == ScreenSize::Small || area.area() == 0 {
-        return None;
-    }
-    let from = area.x + 1 + width(TITLE) + 2;
-    let until = area.right().saturating_sub(REMARK);
-    Some(Rect { x: from, y: area.y, width: until.saturating_sub(from), height: 1 })
-}
 
 /// Draws the comparison.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
@@ -48,7 +36,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         return;
     };
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
-    axis(brush, plot, model.timeline_back_s, COLUMN_S);
+    axis(brush, plot, session, model, COLUMN_S);
     let chosen = compared.chosen().map(|(at, seen)| (at, seen.differences[at]));
     let assistants = seen.pairs.len() as u16;
     // Matches are drawn only if there are rows for them.
@@ -85,9 +73,8 @@ struct View<'a> {
 impl View<'_> {
     /// Column of a time, if it is visible.
     fn column(&self, time: SessionTime) -> Option<u16> {
-        let column = |time: SessionTime| (time.as_secs_f64() / COLUMN_S) as i64;
-        let now = column(until(self.session, self.model)) - (f64::from(self.model.timeline_back_s) / COLUMN_S) as i64;
-        let age = now - column(time);
+        let back = (f64::from(self.model.timeline_back_s) / COLUMN_S) as i64;
+        let age = columns_ago(self.session, self.model, time, COLUMN_S) - back;
         (0..i64::from(self.plot.width)).contains(&age).then(|| self.plot.right() - 1 - age as u16)
     }
 
@@ -101,7 +88,8 @@ impl View<'_> {
             let Some(x) = self.column(spoken.time) else { continue };
             let is_chosen = self.chosen.is_some_and(|chosen| (chosen.lane, chosen.index) == (lane, index));
             let role = if lane == 0 { TextRole::Signal } else { TextRole::Strong };
-            let style = if is_chosen { brush.theme.badge(role) } else { brush.style(role) };
+            let style =
+                if is_chosen { brush.style(role).add_modifier(Modifier::UNDERLINED) } else { brush.style(role) };
             let sign = self.sign(brush, spoken);
             brush.text(x, y, 1, &sign, style);
         }

@@ -1,4 +1,4 @@
-//! The list of events in words, the newest on top, on large terminals.
+//! The list of events in words with their times on the trial's clock, the newest on top, on large terminals.
 
 use super::paint::Painter;
 use super::regions::Regions;
@@ -17,14 +17,15 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         return;
     }
     let remark = match model.events_back {
-        0 => "how long ago, newest first".to_string(),
+        0 => "newest first".to_string(),
         back => format!("{back} newer"),
     };
     let inside = brush.panel(regions.events, "Events", &remark);
+    let clock = session.trial_clock(model.now);
     let newest = session.timeline.iter().rev().skip(model.events_back);
     for (row, entry) in newest.take(usize::from(inside.height)).enumerate() {
         let y = inside.y + row as u16;
-        let age = session.age(entry.time, model.now).to_string();
+        let at = (clock - session.age(entry.time, model.now)).to_string();
         let (who, what) = wording::happening(&session.kitchen, &entry.what);
         let is_error = model.is_error(entry);
         let role = match &entry.what {
@@ -36,11 +37,11 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
             _ => TextRole::Strong,
         };
         let quiet = brush.style(TextRole::Quiet);
-        brush.text_right(inside.x + 6, y, 6, &age, quiet);
+        brush.text_right(inside.x + 6, y, 6, &at, quiet);
         let x = inside.x + 7;
         let columns = inside.right().saturating_sub(x + WHO);
         brush.parts(x, y, WHO - 1, &[(who, role)]);
         let mark = if is_error { format!(" {} error", brush.theme.signs().error) } else { String::new() };
-        brush.parts(x + WHO, y, columns, &[(&what, TextRole::Text), (&mark, TextRole::Alarm)]);
+        brush.parts(x + WHO, y, columns, &[(&what, TextRole::Text), (&mark, TextRole::Strong)]);
     }
 }

@@ -1,13 +1,14 @@
-//! The footer: active key layer, keys that are possible now, and the last notice.
+//! The two lowest lines: messages at full width, and below them the active key layer with the keys that are possible now.
+
+use std::borrow::Cow;
 
 use ratatui::style::Style;
 
+use super::offer_line;
 use super::paint::{Painter, width};
 use super::regions::Regions;
 use super::theme::TextRole;
-use super::{comparison_panel, timeline};
 use crate::communication::Sender;
-use crate::communication::concept::ConceptName;
 use crate::console::console_model::{ConsoleModel, Dialog, Notice};
 use crate::console::form::sheet;
 use crate::console::key_action::ManualAction;
@@ -17,15 +18,15 @@ use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer};
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::ReplayKey;
 use crate::session::admit::may_send;
-use crate::session::protocol::StudyPhase;
-use crate::session::settings::{ParticipantKind, Visibility};
+use crate::session::settings::ParticipantKind;
 use crate::session::{Phase, Session};
 
 /// Display time of a notice, in seconds.
 const NOTICE_S: f64 = 4.0;
 
-/// Draws the key line.
+/// Draws the line of messages and the line of keys.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+    message(brush, regions, model);
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
         let alarm = brush.theme.badge(TextRole::Alarm);
@@ -36,19 +37,13 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let mut x = area.x;
     if session.spec.participant.kind == ParticipantKind::Keyboard && model.playback.is_none() {
         let (label, role) = match model.layer {
-            KeyLayer::Wizard => (" KEYS: WIZARD ", TextRole::Signal),
+            KeyLayer::Wizard => (" KEYS: WIZARD ", TextRole::Strong),
             KeyLayer::Participant => (" KEYS: PARTICIPANT ", TextRole::Human),
         };
         let badge = brush.theme.badge(role);
         x = brush.text(x, area.y, area.width, label, badge);
     }
-    let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
-    let notice = notice.filter(|notice| !above(brush, regions, session, model, notice));
-    // An alarm may replace the key hints.
-    let most =
-        if notice.is_some_and(|notice| notice.level == NoticeLevel::Alarm) { area.width } else { area.width / 2 };
-    let said = notice.map_or(0, |notice| width(&notice.text) + 3).min(most);
-    let end = area.right().saturating_sub(said);
+    let end = area.right();
     // Ending the trial is rare, so its hint is dropped first; after the trial only quitting remains.
     let is_over = is_over(session, model);
     let is_late = |binding: &&KeyBinding| match is_over {
@@ -77,25 +72,22 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
             KeyAction::Move(ReplayKey::ToEnd) => "home/end".to_string(),
             _ => chord.to_string(),
         };
-        if x + width(&key) + width(label) + 3 > end {
+        if x + width(&key) + width(&label) + 3 > end {
             continue;
         }
         let key_style = if binding.action == KeyAction::StopRobot { TextRole::Alarm } else { TextRole::Strong };
-        x = brush.parts(x + 2, area.y, end - x, &[(&key, key_style), (" ", TextRole::Text), (label, TextRole::Quiet)]);
-    }
-    if let Some(notice) = notice {
-        let style = style_of(brush, notice);
-        brush.text_right(area.right(), area.y, said, &format!(" {} ", notice.text), style);
+        x = brush.parts(x + 2, area.y, end - x, &[(&key, key_style), (" ", TextRole::Text), (&label, TextRole::Quiet)]);
     }
 }
 
-/// Shows the notice in a title line if there is room, so that no key hint is replaced; returns whether it did.
-fn above(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel, notice: &Notice) -> bool {
-    let room = timeline::title_room(brush, regions, session, model).or_else(|| comparison_panel::title_room(regions));
-    let Some(room) = room.filter(|room| width(&notice.text) + 4 <= room.width) else { return false };
-    let style = style_of(brush, notice);
-    brush.text(room.x, room.y, room.width, &format!(" {} ", notice.text), style);
-    true
+/// Draws the last notice.
+fn message(brush: &mut Painter, regions: &Regions, model: &ConsoleModel) {
+    let area = regions.message;
+    let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
+    if let Some(notice) = notice.filter(|_| area.area() > 0) {
+        let style = style_of(brush, notice);
+        brush.text(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
+    }
 }
 
 fn style_of(brush: &Painter, notice: &Notice) -> Style {
@@ -112,18 +104,29 @@ fn is_over(session: &Session, model: &ConsoleModel) -> bool {
 }
 
 /// The next step after the trial, in a plan.
-fn onward(session: &Session) -> Option<&'static str> {
+pub(super) fn onward(session: &Session) -> Option<String> {
     session.protocol.as_ref().filter(|_| session.phase != Phase::Closed)?;
     Some(match session.next_phase() {
-        _ if session.aborted.is_some() => "do it again",
-        Some(StudyPhase::Questionnaire) => "questionnaire",
-        Some(StudyPhase::Debriefing) => "debriefing",
-        _ => "done: next",
+        _ if session.aborted.is_some() => "do it again".to_string(),
+        Some(phase) => format!("on to the {}", phase.name()),
+        None => "done: next recording".to_string(),
     })
 }
 
 /// Label of a key in the footer, if the key is possible now.
-fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -> Option<&'a str> {
+fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -> Option<Cow<'a, str>> {
+    if is_over(session, model)
+        && binding.action == KeyAction::Advance
+        && model.dialog.is_none()
+        && sheet(session).is_none()
+    {
+        return onward(session).map(Cow::Owned);
+    }
+    fixed_label(binding, session, model).map(Cow::Borrowed)
+}
+
+/// The same for a key whose label does not name what comes next.
+fn fixed_label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -> Option<&'a str> {
     match &model.dialog {
         // In text input the space bar types a space.
         Some(Dialog::Note(_)) => return None,
@@ -145,7 +148,6 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
     let runs = matches!(session.phase, Phase::Running | Phase::Paused);
     if is_over(session, model) {
         return match binding.action {
-            KeyAction::Advance => onward(session),
             KeyAction::Quit if !session.is_step_done() => Some(label),
             KeyAction::Quit => Some("closes the session"),
             KeyAction::Note(_) if session.phase != Phase::Closed => Some(label),
@@ -183,9 +185,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
     }
 }
 
-/// Whether a recommendation can be accepted in this session.
+/// Whether there is an offer that can be sent now.
 fn can_accept(session: &Session) -> bool {
-    let recommends = matches!(session.spec.assistant.concept, ConceptName::TomCom | ConceptName::Tom);
-    let is_shown = session.spec.console.visibility == Visibility::Recommendation;
-    recommends && is_shown && session.spec.asks_assistant() && may_send(session, Sender::Wizard).is_ok()
+    offer_line::shown(session).is_some_and(|offer| offer.is_signal()) && may_send(session, Sender::Wizard).is_ok()
 }

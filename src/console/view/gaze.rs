@@ -1,16 +1,20 @@
 //! The gaze panel (location, age, quality), and the gaze map.
 
 use ratatui::layout::Rect;
+use ratatui::style::Modifier;
 
 use super::paint::{Painter, fit};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
+use crate::console::arrange::KitchenMap;
 use crate::console::console_model::ConsoleModel;
 use crate::gaze::nearest_location;
 use crate::kitchen::LocationId;
 use crate::session::Session;
 use crate::session::gaze_samples::faults;
 
+/// Time for which the last gaze sample is drawn, in seconds.
+const GAZE_S: f64 = 3.0;
 /// Length of the trail on the gaze map, in seconds.
 const TRAIL_S: f64 = 2.0;
 
@@ -127,5 +131,29 @@ fn write_centred(brush: &mut Painter, inside: Rect, x: u16, y: u16, text: &str, 
     if y < inside.bottom() {
         let style = brush.style(role);
         brush.text(x, y, columns, text, style);
+    }
+}
+
+/// Marks in the kitchen where the participant looks.
+pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session, model: &ConsoleModel) {
+    let Some((at, sample)) = session.gaze.last else { return };
+    let age_s = model.now.secs_since(at);
+    let Some((x, y)) = plan.cell([sample.x, sample.y]) else { return };
+    if age_s > GAZE_S || x < panel.x || x >= panel.right() || y < panel.y || y >= panel.bottom() {
+        return;
+    }
+    let style = brush.style(TextRole::Gaze);
+    let style = if age_s > 1.0 { style.remove_modifier(Modifier::BOLD).add_modifier(Modifier::DIM) } else { style };
+    let sign = brush.theme.signs().gaze;
+    let is_text = |symbol: &str| symbol.chars().any(|letter| letter.is_alphanumeric());
+    let covers_text = brush.buffer.cell((x, y)).is_some_and(|cell| is_text(cell.symbol()));
+    if !covers_text {
+        brush.text(x, y, 1, sign, style);
+        return;
+    }
+    // Text under the gaze stays readable: its letter is marked, and the gaze sign is drawn beside the card's name.
+    brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED));
+    if let Some(spot) = plan.spots.iter().find(|spot| spot.cells.contains((x, y).into())) {
+        brush.text(spot.cells.right(), spot.cells.y, 1, sign, style);
     }
 }

@@ -43,7 +43,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session) {
     let again = format!("enter or {REPEAT}");
     let Some(found) = &outcome.found else {
         line(brush, "accuracy", "not known: too few usable samples at the targets", TextRole::Alarm);
-        line(brush, "mend", "look at every target; see that the tracker sends gaze", TextRole::Text);
+        line(brush, "fix", "look at every target; see that the tracker sends gaze", TextRole::Text);
         let keys = [
             (again.as_str(), TextRole::Strong),
             (" repeats it   ", TextRole::Quiet),

@@ -14,7 +14,7 @@ use crate::session::{Phase, Session};
 
 const COLUMNS: u16 = 76;
 /// Label before a remedy.
-const MEND: &str = "mend: ";
+const FIX: &str = "fix: ";
 /// Column of the finding.
 const FOUND: u16 = 23;
 
@@ -27,7 +27,7 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
     let remedies: Vec<Vec<String>> = checks
         .iter()
         .map(|check| {
-            check.remedy.as_ref().map_or(Vec::new(), |remedy| wrap(remedy, room.saturating_sub(MEND.len() as u16)))
+            check.remedy.as_ref().map_or(Vec::new(), |remedy| wrap(remedy, room.saturating_sub(FIX.len() as u16)))
         })
         .collect();
     let rows = checks.len() + remedies.iter().map(Vec::len).sum::<usize>();
@@ -37,8 +37,8 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
         line(brush, inside, y, check);
         y += 1;
         for (row, words) in remedy.iter().enumerate() {
-            let mend = if row == 0 { MEND } else { "      " };
-            brush.parts(inside.x + FOUND, y, room, &[(mend, TextRole::Quiet), (words, TextRole::Text)]);
+            let fix = if row == 0 { FIX } else { "     " };
+            brush.parts(inside.x + FOUND, y, room, &[(fix, TextRole::Quiet), (words, TextRole::Text)]);
             y += 1;
         }
     }

@@ -1,5 +1,7 @@
 //! The head line: phase, clock, condition, and state of all devices.
 
+use ratatui::style::Style;
+
 use super::paint::{Painter, width};
 use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
 use super::theme::TextRole;
@@ -21,9 +23,9 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let is_tight = (model.playback.is_some() || session.step().is_some()) && room == ScreenSize::Small;
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
-    let badge = brush.theme.badge(phase_role(session.phase));
     let stage = if model.lesson.is_some() { "TRAINING".to_string() } else { wording::stage(session) };
-    x = brush.text(x, area.y, 19, &format!(" {stage} "), badge) + gap;
+    let (mark, style) = stage_mark(brush, session.phase);
+    x = brush.text(x, area.y, 19, &format!("{mark}{stage} "), style) + gap;
     if let (Some(label), None) = (series(session), &model.playback) {
         x = brush.text(x, area.y, area.right() - x, &label, strong) + gap;
     }
@@ -57,11 +59,13 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-fn phase_role(phase: Phase) -> TextRole {
+/// Sign and style of the phase: a running trial is quiet, a pause is not.
+fn stage_mark(brush: &Painter, phase: Phase) -> (String, Style) {
+    let signs = brush.theme.signs();
     match phase {
-        Phase::Running => TextRole::Text,
-        Phase::Paused => TextRole::Signal,
-        _ => TextRole::Quiet,
+        Phase::Running => (format!("{} ", signs.to), brush.style(TextRole::Text)),
+        Phase::Paused => (format!(" {} ", signs.pause), brush.theme.badge(TextRole::Strong)),
+        _ => (" ".to_string(), brush.style(TextRole::Strong)),
     }
 }
 
@@ -71,7 +75,8 @@ fn clock(brush: &mut Painter, x: u16, y: u16, session: &Session, model: &Console
     brush.parts(x, y, 16, &[(&format!("{clock:>5}"), TextRole::Strong), (&format!(" / {total}"), TextRole::Quiet)])
 }
 
-fn condition(session: &Session) -> &'static str {
+/// Who sends signals, in a word.
+pub(super) fn condition(session: &Session) -> &'static str {
     match session.spec.trial.condition {
         Condition::None => "unassisted",
         Condition::Assistant => "assistant",
@@ -103,7 +108,7 @@ fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
 }
 
 /// States of recording, gaze, stream and robot in words.
-fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize) -> Vec<(String, TextRole)> {
+pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize) -> Vec<(String, TextRole)> {
     let mut healths = Vec::new();
     if !model.focused && model.playback.is_none() {
         healths.push((" NO KEYBOARD ".to_string(), TextRole::Alarm));

@@ -4,11 +4,14 @@
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
-use super::paint::{Painter, fit, width, wrap};
+use super::gaze;
+use super::offer_line;
+use super::paint::{Painter, fit, squeeze, width, wrap, wrap_to};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::console::arrange::{KitchenMap, MapElement};
+use crate::console::beliefs::beliefs;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
 use crate::history::wording;
@@ -16,13 +19,13 @@ use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Locatio
 use crate::session::Session;
 use crate::session::settings::{Condition, ParticipantKind};
 
+/// Stands in for what is falsely believed where there is no room for it.
+const FALSE_BELIEF: &str = "false belief";
 /// Time for which a change is marked, in seconds.
 const FRESH_S: f64 = 5.0;
-/// Time for which a change is highlighted, and time for which it is bold, in seconds.
+/// Time for which a change is underlined, and time for which it is bold, in seconds.
 const LOUD_S: f64 = 1.2;
 const FADING_S: f64 = 3.0;
-/// Time for which the last gaze sample is drawn, in seconds.
-const GAZE_S: f64 = 3.0;
 
 /// Draws the kitchen panel.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
@@ -46,13 +49,19 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
     let plan = KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys);
     zones(brush, &plan);
+    let believed = beliefs(session, model);
+    let offered = offer_line::shown(session).and_then(|offer| offer.place(session));
     for spot in &plan.spots {
         match spot.thing {
-            MapElement::Location(location) => Place::new(session, model, location).draw(brush, spot.cells),
+            MapElement::Location(location) => {
+                let place = Place::new(session, model, location);
+                let thinks = offer_line::thinks(session, &believed, location);
+                Place { thinks, is_offered: offered == Some(location), ..place }.draw(brush, spot.cells);
+            }
             MapElement::Storage(index) => storage(brush, session, model, index, spot.cells),
         }
     }
-    gaze_mark(brush, &plan, area, session, model);
+    gaze::mark(brush, &plan, area, session, model);
     super::gaze_targets::target(brush, &plan, area, session);
 }
 
@@ -127,6 +136,10 @@ struct Place<'a> {
     fresh: Option<(f64, Option<Agent>)>,
     /// Whether a signal highlights this place.
     is_shown: bool,
+    /// Whether the open offer is about this place.
+    is_offered: bool,
+    /// What is falsely believed about it.
+    thinks: Option<String>,
 }
 
 impl<'a> Place<'a> {
@@ -142,7 +155,8 @@ impl<'a> Place<'a> {
         let age_s = session.age(at, model.now).as_secs_f64();
         let fresh = (at > SessionTime::ZERO && age_s < FRESH_S).then(|| (age_s, wording::changed_by(session, at)));
         let is_shown = session.shown.as_ref().is_some_and(|shown| shown.signal.target() == kitchen.location(id).name);
-        Place { session, model, id, kitchen, content, is_empty, fresh, is_shown }
+        let (is_offered, thinks) = (false, None);
+        Place { session, model, id, kitchen, content, is_empty, fresh, is_shown, is_offered, thinks }
     }
 
     fn draw(&self, brush: &mut Painter, cells: Rect) {
@@ -162,8 +176,9 @@ impl<'a> Place<'a> {
             (false, 0) => {}
             (false, height) => {
                 let buttons = self.other_buttons();
-                let lines =
-                    self.contents(brush, Rect { height: height - (buttons.len() as u16).min(height - 1), ..below });
+                let free = height - (buttons.len() as u16).min(height - 1);
+                let lines = self.contents(brush, Rect { height: free, ..below });
+                let lines = self.belief(brush, Rect { height: free, ..below }, lines);
                 match buttons.is_empty() {
                     true => self.news(brush, below, lines),
                     false => draw_buttons(brush, below, &buttons),
@@ -177,6 +192,7 @@ impl<'a> Place<'a> {
         let signs = brush.theme.signs();
         let (sign, role) = match (self.is_shown, self.fresh) {
             (true, _) => (signs.rules[2], TextRole::Signal),
+            _ if self.is_offered => (signs.rules[1], TextRole::Signal),
             (_, Some((_, by))) => (signs.rules[1], agent_role(by)),
             _ => (signs.rules[0], if self.is_empty { TextRole::Frame } else { TextRole::Quiet }),
         };
@@ -197,7 +213,8 @@ impl<'a> Place<'a> {
             x = brush.text(x, cells.y, cells.width, &key, style);
         }
         let style = match self.is_shown {
-            true => brush.theme.badge(TextRole::Signal),
+            true => brush.style(TextRole::Signal).add_modifier(Modifier::UNDERLINED),
+            false if self.is_offered => brush.style(TextRole::Signal),
             false => brush.style(if self.is_empty { TextRole::Quiet } else { TextRole::Text }),
         };
         let room = cells.right().saturating_sub(x);
@@ -223,7 +240,9 @@ impl<'a> Place<'a> {
 
     fn content_style(&self, brush: &Painter) -> Style {
         match self.fresh {
-            Some((age_s, by)) if age_s < LOUD_S => brush.theme.badge(agent_role(by)),
+            Some((age_s, by)) if age_s < LOUD_S => {
+                brush.style(agent_role(by)).add_modifier(Modifier::BOLD | Modifier::UNDERLINED)
+            }
             Some((age_s, by)) if age_s < FADING_S => brush.style(agent_role(by)).add_modifier(Modifier::BOLD),
             Some((_, by)) => brush.style(agent_role(by)),
             None if self.is_empty => brush.style(TextRole::Quiet),
@@ -247,7 +266,28 @@ impl<'a> Place<'a> {
         lines.len() as u16
     }
 
-    /// Draws an order: dish, age, and the recipe while it is shown.
+    /// Draws what is falsely believed about the place below its content, or beside it; returns the number of lines so far.
+    fn belief(&self, brush: &mut Painter, room: Rect, lines: u16) -> u16 {
+        let Some(thinks) = &self.thinks else { return lines };
+        let style = brush.style(TextRole::FalseBelief);
+        let words = format!("thinks: {thinks}");
+        if lines < room.height {
+            let rows = wrap_to(&words, room.width, room.height - lines, brush.theme.signs().ellipsis);
+            for (row, text) in rows.iter().enumerate() {
+                brush.text(room.x, room.y + lines + row as u16, room.width, text, style);
+            }
+            return lines + rows.len() as u16;
+        }
+        let y = room.bottom() - 1;
+        let written = (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 2);
+        let left = room.width.saturating_sub(written);
+        // Without room for what is thought, a word says that something is: the list of beliefs has the rest.
+        let words = [words.as_str(), FALSE_BELIEF].into_iter().find(|words| width(words) <= left).unwrap_or("");
+        brush.text(room.x + written, y, left, words, style);
+        room.height
+    }
+
+    /// Draws an order: dish, age, what is falsely believed about it, and the recipe while it is shown.
     fn order(&self, brush: &mut Painter, room: Rect) {
         let style = self.content_style(brush);
         let is_wanted = matches!(self.session.state.order(self.id), OrderContent::Dish(_));
@@ -259,7 +299,25 @@ impl<'a> Place<'a> {
             OrderContent::Dish(_) => self.content.clone(),
         };
         let end = brush.text(room.x, room.y, room.width.saturating_sub(6), &text, style);
-        if is_wanted {
+        let thinks = self.thinks.as_ref().map(|thinks| format!("thinks: {thinks}"));
+        let recipe = wording::recipe(self.session, self.id).filter(|_| self.is_shown && room.height > 1);
+        let recipe_row = if thinks.is_some() && room.height > 2 { 2 } else { 1 };
+        if let Some(thinks) = &thinks
+            && (room.height == 1 || recipe.is_none() || recipe_row == 2)
+        {
+            let (x, y) = if room.height > 1 { (room.x, room.y + 1) } else { (end + 1, room.y) };
+            let (style, left) = (brush.style(TextRole::FalseBelief), room.right().saturating_sub(x));
+            let free = (room.height.saturating_sub(1)).max(1) - u16::from(recipe.is_some());
+            let lines = match room.height {
+                // On one line, what is thought stands only in the belief's line.
+                1 if width(thinks) > left => vec![FALSE_BELIEF.to_string()],
+                _ => wrap_to(thinks, left, free, brush.theme.signs().ellipsis),
+            };
+            for (row, line) in lines.iter().enumerate() {
+                brush.text(x, y + row as u16, left, line, style);
+            }
+        }
+        if is_wanted && (thinks.is_none() || room.height > 1) {
             let gap = if room.height > 1 { 2 } else { 1 };
             let unseen = if wording::is_unseen(self.session, self.id) { "unseen" } else { "" };
             let left = |x: u16| room.right().saturating_sub(x);
@@ -268,9 +326,9 @@ impl<'a> Place<'a> {
                 brush.parts(x, room.y, left(x), &[(unseen, TextRole::Gaze)]);
             }
         }
-        if let (true, true, Some(recipe)) = (self.is_shown, room.height > 1, wording::recipe(self.session, self.id)) {
+        if let Some(recipe) = recipe {
             let style = brush.style(TextRole::Signal);
-            brush.text(room.x, room.y + 1, room.width, &squeeze(&recipe, room.width), style);
+            brush.text(room.x, room.y + recipe_row, room.width, &squeeze(&recipe, room.width), style);
         }
     }
 
@@ -285,7 +343,9 @@ impl<'a> Place<'a> {
             news.push((format!("{}robot", signs.to), TextRole::Robot));
         }
         if let Some((age_s, by)) = self.fresh {
-            news.push((format!("{}{age_s:.0}s", signs.changed), agent_role(by)));
+            let words = by.map(|by| format!("{} {age_s:.0} s ago", by.name()));
+            let words = words.filter(|words| news.is_empty() && width(words) <= room.width && lines < room.height);
+            news.push((words.unwrap_or(format!("{}{age_s:.0}s", signs.changed)), agent_role(by)));
         } else if wording::is_unseen(self.session, self.id) {
             let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
             news.push((format!("unseen {age}"), TextRole::Gaze));
@@ -342,46 +402,5 @@ fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(String, String)]) {
         };
         let name = fit(name, columns.saturating_sub(3), "");
         brush.text(x, y, columns, &format!("[{key}]{name}"), style);
-    }
-}
-
-/// Shortens a name to a width: removes spaces first, then the ends of the longest words.
-pub fn squeeze(name: &str, columns: u16) -> String {
-    let mut words: Vec<String> = name.replace(" + ", " +").split(' ').map(str::to_string).collect();
-    if width(name) <= columns {
-        return name.to_string();
-    }
-    while width(&words.join(" ")) > columns {
-        let Some(longest) = words.iter_mut().max_by_key(|word| word.chars().count()) else { break };
-        if longest.chars().count() <= 2 {
-            break;
-        }
-        longest.pop();
-    }
-    fit(&words.join(" "), columns, "")
-}
-
-fn gaze_mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session, model: &ConsoleModel) {
-    let Some((at, sample)) = session.gaze.last else { return };
-    let age_s = model.now.secs_since(at);
-    let Some((x, y)) = plan.cell([sample.x, sample.y]) else { return };
-    if age_s > GAZE_S || x < panel.x || x >= panel.right() || y < panel.y || y >= panel.bottom() {
-        return;
-    }
-    let style = brush.style(TextRole::Gaze);
-    let style = if age_s > 1.0 { style.remove_modifier(Modifier::BOLD).add_modifier(Modifier::DIM) } else { style };
-    let sign = brush.theme.signs().gaze;
-    let is_text = |symbol: &str| symbol.chars().any(|letter| letter.is_alphanumeric());
-    let has_text = |x: u16| brush.buffer.cell((x, y)).is_some_and(|cell| is_text(cell.symbol()));
-    // The space between two words belongs to their text.
-    let covers_text = has_text(x) || (has_text(x.saturating_sub(1)) && has_text(x + 1));
-    if !covers_text {
-        brush.text(x, y, 1, sign, style);
-        return;
-    }
-    // Text under the gaze stays readable: its letter is marked, and the gaze sign is drawn beside the card's name.
-    brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED));
-    if let Some(spot) = plan.spots.iter().find(|spot| spot.cells.contains((x, y).into())) {
-        brush.text(spot.cells.right(), spot.cells.y, 1, sign, style);
     }
 }

@@ -45,7 +45,7 @@ fn lines(lesson: &TrainingPanel) -> Vec<(String, String, TextRole)> {
     let newest = lesson.feedback.iter().rev().enumerate();
     let line = |(back, TrainingFeedback { clock, level, text }): (usize, &TrainingFeedback)| {
         let role = match (back, level) {
-            (_, NoticeLevel::Refused | NoticeLevel::Alarm) => TextRole::FalseBelief,
+            (_, NoticeLevel::Refused | NoticeLevel::Alarm) => TextRole::Strong,
             (0, NoticeLevel::Done) => TextRole::Strong,
             (_, NoticeLevel::Done) => TextRole::Text,
         };

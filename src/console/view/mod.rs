@@ -1,6 +1,7 @@
 //! `view(&Session, &Model, &mut Frame)`: reads, draws, and changes nothing.
 
 pub mod belief_panel;
+mod cards;
 pub mod comparison_panel;
 pub mod dialog;
 pub mod events;
@@ -11,6 +12,7 @@ pub mod hands;
 pub mod head;
 pub mod kitchen;
 pub mod lesson;
+pub mod offer_line;
 pub mod paint;
 pub mod picker;
 mod popup;
@@ -18,6 +20,7 @@ pub mod recommendation_panel;
 pub mod recordings_page;
 pub mod regions;
 pub mod robot_panel;
+mod scrub;
 pub mod sheet;
 pub mod shown;
 pub mod theme;
@@ -41,6 +44,7 @@ pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     }
     let regions = Regions::showing((area.width, area.height), session, model);
     head::draw(&mut brush, &regions, session, model);
+    offer_line::draw(&mut brush, &regions, session, model);
     kitchen::draw(&mut brush, &regions, session, model);
     belief_panel::draw(&mut brush, &regions, session, model);
     recommendation_panel::draw(&mut brush, &regions, session, model);
@@ -52,7 +56,9 @@ pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     events::draw(&mut brush, &regions, session, model);
     timeline::draw(&mut brush, &regions, session, model);
     comparison_panel::draw(&mut brush, &regions, session, model);
+    scrub::draw(&mut brush, &regions, session, model);
     footer::draw(&mut brush, &regions, session, model);
+    cards::draw(&mut brush, &regions, session, model);
     sheet::draw(&mut brush, area, session, model);
     dialog::draw(&mut brush, area, session, model);
 }

@@ -42,6 +42,22 @@ pub fn fit(text: &str, columns: u16, ellipsis: &str) -> String {
     cut
 }
 
+/// Shortens a name to a width: removes spaces first, then the ends of the longest words.
+pub fn squeeze(name: &str, columns: u16) -> String {
+    let mut words: Vec<String> = name.replace(" + ", " +").split(' ').map(str::to_string).collect();
+    if width(name) <= columns {
+        return name.to_string();
+    }
+    while width(&words.join(" ")) > columns {
+        let Some(longest) = words.iter_mut().max_by_key(|word| word.chars().count()) else { break };
+        if longest.chars().count() <= 2 {
+            break;
+        }
+        longest.pop();
+    }
+    fit(&words.join(" "), columns, "")
+}
+
 /// The text in lines of at most `columns`, broken between words.
 pub fn wrap(text: &str, columns: u16) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
@@ -53,6 +69,17 @@ pub fn wrap(text: &str, columns: u16) -> Vec<String> {
             }
             _ => lines.push(word.to_string()),
         }
+    }
+    lines
+}
+
+/// The same in at most `rows` lines, with an ellipsis if something is missing.
+pub fn wrap_to(text: &str, columns: u16, rows: u16, ellipsis: &str) -> Vec<String> {
+    let mut lines = wrap(text, columns);
+    let rows = usize::from(rows);
+    if lines.len() > rows && rows > 0 {
+        let last = lines.split_off(rows - 1).join(" ");
+        lines.push(fit(&last, columns, ellipsis));
     }
     lines
 }

@@ -2,8 +2,8 @@
 
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, width, wrap};
-use super::regions::{Regions, ScreenSize};
+use super::paint::{Painter, wrap};
+use super::regions::Regions;
 use super::theme::TextRole;
 use crate::base::words::count;
 use crate::communication::Sender;
@@ -32,9 +32,6 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let area = regions.recommendation;
     if area.area() == 0 {
         return;
-    }
-    if regions.room == ScreenSize::Small {
-        return line(brush, area, session, model);
     }
     let inside = brush.panel(area, "Recommendation", remark(session, area.width));
     let Some(advice) = &shown(session) else {
@@ -139,36 +136,6 @@ fn silence(session: &Session) -> &'static str {
         (true, true) => "None yet: it comes after the first order or press.",
         (true, false) => "None: the assistant advises while the trial runs.",
     }
-}
-
-/// Draws the best option in one line.
-fn line(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel) {
-    let mut parts = vec![(" advice   ".to_string(), TextRole::Quiet)];
-    match shown(session).as_ref().map(|advice| (advice, advice.best.as_ref().and(advice.top()))) {
-        None => parts.push((silence(session).to_string(), TextRole::Quiet)),
-        Some((Recommendation { proposal: Some(proposal), .. }, None)) => {
-            parts.push((proposed(proposal), TextRole::Strong));
-        }
-        Some((advice, None)) => parts.push((nothing(session, advice).to_string(), TextRole::Quiet)),
-        Some((advice, Some(option))) => {
-            let worth = worth(option, session);
-            let worth = match session.spec.assistant.concept {
-                ConceptName::Tom => format!("{worth}above threshold "),
-                _ => format!("net {worth}"),
-            };
-            parts.push((worth, TextRole::Strong));
-            parts.push((key(option, session, model), TextRole::Signal));
-            parts.push((wording::signal(&option.signal), TextRole::Strong));
-            if let Some(reason) = advice.reason.as_ref().map(|reason| wording::reason(&session.kitchen, reason)) {
-                parts.push((format!(": {}", reason.words()), TextRole::Quiet));
-            }
-        }
-    }
-    let age = session.advice.as_ref().map_or(String::new(), |advice| age(session, advice, model));
-    let parts: Vec<(&str, TextRole)> = parts.iter().map(|(text, role)| (text.as_str(), *role)).collect();
-    brush.parts(area.x, area.y, area.width.saturating_sub(width(&age) + 1), &parts);
-    let style = brush.style(TextRole::Quiet);
-    brush.text_right(area.right().saturating_sub(1), area.y, area.width, &age, style);
 }
 
 /// Text without a recommended signal: no signal is worth its cost, or the recommended signal has been sent.

@@ -32,6 +32,8 @@ pub struct Regions {
     pub room: ScreenSize,
     /// The head line.
     pub head: Rect,
+    /// The offer: one line, or two on narrow terminals.
+    pub offer: Rect,
     /// The kitchen.
     pub kitchen: Rect,
     /// The belief panel.
@@ -54,21 +56,39 @@ pub struct Regions {
     pub comparison: Rect,
     /// Training panel.
     pub lesson: Rect,
+    /// Position in a recording.
+    pub scrub: Rect,
+    /// The line of messages.
+    pub message: Rect,
     /// The keys that matter now.
     pub footer: Rect,
 }
 
+/// Number of columns from which the offer and its reason fit into one line.
+const OFFER_COLUMNS: u16 = 140;
 /// Least width of the kitchen panel for unabbreviated names of usual length.
 const KITCHEN_COLUMNS: u16 = 81;
 /// Height of the timeline with its title.
 const TIMELINE_ROWS: u16 = 7;
+/// Height of the list of recommendations on large terminals.
+const RECOMMENDATION_ROWS: u16 = 9;
+
+/// Lines that only some consoles have.
+#[derive(Clone, Copy, Debug, Default)]
+struct LineRows {
+    /// Number of compared assistants, if a comparison is shown.
+    comparison: Option<u16>,
+    /// Whether there is a position in a recording.
+    scrubs: bool,
+}
 
 impl Regions {
     /// Computes the layout of a terminal with `size` columns and rows for this console.
     pub fn showing(size: (u16, u16), session: &Session, model: &ConsoleModel) -> Regions {
         let assistants = |compared: &ComparisonView| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
         let compared = model.comparison.as_ref().map(assistants);
-        let regions = Regions::with(size, session.spec.console.visibility, model.alone, compared);
+        let lines = LineRows { comparison: compared, scrubs: model.playback.is_some() };
+        let regions = Regions::with(size, session.spec.console.visibility, model.alone, lines);
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
 
@@ -89,11 +109,11 @@ impl Regions {
 
     /// Computes the layout of all panels without the comparison, or of one panel at full size.
     pub fn new(size: (u16, u16), visibility: Visibility, alone: Option<Panel>) -> Regions {
-        Regions::with(size, visibility, alone, None)
+        Regions::with(size, visibility, alone, LineRows::default())
     }
 
-    /// Computes the layout with a comparison of this number of assistants, if there is one.
-    fn with(size: (u16, u16), visibility: Visibility, alone: Option<Panel>, assistants: Option<u16>) -> Regions {
+    /// Computes the layout with these additional lines.
+    fn with(size: (u16, u16), visibility: Visibility, alone: Option<Panel>, lines: LineRows) -> Regions {
         let room = match size {
             (columns, rows) if columns >= 168 && rows >= 46 => ScreenSize::Large,
             (columns, rows) if columns >= ROOMY_COLUMNS && rows >= 34 => ScreenSize::Medium,
@@ -101,13 +121,18 @@ impl Regions {
         };
         let all = Rect::new(0, 0, size.0, size.1);
         let (head, rest) = top(all, 1);
+        let offer_rows = if size.0 < OFFER_COLUMNS { 2 } else { 1 };
+        let (offer, rest) = top(rest, if visibility == Visibility::Recommendation { offer_rows } else { 0 });
         let (rest, footer) = bottom(rest, 1);
+        let (rest, message) = bottom(rest, 1);
+        let (rest, scrub) = bottom(rest, u16::from(lines.scrubs));
         let blank = Rect::default();
-        let rows = assistants.filter(|_| alone.is_none()).map_or(0, |number| comparison_rows(room, number));
+        let rows = lines.comparison.filter(|_| alone.is_none()).map_or(0, |number| comparison_rows(room, number));
         let (rest, comparison) = bottom(rest, rows);
         let bare = Regions {
             room,
             head,
+            offer,
             kitchen: rest,
             belief: blank,
             recommendation: blank,
@@ -119,6 +144,8 @@ impl Regions {
             timeline: blank,
             comparison,
             lesson: blank,
+            scrub,
+            message,
             footer,
         };
         match room {
@@ -163,54 +190,58 @@ impl Regions {
         if self.comparison.area() > 0 { 0 } else { rows }
     }
 
-    /// Small layout: panels as lines below the kitchen, with the three worst beliefs.
+    /// Small layout: panels as lines below the kitchen, with the worst beliefs.
     fn small(self, visibility: Visibility) -> Regions {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(4));
-        let (rest, recommendation) = bottom(rest, u16::from(visibility == Visibility::Recommendation));
-        let beliefs = if rest.height >= 17 { 3 } else { 1 };
+        let beliefs = if rest.height >= 15 { 2 } else { 1 };
         let (rest, belief) = bottom(rest, if visibility >= Visibility::Belief { beliefs } else { 0 });
         let (rest, gaze) = bottom(rest, 1);
-        let (rest, shown) = bottom(rest, 1);
-        let (kitchen, robot) = bottom(rest, 1);
-        Regions { kitchen, robot, shown, gaze, belief, recommendation, timeline, ..self }
+        let (kitchen, agents) = bottom(rest, 1);
+        let (robot, shown) = left(agents, agents.width / 2);
+        Regions { kitchen, robot, shown, gaze, belief, timeline, ..self }
     }
 
-    /// Medium layout: the kitchen at the left; beliefs, recommendations and agents at the right.
+    /// Medium layout: the kitchen at the left; beliefs and agents at the right.
     fn medium(self, visibility: Visibility) -> Regions {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
         let (kitchen, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
         let (side, robot) = bottom(side, 4);
-        let (side, gaze) = bottom(side, 4);
-        let (side, shown) = bottom(side, 5);
+        let (side, gaze) = bottom(side, 3);
+        let (side, shown) = bottom(side, 4);
         Regions { kitchen, shown, robot, gaze, timeline, ..self }.judge(side, visibility)
     }
 
-    /// Large layout in three columns: state, beliefs with recommendations, events.
+    /// Large layout in three columns: state with gaze map, beliefs over time with recommendations, events.
     fn large(self, visibility: Visibility) -> Regions {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
-        let (rest, events) = right(rest, 36);
-        let (kitchen, side) = left(rest, (rest.width / 2).max(KITCHEN_COLUMNS));
-        let (kitchen, below) = bottom(kitchen, kitchen.height * 3 / 10);
-        let (participant, map) = left(below, below.width / 2);
+        let (rest, events) = right(rest, 42);
+        let (kitchen, side) = left(rest, (rest.width * 11 / 20).max(KITCHEN_COLUMNS));
+        let (kitchen, below) = bottom(kitchen, kitchen.height * 2 / 5);
+        let (participant, map) = left(below, below.width * 2 / 5);
         let (shown, gaze) = top(participant, 5);
         let (side, robot) = bottom(side, 6);
         let regions = Regions { kitchen, shown, gaze, robot, events, timeline, ..self };
         match visibility {
             Visibility::State => Regions { gaze_map: side, ..regions },
-            _ => Regions { gaze_map: map, ..regions.judge(side, visibility) },
+            Visibility::Belief => Regions { gaze_map: map, ..regions.judge(side, visibility) },
+            Visibility::Recommendation => {
+                let (side, recommendation) = bottom(side, RECOMMENDATION_ROWS);
+                Regions { gaze_map: map, recommendation, ..regions.judge(side, visibility) }
+            }
         }
     }
 
-    /// Divides an area among the panels that the visibility setting allows.
+    /// Gives an area to the panel that the visibility setting allows.
     fn judge(self, side: Rect, visibility: Visibility) -> Regions {
         match visibility {
             Visibility::State => Regions { gaze_map: side, ..self },
-            Visibility::Belief => Regions { belief: side, ..self },
-            Visibility::Recommendation => {
-                let (belief, recommendation) = bottom(side, side.height * 2 / 5);
-                Regions { belief, recommendation, ..self }
-            }
+            Visibility::Belief | Visibility::Recommendation => Regions { belief: side, ..self },
         }
+    }
+
+    /// Where the wizard reads what the assistant recommends.
+    fn recommendations(&self) -> Rect {
+        if self.recommendation.area() > 0 { self.recommendation } else { self.offer }
     }
 
     /// Names of the visible panels.
@@ -218,7 +249,7 @@ impl Regions {
         let panels = [
             ("kitchen", self.kitchen),
             ("belief", self.belief),
-            ("recommendation", self.recommendation),
+            ("recommendation", self.recommendations()),
             ("gaze_map", self.gaze_map),
             ("display", self.shown),
             ("robot", self.robot),

@@ -101,8 +101,8 @@ fn joints(brush: &mut Painter, x: u16, y: u16, columns: u16, moment: &ArmSample)
 fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     let arm = &session.robot.arm;
     let (label, goes_on) = match arm.mode {
-        mode if mode.has_stopped_itself() => (format!(" {} ", mode.name()), "resumes"),
-        _ => (" STOPPED ".to_string(), "lets it go on"),
+        mode if mode.has_stopped_itself() => (format!(" {} ", mode.name()), "resume"),
+        _ => (" STOPPED ".to_string(), "resume"),
     };
     let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != Phase::Closed);
     let resume = key.map(|key| format!(" {key} {goes_on}")).unwrap_or_default();

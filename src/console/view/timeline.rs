@@ -1,4 +1,5 @@
-//! The timeline: one row per kind of event, columns of half a second, the present at the right edge.
+//! The timeline on the trial's clock, which stands while the trial stands: one row per kind of event, columns of half a second,
+//! the present at the right edge.
 
 use ratatui::layout::Rect;
 
@@ -15,6 +16,9 @@ use crate::session::{Phase, Session, TimelineEntry, TimelineEvent};
 
 /// Duration of a column, in seconds.
 const COLUMN_S: f64 = 0.5;
+/// Times between the labels of an axis, in seconds, and columns that a label needs.
+const TICKS_S: [f64; 4] = [10.0, 20.0, 30.0, 60.0];
+const LABEL_COLUMNS: f64 = 8.0;
 const LABELS: u16 = 10;
 const TITLE: &str = "Timeline";
 
@@ -36,11 +40,10 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         brush.text(inside.x + 1, inside.y + row as u16, LABELS, label, quiet);
     }
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
-    let back_s = model.timeline_back_s;
-    axis(brush, plot, back_s, COLUMN_S);
-    let now = column(until(session, model)) - (f64::from(back_s) / COLUMN_S) as i64;
-    let newest = session.timeline.iter().rev();
-    let entries = newest.map(|entry| (now - column(entry.time), entry));
+    axis(brush, plot, session, model, COLUMN_S);
+    let back = (f64::from(model.timeline_back_s) / COLUMN_S) as i64;
+    let newest = session.timeline.iter().rev().filter(|entry| entry.time <= model.now);
+    let entries = newest.map(|entry| (columns_ago(session, model, entry.time, COLUMN_S) - back, entry));
     let in_view: Vec<Mark> = entries
         .skip_while(|(age, _)| *age < 0)
         .take_while(|(age, _)| *age < i64::from(plot.width))
@@ -71,10 +74,11 @@ fn coding(session: &Session, model: &ConsoleModel) -> Option<String> {
     Some(coding.describe(&session.kitchen, playback.event, &press))
 }
 
-/// Time at the right edge: the present, or the last event during a pause.
-pub(super) fn until(session: &Session, model: &ConsoleModel) -> SessionTime {
-    let last = session.timeline.last().map_or(session.paused_at, |entry| entry.time.max(session.paused_at));
-    if session.phase == Phase::Paused { last.min(model.now) } else { model.now }
+/// Number of columns between a time and the present, on the trial's clock.
+pub(super) fn columns_ago(session: &Session, model: &ConsoleModel, time: SessionTime, column_s: f64) -> i64 {
+    let column = |time: SessionTime| (time.as_secs_f64() / column_s) as i64;
+    let now = session.trial_clock(model.now);
+    column(now) - column(now - session.age(time, model.now))
 }
 
 /// A sign in the plot.
@@ -112,43 +116,38 @@ fn place(brush: &mut Painter, plot: Rect, marks: &[Mark]) {
     }
 }
 
-/// Free area in the timeline's title line, between title and legend.
-pub(super) fn title_room(brush: &Painter, regions: &Regions, session: &Session, model: &ConsoleModel) -> Option<Rect> {
-    let area = regions.timeline;
-    if regions.room == ScreenSize::Small || area.area() == 0 {
-        return None;
-    }
-    let from = area.x + 1 + width(&title(session, model)) + 2;
-    let until = area.right().saturating_sub(width(&legend(brush)) + 4);
-    Some(Rect { x: from, y: area.y, width: until.saturating_sub(from), height: 1 })
-}
-
 fn legend(brush: &Painter) -> String {
     let signs = brush.theme.signs();
     format!("{} press  {} no effect  {} error  {} served", signs.press, signs.no_effect, signs.error, signs.served)
 }
 
-fn column(time: SessionTime) -> i64 {
-    (time.as_secs_f64() / COLUMN_S) as i64
+/// Draws the axis in the first row: the trial's clock, with the present or an earlier time at the right end.
+pub(super) fn axis(brush: &mut Painter, plot: Rect, session: &Session, model: &ConsoleModel, column_s: f64) {
+    let back = SessionTime::from_secs_f64(f64::from(model.timeline_back_s));
+    ticks(brush, Rect { height: 1, ..plot }, session.trial_clock(model.now) - back, column_s);
 }
 
-/// Draws the time axis in the first row; the right end is the present or `back_s` seconds ago.
-pub(super) fn axis(brush: &mut Painter, plot: Rect, back_s: u32, column_s: f64) {
+/// Draws a line with the trial's clock at full tens of seconds; its right end is `end`.
+pub(super) fn ticks(brush: &mut Painter, line: Rect, end: SessionTime, column_s: f64) {
     let quiet = brush.style(TextRole::Quiet);
-    let every = (10.0 / column_s) as u16;
-    let line = brush.theme.signs().frame[4];
     let thin = brush.style(TextRole::Frame);
-    for x in plot.x..plot.right() {
-        brush.text(x, plot.y, 1, line, thin);
-    }
-    let end = if back_s == 0 { " now".to_string() } else { format!(" -{back_s} s") };
-    brush.text_right(plot.right(), plot.y, 8, &end, quiet);
-    let mut tick = 1;
-    while tick * every + 4 < plot.width {
-        let label = format!(" -{} s ", back_s + u32::from(tick) * 10);
-        let x = plot.right() - 1 - tick * every;
-        brush.text(x.saturating_sub(width(&label) / 2), plot.y, 8, &label, quiet);
-        tick += 1;
+    let rule = brush.theme.signs().frame[4].repeat(usize::from(line.width));
+    brush.text(line.x, line.y, line.width, &rule, thin);
+    let column = |seconds: f64| (seconds / column_s) as i64;
+    let last = column(end.as_secs_f64());
+    let is_wide = |step_s: &f64| step_s / column_s >= LABEL_COLUMNS;
+    let step_s = TICKS_S.into_iter().find(is_wide).unwrap_or(TICKS_S[TICKS_S.len() - 1]);
+    let mut tick = (end.as_secs_f64() / step_s).floor();
+    while tick >= 0.0 {
+        let back = last - column(tick * step_s);
+        let label = format!(" {} ", SessionTime::from_secs_f64(tick * step_s));
+        let x = i64::from(line.right()) - 1 - back - i64::from(width(&label) / 2);
+        if x < i64::from(line.x) {
+            return;
+        }
+        let x = (x as u16).min(line.right().saturating_sub(width(&label)));
+        brush.text(x, line.y, width(&label), &label, quiet);
+        tick -= 1.0;
     }
 }
 
@@ -165,7 +164,7 @@ fn mark(
             let row = if *agent == Agent::Human { 1 } else { 2 };
             let role = if *agent == Agent::Human { TextRole::Human } else { TextRole::Robot };
             match (model.is_error(entry), effective) {
-                (true, _) => (row, signs.error.to_string(), TextRole::Alarm),
+                (true, _) => (row, signs.error.to_string(), TextRole::Strong),
                 (false, false) => (row, signs.no_effect.to_string(), role),
                 (false, true) => (row, signs.press.to_string(), role),
             }

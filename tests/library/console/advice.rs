@@ -1,14 +1,20 @@
 //! The recommendation panel, and the key that accepts a recommendation.
 
 use crossterm::event::KeyCode;
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::buffer::Cell;
+use ratatui::style::{Color, Modifier};
 use tomcom::base::time::SessionTime;
 use tomcom::communication::recommendation::{Reason, Recommendation, SignalOption};
 use tomcom::communication::settings::Shadow;
 use tomcom::communication::{Sender, Signal};
+use tomcom::console::view;
+use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
 use tomcom::session::event::{Event, SignalEnd};
 use tomcom::session::settings::{ParticipantKind, Visibility};
 
-use super::{Stage, input};
+use super::{SIZES, Stage, input};
 use crate::check_snapshot;
 
 /// The sushi kitchen with an assistant that advises beside the wizard, and its advice.
@@ -54,6 +60,44 @@ fn advice_is_ranked_with_its_errors_against_the_cost_of_a_signal() {
     check_snapshot("console", "advised_120x40", advised(true).screen((120, 40)));
     check_snapshot("console", "advised_200x60", advised(true).screen((200, 60)));
     check_snapshot("console", "advised_silence_120x40", advised(false).screen((120, 40)));
+}
+
+/// The texts that are inverse in the colour of signals.
+fn inverse_signals(stage: &Stage, size: (u16, u16)) -> Vec<String> {
+    let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).expect("a test terminal");
+    terminal.draw(|frame| view(&stage.session, &stage.model, frame)).expect("drawn");
+    let colour = Theme::colour(TerminalBackground::Dark, TextRole::Signal).map(Color::Indexed);
+    let is_loud = |cell: &Cell| cell.modifier.contains(Modifier::REVERSED) && Some(cell.fg) == colour;
+    let cells = &terminal.backend().buffer().content;
+    let runs = cells.chunk_by(|a, b| is_loud(a) == is_loud(b)).filter(|run| is_loud(&run[0]));
+    runs.map(|run| run.iter().map(Cell::symbol).collect::<String>().trim().to_string()).collect()
+}
+
+#[test]
+fn the_offer_alone_is_inverse_in_the_colour_of_signals() {
+    for size in SIZES {
+        assert_eq!(inverse_signals(&advised(true), size), ["enter  SHOW RECIPE OF ORDER 1 [q]"], "{size:?}");
+        assert_eq!(inverse_signals(&advised(false), size), [""; 0], "{size:?}");
+        let mut paused = advised(true);
+        paused.at(22.6, Event::TrialPaused);
+        assert_eq!(inverse_signals(&paused, size).len(), 1, "{size:?}");
+        let mut shown = advised(false);
+        let signal = Signal::Highlight("cutting_board".to_string());
+        shown.at(30.0, Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None });
+        assert_eq!(inverse_signals(&shown, size), [""; 0], "{size:?}");
+    }
+}
+
+#[test]
+fn an_offer_says_what_is_believed_what_is_true_and_what_it_saves() {
+    for size in SIZES {
+        let screen = advised(true).screen(size);
+        for words in
+            ["thinks salmon nigiri, is tuna nigiri", "83 % for 0:0", "next press: take salmon", "saves ≈ 4 presses"]
+        {
+            assert!(screen.contains(words), "{words} is missing at {size:?}:\n{screen}");
+        }
+    }
 }
 
 #[test]

@@ -1,30 +1,38 @@
 //! The belief panel, and the track of estimates behind it.
 
+use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
 use tomcom::history::belief_track;
 use tomcom::session::event::Event;
 use tomcom::session::settings::{ParticipantKind, Visibility};
 
-use super::{SIZES, Stage};
+use super::{SIZES, Stage, panels};
 use crate::check_snapshot;
 
 #[test]
 fn one_belief_is_looked_at_over_time_and_then_the_next() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    let ranked = belief_track::ranked(stage.model.belief.until(stage.model.now));
-    let name = |index: usize| stage.session.kitchen.aspects[index].name.clone();
-    let wrong: Vec<String> = ranked.iter().take(3).map(|&index| name(index)).collect();
-    assert_eq!(wrong, ["order_2", "recipe of tuna nigiri", "robot_hand"], "the longest first");
-    stage.control('b');
-    assert_eq!(stage.model.belief_focus.map(|aspect| aspect.index()), ranked.first().copied());
-    stage.wait(1.0);
-    stage.control('b');
-    stage.wait(1.0);
-    stage.control('b');
+    let all = panels(&stage);
+    let aspects = stage.session.kitchen.aspects.len();
+    let mut seen = Vec::new();
+    for _ in 0..3 {
+        stage.control('b');
+        let focus = stage.model.belief_focus.expect("a belief is shown");
+        seen.push(stage.session.kitchen.aspects[focus.index()].name.clone());
+        assert_eq!(panels(&stage), ["belief", "recommendation"], "the belief alone, with the offer's line");
+        stage.wait(1.0);
+    }
+    assert_eq!(seen, ["order_2", "recipe of tuna nigiri", "robot_hand"], "the longest first");
+    stage.key(KeyCode::Esc);
+    assert_eq!((panels(&stage), stage.model.belief_focus), (all, None), "esc leaves it");
+    for _ in 0..3 {
+        stage.wait(1.0);
+        stage.control('b');
+    }
     for size in SIZES {
         check_snapshot("console", format!("belief_over_time_{}x{}", size.0, size.1), stage.screen(size));
     }
-    for _ in 0..ranked.len() - 2 {
+    for _ in 0..aspects - 2 {
         stage.wait(1.0);
         stage.control('b');
     }

@@ -50,7 +50,7 @@ fn a_click_sends_no_signal_and_the_wheel_goes_back_in_time() {
     }
     let all = panels(&stage);
     let (column, row) = (regions.belief.x + 1, regions.belief.y);
-    for expected in [vec!["belief".to_string()], all] {
+    for expected in [["belief", "recommendation"].map(str::to_string).to_vec(), all] {
         assert_eq!(update(&mut stage.model, &stage.session, ConsoleMessage::Click(column, row)), None);
         assert_eq!(panels(&stage), expected);
     }

@@ -1,0 +1,156 @@
+//! Cards before and after a trial: what is ready and how to start; what came of it and what comes next.
+
+use ratatui::layout::Rect;
+
+use super::footer::onward;
+use super::head;
+use super::paint::{Painter, width};
+use super::popup::open;
+use super::regions::{Regions, ScreenSize};
+use super::theme::TextRole;
+use crate::base::time::SessionTime;
+use crate::base::words::count;
+use crate::communication::Sender;
+use crate::console::console_model::ConsoleModel;
+use crate::console::form::sheet;
+use crate::console::key_action::{KeyAction, ManualAction};
+use crate::history::wording;
+use crate::kitchen::Agent;
+use crate::session::{Phase, Session, TimelineEvent};
+
+/// Columns of a card, and of the names of its facts.
+const COLUMNS: u16 = 62;
+const NAMES: u16 = 14;
+
+/// A card: facts with their names, and the keys that go on.
+struct Card {
+    title: String,
+    facts: Vec<(&'static str, String, TextRole)>,
+    keys: Vec<(String, String)>,
+}
+
+/// Draws the card of the trial's start or end, if nothing else lies in front of the console.
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+    let is_covered = model.dialog.is_some() || model.alone.is_some() || sheet(session).is_some();
+    let has_trial = session.study_phase().is_none_or(|phase| phase.phase().has_trial());
+    if is_covered || !has_trial || model.playback.is_some() || model.lesson.is_some() || session.is_calibrating() {
+        return;
+    }
+    let card = match session.phase {
+        Phase::Ready => before(session, model),
+        Phase::Over(_) => after(session, model),
+        _ => return,
+    };
+    // The head line, the messages and the keys stay visible.
+    let area = *brush.buffer.area();
+    let (top, bottom) = (regions.head.bottom(), regions.message.y);
+    let screen = Rect { y: top, height: bottom.saturating_sub(top), ..area };
+    card.draw(brush, screen);
+}
+
+/// The trial's place in the study, and who takes part: "P07, trial 2/2, wizard".
+fn place(session: &Session) -> String {
+    let step = session.step().map_or(String::new(), |(step, _)| format!(", {}", step.label()));
+    format!("{}{step}, {}", session.spec.participant.code, head::condition(session))
+}
+
+fn key(model: &ConsoleModel, action: &KeyAction) -> Option<String> {
+    model.keys.chord_for(action).map(|chord| chord.to_string())
+}
+
+fn before(session: &Session, model: &ConsoleModel) -> Card {
+    let trial = &session.spec.trial;
+    let length =
+        format!("{} or {}", count(trial.presses, "press", "presses"), SessionTime::from_secs_f64(trial.seconds));
+    let mut facts = vec![
+        ("participant", place(session), TextRole::Strong),
+        ("kitchen", session.kitchen.title.clone(), TextRole::Text),
+        ("length", length, TextRole::Text),
+    ];
+    for (index, (text, role)) in head::healths(session, model, ScreenSize::Medium).into_iter().enumerate() {
+        let name = if index == 0 { "devices" } else { "" };
+        facts.push((name, text.trim().to_string(), role));
+    }
+    let mut keys = Vec::new();
+    keys.extend(key(model, &KeyAction::Advance).map(|key| (key, "start the trial".to_string())));
+    let preflight = KeyAction::Hand(ManualAction::Preflight);
+    keys.extend(key(model, &preflight).map(|key| (key, "all preflight checks".to_string())));
+    Card { title: "Ready to start".to_string(), facts, keys }
+}
+
+fn after(session: &Session, model: &ConsoleModel) -> Card {
+    let [human, robot] = [Agent::Human, Agent::Robot].map(|agent| session.presses[agent.index()]);
+    let errors = model.errors.len() as u64;
+    let share = 100.0 * errors as f64 / f64::from(human.max(1));
+    let sent = |by: Sender| {
+        let is_sent =
+            |event: &TimelineEvent| matches!(event, TimelineEvent::Signal { by: sender, .. } if *sender == by);
+        session.timeline.iter().filter(|entry| is_sent(&entry.what)).count() as u64
+    };
+    let signals: Vec<String> = [Sender::Wizard, Sender::Assistant]
+        .into_iter()
+        .filter(|by| sent(*by) > 0)
+        .map(|by| format!("{} by the {}", count(sent(by), "signal", "signals"), wording::sender(by)))
+        .collect();
+    let signals = if signals.is_empty() { "none".to_string() } else { signals.join(", ") };
+    let clock = session.trial_clock(model.now);
+    let paused = if session.paused_total > SessionTime::ZERO {
+        format!(", and {} of pauses", session.paused_total)
+    } else {
+        String::new()
+    };
+    let mut facts = vec![
+        ("participant", place(session), TextRole::Strong),
+        ("orders", format!("{} served", session.served.len()), TextRole::Text),
+        ("presses", format!("{human} by the human, {robot} by the robot"), TextRole::Text),
+        ("errors", format!("{errors} of the human, {share:.0} % of the presses"), TextRole::Text),
+        ("signals", signals, TextRole::Text),
+        ("time", format!("{clock}{paused}"), TextRole::Text),
+    ];
+    if let Some(practice) = session.protocol.as_ref().and_then(|protocol| protocol.practice.as_ref()) {
+        let met = if practice.met { "met: the practice is complete" } else { "not met, and waived" };
+        facts.push(("criterion", met.to_string(), TextRole::Strong));
+    }
+    let mut keys = Vec::new();
+    let on = onward(session);
+    keys.extend(on.and_then(|on| Some((key(model, &KeyAction::Advance)?, on))));
+    if can_redo(session) {
+        keys.extend(key(model, &KeyAction::Hand(ManualAction::Redo)).map(|key| (key, "do it again".to_string())));
+    }
+    keys.extend(key(model, &KeyAction::Quit).map(|key| (key, "close the session".to_string())));
+    Card { title: format!("Trial {}", wording::trial(session.phase)), facts, keys }
+}
+
+/// Whether the trial can be done again by the key for it.
+fn can_redo(session: &Session) -> bool {
+    session.aborted.is_some() || session.excluded.is_some()
+}
+
+impl Card {
+    fn draw(&self, brush: &mut Painter, screen: Rect) {
+        let rows = self.facts.len() as u16 + 5;
+        let inside = open(brush, screen, (COLUMNS, rows), &self.title, "");
+        let x = inside.x + 2;
+        let quiet = brush.style(TextRole::Quiet);
+        let room = inside.width.saturating_sub(NAMES + 3);
+        for (row, (name, text, role)) in self.facts.iter().enumerate() {
+            let y = inside.y + 1 + row as u16;
+            if y >= inside.bottom() {
+                return;
+            }
+            brush.text(x, y, NAMES, name, quiet);
+            let style = brush.style(*role);
+            brush.text(x + NAMES, y, room, text, style);
+        }
+        let y = inside.bottom().saturating_sub(1);
+        let mut at = x;
+        for (key, words) in &self.keys {
+            let needed = width(key) + width(words) + 4;
+            if at + needed > inside.right() + 1 {
+                return;
+            }
+            let parts = [(key.as_str(), TextRole::Signal), (" ", TextRole::Text), (words.as_str(), TextRole::Strong)];
+            at = brush.parts(at, y, needed, &parts) + 3;
+        }
+    }
+}

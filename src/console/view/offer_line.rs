@@ -1,0 +1,176 @@
+//! The offer's line: the one signal that is worth sending now, its key, what is believed, and what it saves. It is the only thing
+//! on the screen that is inverse in the colour of signals.
+
+use super::belief_panel::QUIET;
+use super::paint::{Painter, width};
+use super::regions::Regions;
+use super::theme::TextRole;
+use crate::base::words::count;
+use crate::communication::Signal;
+use crate::communication::concept::ConceptName;
+use crate::communication::offer::OfferedAct;
+use crate::communication::recommendation::Reason;
+use crate::console::beliefs::{self, BeliefStanding, EstimatedBelief, beliefs, percent};
+use crate::console::console_model::ConsoleModel;
+use crate::console::key_action::KeyAction;
+use crate::history::wording;
+use crate::kitchen::{AspectId, LocationId};
+use crate::session::offers;
+use crate::session::settings::{Condition, Visibility};
+use crate::session::{Phase, Session};
+
+/// An offer as it is drawn: what stands open, or in recordings without offers the best signal.
+pub(super) struct ShownOffer<'a> {
+    act: OfferedAct,
+    benefit: Option<f64>,
+    reason: Option<&'a Reason>,
+}
+
+/// The offer that the wizard sees now.
+pub(super) fn shown(session: &Session) -> Option<ShownOffer<'_>> {
+    if session.spec.console.visibility < Visibility::Recommendation
+        || session.spec.trial.condition == Condition::Assistant
+        || !matches!(session.phase, Phase::Running | Phase::Paused)
+    {
+        return None;
+    }
+    if offers::are_made(session) {
+        let offer = session.offers.open()?;
+        let benefit = offer.advice.worth.map(|worth| worth.benefit);
+        let (act, reason) = (offer.advice.what.clone(), offer.advice.reason.as_ref());
+        return Some(ShownOffer { act, benefit, reason });
+    }
+    let advice = session.advice.as_ref()?;
+    let (act, benefit) = match (&advice.best, &advice.proposal) {
+        (Some(signal), _) => (OfferedAct::Signal(signal.clone()), advice.top().map(|option| option.benefit)),
+        (None, Some(proposal)) => (OfferedAct::Presses(proposal.presses.clone()), None),
+        (None, None) => return None,
+    };
+    Some(ShownOffer { act, benefit, reason: advice.reason.as_ref() })
+}
+
+impl ShownOffer<'_> {
+    /// The place that the offered signal is about.
+    pub(super) fn place(&self, session: &Session) -> Option<LocationId> {
+        match &self.act {
+            OfferedAct::Signal(signal) => session.kitchen.location_named(signal.target()),
+            OfferedAct::Presses(_) => None,
+        }
+    }
+
+    /// Whether a signal is offered, and not presses.
+    pub(super) fn is_signal(&self) -> bool {
+        matches!(self.act, OfferedAct::Signal(_))
+    }
+
+    /// The label with the keys: " enter  SHOW RECIPE OF ORDER 1 [q] ".
+    fn label(&self, session: &Session, model: &ConsoleModel) -> String {
+        let words = match &self.act {
+            OfferedAct::Signal(signal @ Signal::ShowRecipe(_)) => format!("show {}", wording::signal(signal)),
+            OfferedAct::Signal(signal) => wording::signal(signal),
+            OfferedAct::Presses(_) => return format!(" {} ", wording::offered(&self.act)),
+        };
+        let own = self.place(session).and_then(|place| model.keys.mark(place));
+        let own = own.map_or(String::new(), |key| format!(" [{key}]"));
+        let enter = model.keys.chord_for(&KeyAction::Accept).filter(|_| model.playback.is_none());
+        let enter = enter.map_or(String::new(), |key| format!("{key}  "));
+        format!(" {enter}{}{own} ", words.to_uppercase())
+    }
+
+    /// What the signal saves: "saves ≈ 4 presses".
+    fn saves(&self, brush: &Painter, session: &Session) -> String {
+        let Some(benefit) = self.benefit else { return String::new() };
+        match session.spec.assistant.concept {
+            ConceptName::Tom => format!("belief deviation {benefit:.2}"),
+            _ => {
+                let about = if brush.theme.unicode { "≈" } else { "about" };
+                format!("saves {about} {}", count(benefit.round().max(1.0) as u64, "press", "presses"))
+            }
+        }
+    }
+
+    /// What is believed, what is true, how surely and for how long, and the press that would come: the more important first.
+    fn because(&self, session: &Session, model: &ConsoleModel) -> Vec<String> {
+        let Some(reason) = self.reason.map(|reason| wording::reason(&session.kitchen, reason)) else {
+            return Vec::new();
+        };
+        let aspect = session.kitchen.aspects.iter().position(|aspect| aspect.name == reason.aspect);
+        let aspect = aspect.map(|index| AspectId(index as u8));
+        let belief = beliefs(session, model).into_iter().find(|belief| Some(belief.aspect) == aspect);
+        let since = belief.and_then(|belief| belief.since);
+        // The certainty is that of the belief panel, while the participant is thought to think the same.
+        let is_same = |belief: &EstimatedBelief| {
+            beliefs::value(&session.kitchen, belief.aspect, belief.thinks) == reason.believes
+        };
+        let p = belief.filter(is_same).map_or(reason.p_believes, |belief| belief.p.into());
+        let age = since.map_or(String::new(), |since| format!(" for {}", session.age(since, model.now)));
+        let thinks = if p < 0.5 { "may think" } else { "thinks" };
+        let mut said =
+            vec![format!("{thinks} {}, is {}", reason.believes, reason.truth), format!("{}{age}", percent(p))];
+        said.extend(reason.prevents.as_ref().map(|button| format!("next press: {}", wording::location(button))));
+        said
+    }
+}
+
+/// Draws the offer's line, or why there is none.
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+    let area = regions.offer;
+    if area.area() == 0 {
+        return;
+    }
+    let Some(offer) = shown(session) else {
+        let style = brush.style(TextRole::Quiet);
+        brush.text(area.x + 1, area.y, area.width - 1, &silence(session, model), style);
+        return;
+    };
+    let badge = brush.theme.badge(TextRole::Signal);
+    let end = brush.text(area.x, area.y, area.width, &offer.label(session, model), badge);
+    let saves = offer.saves(brush, session);
+    let right = area.right().saturating_sub(1);
+    let strong = brush.style(TextRole::Strong);
+    if end + width(&saves) < right {
+        brush.text_right(right, area.y, width(&saves), &saves, strong);
+    }
+    // The reason stands in a line of its own, or between label and saving.
+    let (mut x, y, limit) = match area.height {
+        1 => (end + 1, area.y, right.saturating_sub(width(&saves) + 2)),
+        _ => (area.x + 1, area.y + 1, right),
+    };
+    for (index, words) in offer.because(session, model).iter().enumerate() {
+        let words = if index == 0 { words.clone() } else { format!(" · {words}") };
+        let words = if brush.theme.unicode { words } else { words.replace('·', "-") };
+        let role = if index == 0 { TextRole::FalseBelief } else { TextRole::Text };
+        if index == 0 || x + width(&words) <= limit {
+            let style = brush.style(role);
+            x = brush.text(x, y, limit.saturating_sub(x), &words, style);
+        }
+    }
+}
+
+/// Why nothing is offered.
+fn silence(session: &Session, model: &ConsoleModel) -> String {
+    if session.spec.trial.condition == Condition::Assistant {
+        return "The assistant sends the signals by itself".to_string();
+    }
+    if !session.spec.asks_assistant() {
+        return "Nobody asks the assistant in this session (shadow = \"off\"): the signals are yours".to_string();
+    }
+    match session.phase {
+        Phase::Running | Phase::Paused => {}
+        Phase::Ready => return "The assistant advises while the trial runs".to_string(),
+        Phase::Over(_) | Phase::Closed => return "The trial is over".to_string(),
+    }
+    let wrong = beliefs(session, model).iter().filter(|belief| belief.standing == BeliefStanding::False).count();
+    match wrong {
+        0 => QUIET.to_string(),
+        _ => format!("{}, no signal is offered", count(wrong as u64, "false belief", "false beliefs")),
+    }
+}
+
+/// The value that the participant is thought to hold for a place, if it is wrong.
+pub(super) fn thinks(session: &Session, believed: &[EstimatedBelief], place: LocationId) -> Option<String> {
+    let wrong = believed.iter().find(|belief| {
+        belief.standing == BeliefStanding::False && beliefs::place(session, belief.aspect) == Some(place)
+    })?;
+    Some(beliefs::value(&session.kitchen, wrong.aspect, wrong.thinks).to_string())
+}

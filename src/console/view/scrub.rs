@@ -1,0 +1,29 @@
+//! The position in a recording: a bar over its whole length, with the time reached and the whole time.
+
+use super::paint::{Painter, width};
+use super::regions::Regions;
+use super::theme::TextRole;
+use crate::console::console_model::ConsoleModel;
+use crate::session::Session;
+
+/// Draws the position in the recording.
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+    let (area, Some(playback)) = (regions.scrub, &model.playback) else { return };
+    if area.area() == 0 {
+        return;
+    }
+    let end = format!(" {} / {} ", session.time, playback.length.max(session.time));
+    let quiet = brush.style(TextRole::Quiet);
+    brush.text(area.x, area.y, area.width, " position ", quiet);
+    brush.text_right(area.right(), area.y, area.width, &end, quiet);
+    let x = area.x + 10;
+    let columns = area.right().saturating_sub(x + width(&end) + 1);
+    let share = session.time.as_secs_f64() / playback.length.as_secs_f64().max(1e-3);
+    let line = brush.theme.signs().frame[4].repeat(usize::from(columns));
+    let (thin, strong) = (brush.style(TextRole::Frame), brush.style(TextRole::Strong));
+    brush.text(x, area.y, columns, &line, thin);
+    let here = (share.clamp(0.0, 1.0) * f64::from(columns.saturating_sub(1))) as u16;
+    brush.text(x, area.y, here, &brush.theme.signs().frame[4].repeat(usize::from(here)), strong);
+    let sign = brush.theme.signs().recording;
+    brush.text(x + here, area.y, 1, sign, strong);
+}

@@ -153,7 +153,7 @@ fn silence(session: &Session, model: &ConsoleModel) -> String {
         return "The assistant sends the signals by itself".to_string();
     }
     if !session.spec.asks_assistant() {
-        return "Nobody asks the assistant in this session (shadow = \"off\"): the signals are yours".to_string();
+        return "The assistant does not advise in this session (shadow = \"off\")".to_string();
     }
     match session.phase {
         Phase::Running | Phase::Paused => {}

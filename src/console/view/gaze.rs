@@ -146,7 +146,9 @@ pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session:
     let style = if age_s > 1.0 { style.remove_modifier(Modifier::BOLD).add_modifier(Modifier::DIM) } else { style };
     let sign = brush.theme.signs().gaze;
     let is_text = |symbol: &str| symbol.chars().any(|letter| letter.is_alphanumeric());
-    let covers_text = brush.buffer.cell((x, y)).is_some_and(|cell| is_text(cell.symbol()));
+    let has_text = |x: u16| brush.buffer.cell((x, y)).is_some_and(|cell| is_text(cell.symbol()));
+    // The space between two words belongs to their text.
+    let covers_text = has_text(x) || (has_text(x.saturating_sub(1)) && has_text(x + 1));
     if !covers_text {
         brush.text(x, y, 1, sign, style);
         return;

@@ -168,13 +168,13 @@ fn check_goes_on_after_a_kill(other: &Terminal, session: &Path, out: &Path) {
             other.key(".");
             std::thread::sleep(std::time::Duration::from_millis(800));
         }
-        other.screen().contains(". questionnaire")
+        other.screen().contains(". on to the questionnaire")
     });
     other.key(".");
     answer(other, "4");
     other.key(".");
     other.see("A1 trial 2/2");
-    trial(other, ". questionnaire");
+    trial(other, ". on to the questionnaire");
     other.key(".");
     answer(other, "7");
     on_until(other, "Debriefing of the wizard");

@@ -107,8 +107,8 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         ),
     ];
     lines.extend(signals(kitchen));
-    let accept = "accept the top recommendation";
-    lines.push(wizards(line("accept", &plain(Enter), KeyAction::Accept, SIGNALS, accept, Some("accept"))));
+    let accept = "send the open offer";
+    lines.push(wizards(line("accept", &plain(Enter), KeyAction::Accept, SIGNALS, accept, Some("send offer"))));
     let take_back = "take the shown signal back";
     lines.push(wizards(line(
         "take_back",

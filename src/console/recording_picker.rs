@@ -66,12 +66,15 @@ impl RecordingPicker {
                 self.filter.push(letter);
                 self.at = 0;
             }
-            KeyCode::Backspace if self.filter.pop().is_some() => self.at = 0,
+            KeyCode::Backspace => {
+                self.filter.pop();
+                self.at = 0;
+            }
             KeyCode::Esc if !self.filter.is_empty() => {
                 self.filter.clear();
                 self.at = 0;
             }
-            KeyCode::Backspace | KeyCode::Esc => return Some(RecordingReply::Leave),
+            KeyCode::Esc => return Some(RecordingReply::Leave),
             KeyCode::Enter if key.kind == KeyEventKind::Press => {
                 return left.get(self.at).map(|&row| RecordingReply::Chosen(row));
             }

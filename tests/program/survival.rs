@@ -316,7 +316,9 @@ fn onward(screen: &str, turn: u64) -> Option<&'static str> {
         () if shows("and agrees to") || shows("is not done") || shows("is not met") => Some("1"),
         () if shows("0 no answer") => Some(if turn.is_multiple_of(2) { "3" } else { "5" }),
         () if shows("RUNNING") => None,
-        () if shows("READY") || shows("PAUSED") || shows("done: next") || shows(". on to the questionnaire") => Some("."),
+        () if shows("READY") || shows("PAUSED") || shows("done: next") || shows(". on to the questionnaire") => {
+            Some(".")
+        }
         () if shows("enter ") => Some(on),
         () => None,
     }

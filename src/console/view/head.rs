@@ -39,9 +39,9 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
     let mut healths = healths(session, model, room);
     let needed = |healths: &[(String, TextRole)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
-    // If not everything fits, normal states are dropped first.
+    // If not everything fits, normal states are dropped first, from the last to that of the recording.
     while needed(&healths) > area.right().saturating_sub(x)
-        && let Some(fine) = healths.iter().position(|(_, role)| matches!(role, TextRole::Text | TextRole::Quiet))
+        && let Some(fine) = healths.iter().rposition(|(_, role)| matches!(role, TextRole::Text | TextRole::Quiet))
     {
         healths.remove(fine);
     }

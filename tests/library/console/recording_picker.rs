@@ -38,6 +38,7 @@ fn typing_filters_without_spaces_and_enter_takes_the_row() {
     assert_eq!(press(&mut picker, KeyCode::Char('x')), None);
     assert_eq!(press(&mut picker, KeyCode::Enter), None, "nothing is left, nothing is taken");
     assert_eq!(press(&mut picker, KeyCode::Esc), None, "the filter goes first");
+    assert_eq!(press(&mut picker, KeyCode::Backspace), None, "nothing is left to delete, and the list stays");
     assert_eq!(picker.left(), [0, 1, 2]);
     press(&mut picker, KeyCode::End);
     press(&mut picker, KeyCode::Down);

@@ -71,6 +71,25 @@ pub enum PickerOutcome {
     This(PickerAnswer),
 }
 
+/// The row under the cursor after a key, in a list whose last row is `last`. Keys that do not move the cursor leave it where it is.
+pub(super) fn moved(at: usize, last: usize, code: KeyCode) -> usize {
+    let to = match code {
+        KeyCode::Up => at.saturating_sub(1),
+        KeyCode::Down => at + 1,
+        KeyCode::PageUp => at.saturating_sub(PAGE),
+        KeyCode::PageDown => at + PAGE,
+        KeyCode::Home => 0,
+        KeyCode::End => last,
+        _ => at,
+    };
+    to.min(last)
+}
+
+/// Letters and digits of a text in lower case: a list is filtered by them.
+pub(super) fn squeezed(text: &str) -> String {
+    text.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase()
+}
+
 impl Picker {
     /// An open list without a filter, with the cursor on the first line.
     pub fn new(question: PickerQuestion) -> Picker {
@@ -90,7 +109,6 @@ impl Picker {
 
     /// The lines that are left of the list.
     pub fn choices(&self, session: &Session) -> Vec<PickerEntry> {
-        let squeezed = |text: &str| text.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
         let wanted = squeezed(&self.filter);
         let mut choices = self.all(session);
         choices.retain(|choice| squeezed(&choice.label).contains(&wanted));
@@ -109,16 +127,7 @@ impl Picker {
     /// Takes a key.
     pub fn key(&mut self, session: &Session, code: KeyCode) -> PickerOutcome {
         let last = self.choices(session).len().saturating_sub(1);
-        self.at = match code {
-            KeyCode::Up => self.at.saturating_sub(1),
-            KeyCode::Down => self.at + 1,
-            KeyCode::PageUp => self.at.saturating_sub(PAGE),
-            KeyCode::PageDown => self.at + PAGE,
-            KeyCode::Home => 0,
-            KeyCode::End => last,
-            _ => self.at,
-        }
-        .min(last);
+        self.at = moved(self.at, last, code);
         match code {
             KeyCode::Char(letter) => {
                 self.filter.push(letter);

@@ -3,8 +3,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-/// Number of rows that a page key moves.
-const PAGE: usize = 10;
+use super::picker::{moved, squeezed};
 
 /// An open list of recordings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,7 +37,6 @@ impl RecordingPicker {
 
     /// Indices of the rows that have all of what was typed in one of their cells, or across neighbouring cells.
     pub fn left(&self) -> Vec<usize> {
-        let squeezed = |text: &str| text.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
         let wanted = squeezed(&self.filter);
         (0..self.rows.len()).filter(|&row| squeezed(&self.rows[row].concat()).contains(&wanted)).collect()
     }
@@ -50,16 +48,7 @@ impl RecordingPicker {
         }
         let left = self.left();
         let last = left.len().saturating_sub(1);
-        self.at = match key.code {
-            KeyCode::Up => self.at.saturating_sub(1),
-            KeyCode::Down => self.at + 1,
-            KeyCode::PageUp => self.at.saturating_sub(PAGE),
-            KeyCode::PageDown => self.at + PAGE,
-            KeyCode::Home => 0,
-            KeyCode::End => last,
-            _ => self.at,
-        }
-        .min(last);
+        self.at = moved(self.at, last, key.code);
         match key.code {
             KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => return Some(RecordingReply::Leave),
             KeyCode::Char(letter) if letter != ' ' && !key.modifiers.contains(KeyModifiers::CONTROL) => {

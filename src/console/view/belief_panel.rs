@@ -28,7 +28,7 @@ const BAR: u16 = 7;
 /// Columns left of a chart for the scale.
 const SCALE: u16 = 6;
 
-/// What is said where nothing is believed wrong.
+/// Text of the panel while no belief is false.
 pub(super) const QUIET: &str = "No false beliefs";
 
 /// Drawing context of the belief panel.

@@ -230,7 +230,7 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     let watcher = || ComparisonFollower::new(log.session(), &request);
     let (mut here, there) = (watcher(), watcher().on_thread());
     let mut compared = 0;
-    // Places that were known, or changed, after so many presses.
+    // Locations that were known or had just changed, each with the number of presses until then.
     let mut renewed: Vec<(u32, LocationId)> = Vec::new();
     let mut before = log.session().state;
     while let Some(line) = log.next_line().expect("an event") {

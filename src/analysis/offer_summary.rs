@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::wizard_log::clock_at;
+use crate::base::time::SessionTime;
 use crate::communication::offer::{Offer, OfferEnd, OfferUse};
 use crate::measures::median;
 use crate::session::Session;
@@ -20,6 +21,8 @@ pub struct TimedOffer {
     pub stood_s: Option<f64>,
     /// Why it closed.
     pub reason: Option<OfferEnd>,
+    /// When its signal was sent, in time of the trial's clock.
+    pub sent: Option<SessionTime>,
     /// Time from its opening to the key that sent its signal.
     pub reaction_s: Option<f64>,
 }
@@ -29,12 +32,14 @@ impl TimedOffer {
     pub fn all(session: &Session) -> Vec<TimedOffer> {
         let timed = |offer: &Offer, closed: Option<(f64, OfferEnd)>| {
             let opened_s = clock_at(session, offer.opened).as_secs_f64();
+            let sent = offer.used.map(|used| clock_at(session, used.at));
             TimedOffer {
                 offer: offer.clone(),
                 opened_s,
                 stood_s: closed.map(|(closed_s, _)| closed_s - opened_s),
                 reason: closed.map(|(_, reason)| reason),
-                reaction_s: offer.used.map(|used| clock_at(session, used.at).as_secs_f64() - opened_s),
+                sent,
+                reaction_s: sent.map(|sent| sent.as_secs_f64() - opened_s),
             }
         };
         let closed = session.offers.closed().iter();

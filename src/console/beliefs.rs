@@ -1,6 +1,7 @@
 //! The estimated beliefs as the wizard is told of them: one name, one certainty and one order in every view.
 
 use super::console_model::ConsoleModel;
+use super::key_action::KeyLayer;
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::aspects_told;
@@ -42,19 +43,21 @@ pub struct EstimatedBelief {
     pub cost: f64,
 }
 
-/// The beliefs at the drawn time: false ones first, then unsure ones, each by their cost in presses and by their age. Empty
-/// before the trial's first estimate, and where the wizard may not see the estimate.
+/// The beliefs at the drawn time: what the open offer is about, then false ones, then unsure ones, each by their cost in presses
+/// and by their age. Empty before the trial's first estimate, and where the wizard may not see the estimate.
 pub fn beliefs(session: &Session, model: &ConsoleModel) -> Vec<EstimatedBelief> {
     let moments = model.belief.until(model.now);
-    let may_see = session.spec.console.visibility >= Visibility::Belief && session.phase != Phase::Ready;
+    let may_see = visibility(session, model) >= Visibility::Belief && session.phase != Phase::Ready;
     let Some(last) = moments.last().filter(|_| may_see) else { return Vec::new() };
-    let costs = costs(session);
+    let (costs, offered) = (costs(session), offered(session));
     let told = last.held.iter().enumerate().map(|(index, held)| {
         let aspect = AspectId(index as u8);
         let (thinks, truth) = (usize::from(held.believes), session.kitchen.true_value(session.state, aspect));
         let standing = match held.is_false() {
             true if thinks != truth && held.p >= THINKS => BeliefStanding::False,
             true => BeliefStanding::Unsure,
+            // A signal is offered only where the truth is not sure enough.
+            false if offered.contains(&aspect) => BeliefStanding::Unsure,
             false => BeliefStanding::Right,
         };
         let since = belief_track::wrong_since(moments, index);
@@ -62,10 +65,31 @@ pub fn beliefs(session: &Session, model: &ConsoleModel) -> Vec<EstimatedBelief> 
     });
     let mut beliefs: Vec<EstimatedBelief> = told.collect();
     beliefs.sort_by(|a, b| {
+        let is_told = |belief: &EstimatedBelief| offered.contains(&belief.aspect);
         let by_cost = || b.cost.total_cmp(&a.cost);
-        a.standing.cmp(&b.standing).then_with(by_cost).then(a.since.cmp(&b.since))
+        is_told(b).cmp(&is_told(a)).then(a.standing.cmp(&b.standing)).then_with(by_cost).then(a.since.cmp(&b.since))
     });
     beliefs
+}
+
+/// What the screen shows: what the settings allow to the wizard. Who presses the participant's buttons at this keyboard sees
+/// neither the estimate nor offers.
+pub fn visibility(session: &Session, model: &ConsoleModel) -> Visibility {
+    match model.layer {
+        KeyLayer::Wizard => session.spec.console.visibility,
+        KeyLayer::Participant => Visibility::State,
+    }
+}
+
+/// What the open offer is about; without a reason, all that its signal tells.
+fn offered(session: &Session) -> Vec<AspectId> {
+    let Some(offer) = session.offers.open().filter(|offer| offer.advice.visible) else { return Vec::new() };
+    let kitchen = &session.kitchen;
+    match (&offer.advice.reason, offer.signal()) {
+        (Some(reason), _) => kitchen.aspect_named(&reason.aspect).into_iter().collect(),
+        (None, Some(signal)) => aspects_told(kitchen, session.state, signal),
+        (None, None) => Vec::new(),
+    }
 }
 
 /// Whether beliefs are ordered by their cost: a concept that counts presses advises, and the wizard sees it.

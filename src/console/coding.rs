@@ -12,8 +12,8 @@ use crate::session::{Session, TimelineEvent};
 
 /// A press in words: its button, and whether it did anything.
 pub fn press(kitchen: &Kitchen, what: &TimelineEvent) -> String {
-    let TimelineEvent::Press { agent, button, effective } = what else { return String::new() };
-    let effect = if *effective { "with" } else { "without" };
+    let TimelineEvent::Press { agent, button, no_effect } = what else { return String::new() };
+    let effect = if no_effect.is_none() { "with" } else { "without" };
     format!("\"{}\" {effect} effect", wording::button(kitchen, *agent, *button))
 }
 

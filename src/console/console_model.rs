@@ -20,6 +20,7 @@ use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::gaze::GazeSample;
 use crate::history::belief_track::BeliefHistory;
+use crate::history::signal_judge::SignalJudge;
 use crate::kitchen::{Agent, AspectId};
 use crate::session::settings::GazeSource;
 use crate::session::{TimelineEntry, TimelineEvent};
@@ -138,6 +139,8 @@ pub struct ConsoleModel {
     pub display: Option<DisplayHealth>,
     /// Times of the human's errors, in order.
     pub errors: Vec<SessionTime>,
+    /// How the signals of this trial were judged when they were sent.
+    pub signals: SignalJudge,
     /// History of the belief estimate.
     pub belief: BeliefHistory,
     /// Aspect whose belief is shown over time.
@@ -181,6 +184,7 @@ impl ConsoleModel {
             rejected_senders: 0,
             display: None,
             errors: Vec::new(),
+            signals: SignalJudge::default(),
             belief: BeliefHistory::default(),
             belief_focus: None,
             comparison: None,

@@ -2,6 +2,7 @@
 //! [`super::screen`] records what the wizard's screen shows.
 
 use super::arrange::{KitchenMap, MapElement};
+use super::beliefs::visibility;
 use super::console_model::{ConsoleModel, Dialog};
 use super::key_action::KeyLayer;
 use super::key_action::PanelKey;
@@ -18,7 +19,7 @@ const STEP: (u32, usize) = (5, 1);
 
 /// Carries out a panel key.
 pub fn look(model: &mut ConsoleModel, session: &Session, look: PanelKey) {
-    let visibility = session.spec.console.visibility;
+    let visibility = visibility(session, model);
     let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility, model.comparison.is_some());
     let seen: Vec<Panel> = Panel::ALL.into_iter().filter(may_be_seen).collect();
     let at = model.alone.and_then(|alone| seen.iter().position(|panel| *panel == alone));

@@ -1,5 +1,6 @@
 //! The visible content of the wizard's screen, for the log.
 
+use super::beliefs::visibility;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
 use super::picker::PickerQuestion;
@@ -9,7 +10,7 @@ use crate::session::wizard_screen::VisibleScreen;
 
 /// The visible content of the screen.
 pub fn screen(session: &Session, model: &ConsoleModel) -> VisibleScreen {
-    let visibility = session.spec.console.visibility;
+    let visibility = visibility(session, model);
     let fits = model.size.0 >= LEAST.0 && model.size.1 >= LEAST.1;
     let regions = Regions::showing(model.size, session, model);
     let room = match regions.room {

@@ -3,7 +3,7 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use super::arrange::KitchenMap;
-use super::beliefs::beliefs;
+use super::beliefs::{beliefs, visibility};
 use super::chord::KeyChord;
 use super::coding;
 use super::compared::ComparisonKey;
@@ -15,6 +15,7 @@ use super::key_action::ManualAction;
 use super::key_action::PanelKey;
 use super::key_action::{KeyAction, KeyLayer};
 use super::notice::NoticeLevel;
+use super::panel::Panel;
 use super::panels;
 use super::preflight;
 use super::sending::{resume_robot, send};
@@ -332,6 +333,8 @@ fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option
                 KeyLayer::Participant => (KeyLayer::Wizard, "from now on, keys send the wizard's signals"),
             };
             model.layer = layer;
+            let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility(session, model), model.comparison.is_some());
+            model.alone = model.alone.filter(may_be_seen);
             model.say(NoticeLevel::Done, words);
             None
         }
@@ -339,7 +342,7 @@ fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option
             panels::look(model, session, at);
             None
         }
-        KeyAction::Belief if session.spec.console.visibility < Visibility::Belief => {
+        KeyAction::Belief if visibility(session, model) < Visibility::Belief => {
             model.say(NoticeLevel::Refused, "the belief is not shown in this session");
             None
         }
@@ -360,7 +363,9 @@ fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option
             (model.dialog, model.help_from) = (Some(Dialog::Help), 0);
             None
         }
-        KeyAction::Quit if model.playback.is_some() || session.phase == Phase::Closed => Some(ConsoleCommand::Quit),
+        // A recording loses nothing by being left; a training does.
+        KeyAction::Quit if model.playback.is_some() && model.lesson.is_none() => Some(ConsoleCommand::Quit),
+        KeyAction::Quit if session.phase == Phase::Closed => Some(ConsoleCommand::Quit),
         KeyAction::Quit => {
             model.dialog = Some(Dialog::Quit);
             None

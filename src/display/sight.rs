@@ -228,14 +228,14 @@ fn content(kitchen: &Kitchen, id: ContentId) -> ShownContent {
 
 fn pressed(session: &Session, agent: Agent) -> Option<DisplayedPress> {
     let newest = session.timeline.iter().rev().find_map(|entry| match entry.what {
-        TimelineEvent::Press { agent: by, button, effective } if by == agent => Some((button, effective)),
+        TimelineEvent::Press { agent: by, button, no_effect } if by == agent => Some((button, no_effect)),
         _ => None,
     });
-    let (button, effective) = newest?;
+    let (button, no_effect) = newest?;
     let at = spot(&session.kitchen, agent, session.kitchen.button(agent, button).action);
-    let is_told = agent == Agent::Human && !effective && session.spec.display.reasons == Some(true);
-    let why = session.no_effect.filter(|_| is_told);
-    let why = why.map(|(reason, about)| DisplayedReason { reason, about: about.index() });
+    let is_told = agent == Agent::Human && session.spec.display.reasons == Some(true);
+    let effective = no_effect.is_none();
+    let why = no_effect.filter(|_| is_told).map(|(reason, about)| DisplayedReason { reason, about: about.index() });
     Some(DisplayedPress { number: session.presses[agent.index()], at, effective, why })
 }
 

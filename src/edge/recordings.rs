@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use super::file_error::{FileError, FileResult, open_regular};
@@ -21,7 +21,7 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
     let unreadable = |reason| FileError::unreadable(folder, reason, "the folder with the recordings, as --out");
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,
-        Err(reason) if reason.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(reason) if reason.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
         Err(reason) => return Err(unreadable(reason)),
     };
     for entry in entries {
@@ -47,7 +47,14 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
 /// The folder cannot be read, or there is no recording.
 pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     let remedy = "the folder of a recording, or one with recordings in it";
-    let unreadable = |reason| FileError::unreadable(folder, reason, remedy);
+    let unreadable = |reason: io::Error| {
+        let found = match reason.kind() {
+            ErrorKind::NotFound => "no folder of this name",
+            ErrorKind::NotADirectory => "a file, not a folder",
+            _ => return FileError::unreadable(folder, reason, remedy),
+        };
+        FileError::from_finding(folder, found.to_string(), remedy.to_string())
+    };
     if folder.join(LOG_NAME).is_file() {
         return Ok(vec![folder.to_path_buf()]);
     }

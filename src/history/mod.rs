@@ -4,4 +4,5 @@
 pub mod belief_track;
 pub mod comparison;
 pub mod landmark;
+pub mod signal_judge;
 pub mod wording;

@@ -7,7 +7,7 @@ use crate::communication::recommendation::Reason;
 use crate::communication::{Sender, Signal};
 use crate::gaze::quality::DropCounts;
 use crate::kitchen::no_effect::NoEffect;
-use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, OrderContent, State};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, Dish, Kitchen, LocationId, OrderContent, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
 use crate::robot::moment::ArmPhase;
@@ -33,8 +33,13 @@ pub fn location(name: &str) -> String {
 /// Short, since it stands beside the keys at 80 columns.
 pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String> {
     let (why, about) = kitchen.no_effect(state, Agent::Human, id)?;
+    Some(format!("no effect: {}", because(kitchen, why, about, kitchen.content_label(state, about))))
+}
+
+/// Why a press has no effect; `content` is what lies where the reason is about.
+fn because(kitchen: &Kitchen, why: NoEffect, about: LocationId, content: &str) -> String {
     let name = kitchen.location(about).label();
-    let because = match why {
+    match why {
         NoEffect::HandFull => "the hand is full".to_string(),
         NoEffect::HandEmpty => "the hand is empty".to_string(),
         NoEffect::BothEmpty => "hand and place are empty".to_string(),
@@ -42,11 +47,10 @@ pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String
         NoEffect::PlaceFull => format!("the {name} is full"),
         NoEffect::NotAccepted => "it does not go there".to_string(),
         NoEffect::NotStacked => "they do not go together".to_string(),
-        NoEffect::NotProcessed => format!("not with {}", kitchen.content_label(state, about)),
+        NoEffect::NotProcessed => format!("not with {content}"),
         NoEffect::NoOrder => format!("{name} wants nothing"),
         NoEffect::NotServed => "it is not served there".to_string(),
-    };
-    Some(format!("no effect: {because}"))
+    }
 }
 
 /// Location of a button: its own location, or the agent's hand.
@@ -94,11 +98,15 @@ pub fn sender(by: Sender) -> &'static str {
 
 /// Recipe of an order's dish: "cooked rice + nori + cut tuna".
 pub fn recipe(session: &Session, order: LocationId) -> Option<String> {
-    let OrderContent::Dish(dish) = session.state.order(order) else { return None };
-    let kitchen = &session.kitchen;
-    let stack = kitchen.content(kitchen.dish(dish).stack());
+    let OrderContent::Dish(wanted) = session.state.order(order) else { return None };
+    Some(dish(&session.kitchen, session.kitchen.dish(wanted)))
+}
+
+/// The recipe of a dish: "shaped rice + nori + cut salmon".
+pub fn dish(kitchen: &Kitchen, dish: &Dish) -> String {
+    let stack = kitchen.content(dish.stack());
     let names: Vec<&str> = stack.items.iter().map(|&item| kitchen.content(item).wording.as_str()).collect();
-    Some(names.join(" + "))
+    names.join(" + ")
 }
 
 /// Phase of the study and of the trial, in a word.
@@ -146,9 +154,9 @@ pub fn protocol(event: &ProtocolEvent) -> String {
 /// An entry of the timeline in words, with its agent.
 pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, String) {
     match what {
-        TimelineEvent::Press { agent, button: id, effective } => {
-            let suffix = if *effective { "" } else { ": no effect" };
-            (agent.name(), format!("{}{suffix}", button(kitchen, *agent, *id)))
+        TimelineEvent::Press { agent, button: id, no_effect } => {
+            let why = no_effect.map(|(why, about)| format!(": {}", because(kitchen, why, about, "that")));
+            (agent.name(), format!("{}{}", button(kitchen, *agent, *id), why.unwrap_or_default()))
         }
         TimelineEvent::Signal { by, signal: shown } => (sender(*by), signal(shown)),
         TimelineEvent::SignalEnded(SignalEnd::TakenBack) => ("wizard", "took the signal back".to_string()),
@@ -217,7 +225,7 @@ pub fn trial(phase: Phase) -> &'static str {
 pub fn changed_by(session: &Session, at: SessionTime) -> Option<Agent> {
     let since = session.timeline.iter().rev().take_while(|entry| entry.time >= at);
     since.filter(|entry| entry.time == at).find_map(|entry| match entry.what {
-        TimelineEvent::Press { agent, effective: true, .. } => Some(agent),
+        TimelineEvent::Press { agent, no_effect: None, .. } => Some(agent),
         _ => None,
     })
 }

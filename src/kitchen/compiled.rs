@@ -100,6 +100,11 @@ impl Kitchen {
         &self.dishes[id.index()]
     }
 
+    /// The state aspect of this name.
+    pub fn aspect_named(&self, name: &str) -> Option<AspectId> {
+        self.aspects.iter().position(|aspect| aspect.name == name).map(|index| AspectId(index as u8))
+    }
+
     /// The location with this name.
     pub fn location_named(&self, name: &str) -> Option<LocationId> {
         self.locations.iter().position(|location| location.name == name).map(|index| LocationId(index as u8))

@@ -24,8 +24,9 @@ use crate::base::time::SessionTime;
 use crate::communication::Sender;
 use crate::communication::recommendation::Recommendation;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen};
+use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::measures::JudgedPress;
+use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::participant::gaze_gaps::GazeGaps;
 use crate::participant::{ParticipantAction, SimulatedParticipant};
@@ -118,6 +119,16 @@ impl Engine {
     /// The present belief estimate.
     pub fn belief(&self) -> &DirichletBelief {
         self.follower.filter.belief()
+    }
+
+    /// Whether the belief about an aspect is false now: by what a simulated participant believes, else by the estimate.
+    pub fn is_false(&self, aspect: AspectId) -> bool {
+        let (kitchen, state) = (&self.session().kitchen, self.session().state);
+        let p_truth = match &self.participant {
+            Some(participant) => participant.beliefs().p_truth(kitchen, state, aspect),
+            None => self.belief().p_truth(kitchen, state, aspect),
+        };
+        p_truth < FALSE_BELOW
     }
 
     /// The present state of the session.

@@ -61,14 +61,14 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPres
     let (who, text) = wording::happening(&session.kitchen, &entry.what);
     let text = if who.is_empty() { text } else { format!("{who}: {text}") };
     match entry.what {
-        TimelineEvent::Press { agent, effective, .. } => {
+        TimelineEvent::Press { agent, no_effect, .. } => {
             let entity = format!("{}/presses", agent.name());
             match error.filter(|_| agent == Agent::Human) {
                 Some(press) => {
                     let text = format!("{text} ({})", wording::error(&session.kitchen, press));
                     say(&entity, LogLevel::Error, text, colours::ERROR)
                 }
-                None if effective => say(&entity, LogLevel::Info, text, colours::agent_colour(agent)),
+                None if no_effect.is_none() => say(&entity, LogLevel::Info, text, colours::agent_colour(agent)),
                 None => say(&entity, LogLevel::Warning, text, colours::agent_colour(agent)),
             }
         }

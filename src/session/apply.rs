@@ -378,11 +378,9 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
     }
     let kitchen = session.kitchen.clone();
     let press = kitchen.try_press(session.state, agent, button);
-    if agent == Agent::Human {
-        session.no_effect = kitchen.no_effect(session.state, agent, button);
-    }
+    let no_effect = kitchen.no_effect(session.state, agent, button);
     session.presses[agent.index()] += 1;
-    session.note(now, TimelineEvent::Press { agent, button, effective: press.effective });
+    session.note(now, TimelineEvent::Press { agent, button, no_effect });
     if press.effective {
         update(session, now, |state| *state = press.after);
         if let (ButtonAction::Serve(order), OrderContent::Dish(dish)) =

@@ -15,7 +15,6 @@ use crate::base::time::SessionTime;
 use crate::communication::offer::OfferBook;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
-use crate::kitchen::no_effect::NoEffect;
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{DishId, Kitchen, LocationId, State};
 
@@ -49,8 +48,6 @@ pub struct Session {
     pub changed_at: [SessionTime; MAX_LOCATIONS],
     /// Presses during the trial, indexed by [`crate::kitchen::Agent::index`].
     pub presses: [u32; 2],
-    /// Why the human's newest press had no effect, and the location that the reason is about; `None` if it had one.
-    pub no_effect: Option<(NoEffect, LocationId)>,
     /// Served orders.
     pub served: Vec<Served>,
     /// What is known of the robot.
@@ -139,7 +136,6 @@ impl Session {
             state,
             changed_at: [SessionTime::ZERO; MAX_LOCATIONS],
             presses: [0; 2],
-            no_effect: None,
             served: Vec::new(),
             robot: RobotStatus::default(),
             shown: None,

@@ -4,6 +4,7 @@ use super::event::SignalEnd;
 use super::phase::Phase;
 use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
+use crate::kitchen::no_effect::NoEffect;
 use crate::kitchen::{Agent, ButtonId, LocationId};
 use crate::robot::safety::SafetyMode;
 
@@ -25,8 +26,8 @@ pub enum TimelineEvent {
         agent: Agent,
         /// The button, in the list of that agent's buttons.
         button: ButtonId,
-        /// The press changed the kitchen.
-        effective: bool,
+        /// Why it changed nothing in the kitchen, and the location that the reason is about; `None` if it did.
+        no_effect: Option<(NoEffect, LocationId)>,
     },
     /// A signal appeared.
     Signal {

@@ -8,7 +8,9 @@ use super::theme::TextRole;
 use super::timeline::ticks;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
-use crate::console::beliefs::{BeliefStanding, EstimatedBelief, are_by_cost, beliefs, name, percent, value};
+use crate::console::beliefs::{
+    BeliefStanding, EstimatedBelief, are_by_cost, beliefs, name, percent, value, visibility,
+};
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel as PanelName;
 use crate::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
@@ -31,6 +33,9 @@ const SCALE: u16 = 6;
 /// Text of the panel while no belief is false.
 pub(super) const QUIET: &str = "No false beliefs";
 
+/// Text of the panel before the first estimate.
+const BEFORE: &str = "estimated from the trial's start on";
+
 /// Drawing context of the belief panel.
 struct Panel<'a> {
     session: &'a Session,
@@ -42,11 +47,12 @@ struct Panel<'a> {
 /// Draws the belief panel.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.belief;
-    if area.area() == 0 || session.spec.console.visibility < Visibility::Belief {
+    if area.area() == 0 || visibility(session, model) < Visibility::Belief {
         return;
     }
     let now = if session.is_running() { model.now } else { model.now.min(session.time) };
-    let panel = Panel { session, now, moments: model.belief.until(model.now), beliefs: beliefs(session, model) };
+    let moments = model.belief.until(model.now);
+    let panel = Panel { session, now, moments, beliefs: beliefs(session, model) };
     if area.height < FRAMED {
         return panel.lines(brush, area);
     }
@@ -58,7 +64,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         Some(belief) => panel.chart(brush, belief, inside),
         None if panel.beliefs.is_empty() => {
             let quiet = brush.style(TextRole::Quiet);
-            brush.text(inside.x, inside.y, inside.width, "estimated from the trial's start on", quiet);
+            brush.text(inside.x, inside.y, inside.width, BEFORE, quiet);
         }
         None => panel.list(brush, inside),
     }
@@ -129,10 +135,10 @@ impl Panel<'_> {
 
     /// What is thought and what is true, in as few lines as the columns allow.
     fn told(&self, belief: &EstimatedBelief, columns: u16) -> Vec<String> {
-        if belief.standing == BeliefStanding::Unsure {
-            return Vec::new();
-        }
         let (thinks, truth) = self.values(belief);
+        if belief.standing == BeliefStanding::Unsure {
+            return vec![format!("unsure, perhaps {thinks}")];
+        }
         let whole = format!("thinks {thinks}, is {truth}");
         match width(&whole) <= columns {
             true => vec![whole],
@@ -163,11 +169,11 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws a belief in a narrow panel: name and certainty, and below them what is thought and what is true.
+    /// Draws a belief in a narrow panel: name and certainty, and below them what is thought and, if that is false, what is true.
     fn head(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16, lines: &[String]) {
         let style = brush.style(role(belief));
         let end = self.certainty(belief);
-        let (title, room) = (self.title(belief), area.width.saturating_sub(width(&end) + 1));
+        let (title, room) = (name(self.session, belief.aspect), area.width.saturating_sub(width(&end) + 1));
         brush.text(area.x, y, room, &title, style);
         brush.text_right(area.right(), y, area.width, &end, style);
         let text = brush.style(TextRole::Text);
@@ -209,7 +215,7 @@ impl Panel<'_> {
         let told: Vec<&EstimatedBelief> =
             self.beliefs.iter().filter(|belief| belief.standing != BeliefStanding::Right).collect();
         if told.is_empty() {
-            let words = if self.beliefs.is_empty() { "estimated from the trial's start on" } else { QUIET };
+            let words = if self.beliefs.is_empty() { BEFORE } else { QUIET };
             brush.text(x, area.y, room, words, quiet);
         }
         for (row, belief) in told.iter().take(usize::from(area.height)).enumerate() {
@@ -239,20 +245,22 @@ impl Panel<'_> {
         let (thinks, truth) = self.values(belief);
         let style = brush.style(role(belief));
         let quiet = brush.style(TextRole::Quiet);
-        let head = match belief.standing {
-            BeliefStanding::Right => format!("{}: {truth}", self.title(belief)),
-            _ => format!(
-                "{}: thinks {thinks} {}, is {truth}",
-                name(self.session, belief.aspect),
-                percent(belief.p.into())
-            ),
+        let name = name(self.session, belief.aspect);
+        let thought = match belief.standing {
+            BeliefStanding::Right => format!("{name}: {truth}"),
+            _ => format!("{name}: thinks {thinks} {}, is {truth}", percent(belief.p.into())),
         };
-        let end = "probability of the truth";
-        let has_room = width(&head) + width(end) + 2 <= area.width;
-        if has_room {
-            brush.text_right(area.right(), area.y, area.width, end, quiet);
+        // The curve is that of the truth: the title says so, if need be instead of what is thought.
+        let curve = "probability of the truth";
+        match width(&thought) + width(curve) + 2 <= area.width {
+            true => {
+                brush.text_right(area.right(), area.y, area.width, curve, quiet);
+                brush.text(area.x, area.y, area.width, &thought, style);
+            }
+            false => {
+                brush.text(area.x, area.y, area.width, &format!("{name}: probability of {truth}"), style);
+            }
         }
-        brush.text(area.x, area.y, area.width, &head, style);
         let plot = Rect {
             x: area.x + SCALE,
             y: area.y + 1,

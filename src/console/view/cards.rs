@@ -13,19 +13,28 @@ use crate::base::words::count;
 use crate::communication::Sender;
 use crate::console::console_model::ConsoleModel;
 use crate::console::form::sheet;
-use crate::console::key_action::{KeyAction, ManualAction};
+use crate::console::key_action::{KeyAction, KeyLayer, ManualAction};
+use crate::history::signal_judge::SignalTally;
 use crate::history::wording;
-use crate::kitchen::Agent;
-use crate::session::{Phase, Session, TimelineEvent};
+use crate::kitchen::{Agent, Dish};
+use crate::session::settings::{ParticipantKind, Visibility};
+use crate::session::{Phase, Session};
 
-/// Columns of a card, and of the names of its facts.
+/// Columns of a card, and at least of the names of its facts.
 const COLUMNS: u16 = 62;
-const NAMES: u16 = 14;
+const NAMES: u16 = 15;
+
+/// The name of a fact, the fact, and its role.
+type Fact = (String, String, TextRole);
+
+fn fact(name: &str, text: String, role: TextRole) -> Fact {
+    (name.to_string(), text, role)
+}
 
 /// A card: facts with their names, and the keys that go on.
 struct Card {
     title: String,
-    facts: Vec<(&'static str, String, TextRole)>,
+    facts: Vec<Fact>,
     keys: Vec<(String, String)>,
 }
 
@@ -38,6 +47,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
     let card = match session.phase {
         Phase::Ready => before(session, model),
+        Phase::Paused if model.layer == KeyLayer::Participant => recipes(session, model),
         Phase::Over(_) => after(session, model),
         _ => return,
     };
@@ -63,13 +73,13 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
     let length =
         format!("{} or {}", count(trial.presses, "press", "presses"), SessionTime::from_secs_f64(trial.seconds));
     let mut facts = vec![
-        ("participant", place(session), TextRole::Strong),
-        ("kitchen", session.kitchen.title.clone(), TextRole::Text),
-        ("length", length, TextRole::Text),
+        fact("participant", place(session), TextRole::Strong),
+        fact("kitchen", session.kitchen.title.clone(), TextRole::Text),
+        fact("length", length, TextRole::Text),
     ];
     for (index, (text, role)) in head::healths(session, model, ScreenSize::Medium).into_iter().enumerate() {
         let name = if index == 0 { "devices" } else { "" };
-        facts.push((name, text.trim().to_string(), role));
+        facts.push(fact(name, text.trim().to_string(), role));
     }
     let mut keys = Vec::new();
     keys.extend(key(model, &KeyAction::Advance).map(|key| (key, "start the trial".to_string())));
@@ -78,21 +88,24 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
     Card { title: "Ready to start".to_string(), facts, keys }
 }
 
+/// All dishes with their recipes, for the person who plays the participant at this keyboard. As in a study, they have to be
+/// remembered while the trial runs.
+fn recipes(session: &Session, model: &ConsoleModel) -> Card {
+    let kitchen = &session.kitchen;
+    let recipe = |dish: &Dish| (dish.name.clone(), wording::dish(kitchen, dish), TextRole::Text);
+    let on = key(model, &KeyAction::Advance).map(|key| (key, "resume".to_string()));
+    Card {
+        title: "Paused: the recipes".to_string(),
+        facts: kitchen.dishes.iter().map(recipe).collect(),
+        keys: on.into_iter().collect(),
+    }
+}
+
 fn after(session: &Session, model: &ConsoleModel) -> Card {
     let [human, robot] = [Agent::Human, Agent::Robot].map(|agent| session.presses[agent.index()]);
     let errors = model.errors.len() as u64;
     let share = 100.0 * errors as f64 / f64::from(human.max(1));
-    let sent = |by: Sender| {
-        let is_sent =
-            |event: &TimelineEvent| matches!(event, TimelineEvent::Signal { by: sender, .. } if *sender == by);
-        session.timeline.iter().filter(|entry| is_sent(&entry.what)).count() as u64
-    };
-    let signals: Vec<String> = [Sender::Wizard, Sender::Assistant]
-        .into_iter()
-        .filter(|by| sent(*by) > 0)
-        .map(|by| format!("{} by the {}", count(sent(by), "signal", "signals"), wording::sender(by)))
-        .collect();
-    let signals = if signals.is_empty() { "none".to_string() } else { signals.join(", ") };
+    let errors = format!("{errors} in {} of the human ({share:.0} %)", count(u64::from(human), "press", "presses"));
     let clock = session.trial_clock(model.now);
     let paused = if session.paused_total > SessionTime::ZERO {
         format!(", and {} of pauses", session.paused_total)
@@ -100,16 +113,16 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
         String::new()
     };
     let mut facts = vec![
-        ("participant", place(session), TextRole::Strong),
-        ("orders", format!("{} served", session.served.len()), TextRole::Text),
-        ("presses", format!("{human} by the human, {robot} by the robot"), TextRole::Text),
-        ("errors", format!("{errors} of the human, {share:.0} % of the presses"), TextRole::Text),
-        ("signals", signals, TextRole::Text),
-        ("time", format!("{clock}{paused}"), TextRole::Text),
+        fact("participant", place(session), TextRole::Strong),
+        fact("orders", format!("{} served", session.served.len()), TextRole::Text),
+        fact("presses", format!("{human} by the human, {robot} by the robot"), TextRole::Text),
+        fact("errors", errors, TextRole::Text),
     ];
+    facts.extend(signals(session, model));
+    facts.push(fact("time", format!("{clock}{paused}"), TextRole::Text));
     if let Some(practice) = session.protocol.as_ref().and_then(|protocol| protocol.practice.as_ref()) {
         let met = if practice.met { "met: the practice is complete" } else { "not met, and waived" };
-        facts.push(("criterion", met.to_string(), TextRole::Strong));
+        facts.push(fact("criterion", met.to_string(), TextRole::Strong));
     }
     let mut keys = Vec::new();
     let on = onward(session);
@@ -119,6 +132,32 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     }
     keys.extend(key(model, &KeyAction::Quit).map(|key| (key, "close the session".to_string())));
     Card { title: format!("Trial {}", wording::trial(session.phase)), facts, keys }
+}
+
+/// The signals of each sender, and what they were about. A wizard who may not see the estimate is not told what follows from it.
+fn signals(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
+    let is_simulated = session.spec.participant.kind == ParticipantKind::Simulated;
+    let may_tell = is_simulated || session.spec.console.visibility >= Visibility::Belief;
+    let mut facts = Vec::new();
+    for by in [Sender::Wizard, Sender::Assistant] {
+        let tally = model.signals.tally(by);
+        if tally.sent() == 0 {
+            continue;
+        }
+        let back = if tally.taken_back > 0 { format!(", {} taken back", tally.taken_back) } else { String::new() };
+        let sent = format!("{} by the {}{back}", tally.sent(), wording::sender(by));
+        facts.push(fact(if facts.is_empty() { "signals" } else { "" }, sent, TextRole::Text));
+        if may_tell {
+            let basis = if is_simulated { "" } else { "  estimated" };
+            let SignalTally { hits, late, needless, .. } = tally;
+            let judged = format!("{hits} about a false belief, {late} late, {needless} needless");
+            facts.push(fact(basis, judged, TextRole::Text));
+        }
+    }
+    if facts.is_empty() {
+        facts.push(fact("signals", "none".to_string(), TextRole::Text));
+    }
+    facts
 }
 
 /// Whether the trial can be done again by the key for it.
@@ -131,16 +170,17 @@ impl Card {
         let rows = self.facts.len() as u16 + 5;
         let inside = open(brush, screen, (COLUMNS, rows), &self.title, "");
         let x = inside.x + 2;
+        let names = self.facts.iter().map(|(name, ..)| width(name) + 2).max().unwrap_or(0).max(NAMES);
         let quiet = brush.style(TextRole::Quiet);
-        let room = inside.width.saturating_sub(NAMES + 3);
+        let room = inside.width.saturating_sub(names + 3);
         for (row, (name, text, role)) in self.facts.iter().enumerate() {
             let y = inside.y + 1 + row as u16;
             if y >= inside.bottom() {
                 return;
             }
-            brush.text(x, y, NAMES, name, quiet);
+            brush.text(x, y, names, name, quiet);
             let style = brush.style(*role);
-            brush.text(x + NAMES, y, room, text, style);
+            brush.text(x + names, y, room, text, style);
         }
         let y = inside.bottom().saturating_sub(1);
         let mut at = x;

@@ -41,7 +41,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         let x = inside.x + 7;
         let columns = inside.right().saturating_sub(x + WHO);
         brush.parts(x, y, WHO - 1, &[(who, role)]);
-        let mark = if is_error { format!(" {} error", brush.theme.signs().error) } else { String::new() };
-        brush.parts(x + WHO, y, columns, &[(&what, TextRole::Text), (&mark, TextRole::Strong)]);
+        let mark = if is_error { format!("{} ", brush.theme.signs().error) } else { String::new() };
+        brush.parts(x + WHO, y, columns, &[(&mark, TextRole::Strong), (&what, TextRole::Text)]);
     }
 }

@@ -17,6 +17,7 @@ use crate::console::key_action::RaterKey;
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer};
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::ReplayKey;
+use crate::history::wording;
 use crate::session::admit::may_send;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Phase, Session};
@@ -26,7 +27,7 @@ const NOTICE_S: f64 = 4.0;
 
 /// Draws the line of messages and the line of keys.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
-    message(brush, regions, model);
+    message(brush, regions, session, model);
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
         let alarm = brush.theme.badge(TextRole::Alarm);
@@ -80,13 +81,23 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// Draws the last notice.
-fn message(brush: &mut Painter, regions: &Regions, model: &ConsoleModel) {
+/// Draws the last notice; without one, that the arm has stopped itself, for as long as it stands.
+fn message(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.message;
     let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
-    if let Some(notice) = notice.filter(|_| area.area() > 0) {
+    if area.area() == 0 {
+        return;
+    }
+    if let Some(notice) = notice {
         let style = style_of(brush, notice);
         brush.text(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
+    } else if session.robot.arm.mode.has_stopped_itself() && session.robot.stopped {
+        let arm = &session.robot.arm;
+        let why = wording::arm_stopped(arm.mode, arm.stopped_by_n, None);
+        let resume = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| model.playback.is_none());
+        let resume = resume.map_or(String::new(), |key| format!("; {key} resumes it"));
+        let alarm = brush.style(TextRole::Alarm);
+        brush.text(area.x + 2, area.y, area.width - 2, &format!("The arm stands: {why}{resume}"), alarm);
     }
 }
 
@@ -176,7 +187,7 @@ fn fixed_label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleMo
         KeyAction::EndTrial => runs.then_some(label),
         KeyAction::StopRobot => (!session.robot.stopped).then_some(label),
         KeyAction::ResumeRobot => session.robot.stopped.then_some(label),
-        KeyAction::Accept => can_accept(session).then_some(label),
+        KeyAction::Accept => can_accept(session, model).then_some(label),
         KeyAction::TakeBack => session.shown.is_some().then_some(label),
         KeyAction::Look(PanelKey::All) => {
             (model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0).then_some(label)
@@ -186,6 +197,7 @@ fn fixed_label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleMo
 }
 
 /// Whether there is an offer that can be sent now.
-fn can_accept(session: &Session) -> bool {
-    offer_line::shown(session).is_some_and(|offer| offer.is_signal()) && may_send(session, Sender::Wizard).is_ok()
+fn can_accept(session: &Session, model: &ConsoleModel) -> bool {
+    offer_line::shown(session, model).is_some_and(|offer| offer.is_signal())
+        && may_send(session, Sender::Wizard).is_ok()
 }

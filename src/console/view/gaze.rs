@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
-use super::paint::{Painter, fit};
+use super::paint::{Painter, fit, width};
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::console::arrange::KitchenMap;
@@ -101,6 +101,7 @@ pub fn draw_map(brush: &mut Painter, regions: &Regions, session: &Session, model
             brush.text(x, y, 1, signs.trail, style);
         }
     }
+    let mut labels: Vec<Rect> = Vec::new();
     for (index, location) in session.kitchen.locations.iter().enumerate() {
         let (x, y) = cell(location.display.centre());
         let seen = session.gaze.looked_at[index].map(|at| session.age(at, model.now).as_secs_f64());
@@ -114,24 +115,43 @@ pub fn draw_map(brush: &mut Painter, regions: &Regions, session: &Session, model
             Some(age_s) => (format!("{age_s:.0}s"), TextRole::Text),
             None => ("never".to_string(), TextRole::Quiet),
         };
-        write_centred(brush, inside, x, y, &label, TextRole::Quiet);
-        write_centred(brush, inside, x, y + 1, &age, role);
+        let place = free(inside, &labels, (x, y), width(&label).max(width(&age)));
+        labels.push(place);
+        for (row, text, role) in [(0, &label, TextRole::Quiet), (1, &age, role)] {
+            let style = brush.style(role);
+            let margin = (place.width.saturating_sub(width(text))) / 2;
+            brush.text(place.x + margin, place.y + row, place.width, text, style);
+        }
     }
     if let Some((_, sample)) = session.gaze.last {
         let (x, y) = cell([sample.x, sample.y]);
         let style = brush.style(TextRole::Gaze);
-        brush.text(x, y, 1, signs.gaze, style);
+        // A label under the gaze stays readable.
+        match labels.iter().any(|label| label.contains((x, y).into())) && brush.is_written(x, y) {
+            true => brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED)),
+            false => {
+                brush.text(x, y, 1, signs.gaze, style);
+            }
+        }
     }
 }
 
-fn write_centred(brush: &mut Painter, inside: Rect, x: u16, y: u16, text: &str, role: TextRole) {
-    let columns = super::paint::width(text);
-    let last = inside.right().saturating_sub(columns);
-    let x = x.saturating_sub(columns / 2).clamp(inside.x, last.max(inside.x));
-    if y < inside.bottom() {
-        let style = brush.style(role);
-        brush.text(x, y, columns, text, style);
-    }
+/// Where a label of two rows stands without covering the others: centred at its place, or as few columns beside it as possible.
+fn free(inside: Rect, labels: &[Rect], (x, y): (u16, u16), columns: u16) -> Rect {
+    let last = inside.right().saturating_sub(columns).max(inside.x);
+    let at = |shift: i32| {
+        let x = (i32::from(x) - i32::from(columns / 2) + shift).clamp(inside.x.into(), last.into()) as u16;
+        Rect { x, y, width: columns, height: 2.min(inside.bottom().saturating_sub(y)) }
+    };
+    // A column between two labels keeps them apart.
+    let is_free = |place: &Rect| {
+        labels.iter().all(|label| {
+            !Rect { width: label.width + 1, ..*label }.intersects(*place)
+                && !Rect { width: place.width + 1, ..*place }.intersects(*label)
+        })
+    };
+    let reach = i32::from(inside.width);
+    (0..reach).flat_map(|by| [at(by), at(-by)]).find(is_free).unwrap_or(at(0))
 }
 
 /// Marks in the kitchen where the participant looks.
@@ -145,7 +165,7 @@ pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session:
     let style = brush.style(TextRole::Gaze);
     let style = if age_s > 1.0 { style.remove_modifier(Modifier::BOLD).add_modifier(Modifier::DIM) } else { style };
     let sign = brush.theme.signs().gaze;
-    let is_text = |symbol: &str| symbol.chars().any(|letter| letter.is_alphanumeric());
+    let is_text = |symbol: &str| symbol.chars().any(|letter| letter.is_alphanumeric() || "[]".contains(letter));
     let has_text = |x: u16| brush.buffer.cell((x, y)).is_some_and(|cell| is_text(cell.symbol()));
     // The space between two words belongs to their text.
     let covers_text = has_text(x) || (has_text(x.saturating_sub(1)) && has_text(x + 1));

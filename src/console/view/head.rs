@@ -149,6 +149,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
     let robot = match (session.robot.stopped, session.robot.held) {
         (true, _) => (stopped(session), TextRole::Alarm),
         (false, true) => ("ROBOT HELD", TextRole::Strong),
+        (false, false) if session.robot.arm.mode == SafetyMode::Safeguard => ("ROBOT WAITS", TextRole::Strong),
         (false, false) => ("robot ok", TextRole::Text),
     };
     if (room > ScreenSize::Small && model.playback.is_none()) || robot.1 != TextRole::Text {

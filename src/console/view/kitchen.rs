@@ -50,7 +50,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let plan = KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys);
     zones(brush, &plan);
     let believed = beliefs(session, model);
-    let offered = offer_line::shown(session).and_then(|offer| offer.place(session));
+    let offered = offer_line::shown(session, model).and_then(|offer| offer.place(session));
     for spot in &plan.spots {
         match spot.thing {
             MapElement::Location(location) => {

@@ -14,7 +14,7 @@ use crate::console::beliefs::{self, BeliefStanding, EstimatedBelief, beliefs, pe
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::history::wording;
-use crate::kitchen::{AspectId, LocationId};
+use crate::kitchen::LocationId;
 use crate::session::offers;
 use crate::session::settings::{Condition, Visibility};
 use crate::session::{Phase, Session};
@@ -27,8 +27,8 @@ pub(super) struct ShownOffer<'a> {
 }
 
 /// The offer that the wizard sees now.
-pub(super) fn shown(session: &Session) -> Option<ShownOffer<'_>> {
-    if session.spec.console.visibility < Visibility::Recommendation
+pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<ShownOffer<'a>> {
+    if beliefs::visibility(session, model) < Visibility::Recommendation
         || session.spec.trial.condition == Condition::Assistant
         || !matches!(session.phase, Phase::Running | Phase::Paused)
     {
@@ -94,8 +94,7 @@ impl ShownOffer<'_> {
         let Some(reason) = self.reason.map(|reason| wording::reason(&session.kitchen, reason)) else {
             return Vec::new();
         };
-        let aspect = session.kitchen.aspects.iter().position(|aspect| aspect.name == reason.aspect);
-        let aspect = aspect.map(|index| AspectId(index as u8));
+        let aspect = session.kitchen.aspect_named(&reason.aspect);
         let belief = beliefs(session, model).into_iter().find(|belief| Some(belief.aspect) == aspect);
         let since = belief.and_then(|belief| belief.since);
         // The certainty is that of the belief panel, while the participant is thought to think the same.
@@ -118,7 +117,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     if area.area() == 0 {
         return;
     }
-    let Some(offer) = shown(session) else {
+    let Some(offer) = shown(session, model) else {
         let style = brush.style(TextRole::Quiet);
         brush.text(area.x + 1, area.y, area.width - 1, &silence(session, model), style);
         return;

@@ -1,4 +1,4 @@
-//! The recommendation panel: signals ranked by net benefit, the cost of communication, and the reason.
+//! The list of signals: what each would save, ranked, and what a signal costs. The offer itself stands in its own line.
 
 use ratatui::layout::Rect;
 
@@ -8,61 +8,52 @@ use super::theme::TextRole;
 use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::concept::ConceptName;
-use crate::communication::offer::{OfferWorth, OfferedAct};
-use crate::communication::recommendation::{Proposal, Recommendation, SignalOption};
+use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::console::console_model::ConsoleModel;
-use crate::console::key_action::KeyAction;
 use crate::history::wording;
 use crate::session::Session;
 use crate::session::admit::may_send;
-use crate::session::offers;
+use crate::session::settings::Condition;
 
 /// Width of a gauge in columns; a column is half a saved press, or for ToM a twelfth of the deviation.
 const GAUGE: u16 = 12;
 const PRESSES_A_COLUMN: f64 = 0.5;
-/// Options with a smaller benefit and standard error are not listed, since they would be shown as 0.0 ±0.0.
+/// Options with a smaller benefit and standard error are not listed, since they would be shown as 0.0.
 const NOTHING: f64 = 0.05;
 /// Width reserved for the signal ("[a] highlight assembly board"); a gauge is drawn only beside it.
 const LONGEST_SIGNAL: u16 = 28;
-/// Number of columns below which the cost line is abbreviated.
-const NARROW: u16 = 46;
+/// Tag of the signal that is on offer.
+const OFFERED: &str = "offered";
 
-/// Draws the recommendation panel.
+/// Draws the list of signals.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.recommendation;
     if area.area() == 0 {
         return;
     }
-    let inside = brush.panel(area, "Recommendation", remark(session, area.width));
-    let Some(advice) = &shown(session) else {
-        let quiet = brush.style(TextRole::Quiet);
-        for (row, line) in wrap(silence(session), inside.width).iter().enumerate() {
-            brush.text(inside.x, inside.y + row as u16, inside.width, line, quiet);
-        }
-        return;
+    let inside = brush.panel(area, "What signals would save", remark(session));
+    let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
+    let Some(advice) = &session.advice else {
+        return quietly(brush, inside, silence(session));
     };
-    // The cost line is always visible; options above it are dropped if there is no room.
-    let above = Rect { height: inside.height.saturating_sub(1), ..inside };
-    let mut y = proposal(brush, above, advice);
     let (worth_it, not_worth_it): (Vec<&SignalOption>, Vec<&SignalOption>) =
         advice.options.iter().partition(|option| option.net > 0.0);
-    for option in worth_it {
-        if y >= above.bottom() {
-            break;
-        }
-        y = option_line(brush, above, y, option, session, model, advice);
-        if Some(&option.signal) == advice.best.as_ref() {
-            y = reason(brush, above, y, advice, session);
-        }
+    // The line of the cost is always visible; options above it are dropped if there is no room.
+    let above = inside.height.saturating_sub(1).min(worth_it.len() as u16);
+    for (row, option) in worth_it.into_iter().take(usize::from(above)).enumerate() {
+        option_line(brush, inside, inside.y + row as u16, option, session, model);
     }
-    y = cost_line(brush, inside, y, session, advice, model);
+    let mut y = inside.y + above;
+    cost_line(brush, inside, y, session, advice, model);
+    y += 1;
     let (useless, not_worth_it): (Vec<&SignalOption>, Vec<&SignalOption>) =
         not_worth_it.into_iter().partition(|option| option.benefit.abs().max(option.standard_error) < NOTHING);
     for option in not_worth_it {
         if y >= inside.bottom() {
             return;
         }
-        y = option_line(brush, inside, y, option, session, model, advice);
+        option_line(brush, inside, y, option, session, model);
+        y += 1;
     }
     if !useless.is_empty() && y < inside.bottom() {
         let what = match session.spec.assistant.concept {
@@ -70,66 +61,28 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
             _ => "would save nothing",
         };
         let text = format!("{} {what}", count(useless.len() as u64, "signal", "signals"));
-        let style = brush.style(TextRole::Quiet);
-        brush.text(inside.x, y, inside.width, &text, style);
+        quietly(brush, Rect { y, height: 1, ..inside }, &text);
     }
 }
 
-/// The recommendation with the open offer in the place of its best signal; where none are made, as it is.
-fn shown(session: &Session) -> Option<Recommendation> {
-    let advice = session.advice.clone()?;
-    if !offers::are_made(session) {
-        return Some(advice);
+fn quietly(brush: &mut Painter, area: Rect, text: &str) {
+    let quiet = brush.style(TextRole::Quiet);
+    for (row, line) in wrap(text, area.width).iter().take(usize::from(area.height)).enumerate() {
+        brush.text(area.x, area.y + row as u16, area.width, line, quiet);
     }
-    let silent = Recommendation { best: None, reason: None, proposal: None, ..advice };
-    let Some(offer) = session.offers.open() else { return Some(silent) };
-    let reason = offer.advice.reason.clone();
-    Some(match (&offer.advice.what, offer.advice.worth) {
-        (OfferedAct::Signal(signal), Some(OfferWorth { benefit, standard_error, net })) => {
-            let offered = SignalOption { signal: signal.clone(), benefit, standard_error, net, rollouts: 0 };
-            let others = silent.options.into_iter().filter(|option| option.signal != *signal);
-            let options = std::iter::once(offered).chain(others).collect();
-            Recommendation { options, best: Some(signal.clone()), reason, ..silent }
-        }
-        (OfferedAct::Presses(presses), _) => {
-            let proposal = Proposal { error: offer.advice.for_seq, presses: presses.clone() };
-            Recommendation { proposal: Some(proposal), ..silent }
-        }
-        (OfferedAct::Signal(_), None) => silent,
-    })
 }
 
-/// Remark in the title: the concept and the unit of its numbers.
-fn remark(session: &Session, columns: u16) -> &'static str {
-    let is_narrow = columns < NARROW;
+/// Remark in the title: the unit of the numbers.
+fn remark(session: &Session) -> &'static str {
     match session.spec.assistant.concept {
-        ConceptName::TomCom if is_narrow => "net presses",
-        ConceptName::TomCom => "ToM-Com, net presses saved",
-        ConceptName::Tom if is_narrow => "above threshold",
-        ConceptName::Tom => "ToM, above threshold",
-        ConceptName::Dev if is_narrow => "after an error",
-        ConceptName::Dev => "DEV, presses after an error",
+        ConceptName::TomCom => "presses",
+        ConceptName::Tom => "belief deviation",
+        ConceptName::Dev => "DEV",
         ConceptName::None => "no concept",
     }
 }
 
-/// Draws the proposed presses; returns the row below.
-fn proposal(brush: &mut Painter, inside: Rect, advice: &Recommendation) -> u16 {
-    let Some(proposal) = &advice.proposal else { return inside.y };
-    let lines = wrap(&proposed(proposal), inside.width);
-    for (row, line) in lines.iter().enumerate().take(usize::from(inside.height)) {
-        let style = brush.style(TextRole::Strong);
-        brush.text(inside.x, inside.y + row as u16, inside.width, line, style);
-    }
-    (inside.y + lines.len() as u16).min(inside.bottom())
-}
-
-fn proposed(proposal: &Proposal) -> String {
-    let presses: Vec<String> = proposal.presses.iter().map(|press| wording::location(press)).collect();
-    format!("error: next would be good {} (no signal says so)", presses.join(", then "))
-}
-
-/// Reason why there is no recommendation.
+/// Reason why there is no list.
 fn silence(session: &Session) -> &'static str {
     match (session.spec.asks_assistant(), session.is_running()) {
         (false, _) => "None: nobody asks the assistant in this session (shadow = \"off\"). The signals are yours.",
@@ -138,24 +91,12 @@ fn silence(session: &Session) -> &'static str {
     }
 }
 
-/// Text without a recommended signal: no signal is worth its cost, or the recommended signal has been sent.
-fn nothing(session: &Session, advice: &Recommendation) -> &'static str {
-    match session.signalled_at.is_some_and(|sent| sent >= advice.for_ns) {
-        true => "sent",
-        false => "say nothing",
-    }
-}
-
-/// Age of the recommendation.
-fn age(session: &Session, advice: &Recommendation, model: &ConsoleModel) -> String {
-    format!("  {:.1} s old", session.age(advice.for_ns, model.now).as_secs_f64())
-}
-
-/// Net benefit of an option in the concept's unit.
+/// What an option saves, in the concept's unit.
 fn worth(option: &SignalOption, session: &Session) -> String {
     match session.spec.assistant.concept {
-        ConceptName::Tom => format!("{:+.2} ", option.net),
-        _ => format!("{:+.1} ±{:.1} ", option.net, option.standard_error),
+        ConceptName::Tom => format!("{:>4.2} ", option.benefit),
+        // Less than half a tenth is 0.0, never -0.0.
+        _ => format!("{:>4.1} ", if option.benefit.abs() < NOTHING { 0.0 } else { option.benefit }),
     }
 }
 
@@ -174,10 +115,10 @@ fn option_line(
     option: &SignalOption,
     session: &Session,
     model: &ConsoleModel,
-    advice: &Recommendation,
-) -> u16 {
-    let is_best = Some(&option.signal) == advice.best.as_ref();
-    let role = if is_best { TextRole::Strong } else { TextRole::Quiet };
+) {
+    let offered = session.offers.open().and_then(|offer| offer.signal());
+    let is_offered = offered == Some(&option.signal);
+    let role = if is_offered { TextRole::Strong } else { TextRole::Quiet };
     let worth = worth(option, session);
     let mut x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
     let (key, words) = (key(option, session, model), wording::signal(&option.signal));
@@ -185,8 +126,12 @@ fn option_line(
     if inside.right().saturating_sub(x) >= GAUGE + 1 + LONGEST_SIGNAL {
         x = gauge(brush, x, y, option, session, role);
     }
-    brush.parts(x, y, inside.right().saturating_sub(x), &[(key.as_str(), TextRole::Signal), (words.as_str(), role)]);
-    y + 1
+    let parts = [(key.as_str(), TextRole::Signal), (words.as_str(), role)];
+    let end = brush.parts(x, y, inside.right().saturating_sub(x), &parts);
+    if is_offered && end + 2 + OFFERED.len() as u16 <= inside.right() {
+        let style = brush.style(TextRole::Signal);
+        brush.text_right(inside.right(), y, OFFERED.len() as u16, OFFERED, style);
+    }
 }
 
 /// Draws the benefit as a bar: solid up to one standard error below, open up to one above, with a line at the cost.
@@ -211,31 +156,7 @@ fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &S
     x + GAUGE + 1
 }
 
-/// Draws the reason for the best option, shortened to the available room; returns the row below.
-fn reason(brush: &mut Painter, inside: Rect, y: u16, advice: &Recommendation, session: &Session) -> u16 {
-    let (Some(reason), Some(option)) = (&advice.reason, advice.top()) else { return y };
-    let reason = wording::reason(&session.kitchen, reason);
-    let saves = match session.spec.assistant.concept {
-        ConceptName::Tom => String::new(),
-        _ => format!("; saves {:.1} presses, net {:+.1}", option.benefit, option.net),
-    };
-    let (columns, rows) = (inside.width.saturating_sub(2), usize::from(inside.bottom().saturating_sub(y)));
-    let said = [reason.words() + &saves, reason.words(), reason.taken() + &saves, reason.taken()];
-    let mut lines = said.iter().map(|words| wrap(words, columns)).find(|lines| lines.len() <= rows);
-    if lines.is_none() {
-        // If even the shortest text does not fit, its last visible line is marked as continued.
-        let all = wrap(&said[3], columns);
-        lines = rows.checked_sub(1).map(|last| [&all[..last], &[all[last..].join(" ")]].concat());
-    }
-    let style = brush.style(TextRole::Text);
-    let lines = lines.unwrap_or_default();
-    for (row, line) in lines.iter().enumerate() {
-        brush.text(inside.x + 2, y + row as u16, columns, line, style);
-    }
-    y + lines.len() as u16
-}
-
-/// Draws the cost of communication and the age of the recommendation.
+/// Draws the cost of a signal, and the age of the numbers.
 fn cost_line(
     brush: &mut Painter,
     inside: Rect,
@@ -243,26 +164,20 @@ fn cost_line(
     session: &Session,
     advice: &Recommendation,
     model: &ConsoleModel,
-) -> u16 {
-    let silence = match advice.best.is_none() && advice.proposal.is_none() {
-        true => format!("{}; ", nothing(session, advice)),
-        false => String::new(),
-    };
+) {
     let price = session.spec.assistant.price();
     let left = match session.spec.assistant.concept {
-        ConceptName::Tom => format!("{silence}threshold {price:.2}"),
-        ConceptName::Dev | ConceptName::None => silence.trim_end_matches("; ").to_string(),
-        ConceptName::TomCom if inside.width < NARROW => format!("{silence}costs {price:.1}"),
-        ConceptName::TomCom => format!("{silence}a signal costs {price:.1}"),
+        ConceptName::Tom => format!("{price:>4.2} is the threshold"),
+        ConceptName::Dev => "DEV proposes presses after an error; they stand in the line of the offer".to_string(),
+        ConceptName::None => String::new(),
+        ConceptName::TomCom => format!("{price:>4.1} is what a signal costs"),
     };
-    let role = if advice.best.is_none() { TextRole::Strong } else { TextRole::Quiet };
-    let accept = model
-        .keys
-        .chord_for(&KeyAction::Accept)
-        .filter(|_| advice.best.is_some() && may_send(session, Sender::Wizard).is_ok());
-    let accept = accept.map_or(String::new(), |chord| format!("  [{}] accepts", chord.name()));
-    brush.parts(inside.x, y, inside.width, &[(left.as_str(), role), (accept.as_str(), TextRole::Signal)]);
-    let style = brush.style(TextRole::Quiet);
-    brush.text_right(inside.right(), y, inside.width, &age(session, advice, model), style);
-    y + 1
+    let quiet = brush.style(TextRole::Quiet);
+    let end = brush.text(inside.x, y, inside.width, &left, quiet);
+    // An assistant that acts by itself has sent what it recommends.
+    let is_sent = session.spec.trial.condition == Condition::Assistant
+        && session.signalled_at.is_some_and(|sent| sent >= advice.for_ns);
+    let state = if is_sent { "sent, " } else { "" };
+    let age = format!("{state}{:.1} s old", session.age(advice.for_ns, model.now).as_secs_f64());
+    brush.text_right(inside.right(), y, inside.right().saturating_sub(end + 1), &age, quiet);
 }

@@ -2,6 +2,7 @@
 
 use ratatui::layout::Rect;
 
+use crate::console::beliefs::visibility;
 use crate::console::compared::ComparisonView;
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel;
@@ -88,7 +89,7 @@ impl Regions {
         let assistants = |compared: &ComparisonView| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
         let compared = model.comparison.as_ref().map(assistants);
         let lines = LineRows { comparison: compared, scrubs: model.playback.is_some() };
-        let regions = Regions::with(size, session.spec.console.visibility, model.alone, lines);
+        let regions = Regions::with(size, visibility(session, model), model.alone, lines);
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
 
@@ -213,8 +214,10 @@ impl Regions {
 
     /// Large layout in three columns: state with gaze map, beliefs over time with recommendations, events.
     fn large(self, visibility: Visibility) -> Regions {
-        let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
-        let (rest, events) = right(rest, 42);
+        // A row more for offers.
+        let rows = TIMELINE_ROWS + u16::from(visibility == Visibility::Recommendation);
+        let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(rows));
+        let (rest, events) = right(rest, 44);
         let (kitchen, side) = left(rest, (rest.width * 11 / 20).max(KITCHEN_COLUMNS));
         let (kitchen, below) = bottom(kitchen, kitchen.height * 2 / 5);
         let (participant, map) = left(below, below.width * 2 / 5);

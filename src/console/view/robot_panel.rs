@@ -131,6 +131,10 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         SafetyMode::Safeguard => badge(brush, x, y, columns, " WAITS ", " for the hand "),
         _ => (x, columns),
     };
+    if matches!(session.phase, Phase::Over(_) | Phase::Closed) {
+        brush.parts(x, y, columns, &[("stands: the trial is over", TextRole::Quiet)]);
+        return;
+    }
     let Some((button, since, until)) = session.robot.intention else {
         let why = match session.robot.idle {
             _ if session.robot.held => "",

@@ -12,11 +12,12 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     if area.area() == 0 {
         return;
     }
-    let end = format!(" {} / {} ", session.time, playback.length.max(session.time));
+    // The recording's own time, which runs before the trial and in pauses, too.
+    let end = format!(" {} of {} ", session.time, playback.length.max(session.time));
     let quiet = brush.style(TextRole::Quiet);
-    brush.text(area.x, area.y, area.width, " position ", quiet);
+    brush.text(area.x, area.y, area.width, " recording ", quiet);
     brush.text_right(area.right(), area.y, area.width, &end, quiet);
-    let x = area.x + 10;
+    let x = area.x + 11;
     let columns = area.right().saturating_sub(x + width(&end) + 1);
     let share = session.time.as_secs_f64() / playback.length.as_secs_f64().max(1e-3);
     let line = brush.theme.signs().frame[4].repeat(usize::from(columns));

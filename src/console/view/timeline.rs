@@ -8,10 +8,14 @@ use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
+use crate::communication::offer::OfferUse;
+use crate::console::beliefs::visibility;
 use crate::console::coding::press;
 use crate::console::console_model::ConsoleModel;
 use crate::kitchen::Agent;
 use crate::session::event::SignalEnd;
+use crate::session::offers;
+use crate::session::settings::Visibility;
 use crate::session::{Phase, Session, TimelineEntry, TimelineEvent};
 
 /// Duration of a column, in seconds.
@@ -33,6 +37,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let rows: &[&str] = match is_small {
         // Signals, orders and notes share a row.
         true => &["", "human", "robot", "events"],
+        false if has_offers(inside, session, model) => &["", "human", "robot", "signals", "orders", "notes", "offers"],
         false => &["", "human", "robot", "signals", "orders", "notes"],
     };
     let quiet = brush.style(TextRole::Quiet);
@@ -55,9 +60,50 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         .filter(|mark| mark.y < plot.bottom())
         .collect();
     place(brush, plot, &in_view);
+    if rows.len() > 6 {
+        offers(brush, Rect { y: plot.y + 6, height: 1, ..plot }, session, model);
+    }
     if let Some(words) = coding(session, model).filter(|_| is_small) {
         let strong = brush.style(TextRole::Strong);
         brush.text(inside.x + 1, inside.y, inside.width, &format!("{words} "), strong);
+    }
+}
+
+/// Whether there is room for a row of offers, and they may be seen.
+fn has_offers(inside: Rect, session: &Session, model: &ConsoleModel) -> bool {
+    let may_see = visibility(session, model) == Visibility::Recommendation;
+    inside.height > 6 && may_see && offers::are_made(session)
+}
+
+/// Draws each offer from its opening to its close: the key of its signal, a line in the colour of signals where the signal was
+/// sent, and a tick where the offer was taken.
+fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleModel) {
+    let back = (f64::from(model.timeline_back_s) / COLUMN_S) as i64;
+    let column = |time: SessionTime| {
+        let ago = columns_ago(session, model, time, COLUMN_S) - back;
+        i64::from(row.right()) - 1 - ago
+    };
+    let closed = session.offers.closed().iter().map(|closed| (&closed.offer, closed.closed));
+    let open = session.offers.unclosed().map(|offer| (offer, model.now));
+    let signs = brush.theme.signs();
+    for (offer, end) in closed.chain(open).filter(|(offer, _)| offer.advice.visible && offer.opened <= model.now) {
+        let (from, to) = (column(offer.opened), column(end.min(model.now)));
+        if to < i64::from(row.x) || from >= i64::from(row.right()) {
+            continue;
+        }
+        let used = offer.used.filter(|used| used.at <= model.now);
+        let role = if used.is_some() { TextRole::Signal } else { TextRole::Quiet };
+        let style = brush.style(role);
+        let key = offer.signal().map_or("!".to_string(), |signal| signal_sign(session, model, signal));
+        let is_taken = used.is_some_and(|used| used.how == OfferUse::Taken);
+        for at in from.max(row.x.into())..=to.min(i64::from(row.right()) - 1) {
+            let sign = match at {
+                at if at == from => key.as_str(),
+                at if at == to && is_taken => signs.served,
+                _ => signs.frame[4],
+            };
+            brush.text(at as u16, row.y, 1, sign, style);
+        }
     }
 }
 
@@ -160,10 +206,10 @@ fn mark(
 ) -> Option<(u16, String, TextRole)> {
     let signs = brush.theme.signs();
     Some(match &entry.what {
-        TimelineEvent::Press { agent, effective, .. } => {
+        TimelineEvent::Press { agent, no_effect, .. } => {
             let row = if *agent == Agent::Human { 1 } else { 2 };
             let role = if *agent == Agent::Human { TextRole::Human } else { TextRole::Robot };
-            match (model.is_error(entry), effective) {
+            match (model.is_error(entry), no_effect.is_none()) {
                 (true, _) => (row, signs.error.to_string(), TextRole::Strong),
                 (false, false) => (row, signs.no_effect.to_string(), role),
                 (false, true) => (row, signs.press.to_string(), role),
@@ -192,6 +238,7 @@ fn mark(
                 session.spec.console.notes.iter().position(|known| known == note).map(|index| (index + 1).to_string());
             (5, number.unwrap_or("*".to_string()), TextRole::Strong)
         }
+        TimelineEvent::Trial(Phase::Over(_)) => (5, signs.frame[5].to_string(), TextRole::Strong),
         TimelineEvent::Trial(Phase::Paused) => (5, signs.pause.to_string(), TextRole::Strong),
         TimelineEvent::Trial(_) => (5, signs.to.to_string(), TextRole::Strong),
     })

@@ -23,6 +23,7 @@ impl Live {
                 }
                 _ => {}
             }
+            self.model.signals.judge(stamped, self.engine.session());
             self.capture.tell(&stamped.event, self.clock.instant_of(stamped.time));
             if let Some(comparison) = &self.comparison {
                 comparison.tell(stamped);
@@ -40,6 +41,7 @@ impl Live {
             let moment = BeliefSnapshot::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
             self.model.belief.note(moment);
             self.model.belief.forget(last.time, belief_track::SHOWN_S);
+            self.model.signals.note(session, |aspect| self.engine.is_false(aspect));
         }
         for question in self.engine.take_questions() {
             if let Some(advisor) = &self.advisor {

@@ -191,14 +191,18 @@ impl RowCollector {
             [(_, of), (_, with)] => Some(matched(of, with, window, MatchCriterion::Signal)),
             _ => None,
         };
+        let offers = TimedOffer::visible(session);
         for (side, (lane, all)) in lanes.iter().enumerate() {
             for (index, sent) in all.iter().enumerate() {
                 let is_matched = |pairs: &Vec<(usize, usize)>| pairs.iter().any(|&(a, b)| [a, b][side] == index);
                 let matched = pairs.as_ref().map(is_matched);
-                self.rows.add(&CommunicationRow { recording, kitchen, lane, sent, matched });
+                // The first lane is that of the sender.
+                let took = |timed: &&TimedOffer| side == 0 && timed.sent == Some(sent.clock);
+                let offer = offers.iter().find(took).map(|timed| timed.offer.seq);
+                self.rows.add(&CommunicationRow { recording, kitchen, lane, sent, offer, matched });
             }
         }
-        for timed in &TimedOffer::visible(session) {
+        for timed in &offers {
             self.rows.add(&OfferRow { recording, timed });
         }
         self.rows.0.map(TableRows::into_bytes)

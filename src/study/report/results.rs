@@ -3,6 +3,9 @@
 use maud::{Markup, html};
 
 use super::elements::{Captions, UNKNOWN, cells, condition, count, nothing, number, p_value, percent, scroll, section};
+use crate::analysis::offer_summary::{OfferDurations, OfferSummary};
+use crate::base::words;
+use crate::communication::offer::OfferEnd;
 use crate::measures::matching::MatchShares;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::study::figures::StudySummary;
@@ -59,8 +62,29 @@ pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Mar
             h3 { "The wizard" } "\n"
             (captions.table("Performance of the wizard.", &["", "over all trials"], &wizard_rows(wizard)))
         }
+        @if let Some(found) = &figures.offers { (offers(found)) }
     };
     section("Wizard and assistant", content)
+}
+
+/// What the wizard was offered, and what was made of it, as a sentence for each.
+fn offers(found: &OfferSummary) -> Markup {
+    let times = |one: &OfferDurations| match (one.median_s, one.shortest_s) {
+        (Some(median_s), Some(shortest_s)) => format!("{median_s:.1} s in the median, {shortest_s:.1} s at least"),
+        _ => UNKNOWN.to_string(),
+    };
+    let by_reason = |(reason, one): (&OfferEnd, &OfferDurations)| format!("{} {}", one.n, reason.words());
+    let reasons: Vec<String> = found.by_reason.iter().map(by_reason).collect();
+    let reaction = found.reaction_s.map(|s| format!(", {s:.1} s after its opening in the median"));
+    html! {
+        p {
+            "The wizard saw " (words::count(found.all.n, "offer", "offers")) ", which stood " (times(&found.all)) " (" (reasons.join(", ")) "). "
+            "The signal of " (found.taken + found.by_own_key) " was sent" (reaction.unwrap_or_default()) ": of "
+            (found.taken) " by the key of the offer, of " (found.by_own_key) " by the key of the signal. The table "
+            code { "offers" } " has each of them."
+        }
+        "\n"
+    }
 }
 
 /// Table of the similarity of wizard and assistant; empty without signals.

@@ -16,6 +16,8 @@ pub struct CommunicationRow<'a> {
     pub lane: &'a str,
     /// The communication.
     pub sent: &'a CommunicationEvent,
+    /// The offer whose signal this was, if the wizard could see one.
+    pub offer: Option<u64>,
     /// Whether the other lane has a matching communication within the window; `None` without another lane.
     pub matched: Option<bool>,
 }
@@ -33,6 +35,7 @@ impl TableRow for CommunicationRow<'_> {
 
     fn columns() -> Vec<Column<Self>> {
         let lane = "sender (wizard, assistant), or concept of a hypothetical signal (tom-com)";
+        let offer = "the offer that it took or met, as in offers; empty: none was visible";
         let matched = "whether the other lane has the same signal within the window; empty: no other lane";
         vec![
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
@@ -46,6 +49,7 @@ impl TableRow for CommunicationRow<'_> {
                 row.sent.content.target.map(|location| &row.kitchen.location(location).name).into()
             }),
             Self::column("matched", "", matched, |row| row.matched.into()),
+            Self::column("offer", "", offer, |row| row.offer.into()),
         ]
     }
 }

@@ -138,3 +138,40 @@ fn what_was_sent_is_not_offered_again_before_there_is_newer_advice() {
     stage.wait(1.0);
     assert!(input(stage.key(KeyCode::Enter)).is_some(), "that is newer");
 }
+
+#[test]
+fn what_is_offered_stands_first_among_the_beliefs_and_is_never_called_right() {
+    let mut stage = advised(true);
+    // The estimate has come to think that the recipe is known, and that the rolling mat is not.
+    stage.estimate(&[("recipe of tuna nigiri", "tuna nigiri", 0.7), ("rolling_mat", "nori", 0.9)], false);
+    for size in SIZES {
+        let screen = stage.screen(size);
+        let lines: Vec<&str> = screen.lines().collect();
+        let list = lines.iter().position(|line| line.contains("Beliefs ─")).map(|title| title + 1);
+        let first = list.or(lines.iter().position(|line| line.contains(" beliefs  "))).map(|first| lines[first]);
+        assert!(
+            first.is_some_and(|first| first.contains("recipe of order 1") && screen.contains("unsure")),
+            "{size:?}:\n{screen}"
+        );
+    }
+}
+
+#[test]
+fn the_timeline_shows_offers_from_their_opening_to_their_close() {
+    let row = |stage: &Stage| {
+        let screen = stage.screen((200, 60));
+        let row = screen.lines().find(|line| line.contains(" offers ")).map(str::to_string);
+        row.unwrap_or_else(|| panic!("no row of offers:\n{screen}"))
+    };
+    let mut stage = advised(true);
+    stage.wait(4.0);
+    assert!(row(&stage).contains("q────────"), "open for more than 4 s: {}", row(&stage));
+    assert!(!row(&stage).contains('✓'));
+    let offer = stage.session.offers.open().map(|offer| offer.seq);
+    let signal = Signal::ShowRecipe("order_1".to_string());
+    stage.at(27.0, Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer });
+    stage.offer(27.0);
+    assert!(row(&stage).contains("──────✓"), "taken: {}", row(&stage));
+    stage.session.spec.console.visibility = Visibility::Belief;
+    assert!(!stage.screen((200, 60)).contains(" offers "));
+}

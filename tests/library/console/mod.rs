@@ -7,6 +7,7 @@ mod colours;
 mod comparison;
 mod hands;
 mod keys;
+mod layers;
 mod notices;
 mod pointer;
 mod recording_picker;
@@ -31,6 +32,7 @@ use tomcom::edge::files::read_kitchen;
 use tomcom::gaze::GazeSample;
 use tomcom::history::belief_track::BeliefSnapshot;
 use tomcom::kitchen::{Agent, Kitchen};
+use tomcom::measures::sequences::FALSE_BELOW;
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::model::PriorModel;
 use tomcom::session::event::{Event, SignalEnd, Stamped};
@@ -65,7 +67,8 @@ impl Stage {
         model.recording = RecordingStatus::On("sessions/2026-03-14-P01-1".to_string());
         model.free_bytes = Some(1 << 40);
         let belief = DirichletBelief::prior(&kitchen, &PriorModel::default(), kitchen.empty_state());
-        Stage { session: Session::new(kitchen, spec, 0), model, seq: 0, belief }
+        let session = Session { has_console: true, ..Session::new(kitchen, spec, 0) };
+        Stage { session, model, seq: 0, belief }
     }
 
     fn at(&mut self, seconds: f64, event: Event) {
@@ -73,6 +76,7 @@ impl Stage {
         self.model.clock = self.model.now;
         let stamped = Stamped { seq: self.seq, time: self.model.now, event };
         apply(&mut self.session, &stamped).expect("the event fits");
+        self.model.signals.judge(&stamped, &self.session);
         self.seq += 1;
     }
 
@@ -103,6 +107,8 @@ impl Stage {
         }
         let moment = BeliefSnapshot::new(&kitchen, self.session.state, &self.belief, self.model.now, by_gaze);
         self.model.belief.note(moment);
+        let (state, belief) = (self.session.state, &self.belief);
+        self.model.signals.note(&self.session, |aspect| belief.p_truth(&kitchen, state, aspect) < FALSE_BELOW);
     }
 
     /// A sushi kitchen in the middle of a trial: the wizard has just shown a recipe.

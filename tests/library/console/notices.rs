@@ -6,9 +6,10 @@ use tomcom::console::console_model::ViewerStreamStatus;
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyMap, update};
+use tomcom::robot::safety::SafetyMode;
 use tomcom::session::event::{EndReason, Event};
 use tomcom::session::preflight_checks::PreflightVerdict;
-use tomcom::session::settings::{GazeSource, ParticipantKind};
+use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind};
 
 use super::{SIZES, Stage, input};
 use crate::check_snapshot;
@@ -168,4 +169,22 @@ fn an_open_port_for_viewers_is_a_warning_in_whole_sentences() {
     let check = of_viewers(&stage);
     assert_eq!(check.found, "viewers at 0.0.0.0:9876 need no password");
     assert!(check.remedy.is_some_and(|remedy| remedy.contains("--rerun-listen 127.0.0.1:9876")));
+}
+
+#[test]
+fn an_arm_that_stopped_itself_is_told_for_as_long_as_it_stands() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.robot.arm = ArmKind::Physics;
+    let stopped = Event::RobotSafety { mode: SafetyMode::ProtectiveStop, force_n: Some(126.0), joint: None };
+    stage.at(30.0, stopped);
+    stage.at(60.0, Event::RobotTouched { force_n: 20.0 });
+    for size in SIZES {
+        let screen = stage.screen(size);
+        assert!(
+            screen.contains("The arm stands: protective stop: felt somebody, with 126 N; ^r resumes it"),
+            "{screen}"
+        );
+    }
+    stage.at(61.0, Event::RobotResumed);
+    assert!(!stage.screen((120, 40)).contains("The arm stands"));
 }

@@ -160,7 +160,7 @@ fn the_screen_stands_while_the_trial_stands() {
         assert_eq!(below_head(&stage, size), early);
     }
     let events = stage.screen((200, 60));
-    assert!(events.contains("0:18 human     take salmon"), "events have the trial's clock:\n{events}");
+    assert!(events.contains("0:18 human     ✗ take salmon"), "events have the trial's clock:\n{events}");
 }
 
 #[test]
@@ -175,7 +175,7 @@ fn a_card_tells_how_to_start_and_another_what_came_of_the_trial() {
     stage.at(30.0, Event::TrialEnded { reason: EndReason::Wizard });
     for size in SIZES {
         let screen = stage.screen(size);
-        for words in ["0 served", "9 by the human", "2 of the human, 22 %", "2 signals by the wizard", "0:27"] {
+        for words in ["0 served", "9 by the human", "2 in 9 presses of the human (22 %)", "2 by the wizard", "0:27"] {
             assert!(screen.contains(words), "{words} is missing:\n{screen}");
         }
         check_snapshot("console", format!("over_{}x{}", size.0, size.1), screen);
@@ -191,7 +191,7 @@ fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
     stage.model.playback = Some(playback);
     for size in SIZES {
         let screen = stage.screen(size);
-        for words in ["q quit", "? help", "left/right step", "0 served", "play 1x", " position "] {
+        for words in ["q quit", "? help", "left/right step", "0 served", "play 1x", " recording "] {
             assert!(screen.contains(words), "{words} is missing:\n{screen}");
         }
     }

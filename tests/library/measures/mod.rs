@@ -3,6 +3,7 @@
 mod attribution;
 mod choices;
 mod detection;
+mod judged_signals;
 mod matching;
 mod sequences;
 mod wizard;

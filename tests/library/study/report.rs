@@ -3,8 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use tomcom::communication::Sender;
+use tomcom::analysis::offer_summary::TimedOffer;
+use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
+use tomcom::communication::offer::{Offer, OfferEnd, OfferUse, OfferedAct, OfferedAdvice, UsedOffer};
+use tomcom::communication::{Sender, Signal};
 use tomcom::edge::log::rater_codes;
 use tomcom::measures::cause_codes::{Code, Codes};
 use tomcom::robot::AbortReason;
@@ -208,4 +211,38 @@ fn two_raters_say_why_people_erred() {
         actions.lines().filter(|line| line.contains("belief assembly_board,belief plate")).count() as u64,
         related
     );
+}
+
+#[test]
+fn what_was_offered_stands_beside_what_the_wizard_did() {
+    let offer = |seq: u64, stood_s: f64, how: Option<OfferUse>, reason| {
+        let opened = SessionTime::from_secs_f64(10.0 * seq as f64);
+        let sent = how.map(|_| opened + SessionTime::from_secs_f64(stood_s));
+        let what = OfferedAct::Signal(Signal::ShowRecipe("order_1".to_string()));
+        let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, visible: true };
+        TimedOffer {
+            offer: Offer { seq, opened, used: how.zip(sent).map(|(how, at)| UsedOffer { how, at }), advice },
+            opened_s: opened.as_secs_f64(),
+            stood_s: Some(stood_s),
+            reason: Some(reason),
+            sent,
+            reaction_s: how.map(|_| stood_s),
+        }
+    };
+    let mut trials = trials(&[[12, 5]], &[[9, 15]]);
+    let wizards = trials.iter_mut().find(|trial| trial.condition == Condition::Wizard).expect("a wizard's trial");
+    wizards.offers = Some(vec![
+        offer(1, 3.0, Some(OfferUse::Taken), OfferEnd::Taken),
+        offer(2, 2.0, Some(OfferUse::OwnKey), OfferEnd::OwnKey),
+        offer(3, 8.0, None, OfferEnd::Fell),
+    ]);
+    let figures = StudySummary::from_trials(&trials, &Facts::default(), 0);
+    let page = report::page(&figures, &trials, &Facts::default(), &Table::ALL);
+    for words in [
+        "The wizard saw 3 offers, which stood 3.0 s in the median, 2.0 s at least",
+        "1 taken, 1 sent by its own key, 1 no longer worth it",
+        "The signal of 2 was sent, 2.5 s after its opening in the median: of 1 by the key of the offer, of 1 by",
+    ] {
+        assert!(page.contains(words), "{words} is missing:\n{page}");
+    }
 }

@@ -1,0 +1,106 @@
+//! Judges the signals of a running trial as they are sent, for the summary at its end: was the belief that a signal tells false?
+//!
+//! The measures of a study look at the whole trial and leave out false beliefs that led to no error
+//! ([`crate::measures::wizard_performance`]); at the console it counts what was believed when the signal was sent.
+
+use crate::communication::Sender;
+use crate::communication::recommendation::aspects_told;
+use crate::kitchen::{Agent, AspectId};
+use crate::measures::wizard_performance::LATE_PRESSES;
+use crate::session::event::SignalEnd;
+use crate::session::{Event, Session, Stamped};
+
+/// How the signals of a sender were judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SignalTally {
+    /// Signals about a false belief.
+    pub hits: u64,
+    /// Signals about a belief that had been false at most [`LATE_PRESSES`] presses of the human before.
+    pub late: u64,
+    /// Signals about a right belief.
+    pub needless: u64,
+    /// Signals that were taken back; they are judged, too.
+    pub taken_back: u64,
+}
+
+impl SignalTally {
+    /// Number of signals.
+    pub fn sent(&self) -> u64 {
+        self.hits + self.late + self.needless
+    }
+}
+
+/// What is believed about one aspect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Standing {
+    is_false: bool,
+    /// Number of the human's presses when it became right.
+    corrected: Option<u32>,
+}
+
+/// Judges signals by the beliefs before each of them.
+#[derive(Clone, Debug, Default)]
+pub struct SignalJudge {
+    beliefs: Vec<Standing>,
+    wizard: SignalTally,
+    assistant: SignalTally,
+    /// Who sent the last signal.
+    last: Option<Sender>,
+}
+
+impl SignalJudge {
+    /// Judges an event that has been applied to the session, by the beliefs that were noted before it.
+    pub fn judge(&mut self, stamped: &Stamped, session: &Session) {
+        match &stamped.event {
+            Event::TrialStarted => *self = SignalJudge::default(),
+            Event::SignalShown { by, signal, .. } => {
+                let told = aspects_told(&session.kitchen, session.state, signal);
+                let presses = session.presses[Agent::Human.index()];
+                self.last = Some(*by);
+                let beliefs = || told.iter().filter_map(|aspect| self.beliefs.get(aspect.index()));
+                let is_late = |belief: &Standing| belief.corrected.is_some_and(|at| presses <= at + LATE_PRESSES);
+                let (is_hit, is_late) = (beliefs().any(|belief| belief.is_false), beliefs().any(is_late));
+                let tally = self.tally_mut(*by);
+                match () {
+                    () if is_hit => tally.hits += 1,
+                    () if is_late => tally.late += 1,
+                    () => tally.needless += 1,
+                }
+            }
+            Event::SignalEnded { reason: SignalEnd::TakenBack } => {
+                if let Some(by) = self.last.take() {
+                    self.tally_mut(by).taken_back += 1;
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Notes which beliefs are false now.
+    pub fn note(&mut self, session: &Session, is_false: impl Fn(AspectId) -> bool) {
+        let presses = session.presses[Agent::Human.index()];
+        self.beliefs.resize(session.kitchen.aspects.len(), Standing::default());
+        for (index, belief) in self.beliefs.iter_mut().enumerate() {
+            let now = is_false(AspectId(index as u8));
+            if belief.is_false && !now {
+                belief.corrected = Some(presses);
+            }
+            belief.is_false = now;
+        }
+    }
+
+    /// The signals of a sender so far.
+    pub fn tally(&self, by: Sender) -> SignalTally {
+        match by {
+            Sender::Wizard => self.wizard,
+            Sender::Assistant => self.assistant,
+        }
+    }
+
+    fn tally_mut(&mut self, by: Sender) -> &mut SignalTally {
+        match by {
+            Sender::Wizard => &mut self.wizard,
+            Sender::Assistant => &mut self.assistant,
+        }
+    }
+}

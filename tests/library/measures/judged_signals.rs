@@ -1,0 +1,75 @@
+//! Signals that are judged when they are sent.
+
+use tomcom::communication::{Sender, Signal};
+use tomcom::history::signal_judge::{SignalJudge, SignalTally};
+use tomcom::kitchen::Agent;
+use tomcom::session::event::{Event, SignalEnd, Stamped};
+use tomcom::session::{Session, SessionSpec, apply};
+
+use super::{aspect, at, kitchen};
+
+/// A trial whose signals are judged.
+struct Trial {
+    session: Session,
+    judge: SignalJudge,
+    seq: u64,
+}
+
+impl Trial {
+    fn start() -> Trial {
+        let spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
+        let mut trial =
+            Trial { session: Session::new(kitchen("sushi"), spec, 0), judge: SignalJudge::default(), seq: 0 };
+        trial.event(Event::TrialStarted);
+        trial
+    }
+
+    fn event(&mut self, event: Event) {
+        self.seq += 1;
+        let stamped = Stamped { seq: self.seq, time: at(10.0 * self.seq as f64), event };
+        apply(&mut self.session, &stamped).expect("the event fits");
+        self.judge.judge(&stamped, &self.session);
+    }
+
+    fn highlight(&mut self, place: &str, by: Sender) {
+        let signal = Signal::Highlight(place.to_string());
+        self.event(Event::SignalShown { by, signal, accepted: None, offer: None });
+    }
+
+    /// From now on only these places are believed wrong.
+    fn believes_wrong(&mut self, places: &[&str]) {
+        let wrong: Vec<_> = places.iter().map(|place| aspect(&self.session.kitchen, place)).collect();
+        self.judge.note(&self.session, |aspect| wrong.contains(&aspect));
+    }
+
+    fn press(&mut self) {
+        self.event(Event::Press { agent: Agent::Human, button: "take rice".to_string(), at_ns: None });
+    }
+}
+
+#[test]
+fn a_signal_is_judged_by_what_was_believed_before_it() {
+    let mut trial = Trial::start();
+    trial.believes_wrong(&["cooking_pot"]);
+    trial.highlight("cooking_pot", Sender::Wizard);
+    trial.highlight("cutting_board", Sender::Wizard);
+    trial.event(Event::SignalEnded { reason: SignalEnd::TakenBack });
+    let tally = SignalTally { hits: 1, late: 0, needless: 1, taken_back: 1 };
+    assert_eq!((trial.judge.tally(Sender::Wizard), tally.sent()), (tally, 2));
+    assert_eq!(trial.judge.tally(Sender::Assistant), SignalTally::default());
+}
+
+#[test]
+fn it_is_late_up_to_three_presses_after_the_belief_became_right() {
+    let mut trial = Trial::start();
+    trial.believes_wrong(&["cooking_pot"]);
+    trial.believes_wrong(&[]);
+    for _ in 0..3 {
+        trial.press();
+    }
+    trial.highlight("cooking_pot", Sender::Wizard);
+    assert_eq!(trial.judge.tally(Sender::Wizard), SignalTally { late: 1, ..SignalTally::default() });
+    trial.press();
+    trial.highlight("cooking_pot", Sender::Wizard);
+    assert_eq!(trial.judge.tally(Sender::Wizard), SignalTally { late: 1, needless: 1, ..SignalTally::default() });
+}

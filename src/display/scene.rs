@@ -8,7 +8,7 @@ use super::page_language::DisplayWords;
 use crate::gaze::tags::DisplayTags;
 use crate::kitchen::{Agent, Appearance, ButtonAction, ButtonColour, Kitchen, LocationKind};
 use crate::session::settings::GazeSource;
-use crate::session::wall_display::Names;
+use crate::session::wall_display::{DisplayedArm, Names};
 use crate::session::{Session, SessionSpec};
 
 /// Where something is on the display: fractions of its width and height, the origin at the top left.
@@ -41,6 +41,8 @@ pub struct DisplayScene {
     pub names: Names,
     /// The page shows the keys of the buttons.
     pub keys: bool,
+    /// How the robot is shown: "none", "hand", "arm".
+    pub arm: &'static str,
     /// New events are marked by a flash, for recordings with a camera.
     pub flash: bool,
     /// The mouse pointer stands for the gaze.
@@ -149,6 +151,7 @@ pub fn scene(session: &Session) -> DisplayScene {
         words: words.of_page(),
         names: spec.display.names,
         keys: spec.display.keys,
+        arm: spec.display.arm.unwrap_or(DisplayedArm::None).name(),
         flash: spec.display.flash,
         pointer: has_pointer(spec),
     }

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::page_language::DisplayWords;
 use crate::communication::Signal;
 use crate::kitchen::no_effect::NoEffect;
-use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind, OrderContent};
+use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::accuracy_check::RunningGazeCheck;
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ItemAnswer;
@@ -237,6 +237,15 @@ fn pressed(session: &Session, agent: Agent) -> Option<DisplayedPress> {
     let effective = no_effect.is_none();
     let why = no_effect.filter(|_| is_told).map(|(reason, about)| DisplayedReason { reason, about: about.index() });
     Some(DisplayedPress { number: session.presses[agent.index()], at, effective, why })
+}
+
+/// The middle of the place at which the robot presses a button, in fractions of the display.
+pub(super) fn button_place(session: &Session, button: ButtonId) -> [f64; 2] {
+    let kitchen = &session.kitchen;
+    match spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action) {
+        DisplayPlace::Location(index) => kitchen.locations[index].display.centre(),
+        DisplayPlace::Storage(index) => kitchen.storages[index].display.centre(),
+    }
 }
 
 /// Where a press of an agent happens.

@@ -20,6 +20,7 @@ use crate::session::header::FileText;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study};
 use crate::session::ranges;
 use crate::session::settings::SettingError;
+use crate::session::wall_display::DisplayedArm;
 
 /// A session file with its kitchen and its key file.
 #[derive(Clone, Debug)]
@@ -65,6 +66,7 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     }
     read_words(path, &text, &mut spec)?;
     spec.display.reasons.get_or_insert(true);
+    spec.display.arm.get_or_insert(DisplayedArm::Hand);
     spec.check().and_then(|()| spec.check_participant_codes()).map_err(|error| wrong_setting(path, &text, error))?;
     if let Some(step) = &spec.step {
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);

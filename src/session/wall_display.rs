@@ -28,6 +28,10 @@ pub struct DisplaySpec {
     pub keys: bool,
     /// Whether the robot's next press is shown. The paper does not show it, since a shown intention is communication.
     pub intention: bool,
+    /// How the robot is shown that nobody can see otherwise. A session file without it means a hand; a recording without it was
+    /// made when nothing was shown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arm: Option<DisplayedArm>,
     /// Whether AprilTags are shown in the corners, by which an eye tracker finds the display.
     pub tags: bool,
     /// Whether a square flashes at the start of the trial and at signals, to synchronise video recordings.
@@ -50,6 +54,7 @@ impl Default for DisplaySpec {
             names: Names::Orders,
             keys: true,
             intention: false,
+            arm: None,
             tags: true,
             flash: true,
             reasons: None,
@@ -94,6 +99,29 @@ pub enum Names {
     Storages,
     /// Labels at storages and orders.
     Orders,
+}
+
+/// How the robot is shown. An approaching hand tells an intention, as a real robot's does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DisplayedArm {
+    /// Not at all: a real robot stands there.
+    None,
+    /// A hand that moves between the places with what it holds.
+    Hand,
+    /// The same with an arm, seen from above.
+    Arm,
+}
+
+impl DisplayedArm {
+    /// Name in settings and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            DisplayedArm::None => "none",
+            DisplayedArm::Hand => "hand",
+            DisplayedArm::Arm => "arm",
+        }
+    }
 }
 
 /// Who enters the answers of a questionnaire.

@@ -12,6 +12,7 @@ use crate::measures::matching::CommunicationEvent;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::event::EndReason;
 use crate::session::settings::{ArmKind, Condition, ParticipantKind};
+use crate::session::wall_display::DisplayedArm;
 
 /// Statistics of one trial.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,6 +69,8 @@ pub struct Trial {
     pub signals: u64,
     /// Number of these that were useful, judged by twins of simulated trials; `None` where there are none.
     pub useful_signals: Option<u64>,
+    /// How the participant's display showed the robot; `None` without a display, and in recordings from before it could.
+    pub display_arm: Option<DisplayedArm>,
     /// Offers that a wizard could see; `None` in recordings without offers.
     pub offers: Option<Vec<TimedOffer>>,
     /// Length of the trial without pauses, in seconds.

@@ -24,6 +24,7 @@ mod ranges;
 mod readers;
 mod replay;
 mod robot;
+mod robot_on_display;
 mod scenarios;
 mod session;
 mod study;

@@ -176,6 +176,43 @@ def shows_signals(tomcom, browser, folder, seed):
     print("signals: recipe and highlight appear, are taken back, are told to be drawn; a second page only watches", flush=True)
 
 
+def shows_the_robot(tomcom, browser, folder, seed, shown):
+    """The robot's hand is at each of its presses as the page shows it; every message of the robot is a pose and nothing else."""
+    session = session_file(folder, "sushi", seed)
+    session.write_text(session.read_text().replace("[display]\n", f'[display]\narm = "{shown}"\n'))
+    console = operate(tomcom, session, folder)
+    with console:
+        page = Page(browser, url())
+        start(console, page, robot_held=False)
+        away = []
+        for number in range(1, 5):
+            page.wait_for(f"Stage.shown().presses[1] && Stage.shown().presses[1].number >= {number}")
+            away.append(page.ask("""() => {
+                const { at } = Stage.shown().presses[1], scene = Stage.scene(), hand = document.querySelector(".robot-hand");
+                const [x, y, w, h] = ("storage" in at ? scene.storages[at.storage] : scene.locations[at.location]).area;
+                return hand && Math.hypot(hand.dataset.x - x - w / 2, hand.dataset.y - y - h / 2);
+            }"""))
+            if number == 2:
+                page.page.wait_for_timeout(1200)
+                page.screenshot(folder / f"robot-{shown}-1920.png")
+        links = page.ask("document.querySelectorAll('.robot-arm path').length")
+        page.close()
+        console.quit()
+    told = [message["robot"] for message in page.robot]
+    if shown == "none":
+        assert not told and away == [None] * 4, (told[:2], away)
+    else:
+        assert len(told) > 40 and all(set(message) == {"kind", "robot"} for message in page.robot), page.robot[:2]
+        assert all(set(pose) == {"x", "y", "down"} for pose in told), told[:2]
+        # The page asks a moment after the press, when the hand may have set out again.
+        assert max(away) < 0.12, away
+    assert links == (2 if shown == "arm" else 0), links
+    recording, _ = recorded(folder)
+    verify(tomcom, recording)
+    print(f"the robot shown as {shown}: {len(told)} messages, each a pose; at its presses the hand is {max(a or 0 for a in away):.3f} of the "
+          "display away at most", flush=True)
+
+
 def comes_back(tomcom, browser, folder, seed):
     """The server is killed in the middle and started again: the page comes back by itself, with the whole state."""
     console = operate(tomcom, session_file(folder, "sushi", seed), folder)
@@ -334,6 +371,8 @@ def main():
             for way in ("keyboard", "touch", "gamepad"):
                 plays_an_order(tomcom, chromium, folder / kitchen / way, kitchen, seed, way)
         shows_signals(tomcom, chromium, folder / "signals", seeds["sushi"])
+        for shown in ("hand", "arm", "none"):
+            shows_the_robot(tomcom, chromium, folder / f"robot-{shown}", seeds["sushi"], shown)
         comes_back(tomcom, chromium, folder / "restart", seeds["sushi"])
         asks_for_a_code(tomcom, chromium, folder / "code", seeds["sushi"])
         has_phases(tomcom, chromium, folder / "phases")

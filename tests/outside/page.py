@@ -43,6 +43,8 @@ class Page:
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         # From a press until the page knows its effect, in milliseconds, for every press that had one.
         self.answered_ms, self.pressed = [], None
+        # What the page was told of the robot, message by message.
+        self.robot = []
         self.page.on("websocket", self.listen)
         self.page.goto(url + (f"/?code={code}" if code else ""))
 
@@ -59,7 +61,10 @@ class Page:
 
     def hear(self, payload):
         with self.lock:
-            if self.pressed is not None and json.loads(payload)["kind"] == "sight":
+            message = json.loads(payload)
+            if message["kind"] == "robot":
+                self.robot.append(message)
+            if self.pressed is not None and message["kind"] == "sight":
                 self.answered_ms.append(1000 * (time.perf_counter() - self.pressed))
                 self.pressed = None
 

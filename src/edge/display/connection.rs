@@ -13,7 +13,7 @@ use super::message::{FromPage, ToPage, read, text};
 use super::page_input::PageInput;
 use super::page_life::PageLife;
 use super::pairing::PairingVerdict;
-use super::server_state::ServerState;
+use super::server_state::{PageFeed, ServerState};
 use super::status::{ActivePage, count};
 use crate::edge::connection_table::ConnectionPlace;
 
@@ -212,11 +212,12 @@ impl Talk {
 
     /// Tells scene, role and sight whenever they change, and takes what the page says.
     async fn run(&mut self) -> Option<()> {
-        let (mut scene, mut sight) = (self.hub.scene.clone(), self.hub.sight.clone());
+        let PageFeed { mut scene, mut sight, mut robot } = self.hub.told.clone();
         let mut acting = self.hub.acting.subscribe();
         // What is there already is new to this page.
         scene.mark_changed();
         sight.mark_changed();
+        robot.mark_changed();
         acting.mark_changed();
         loop {
             tokio::select! {
@@ -228,6 +229,7 @@ impl Talk {
                     self.pass_on(&mut scene).await?;
                     // A page that is built anew shows nothing yet.
                     sight.mark_changed();
+                    robot.mark_changed();
                 }
                 changed = acting.changed() => {
                     changed.ok()?;
@@ -238,6 +240,10 @@ impl Talk {
                 changed = sight.changed() => {
                     changed.ok()?;
                     self.pass_on(&mut sight).await?;
+                }
+                changed = robot.changed() => {
+                    changed.ok()?;
+                    self.pass_on(&mut robot).await?;
                 }
                 () = sleep_until(self.life.next().into()) => self.keep_alive().await?,
             }

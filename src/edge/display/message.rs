@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::display::{DisplayScene, DisplayUpdate};
+use crate::display::{DisplayScene, DisplayUpdate, RobotPose};
 
 /// Longest message of a page, in bytes.
 pub(super) const MAX_BYTES: usize = 1024;
@@ -150,6 +150,16 @@ pub(super) fn sight(sight: &DisplayUpdate) -> Arc<str> {
         sight: &'a DisplayUpdate,
     }
     text(&Message { kind: "sight", sight })
+}
+
+/// The message with the robot's pose.
+pub(super) fn robot(pose: &RobotPose) -> Arc<str> {
+    #[derive(Serialize)]
+    struct Message<'a> {
+        kind: &'static str,
+        robot: &'a RobotPose,
+    }
+    text(&Message { kind: "robot", robot: pose })
 }
 
 pub(super) fn text(message: &impl Serialize) -> Arc<str> {

@@ -24,11 +24,11 @@ use tokio::sync::watch;
 
 pub use self::page_input::PageInput;
 use self::server::serve;
-use self::server_state::ServerState;
+use self::server_state::{PageFeed, ServerState};
 use self::status::DisplayStatus;
 pub use self::status::{ActivePage, DisplayCounts};
 use crate::display::page_language::DisplayWords;
-use crate::display::{DisplayScene, DisplayUpdate};
+use crate::display::{DisplayScene, DisplayUpdate, RobotPose};
 
 /// Capacity of the queue of page inputs.
 const WAITING: usize = 1024;
@@ -46,6 +46,7 @@ pub struct Display {
 pub struct PageConnection {
     scene: watch::Sender<Arc<str>>,
     sight: watch::Sender<Arc<str>>,
+    robot: watch::Sender<Arc<str>>,
     status: Arc<DisplayStatus>,
 }
 
@@ -64,16 +65,15 @@ impl Display {
         let screen = PageConnection {
             scene: watch::Sender::new(Arc::from("")),
             sight: watch::Sender::new(Arc::from("")),
+            robot: watch::Sender::new(Arc::from("")),
             status: status.clone(),
         };
-        let hub = ServerState::new(
-            code.clone(),
-            words.of_page(),
-            send,
-            screen.scene.subscribe(),
-            screen.sight.subscribe(),
-            status,
-        );
+        let told = PageFeed {
+            scene: screen.scene.subscribe(),
+            sight: screen.sight.subscribe(),
+            robot: screen.robot.subscribe(),
+        };
+        let hub = ServerState::new(code.clone(), words.of_page(), send, told, status);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         std::thread::Builder::new()
             .name("display".to_string())
@@ -127,6 +127,11 @@ impl PageConnection {
     /// Sends the present sight to the pages.
     pub fn show(&self, sight: &DisplayUpdate) {
         self.sight.send_replace(message::sight(sight));
+    }
+
+    /// Sends where the robot's hand is to the pages.
+    pub fn move_robot(&self, pose: &RobotPose) {
+        self.robot.send_replace(message::robot(pose));
     }
 
     /// Counters of the pages.

@@ -24,6 +24,15 @@ const LIMITS: ConnectionLimits = ConnectionLimits {
     silence: Duration::from_secs(90),
 };
 
+/// What the pages are told, each the newest message.
+#[derive(Clone)]
+pub(super) struct PageFeed {
+    pub scene: watch::Receiver<Arc<str>>,
+    pub sight: watch::Receiver<Arc<str>>,
+    /// Where the robot's hand is.
+    pub robot: watch::Receiver<Arc<str>>,
+}
+
 /// State that all connections share.
 pub(super) struct ServerState {
     /// Pairing code and attempts at it; `None` if no code is asked for.
@@ -31,8 +40,8 @@ pub(super) struct ServerState {
     /// Words of the page by key.
     pub words: BTreeMap<String, String>,
     pub inputs: Sender<PageInput>,
-    pub scene: watch::Receiver<Arc<str>>,
-    pub sight: watch::Receiver<Arc<str>>,
+    /// What the pages are told.
+    pub told: PageFeed,
     pub status: Arc<DisplayStatus>,
     /// Number of the acting connection and name of its page.
     pub acting: watch::Sender<Option<(u64, String)>>,
@@ -46,13 +55,12 @@ impl ServerState {
         code: Option<String>,
         words: BTreeMap<String, String>,
         inputs: Sender<PageInput>,
-        scene: watch::Receiver<Arc<str>>,
-        sight: watch::Receiver<Arc<str>>,
+        told: PageFeed,
         status: Arc<DisplayStatus>,
     ) -> ServerState {
         let pairing = code.map(|code| Mutex::new(PairingDesk::new(code)));
         let (acting, connections, began) = (watch::Sender::new(None), ConnectionTable::new(LIMITS), Instant::now());
-        ServerState { pairing, words, inputs, scene, sight, status, acting, connections, began }
+        ServerState { pairing, words, inputs, told, status, acting, connections, began }
     }
 
     /// Whether pages have to pair.

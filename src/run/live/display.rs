@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::base::time::SessionTime;
 use crate::console::display_status::DisplayHealth;
 use crate::console::notice::NoticeLevel;
-use crate::display::{DisplayUpdate, scene, sight};
+use crate::display::{DisplayUpdate, RobotHand, RobotPose, scene, sight};
 use crate::edge::display::{Display, PageConnection};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
@@ -20,6 +20,9 @@ pub(super) struct ParticipantDisplay {
     screen: PageConnection,
     /// Its present content.
     shown: Option<DisplayUpdate>,
+    /// The robot's hand, if it is shown, and its pose that was told last.
+    hand: Option<RobotHand>,
+    told: Option<RobotPose>,
 }
 
 impl ParticipantDisplay {
@@ -31,12 +34,25 @@ impl ParticipantDisplay {
             ..DisplayHealth::default()
         };
         let display = desk.wall.display();
-        (display.map(|display| ParticipantDisplay { screen: display.screen(), shown: None }), display.map(health))
+        (
+            display.map(|display| ParticipantDisplay { screen: display.screen(), shown: None, hand: None, told: None }),
+            display.map(health),
+        )
     }
 
     /// Builds the page for this session.
-    pub fn build(&self, session: &Session) {
+    pub fn build(&mut self, session: &Session) {
         self.screen.build(&scene(session));
+        (self.hand, self.told) = (RobotHand::new(session), None);
+    }
+
+    /// Tells the page where the robot's hand is now, if it moved.
+    pub fn move_robot(&mut self, session: &Session, now: SessionTime) {
+        let pose = self.hand.as_mut().map(|hand| hand.at(session, now));
+        if let Some(pose) = pose.filter(|_| pose != self.told) {
+            self.screen.move_robot(&pose);
+            self.told = Some(pose);
+        }
     }
 
     /// Updates the content if it changed.

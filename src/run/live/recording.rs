@@ -57,8 +57,9 @@ impl Live {
         }
     }
 
-    /// Flushes log and stream.
+    /// Flushes log and stream, and moves the robot's hand on the participant's display.
     pub(super) fn flush(&mut self) {
+        self.move_robot();
         self.flush_log();
         if let Some(viewing) = &mut self.viewing {
             viewing.view_motion(self.clock.now());

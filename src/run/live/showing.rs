@@ -43,7 +43,7 @@ impl Live {
 
     /// Builds the participant's display for this recording.
     pub(super) fn build_display(&mut self) {
-        if let Some(display) = &self.display {
+        if let Some(display) = &mut self.display {
             display.build(self.engine.session());
         }
         self.examine_display();
@@ -59,6 +59,13 @@ impl Live {
     pub(super) fn show_participant(&mut self) {
         if let Some(display) = &mut self.display {
             display.show(self.engine.session());
+        }
+    }
+
+    /// Moves the robot's hand on the participant's display.
+    pub(super) fn move_robot(&mut self) {
+        if let Some(display) = &mut self.display {
+            display.move_robot(self.engine.session(), self.clock.now());
         }
     }
 

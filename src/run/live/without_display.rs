@@ -16,7 +16,12 @@ impl ParticipantDisplay {
     }
 
     /// There is nothing to build.
-    pub fn build(&self, _: &Session) {
+    pub fn build(&mut self, _: &Session) {
+        match *self {}
+    }
+
+    /// No hand is shown to the participant.
+    pub fn move_robot(&mut self, _: &Session, _: SessionTime) {
         match *self {}
     }
 

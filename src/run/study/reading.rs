@@ -373,6 +373,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         answers: Vec::new(),
         wizard: None,
         useful_signals: None,
+        display_arm: spec.display.arm.filter(|_| spec.participant.kind == ParticipantKind::Display),
         offers: session.makes_offers.then(|| TimedOffer::visible(session)),
         wizard_saw_advice: saw_advice(session),
         lanes: None,

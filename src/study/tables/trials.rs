@@ -4,6 +4,7 @@ use crate::analysis::offer_summary::OfferSummary;
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::robot::AbortReason;
 use crate::session::event::EndReason;
+use crate::session::wall_display::DisplayedArm;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::effect::StudyMeasure;
 use crate::study::robot_tally::ArmSummary;
@@ -82,6 +83,7 @@ fn declared() -> impl Iterator<Item = TrialColumn> {
         .chain(by_hand())
         .chain(work())
         .chain(offered())
+        .chain(shown())
 }
 
 fn plain(
@@ -351,4 +353,10 @@ fn offered() -> Vec<TrialColumn> {
         offers("offer_stood_s", "s", "median time for which these offers were open", |of| of.all.median_s.into()),
         offers("offer_reaction_s", "s", "median time from an offer's opening to either key", |of| of.reaction_s.into()),
     ]
+}
+
+fn shown() -> Vec<TrialColumn> {
+    let arm =
+        "how the participant's display showed the robot: none, hand or arm; empty: no display, or none could be shown";
+    vec![plain("display_arm", "", arm, |t| t.display_arm.map(DisplayedArm::name).into())]
 }

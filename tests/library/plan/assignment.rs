@@ -8,6 +8,7 @@ use tomcom::kitchen::DishId;
 use tomcom::session::orders::OrderList;
 use tomcom::session::plan::{Item, Participants, Study, WantedRecording};
 use tomcom::session::settings::{ArmKind, ParticipantKind, ThemeChoice, Visibility};
+use tomcom::session::wall_display::DisplayedArm;
 
 use super::{folder, study};
 
@@ -25,7 +26,8 @@ fn a_session_asks_in_its_own_language() {
     fs::write(folder.join("dutch.toml"), "language = \"nl\"\n").expect("written");
     let in_language = |language: &str| {
         let session = folder.join("session.toml");
-        fs::write(&session, format!("{text}\n[display]\nlanguage = \"{language}\"\n")).expect("written");
+        let text = text.replace("[display]\n", &format!("[display]\nlanguage = \"{language}\"\n"));
+        fs::write(&session, text).expect("written");
         match read_session(&session) {
             Ok(files) => files.questionnaires.into_iter().next().expect("a questionnaire"),
             Err(error) => panic!("{language}: {error}"),
@@ -117,7 +119,7 @@ fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
 fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
     let digest = |change: fn(&mut SessionFiles)| study(change).digest;
     let original = digest(|_| ());
-    let others: [NamedChange; 11] = [
+    let others: [NamedChange; 12] = [
         ("presses", |files| files.spec.trial.presses += 1),
         ("arm", |files| files.spec.robot.arm = ArmKind::Timed),
         ("signals", |files| files.spec.signals.shown_s += 1.0),
@@ -126,6 +128,7 @@ fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
         ("human model", |files| files.spec.human.decision.tau += 0.1),
         ("display", |files| files.spec.display.intention = true),
         ("reasons of presses without effect", |files| files.spec.display.reasons = Some(false)),
+        ("the robot on the display", |files| files.spec.display.arm = Some(DisplayedArm::Arm)),
         ("seed", |files| files.spec.seed += 1),
         ("layout", |files| files.kitchen.layout.text.push('\n')),
         ("recipes", |files| files.kitchen.recipes.text.push('\n')),

@@ -63,6 +63,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         press_s: Some(1.8),
         signals: 0,
         useful_signals: None,
+        display_arm: None,
         offers: None,
         seconds: 400.0,
         answers: Vec::new(),

@@ -57,6 +57,8 @@
       Stage.build(message.scene);
       Stage.mark({ acts, free: isFree });
       cue = null;
+    } else if (message.kind === "robot") {
+      Robot.move(message.robot);
     } else if (message.kind === "sight") {
       see(message.sight);
     }

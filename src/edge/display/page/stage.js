@@ -196,7 +196,8 @@ const Stage = (() => {
     const recipe = put(element("div", "recipe"), free);
     const why = element("div", "why");
     why.setAttribute("role", "status");
-    kitchen.append(recipe, why);
+    const hand = Robot.build(scene, element);
+    kitchen.append(...hand, recipe, why);
     const sheet = element("div", "sheet"), toast = element("div", "toast"), served = element("div", "served"), target = element("div", "target", "<i></i>");
     root.append(kitchen, served, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
     const flash = element("div", "flash");
@@ -334,6 +335,7 @@ const Stage = (() => {
     sight.contents.forEach((what, index) => drawLocation(index, what));
     drawPresses(sight.presses);
     drawIntention(sight.intention);
+    Robot.hold(sight.contents, contentOf);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal);
     if (!shown || JSON.stringify([shown.stage, shown.practice, shown.question]) !== JSON.stringify([sight.stage, sight.practice, sight.question])) drawSheet(sight);
     drawTarget(sight);

@@ -1,0 +1,143 @@
+//! The robot's hand over the display, where there is no real robot to be seen. An approaching hand tells an intention, as that of a
+//! real robot does; the page is told where it is now, and never where it goes or when.
+//!
+//! The hand goes from place to place on the display. That of the timed arm goes slowly at both ends (a quintic; Craig, Introduction to
+//! Robotics) and arrives as the press is made. That of the physical arm has come as far as the arm's tip has on its way to the
+//! button, so that it slows down and stops with the arm.
+
+#[cfg(feature = "physics")]
+use super::arm_tip::ArmTip;
+use super::robot_pose::RobotPose;
+use super::sight::button_place;
+use crate::base::time::SessionTime;
+use crate::kitchen::{Agent, ButtonId};
+use crate::session::wall_display::DisplayedArm;
+use crate::session::{Phase, Session};
+
+/// Share of the timed arm's motion after which the hand is above its place, and goes down.
+const ABOVE: f64 = 0.85;
+/// Time for going up after a press, in seconds.
+const UP_S: f64 = 0.3;
+/// Below this distance the physical arm's tip is at its button, in metres.
+#[cfg(feature = "physics")]
+const AT_M: f64 = 1e-3;
+
+/// A motion to a place.
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    button: ButtonId,
+    /// When the robot set out.
+    since: SessionTime,
+    from: [f64; 2],
+    to: [f64; 2],
+    /// Where the physical arm's tip set out, in metres.
+    #[cfg(feature = "physics")]
+    tip_from: Option<[f64; 2]>,
+    /// Share of the motion that is done.
+    done: f64,
+}
+
+/// The robot's hand over time.
+#[derive(Clone, Debug)]
+pub struct RobotHand {
+    pose: RobotPose,
+    motion: Option<Motion>,
+    last: SessionTime,
+    #[cfg(feature = "physics")]
+    arm: Option<ArmTip>,
+}
+
+impl RobotHand {
+    /// The hand at rest on its own place; `None` if the session does not show it.
+    pub fn new(session: &Session) -> Option<RobotHand> {
+        let is_shown = session.spec.display.arm.is_some_and(|arm| arm != DisplayedArm::None);
+        let kitchen = &session.kitchen;
+        let [x, y] = kitchen.location(kitchen.hands[Agent::Robot.index()]).display.centre();
+        is_shown.then(|| RobotHand {
+            pose: RobotPose { x, y, down: 0.0 },
+            motion: None,
+            last: SessionTime::ZERO,
+            #[cfg(feature = "physics")]
+            arm: ArmTip::of_session(session),
+        })
+    }
+
+    /// Where it is now; times must not decrease.
+    pub fn at(&mut self, session: &Session, now: SessionTime) -> RobotPose {
+        let passed_s = now.secs_since(self.last).max(0.0);
+        self.last = now;
+        if session.phase == Phase::Running {
+            self.go(session, now);
+            self.go_down(session, passed_s);
+        }
+        self.pose.rounded()
+    }
+
+    /// Goes on towards the place of the intended press.
+    fn go(&mut self, session: &Session, now: SessionTime) {
+        let Some((button, since, _)) = session.robot.intention else {
+            self.motion = None;
+            return;
+        };
+        let is_same = |motion: &Motion| motion.button == button && motion.since == since;
+        let motion = self.motion.filter(is_same).unwrap_or_else(|| Motion {
+            button,
+            since,
+            from: [self.pose.x, self.pose.y],
+            to: button_place(session, button),
+            #[cfg(feature = "physics")]
+            tip_from: self.arm.as_ref().and_then(|arm| arm.at(session)).map(|(tip, _)| tip),
+            done: 0.0,
+        });
+        // A stop postpones the press; the hand never goes back.
+        let done = self.share(session, &motion, now).clamp(motion.done, 1.0);
+        let travelled = if self.is_physical() { done } else { eased((done / ABOVE).min(1.0)) };
+        let along = |axis: usize| motion.from[axis] + (motion.to[axis] - motion.from[axis]) * travelled;
+        (self.pose.x, self.pose.y) = (along(0), along(1));
+        self.motion = Some(Motion { done, ..motion });
+    }
+
+    /// Share of a motion that is done now.
+    fn share(&self, session: &Session, motion: &Motion, now: SessionTime) -> f64 {
+        #[cfg(feature = "physics")]
+        if let Some(arm) = &self.arm {
+            let Some((tip, _)) = arm.at(session) else { return 0.0 };
+            let goal = session.kitchen.button(Agent::Robot, motion.button).at_m;
+            let apart = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+            let (behind, ahead) = (apart(motion.tip_from.unwrap_or(tip), tip), apart(tip, [goal[0], goal[1]]));
+            return if ahead < AT_M { 1.0 } else { behind / (behind + ahead) };
+        }
+        match session.robot.intention {
+            Some((_, since, until)) if !session.robot.stopped => {
+                now.secs_since(since) / until.secs_since(since).max(1e-3)
+            }
+            _ => motion.done,
+        }
+    }
+
+    /// Goes down at the end of a motion, and up after it.
+    fn go_down(&mut self, session: &Session, passed_s: f64) {
+        let up = (self.pose.down - passed_s / UP_S).max(0.0);
+        #[cfg(feature = "physics")]
+        if let Some(arm) = &self.arm {
+            let is_down = arm.at(session).is_some_and(|(_, is_down)| is_down);
+            self.pose.down = if is_down { 1.0 } else { up };
+            return;
+        }
+        let done = self.motion.map_or(0.0, |motion| motion.done);
+        let is_stopped = session.robot.stopped;
+        let down = eased(((done - ABOVE) / (1.0 - ABOVE)).max(0.0));
+        self.pose.down = if is_stopped { self.pose.down } else { down.max(up) };
+    }
+
+    fn is_physical(&self) -> bool {
+        #[cfg(feature = "physics")]
+        return self.arm.is_some();
+        #[cfg(not(feature = "physics"))]
+        false
+    }
+}
+
+fn eased(share: f64) -> f64 {
+    share.powi(3) * (10.0 - 15.0 * share + 6.0 * share * share)
+}

@@ -1,27 +1,37 @@
 //! The wizard's console in the Elm architecture: `key -> Message -> update -> Option<Command>`, and a [`view()`] that only reads.
 //! Whatever affects participant, robot or analysis becomes an event; everything else stays in the [`ConsoleModel`].
 
+mod acting;
 pub mod arrange;
 mod beliefs;
 pub mod chord;
+pub mod click;
+mod click_question;
 pub mod coding;
 pub mod compared;
 pub mod console_message;
 pub mod console_model;
 pub mod display_status;
 pub mod form;
+pub mod gaze_advice;
 pub mod gaze_targets;
 pub mod hands;
+mod held_keys;
 pub mod key_action;
+mod key_press;
 pub mod keymap;
 pub mod keys;
 pub mod lesson;
+pub mod list_cursor;
+mod mouse;
 pub mod note;
 pub mod notice;
+pub mod palette;
 pub mod panel;
 pub mod panels;
 pub mod picker;
 pub mod playback;
+mod possible;
 pub mod preflight;
 pub mod question;
 pub mod rater_session;

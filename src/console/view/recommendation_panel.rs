@@ -10,6 +10,7 @@ use crate::communication::Sender;
 use crate::communication::concept::ConceptName;
 use crate::communication::offer::{OfferWorth, OfferedAct};
 use crate::communication::recommendation::{Proposal, Recommendation, SignalOption};
+use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::history::wording;
@@ -159,12 +160,10 @@ fn worth(option: &SignalOption, session: &Session) -> String {
     }
 }
 
-/// The key of an option's signal, if it has one: "[q] ".
-fn key(option: &SignalOption, session: &Session, model: &ConsoleModel) -> String {
+/// The key of an option's signal, if it has one.
+fn key(option: &SignalOption, session: &Session, model: &ConsoleModel) -> Option<KeyChord> {
     let location = session.kitchen.location_named(option.signal.target());
-    let chord =
-        location.and_then(|location| model.keys.mark(location)).filter(|_| may_send(session, Sender::Wizard).is_ok());
-    chord.map_or(String::new(), |chord| format!("[{}] ", chord.name()))
+    location.and_then(|location| model.keys.mark(location)).filter(|_| may_send(session, Sender::Wizard).is_ok())
 }
 
 fn option_line(
@@ -180,12 +179,17 @@ fn option_line(
     let role = if is_best { TextRole::Strong } else { TextRole::Quiet };
     let worth = worth(option, session);
     let mut x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
-    let (key, words) = (key(option, session, model), wording::signal(&option.signal));
+    let (chord, words) = (key(option, session, model), wording::signal(&option.signal));
+    let key = chord.map_or(String::new(), |chord| format!("[{}] ", chord.name()));
     // The words of a signal have priority over its gauge.
     if inside.right().saturating_sub(x) >= GAUGE + 1 + LONGEST_SIGNAL {
         x = gauge(brush, x, y, option, session, role);
     }
-    brush.parts(x, y, inside.right().saturating_sub(x), &[(key.as_str(), TextRole::Signal), (words.as_str(), role)]);
+    let parts = [(key.as_str(), TextRole::Signal), (words.as_str(), role)];
+    let end = brush.parts(x, y, inside.right().saturating_sub(x), &parts);
+    if let Some(chord) = chord.filter(|_| model.playback.is_none()) {
+        brush.key_target(x, y, end, chord);
+    }
     y + 1
 }
 

@@ -3,11 +3,14 @@
 mod advice;
 mod belief;
 mod calibration;
+mod clicks;
 mod colours;
 mod comparison;
 mod hands;
+mod hints;
 mod keys;
 mod notices;
+mod palette;
 mod pointer;
 mod recording_picker;
 mod screens;

@@ -2,9 +2,9 @@
 
 use crossterm::event::KeyCode;
 
-use super::acting::act;
 use super::chord::KeyChord;
 use super::click::SendQuestion;
+use super::console_actions::act;
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
 use super::key_action::KeyAction;

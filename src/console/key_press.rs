@@ -2,10 +2,10 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
-use super::acting::{act, differ};
 use super::chord::KeyChord;
 use super::click_question;
 use super::compared::ComparisonKey;
+use super::console_actions::{act, differ};
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::{self, sheet};

@@ -1,7 +1,6 @@
 //! The wizard's console in the Elm architecture: `key -> Message -> update -> Option<Command>`, and a [`view()`] that only reads.
 //! Whatever affects participant, robot or analysis becomes an event; everything else stays in the [`ConsoleModel`].
 
-mod acting;
 pub mod arrange;
 mod beliefs;
 pub mod chord;
@@ -9,6 +8,7 @@ pub mod click;
 mod click_question;
 pub mod coding;
 pub mod compared;
+mod console_actions;
 pub mod console_message;
 pub mod console_model;
 pub mod display_status;

@@ -59,13 +59,15 @@ impl KeyChord {
         KeyChord { code: KeyCode::Char(key), ctrl: true }
     }
 
-    /// The chord of a key event; capitals count as small letters, so that caps lock has no effect.
+    /// The chord of a key event; capitals count as small letters, so that caps lock has no effect, and the space bar stops the
+    /// robot also while control is held.
     pub fn from_event(key: &KeyEvent) -> KeyChord {
         let code = match key.code {
             KeyCode::Char(letter) => KeyCode::Char(small(letter)),
             other => other,
         };
-        KeyChord { code, ctrl: key.modifiers.contains(KeyModifiers::CONTROL) }
+        let ctrl = key.modifiers.contains(KeyModifiers::CONTROL) && code != KeyCode::Char(' ');
+        KeyChord { code, ctrl }
     }
 
     /// The key of a letter in a layout.

@@ -4,11 +4,15 @@ use std::collections::VecDeque;
 
 use crossterm::event::KeyCode;
 
+use super::chord::KeyChord;
+use super::click::SendQuestion;
 use super::compared::ComparisonView;
 use super::display_status::DisplayHealth;
+use super::gaze_advice::CalibrationAdvice;
 use super::key_action::KeyLayer;
 use super::keys::KeyBindings;
 use super::lesson::TrainingPanel;
+use super::list_cursor::ListCursor;
 use super::note::TextInput;
 use super::notice::NoticeLevel;
 use super::panel::Panel;
@@ -39,6 +43,10 @@ pub enum Dialog {
     EndTrial,
     /// A list to choose an entry from.
     Pick(Picker),
+    /// The list of all actions that have keys.
+    Palette(ListCursor),
+    /// Asks whether to send the signal that was clicked.
+    Send(SendQuestion),
     /// The preflight checks.
     Preflight,
     /// The gaze accuracy check: targets, then the result.
@@ -153,6 +161,14 @@ pub struct ConsoleModel {
     pub coding: Option<RaterSession>,
     /// Playback position, in a replay.
     pub playback: Option<Playback>,
+    /// Index of the chosen reason for waiving the criterion of the practice, until enter confirms it.
+    pub waiver: Option<usize>,
+    /// What the wizard has chosen to do with the result of a gaze check, until enter confirms it.
+    pub gaze_choice: Option<CalibrationAdvice>,
+    /// Time at which enter took a row of a list, on [`ConsoleModel::clock`].
+    pub(super) answered: Option<SessionTime>,
+    /// The key of the last click, and its time on [`ConsoleModel::clock`].
+    pub(super) clicked: Option<(KeyChord, SessionTime)>,
     /// Whether the terminal distinguishes key repeat from key press.
     pub(super) exact_keys: bool,
     /// The last pressed key, to detect key repeat.
@@ -191,6 +207,10 @@ impl ConsoleModel {
             lesson: None,
             coding: None,
             playback: None,
+            waiver: None,
+            gaze_choice: None,
+            answered: None,
+            clicked: None,
             exact_keys: false,
             pressed: None,
         }
@@ -230,8 +250,13 @@ impl ConsoleModel {
             (None, _) => ranked.first(),
             (Some(_), at) => at.and_then(|at| ranked.get(at + 1)),
         };
-        self.belief_focus = next.copied();
-        self.alone = next.map(|_| Panel::Belief);
+        self.focus_belief(next.copied());
+    }
+
+    /// Shows this aspect over time, at full size; without one, all panels.
+    pub fn focus_belief(&mut self, aspect: Option<AspectId>) {
+        self.belief_focus = aspect;
+        self.alone = aspect.map(|_| Panel::Belief);
     }
 
     /// Whether a timeline entry is an error of the human.

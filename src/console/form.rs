@@ -1,5 +1,5 @@
-//! Forms around a trial: steps to tick, questionnaire items, and an unmet criterion. Arrows, digits and the advance key operate
-//! them; every change is an event.
+//! Forms around a trial: steps to tick, questionnaire items, and an unmet criterion. Only enter confirms; arrows go between items,
+//! digits answer or choose, and the advance key leaves a form that is complete. What is confirmed or answered is an event.
 
 use crossterm::event::KeyCode;
 
@@ -62,18 +62,27 @@ pub fn sheet(session: &Session) -> Option<SheetContent<'_>> {
 /// A key of the sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SheetKey {
-    /// Advance to the next step, item or phase.
-    On,
+    /// Tick the step, go on from the item, or confirm.
+    Confirm,
+    /// Go on to the next phase, if nothing is missing.
+    Leave,
+    /// Show the next item.
+    Forward,
+    /// Show the item before.
     Back,
+    /// Take back the last tick, or show the item before.
+    Undo,
     Digit(u8),
 }
 
 /// The meaning of a key on a sheet, if any; `advances` marks the key that starts and pauses trials.
 pub(super) fn stroke(code: KeyCode, advances: bool) -> Option<SheetKey> {
     match code {
-        _ if advances => Some(SheetKey::On),
-        KeyCode::Enter | KeyCode::Right | KeyCode::Down => Some(SheetKey::On),
-        KeyCode::Left | KeyCode::Up | KeyCode::Backspace => Some(SheetKey::Back),
+        _ if advances => Some(SheetKey::Leave),
+        KeyCode::Enter => Some(SheetKey::Confirm),
+        KeyCode::Right | KeyCode::Down => Some(SheetKey::Forward),
+        KeyCode::Left | KeyCode::Up => Some(SheetKey::Back),
+        KeyCode::Backspace => Some(SheetKey::Undo),
         KeyCode::Char(digit @ '0'..='9') => Some(SheetKey::Digit(digit as u8 - b'0')),
         _ => None,
     }
@@ -83,25 +92,35 @@ pub(super) fn stroke(code: KeyCode, advances: bool) -> Option<SheetKey> {
 pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKey) -> Option<ConsoleCommand> {
     let (sheet, protocol) = (sheet(session)?, session.protocol.as_ref()?);
     match (sheet, stroke) {
-        (SheetContent::Steps { .. }, SheetKey::On) => match protocol.ticks.iter().position(|done| !done) {
+        (SheetContent::Failed, SheetKey::Leave) => Some(ConsoleCommand::Next),
+        (_, SheetKey::Leave) => leave(model, session),
+        (SheetContent::Steps { .. }, SheetKey::Confirm) => match protocol.ticks.iter().position(|done| !done) {
             Some(open) => tell(model, session, ProtocolEvent::Ticked { step: open + 1, done: true }),
             None => leave(model, session),
         },
-        (SheetContent::Steps { .. }, SheetKey::Back) => {
+        (SheetContent::Steps { .. }, SheetKey::Undo) => {
             let last = protocol.ticks.iter().rposition(|done| *done)?;
             tell(model, session, ProtocolEvent::Ticked { step: last + 1, done: false })
         }
+        (SheetContent::Steps { .. }, _) => refuse(model, "enter ticks the step, backspace takes the last tick back"),
         (SheetContent::Questions(_), _) if protocol.confirmed => match stroke {
-            SheetKey::On => leave(model, session),
+            SheetKey::Confirm => leave(model, session),
             _ => refuse(model, "the answers are confirmed"),
         },
         (SheetContent::Questions(questionnaire), stroke) => ask(model, session, questionnaire, protocol, stroke),
-        (SheetContent::Failed, SheetKey::On) => Some(ConsoleCommand::Next),
+        (SheetContent::Failed, SheetKey::Confirm) => match model.waiver.take().and_then(|index| WAIVERS.get(index)) {
+            Some(reason) => tell(model, session, ProtocolEvent::CriterionWaived { reason: reason.to_string() }),
+            None => Some(ConsoleCommand::Next),
+        },
         (SheetContent::Failed, SheetKey::Digit(digit)) => {
-            let reason = usize::from(digit).checked_sub(1).and_then(|index| WAIVERS.get(index))?;
-            tell(model, session, ProtocolEvent::CriterionWaived { reason: reason.to_string() })
+            let chosen = usize::from(digit).checked_sub(1).filter(|index| *index < WAIVERS.len());
+            model.waiver = chosen.or(model.waiver);
+            None
         }
-        (SheetContent::Steps { .. }, SheetKey::Digit(_)) | (SheetContent::Failed, SheetKey::Back) => None,
+        (SheetContent::Failed, _) => {
+            model.waiver = None;
+            None
+        }
     }
 }
 
@@ -118,18 +137,20 @@ fn ask(
         (SheetKey::Digit(0), Some(item)) => tell(model, session, ProtocolEvent::ItemSkipped { item }),
         (SheetKey::Digit(answer), Some(item)) => tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
         (SheetKey::Digit(_), None) => refuse(model, "go back to the item first"),
-        (SheetKey::Back, _) => {
+        (SheetKey::Back | SheetKey::Undo, _) => {
             let item = id(protocol.item.checked_sub(1)?)?;
             tell(model, session, ProtocolEvent::ItemShown { item })
         }
-        (SheetKey::On, Some(_)) => match id(protocol.item + 1) {
+        (SheetKey::Confirm | SheetKey::Forward, Some(_)) => match id(protocol.item + 1) {
             Some(item) => tell(model, session, ProtocolEvent::ItemShown { item }),
             None => tell(model, session, ProtocolEvent::AnswersShown),
         },
-        (SheetKey::On, None) => match protocol.open_item().and_then(id) {
+        (SheetKey::Confirm, None) => match protocol.open_item().and_then(id) {
             Some(item) => tell(model, session, ProtocolEvent::ItemShown { item }),
             None => tell(model, session, ProtocolEvent::AnswersConfirmed),
         },
+        (SheetKey::Forward, None) => refuse(model, "enter confirms the answers"),
+        (SheetKey::Leave, _) => leave(model, session),
     }
 }
 

@@ -5,21 +5,23 @@ use crossterm::event::KeyCode;
 
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
+use super::gaze_advice::CalibrationAdvice;
 use super::notice::NoticeLevel;
 use super::sending::send;
-use crate::gaze::calibration::{GazeAccuracy, USABLE_DEG};
+use crate::gaze::calibration::GazeAccuracy;
 use crate::session::accuracy_check::CalibrationEvent;
 use crate::session::{Event, Session};
 
-/// The key that takes the gaze as it is.
+/// The key that chooses the gaze as it is.
 pub const AS_IT_IS: char = 'u';
-/// The key that takes it with the offset taken off.
+/// The key that chooses it with the offset taken off.
 pub const CORRECTED: char = 'o';
 /// The key that repeats the check.
 pub const REPEAT: char = 'r';
 
 /// Begins a check, or begins it again.
 pub(super) fn begin(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
+    model.gaze_choice = None;
     let event = Event::Calibration(CalibrationEvent::begin());
     let begun =
         send(model, session, event, NoticeLevel::Done, "the participant looks at the targets; esc ends the check");
@@ -29,30 +31,14 @@ pub(super) fn begin(model: &mut ConsoleModel, session: &Session) -> Option<Conso
     begun
 }
 
-/// What enter does with a result: what is best for the gaze.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CalibrationAdvice {
-    /// Accept the gaze with its measured offset taken away.
-    Corrected,
-    /// Accept the gaze as it is.
-    AsItIs,
-    /// Both are too far off, or nothing was found.
-    Repeat,
+/// What enter does with the result: what the wizard has chosen, or else what is best.
+pub fn chosen(model: &ConsoleModel, found: Option<&GazeAccuracy>) -> CalibrationAdvice {
+    let best = CalibrationAdvice::for_result(found);
+    found.and(model.gaze_choice).unwrap_or(best)
 }
 
-impl CalibrationAdvice {
-    /// Of what was found.
-    pub fn for_result(found: Option<&GazeAccuracy>) -> CalibrationAdvice {
-        match found {
-            Some(found) if found.accuracy_deg.min(found.corrected_deg) > USABLE_DEG => CalibrationAdvice::Repeat,
-            Some(found) if found.corrected_deg < found.accuracy_deg => CalibrationAdvice::Corrected,
-            Some(_) => CalibrationAdvice::AsItIs,
-            None => CalibrationAdvice::Repeat,
-        }
-    }
-}
-
-/// A key while a check goes on, or its result is shown.
+/// A key while a check goes on, or its result is shown. Letters choose, and only enter takes the gaze; a repetition takes nothing, and
+/// begins at once.
 pub(super) fn answer(
     model: &mut ConsoleModel,
     session: &Session,
@@ -61,29 +47,38 @@ pub(super) fn answer(
 ) -> Option<ConsoleCommand> {
     let outcome = session.calibration.as_ref().and_then(|check| check.result.as_ref());
     let found = outcome.and_then(|outcome| outcome.found.as_ref());
-    let code = match (code, CalibrationAdvice::for_result(found)) {
-        (KeyCode::Enter, CalibrationAdvice::Corrected) => KeyCode::Char(CORRECTED),
-        (KeyCode::Enter, CalibrationAdvice::AsItIs) => KeyCode::Char(AS_IT_IS),
-        (KeyCode::Enter, CalibrationAdvice::Repeat) => KeyCode::Char(REPEAT),
-        (code, _) => code,
-    };
-    let mut decide = |event: CalibrationEvent, words: &str| {
-        model.dialog = None;
-        send(model, session, Event::Calibration(event), NoticeLevel::Done, words)
-    };
+    let advice = chosen(model, found);
     match code {
         KeyCode::Esc if session.calibration.is_none() => {
             model.dialog = None;
             None
         }
-        KeyCode::Esc => decide(CalibrationEvent::Dismissed, "the calibration stays as it was"),
-        KeyCode::Char(CORRECTED) if is_press && found.is_some() => {
-            decide(CalibrationEvent::Accepted { corrected: true }, "accepted: the offset is taken off the gaze")
-        }
-        KeyCode::Char(AS_IT_IS) if is_press && found.is_some() => {
-            decide(CalibrationEvent::Accepted { corrected: false }, "accepted: the gaze stays as it is")
-        }
+        KeyCode::Esc => decide(model, session, CalibrationEvent::Dismissed, "the calibration stays as it was"),
         KeyCode::Char(REPEAT) if is_press && outcome.is_some() => begin(model, session),
+        KeyCode::Char(CORRECTED) if found.is_some() => {
+            model.gaze_choice = Some(CalibrationAdvice::Corrected);
+            None
+        }
+        KeyCode::Char(AS_IT_IS) if found.is_some() => {
+            model.gaze_choice = Some(CalibrationAdvice::AsItIs);
+            None
+        }
+        KeyCode::Enter if is_press && outcome.is_some() => match advice {
+            CalibrationAdvice::Repeat => begin(model, session),
+            CalibrationAdvice::Corrected => {
+                let accepted = CalibrationEvent::Accepted { corrected: true };
+                decide(model, session, accepted, "accepted: the offset is taken off the gaze")
+            }
+            CalibrationAdvice::AsItIs => {
+                let accepted = CalibrationEvent::Accepted { corrected: false };
+                decide(model, session, accepted, "accepted: the gaze stays as it is")
+            }
+        },
         _ => None,
     }
+}
+
+fn decide(model: &mut ConsoleModel, session: &Session, event: CalibrationEvent, words: &str) -> Option<ConsoleCommand> {
+    model.dialog = None;
+    send(model, session, Event::Calibration(event), NoticeLevel::Done, words)
 }

@@ -126,6 +126,7 @@ pub(super) fn pick(
         PickerOutcome::This(answer) => answer,
     };
     model.dialog = None;
+    model.answered = Some(model.clock);
     let kitchen = &session.kitchen;
     match (picker.question, answer) {
         (_, PickerAnswer::Place(place)) => ask(model, PickerQuestion::Content(place)),

@@ -56,6 +56,8 @@ pub enum KeyAction {
     Rate(RaterKey),
     /// Open or close the help.
     Help,
+    /// Open the list of all actions.
+    Palette,
     /// Ask whether to end the session and leave.
     Quit,
 }

@@ -87,12 +87,28 @@ impl KeyMap {
                 }
             }
         }
-        for line in live.iter_mut().chain(replay) {
+        for line in live.iter_mut().chain(replay.iter_mut()) {
             if let Some((_, names)) = self.entry(line) {
                 line.chords = chords(line, names)?;
             }
         }
+        for lines in [live, replay] {
+            self.spare_keys(lines);
+        }
         Ok(())
+    }
+}
+
+impl KeyMap {
+    /// Takes from the palette, unless the file is about it, the keys that the file gives to others: the files in recordings may be older
+    /// than the palette, and it has two keys.
+    fn spare_keys(&self, lines: &mut [KeyBinding]) {
+        let is_given = |line: &&KeyBinding| self.entry(line).is_some();
+        let given: Vec<KeyChord> = lines.iter().filter(is_given).flat_map(|line| line.chords.clone()).collect();
+        let palette = lines.iter_mut().find(|line| line.action == KeyAction::Palette);
+        if let Some(palette) = palette.filter(|line| self.entry(line).is_none()) {
+            palette.chords.retain(|chord| !given.contains(chord));
+        }
     }
 }
 

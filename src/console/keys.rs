@@ -60,7 +60,12 @@ impl KeyBindings {
         keys.bindings.retain(|line| {
             matches!(
                 line.action,
-                KeyAction::Signal(..) | KeyAction::Advance | KeyAction::Look(_) | KeyAction::Help | KeyAction::Quit
+                KeyAction::Signal(..)
+                    | KeyAction::Advance
+                    | KeyAction::Look(_)
+                    | KeyAction::Palette
+                    | KeyAction::Help
+                    | KeyAction::Quit
             )
         });
         Ok(keys)

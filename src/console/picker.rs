@@ -1,14 +1,11 @@
-//! A list to choose from: arrows or typing find the line, enter takes it, esc leaves. The space bar is the robot stop here,
-//! too, so what is typed has no spaces, and lines are searched without theirs.
+//! A list with a question: which place, which content, which press, which reason. Its keys are those of every list ([`super::list_cursor`]).
 
 use crossterm::event::KeyCode;
 
+use super::list_cursor::{ListCursor, ListReply};
 use crate::history::wording;
 use crate::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind};
 use crate::session::Session;
-
-/// How far a page key goes.
-const PAGE: usize = 10;
 
 /// What is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,10 +51,8 @@ pub struct PickerEntry {
 pub struct Picker {
     /// What is asked.
     pub question: PickerQuestion,
-    /// What was typed.
-    pub filter: String,
-    /// The line under the cursor, of those that are left.
-    pub at: usize,
+    /// Filter and cursor.
+    pub cursor: ListCursor,
 }
 
 /// What came of a key.
@@ -71,29 +66,10 @@ pub enum PickerOutcome {
     This(PickerAnswer),
 }
 
-/// The row under the cursor after a key, in a list whose last row is `last`. Keys that do not move the cursor leave it where it is.
-pub(super) fn moved(at: usize, last: usize, code: KeyCode) -> usize {
-    let to = match code {
-        KeyCode::Up => at.saturating_sub(1),
-        KeyCode::Down => at + 1,
-        KeyCode::PageUp => at.saturating_sub(PAGE),
-        KeyCode::PageDown => at + PAGE,
-        KeyCode::Home => 0,
-        KeyCode::End => last,
-        _ => at,
-    };
-    to.min(last)
-}
-
-/// Letters and digits of a text in lower case: a list is filtered by them.
-pub(super) fn squeezed(text: &str) -> String {
-    text.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase()
-}
-
 impl Picker {
     /// An open list without a filter, with the cursor on the first line.
     pub fn new(question: PickerQuestion) -> Picker {
-        Picker { question, filter: String::new(), at: 0 }
+        Picker { question, cursor: ListCursor::default() }
     }
 
     /// The question in words.
@@ -109,9 +85,8 @@ impl Picker {
 
     /// The lines that are left of the list.
     pub fn choices(&self, session: &Session) -> Vec<PickerEntry> {
-        let wanted = squeezed(&self.filter);
         let mut choices = self.all(session);
-        choices.retain(|choice| squeezed(&choice.label).contains(&wanted));
+        choices.retain(|choice| self.cursor.keeps(&choice.label));
         choices
     }
 
@@ -126,22 +101,12 @@ impl Picker {
 
     /// Takes a key.
     pub fn key(&mut self, session: &Session, code: KeyCode) -> PickerOutcome {
-        let last = self.choices(session).len().saturating_sub(1);
-        self.at = moved(self.at, last, code);
-        match code {
-            KeyCode::Char(letter) => {
-                self.filter.push(letter);
-                self.at = 0;
-            }
-            KeyCode::Backspace if self.filter.pop().is_some() => self.at = 0,
-            KeyCode::Backspace | KeyCode::Esc => return PickerOutcome::Left,
-            KeyCode::Enter => {
-                let choice = self.choices(session).into_iter().nth(self.at);
-                return choice.map_or(PickerOutcome::Nothing, |choice| PickerOutcome::This(choice.answer));
-            }
-            _ => {}
+        let mut choices = self.choices(session);
+        match self.cursor.key(choices.len(), code) {
+            ListReply::Open => PickerOutcome::Nothing,
+            ListReply::Left => PickerOutcome::Left,
+            ListReply::Taken => PickerOutcome::This(choices.swap_remove(self.cursor.at).answer),
         }
-        PickerOutcome::Nothing
     }
 }
 

@@ -31,6 +31,8 @@ pub enum ReplayKey {
     ToStart,
     /// Go to the position after the event with this sequence number.
     ToEvent(u64),
+    /// Go to this session time.
+    ToTime(SessionTime),
     /// Go to the end; a followed recording stays at its growing end.
     ToEnd,
 }

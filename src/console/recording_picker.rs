@@ -1,9 +1,9 @@
-//! The list from which a recording is chosen: arrows or typing find it, enter opens it, esc leaves. As in the lists of a session, what is
-//! typed has no spaces, and rows are searched without theirs.
+//! The list from which a recording is chosen. Its keys are those of every list ([`super::list_cursor`]); there is no robot to stop, and
+//! the space bar does nothing.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-use super::picker::{moved, squeezed};
+use super::list_cursor::{ListCursor, ListReply};
 
 /// An open list of recordings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,10 +14,8 @@ pub struct RecordingPicker {
     pub headings: Vec<String>,
     /// The cells of each recording.
     pub rows: Vec<Vec<String>>,
-    /// What was typed.
-    pub filter: String,
-    /// The row under the cursor, of those that are left.
-    pub at: usize,
+    /// Filter and cursor.
+    pub cursor: ListCursor,
 }
 
 /// What came of a key.
@@ -32,43 +30,48 @@ pub enum RecordingReply {
 impl RecordingPicker {
     /// A list without a filter, with the cursor on its first row.
     pub fn new(title: String, headings: Vec<String>, rows: Vec<Vec<String>>) -> RecordingPicker {
-        RecordingPicker { title, headings, rows, filter: String::new(), at: 0 }
+        RecordingPicker { title, headings, rows, cursor: ListCursor::default() }
     }
 
     /// Indices of the rows that have all of what was typed in one of their cells, or across neighbouring cells.
     pub fn left(&self) -> Vec<usize> {
-        let wanted = squeezed(&self.filter);
-        (0..self.rows.len()).filter(|&row| squeezed(&self.rows[row].concat()).contains(&wanted)).collect()
+        (0..self.rows.len()).filter(|&row| self.cursor.keeps(&self.rows[row].join(" "))).collect()
     }
 
     /// Takes a key.
     pub fn key(&mut self, key: &KeyEvent) -> Option<RecordingReply> {
-        if key.kind == KeyEventKind::Release {
-            return None;
+        let has_control = key.modifiers.contains(KeyModifiers::CONTROL);
+        match (key.kind, key.code) {
+            (KeyEventKind::Release, _) => None,
+            (_, KeyCode::Char('c')) if has_control => Some(RecordingReply::Leave),
+            // Only a press opens a recording, not a held key.
+            (KeyEventKind::Repeat, KeyCode::Enter) => None,
+            (_, KeyCode::Char(_)) if has_control => None,
+            (_, code) => self.take(code),
         }
-        let left = self.left();
-        let last = left.len().saturating_sub(1);
-        self.at = moved(self.at, last, key.code);
-        match key.code {
-            KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => return Some(RecordingReply::Leave),
-            KeyCode::Char(letter) if letter != ' ' && !key.modifiers.contains(KeyModifiers::CONTROL) => {
-                self.filter.push(letter);
-                self.at = 0;
-            }
-            KeyCode::Backspace => {
-                self.filter.pop();
-                self.at = 0;
-            }
-            KeyCode::Esc if !self.filter.is_empty() => {
-                self.filter.clear();
-                self.at = 0;
-            }
-            KeyCode::Esc => return Some(RecordingReply::Leave),
-            KeyCode::Enter if key.kind == KeyEventKind::Press => {
-                return left.get(self.at).map(|&row| RecordingReply::Chosen(row));
-            }
-            _ => {}
+    }
+
+    /// Goes to a row of those that are left; takes the row if the cursor was there.
+    pub fn click(&mut self, row: usize) -> Option<RecordingReply> {
+        if self.cursor.at == row {
+            return self.take(KeyCode::Enter);
         }
+        self.cursor.at = row;
         None
+    }
+
+    /// Turns the wheel by so many steps upwards.
+    pub fn scroll(&mut self, steps: i8) {
+        self.take(if steps > 0 { KeyCode::Up } else { KeyCode::Down });
+    }
+
+    /// Takes a key without control.
+    pub fn take(&mut self, code: KeyCode) -> Option<RecordingReply> {
+        let left = self.left();
+        match self.cursor.key(left.len(), code) {
+            ListReply::Open => None,
+            ListReply::Left => Some(RecordingReply::Leave),
+            ListReply::Taken => left.get(self.cursor.at).map(|&row| RecordingReply::Chosen(row)),
+        }
     }
 }

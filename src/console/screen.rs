@@ -35,6 +35,8 @@ fn name(dialog: &Dialog) -> &'static str {
         Dialog::Help => "help",
         Dialog::Quit => "quit",
         Dialog::EndTrial => "end_trial",
+        Dialog::Palette(_) => "palette",
+        Dialog::Send(_) => "send_signal",
         Dialog::Preflight => "preflight",
         Dialog::Calibration => "calibration",
         Dialog::Note(_) => "note",

@@ -3,8 +3,14 @@
 use super::console_message::ConsoleCommand;
 use super::console_model::ConsoleModel;
 use super::notice::NoticeLevel;
+use crate::base::time::SessionTime;
 use crate::session::admit::{admit, hygiene};
 use crate::session::{Event, Session};
+
+/// Why the session does not take an input now, if so.
+pub(super) fn refusal(session: &Session, now: SessionTime, event: &Event) -> Option<String> {
+    admit(session, event).map_err(str::to_string).and_then(|()| hygiene(session, now, event)).err()
+}
 
 /// Sends an input if the session takes it now; else says why not.
 pub(super) fn send(
@@ -14,8 +20,7 @@ pub(super) fn send(
     level: NoticeLevel,
     words: &str,
 ) -> Option<ConsoleCommand> {
-    let refused = admit(session, &event).map_err(str::to_string).and_then(|()| hygiene(session, model.now, &event));
-    if let Err(reason) = refused {
+    if let Some(reason) = refusal(session, model.now, &event) {
         model.say(NoticeLevel::Refused, reason);
         return None;
     }

@@ -30,6 +30,15 @@ const CODING: &str = "Why it was an error";
 /// What the key does that looks at one aspect of the belief.
 const BELIEF: &str = "one belief over time; again: the next";
 
+/// What the palette does.
+const PALETTE: &str = "all actions, found by typing";
+
+/// The palette, from which every other action can be found.
+fn palette() -> KeyBinding {
+    let keys = [KeyChord::ctrl('k'), KeyChord::char(':')];
+    line("palette", &keys, KeyAction::Palette, CONSOLE, PALETTE, Some("find"))
+}
+
 /// A line of the console: name in key files, keys, what it does, heading, help, and what the footer says.
 fn line(
     name: &str,
@@ -93,7 +102,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         ),
         hand("preflight", 'f', ManualAction::Preflight, TRIAL, "what is ready for it"),
         hand("check_gaze", 'v', ManualAction::Calibrate, TRIAL, "check the gaze by targets"),
-        hand("correct", 'k', ManualAction::Correct, TRIAL, "correct what lies where"),
+        hand("correct", 'u', ManualAction::Correct, TRIAL, "correct what lies where"),
         hand("abort_trial", 'x', ManualAction::Abort, TRIAL, "abort it (asks why)"),
         hand("redo_trial", 'n', ManualAction::Redo, TRIAL, "do an aborted one again"),
         hand("exclude_trial", 'l', ManualAction::Exclude, TRIAL, "exclude it, include it"),
@@ -140,6 +149,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
     lines.extend(differences());
     lines.extend([
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
+        palette(),
         line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "this help", Some("help")),
         line("quit", &[KeyChord::ctrl('c')], KeyAction::Quit, CONSOLE, "quit (asks first)", Some("quit")),
     ]);
@@ -185,6 +195,7 @@ pub fn replay() -> Vec<KeyBinding> {
         of_move("play_pause", &[KeyChord::char('.')], ReplayKey::PlayPause, "play, pause", Some("play/pause")),
         line("quit", &quit, KeyAction::Quit, CONSOLE, "quit", Some("quit")),
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
+        palette(),
         line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "this help", Some("help")),
     ];
     lines.extend(looks(&[KeyChord::plain(Tab), KeyChord::ctrl('w')]));

@@ -9,8 +9,11 @@ use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, Sh
 use super::recording_list::{self, ListDepth};
 use crate::analysis::recording_table::RecordingList;
 use crate::console::ConsoleMessage;
+use crate::console::click::ClickAction;
 use crate::console::recording_picker::{RecordingPicker, RecordingReply};
+use crate::console::view::recordings_page::recording_targets;
 use crate::console::view::theme::Theme;
+use crate::edge::terminal::TerminalScreen;
 use crate::session::settings::ConsoleSpec;
 
 /// Period of redrawing the list, in case the terminal's size changed.
@@ -51,6 +54,20 @@ struct OpenPicker {
     dirty: bool,
 }
 
+impl OpenPicker {
+    /// Handles a click on what the list offers.
+    fn click(&mut self, cell: (u16, u16)) -> Option<RecordingReply> {
+        let size = TerminalScreen::size().ok()?;
+        let targets = recording_targets(&self.picker, self.theme, size);
+        let target = targets.iter().rev().find(|target| target.cells.contains(cell.into()))?;
+        match target.action {
+            ClickAction::Row(row) => self.picker.click(row),
+            ClickAction::Key(chord) => self.picker.take(chord.code),
+            _ => None,
+        }
+    }
+}
+
 impl ConsoleShell for OpenPicker {
     type Outcome = RecordingReply;
     type Error = ReviewError;
@@ -64,6 +81,11 @@ impl ConsoleShell for OpenPicker {
         self.dirty = true;
         Ok(match message {
             ConsoleMessage::Key(key) => self.picker.key(&key),
+            ConsoleMessage::Click(column, row) => self.click((column, row)),
+            ConsoleMessage::Wheel(_, _, steps) => {
+                self.picker.scroll(steps);
+                None
+            }
             _ => None,
         })
     }

@@ -184,6 +184,7 @@ impl Review {
             ReplayKey::BackTo(what) => self.look_for(what, false),
             ReplayKey::ToStart => self.stand_at(0),
             ReplayKey::ToEvent(number) => self.stand_at(number as usize + 1),
+            ReplayKey::ToTime(time) => self.seek(time),
             ReplayKey::SeekForward => self.seek(self.now + SEEK),
             ReplayKey::SeekBack => self.seek(self.now - SEEK),
             ReplayKey::ToEnd => {

@@ -14,6 +14,9 @@ pub struct ConsoleSpec {
     pub ascii: bool,
     /// Colour theme: for a dark or a light terminal background.
     pub theme: ThemeChoice,
+    /// Whether a click on a signal or on the offer sends it at once, without a question.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub click_sends: bool,
     /// Path of the key file, relative to the session file; without it the default keys apply.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub keys: Option<String>,
@@ -37,6 +40,7 @@ impl Default for ConsoleSpec {
             visibility: Visibility::Recommendation,
             ascii: false,
             theme: ThemeChoice::Auto,
+            click_sends: false,
             keys: None,
             notes: texts(["wrong recipe", "overlooked a change", "slip", "waits for the robot", "look at this later"]),
             reasons: texts([

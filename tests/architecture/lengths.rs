@@ -14,7 +14,7 @@ const MAX_FUNCTION_LINES: usize = 65;
 const LONG_FUNCTIONS: [(&str, &str, &str); 7] = [
     ("src/session/apply.rs", "apply", "one arm for each kind of event, each of few lines"),
     ("src/analysis/event_lines.rs", "line", "one arm for each kind of event, each of one line"),
-    ("src/console/update.rs", "act", "one arm for each kind of key action, each of few lines"),
+    ("src/console/console_actions.rs", "act", "one arm for each kind of key action, each of few lines"),
     ("src/console/table.rs", "live", "the table of keys, an entry for each"),
     ("src/kitchen/cost_to_go/goal.rs", "new", "every table of a goal, in the order in which one needs another"),
     ("src/run/study/reading.rs", "read", "one pass over a recording that fills every table"),

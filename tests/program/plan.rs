@@ -206,6 +206,8 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     on_until(&terminal, "READY");
     trial(&terminal, "The criterion is not met");
     terminal.key("2");
+    terminal.see("go on for this reason");
+    terminal.key("Enter");
     terminal.see("done: next");
     std::thread::sleep(std::time::Duration::from_millis(800));
     terminal.key(".");

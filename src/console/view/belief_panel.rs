@@ -11,6 +11,7 @@ use crate::base::words::count;
 use crate::console::beliefs::{
     BeliefStanding, EstimatedBelief, are_by_cost, beliefs, name, percent, value, visibility,
 };
+use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel as PanelName;
 use crate::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
@@ -113,6 +114,7 @@ impl Panel<'_> {
                 true => self.row(brush, belief, area, y),
                 false => self.head(brush, belief, area, y, &lines),
             }
+            brush.target(Rect { y, height: rows, ..area }, ClickAction::Belief(belief.aspect));
             y += rows;
         }
         let quiet = brush.style(TextRole::Quiet);
@@ -128,7 +130,9 @@ impl Panel<'_> {
             if y + CHART_ROWS > area.bottom() {
                 return;
             }
-            self.chart(brush, belief, Rect { y, height: CHART_ROWS, ..area });
+            let cells = Rect { y, height: CHART_ROWS, ..area };
+            self.chart(brush, belief, cells);
+            brush.target(cells, ClickAction::Belief(belief.aspect));
             y += CHART_ROWS + 1;
         }
     }
@@ -237,6 +241,7 @@ impl Panel<'_> {
                 false => line,
             };
             brush.text(x, y, columns, &fit(&line, columns, brush.theme.signs().ellipsis), style);
+            brush.target(Rect { y, height: 1, ..area }, ClickAction::Belief(belief.aspect));
         }
     }
 

@@ -11,9 +11,11 @@ use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::Sender;
+use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::form::sheet;
 use crate::console::key_action::{KeyAction, KeyLayer, ManualAction};
+use crate::console::possible::can_redo;
 use crate::history::signal_judge::SignalTally;
 use crate::history::wording;
 use crate::kitchen::{Agent, Dish};
@@ -35,7 +37,7 @@ fn fact(name: &str, text: String, role: TextRole) -> Fact {
 struct Card {
     title: String,
     facts: Vec<Fact>,
-    keys: Vec<(String, String)>,
+    keys: Vec<(KeyChord, String)>,
 }
 
 /// Draws the card of the trial's start or end, if nothing else lies in front of the console.
@@ -51,21 +53,13 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         Phase::Over(_) => after(session, model),
         _ => return,
     };
-    // The head line, the messages and the keys stay visible.
-    let area = *brush.buffer.area();
-    let (top, bottom) = (regions.head.bottom(), regions.message.y);
-    let screen = Rect { y: top, height: bottom.saturating_sub(top), ..area };
-    card.draw(brush, screen);
+    card.draw(brush, regions.middle());
 }
 
 /// The trial's place in the study, and who takes part: "P07, trial 2/2, wizard".
 fn place(session: &Session) -> String {
     let step = session.step().map_or(String::new(), |(step, _)| format!(", {}", step.label()));
     format!("{}{step}, {}", session.spec.participant.code, head::condition(session))
-}
-
-fn key(model: &ConsoleModel, action: &KeyAction) -> Option<String> {
-    model.keys.chord_for(action).map(|chord| chord.to_string())
 }
 
 fn before(session: &Session, model: &ConsoleModel) -> Card {
@@ -82,9 +76,9 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
         facts.push(fact(name, text.trim().to_string(), role));
     }
     let mut keys = Vec::new();
-    keys.extend(key(model, &KeyAction::Advance).map(|key| (key, "start the trial".to_string())));
+    keys.extend(model.keys.chord_for(&KeyAction::Advance).map(|key| (key, "start the trial".to_string())));
     let preflight = KeyAction::Hand(ManualAction::Preflight);
-    keys.extend(key(model, &preflight).map(|key| (key, "all preflight checks".to_string())));
+    keys.extend(model.keys.chord_for(&preflight).map(|key| (key, "all preflight checks".to_string())));
     Card { title: "Ready to start".to_string(), facts, keys }
 }
 
@@ -93,7 +87,7 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
 fn recipes(session: &Session, model: &ConsoleModel) -> Card {
     let kitchen = &session.kitchen;
     let recipe = |dish: &Dish| (dish.name.clone(), wording::dish(kitchen, dish), TextRole::Text);
-    let on = key(model, &KeyAction::Advance).map(|key| (key, "resume".to_string()));
+    let on = model.keys.chord_for(&KeyAction::Advance).map(|key| (key, "resume".to_string()));
     Card {
         title: "Paused: the recipes".to_string(),
         facts: kitchen.dishes.iter().map(recipe).collect(),
@@ -126,11 +120,13 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     }
     let mut keys = Vec::new();
     let on = onward(session);
-    keys.extend(on.and_then(|on| Some((key(model, &KeyAction::Advance)?, on))));
+    keys.extend(on.and_then(|on| Some((model.keys.chord_for(&KeyAction::Advance)?, on))));
     if can_redo(session) {
-        keys.extend(key(model, &KeyAction::Hand(ManualAction::Redo)).map(|key| (key, "do it again".to_string())));
+        keys.extend(
+            model.keys.chord_for(&KeyAction::Hand(ManualAction::Redo)).map(|key| (key, "do it again".to_string())),
+        );
     }
-    keys.extend(key(model, &KeyAction::Quit).map(|key| (key, "close the session".to_string())));
+    keys.extend(model.keys.chord_for(&KeyAction::Quit).map(|key| (key, "close the session".to_string())));
     Card { title: format!("Trial {}", wording::trial(session.phase)), facts, keys }
 }
 
@@ -160,11 +156,6 @@ fn signals(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
     facts
 }
 
-/// Whether the trial can be done again by the key for it.
-fn can_redo(session: &Session) -> bool {
-    session.aborted.is_some() || session.excluded.is_some()
-}
-
 impl Card {
     fn draw(&self, brush: &mut Painter, screen: Rect) {
         let rows = self.facts.len() as u16 + 5;
@@ -184,13 +175,16 @@ impl Card {
         }
         let y = inside.bottom().saturating_sub(1);
         let mut at = x;
-        for (key, words) in &self.keys {
-            let needed = width(key) + width(words) + 4;
+        for (chord, words) in &self.keys {
+            let key = chord.to_string();
+            let needed = width(&key) + width(words) + 4;
             if at + needed > inside.right() + 1 {
                 return;
             }
             let parts = [(key.as_str(), TextRole::Signal), (" ", TextRole::Text), (words.as_str(), TextRole::Strong)];
-            at = brush.parts(at, y, needed, &parts) + 3;
+            let end = brush.parts(at, y, needed, &parts);
+            brush.key_target(at, y, end, *chord);
+            at = end + 3;
         }
     }
 }

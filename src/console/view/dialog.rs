@@ -1,11 +1,13 @@
 //! Dialogs above the panels: the help, generated from the key table, and confirmations.
 
+use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
 use super::hands;
 use super::paint::{Painter, width, wrap};
 use super::picker;
 use super::popup::open;
+use super::regions::Regions;
 use super::theme::{Glyphs, TextRole, Theme};
 use crate::console::chord::KeyChord;
 use crate::console::console_model::{ConsoleModel, Dialog};
@@ -14,12 +16,14 @@ use crate::console::keys::KeyBindings;
 use crate::session::{Phase, Session};
 
 /// Draws the open dialog, if there is one.
-pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Session, model: &ConsoleModel) {
     match &model.dialog {
-        None => {}
-        Some(Dialog::Pick(list)) => picker::draw(brush, screen, session, list),
+        // The question whether to send stands in the line of messages.
+        None | Some(Dialog::Send(_)) => {}
+        Some(Dialog::Pick(list)) => picker::draw(brush, regions.middle(), session, list),
+        Some(Dialog::Palette(cursor)) => picker::draw_palette(brush, regions.middle(), session, model, cursor),
         Some(Dialog::Preflight) => hands::preflight(brush, screen, session, model),
-        Some(Dialog::Calibration) => super::gaze_targets::draw(brush, screen, session),
+        Some(Dialog::Calibration) => super::gaze_targets::draw(brush, screen, session, model),
         Some(Dialog::Note(line)) => hands::note(brush, screen, line),
         Some(Dialog::Help) => help(brush, screen, model),
         Some(Dialog::Difference(lines)) => difference(brush, screen, lines),
@@ -49,14 +53,8 @@ fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str
     for (row, line) in lines.iter().enumerate() {
         brush.parts(inside.x + 2, inside.y + 1 + row as u16, inside.width - 3, &[(line, TextRole::Text)]);
     }
-    let y = inside.bottom() - 1;
-    let parts = [
-        (yes, TextRole::Strong),
-        (" yes    ", TextRole::Text),
-        ("any other key", TextRole::Strong),
-        (" no", TextRole::Text),
-    ];
-    brush.parts(inside.x + 2, y, inside.width - 3, &parts);
+    let hints = [(yes, "yes", Some(KeyChord::char('y'))), ("any other key", "no", Some(KeyChord::plain(KeyCode::Esc)))];
+    brush.hints(inside.x + 2, inside.bottom() - 1, inside.width - 3, &hints);
 }
 
 /// Draws the details of a difference between wizard and assistant.
@@ -106,8 +104,8 @@ fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleMo
         let style = brush.style(if from + row == 0 { TextRole::Strong } else { TextRole::Text });
         brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
     }
-    let parts = [("enter", TextRole::Strong), (" goes on; it is recorded, too", TextRole::Quiet)];
-    brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &parts);
+    let hints = [("enter", "goes on; it is recorded, too", Some(KeyChord::plain(KeyCode::Enter)))];
+    brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &hints);
 }
 
 /// Least width of a help column.

@@ -2,32 +2,34 @@
 
 use std::borrow::Cow;
 
+use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use super::offer_line;
 use super::paint::{Painter, width};
 use super::regions::Regions;
 use super::theme::TextRole;
-use crate::communication::Sender;
+use crate::console::click::ClickAction;
 use crate::console::console_model::{ConsoleModel, Dialog, Notice};
-use crate::console::form::sheet;
-use crate::console::key_action::ManualAction;
-use crate::console::key_action::PanelKey;
-use crate::console::key_action::RaterKey;
-use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer};
+use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, PanelKey, RaterKey};
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::ReplayKey;
+use crate::console::possible::{can_redo, is_possible};
 use crate::history::wording;
-use crate::session::admit::may_send;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Phase, Session};
 
 /// Display time of a notice, in seconds.
 const NOTICE_S: f64 = 4.0;
 
-/// Draws the line of messages and the line of keys.
+/// A hint: its keys with what a click on them does, and what they do.
+struct Hint<'a> {
+    keys: Vec<(String, Option<ClickAction>)>,
+    label: Cow<'a, str>,
+    role: TextRole,
+}
+
+/// Draws the line of keys.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
-    message(brush, regions, session, model);
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
         let alarm = brush.theme.badge(TextRole::Alarm);
@@ -44,7 +46,6 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         let badge = brush.theme.badge(role);
         x = brush.text(x, area.y, area.width, label, badge);
     }
-    let end = area.right();
     // Ending the trial is rare, so its hint is dropped first; after the trial only quitting remains.
     let is_over = is_over(session, model);
     let is_late = |binding: &&KeyBinding| match is_over {
@@ -59,35 +60,86 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         _ => 2,
     });
     for binding in first.into_iter().chain(late) {
-        let Some(label) = label(binding, session, model) else { continue };
-        let Some(chord) = binding.chords.first() else { continue };
-        let key = match binding.action {
-            KeyAction::Note(_) if session.spec.console.notes.len() > 1 => {
-                format!("1-{}", session.spec.console.notes.len())
-            }
-            // The keys of both directions share one label.
-            KeyAction::Rate(RaterKey::Belief(_)) => "letters".to_string(),
-            KeyAction::Move(ReplayKey::StepForward) => "left/right".to_string(),
-            KeyAction::Move(ReplayKey::SeekForward) => "pgup/pgdn".to_string(),
-            KeyAction::Move(ReplayKey::Faster) => "+/-".to_string(),
-            KeyAction::Move(ReplayKey::ToEnd) => "home/end".to_string(),
-            _ => chord.to_string(),
-        };
-        if x + width(&key) + width(&label) + 3 > end {
-            continue;
+        let Some(hint) = hint(binding, session, model) else { continue };
+        let keys: u16 = hint.keys.iter().map(|(key, _)| width(key)).sum();
+        if x + keys + width(&hint.label) + 3 <= area.right() {
+            x = hint.draw(brush, x + 2, area.y);
         }
-        let key_style = if binding.action == KeyAction::StopRobot { TextRole::Alarm } else { TextRole::Strong };
-        x = brush.parts(x + 2, area.y, end - x, &[(&key, key_style), (" ", TextRole::Text), (&label, TextRole::Quiet)]);
     }
 }
 
-/// Draws the last notice; without one, that the arm has stopped itself, for as long as it stands.
-fn message(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+impl Hint<'_> {
+    /// Draws it; returns the column behind it. A click on the words does what the first key does.
+    fn draw(&self, brush: &mut Painter, x: u16, y: u16) -> u16 {
+        let mut at = x;
+        for (key, click) in &self.keys {
+            let style = brush.style(self.role);
+            let end = brush.text(at, y, width(key), key, style);
+            if let Some(action) = click {
+                brush.target(Rect { x: at, y, width: end - at, height: 1 }, *action);
+            }
+            at = end;
+        }
+        let words = format!(" {}", self.label);
+        let style = brush.style(TextRole::Quiet);
+        let end = brush.text(at, y, width(&words), &words, style);
+        if let Some(action) = self.keys.iter().find_map(|(_, click)| *click) {
+            brush.target(Rect { x: at, y, width: end - at, height: 1 }, action);
+        }
+        end
+    }
+}
+
+/// The hint of an entry, if it can do something now.
+fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel) -> Option<Hint<'a>> {
+    let label = label(binding, session, model)?;
+    let role = if binding.action == KeyAction::StopRobot { TextRole::Alarm } else { TextRole::Strong };
+    let is_pair = matches!(binding.action, KeyAction::Move(_));
+    if !is_pair && !is_possible(session, model, &binding.action) {
+        return None;
+    }
+    let part = |action: &KeyAction| {
+        let chord = model.keys.chord_for(action).filter(|_| is_possible(session, model, action))?;
+        Some((chord.to_string(), Some(ClickAction::Key(chord))))
+    };
+    // Keys of both directions share a hint, and so do those of a kind.
+    let pair = |[back, on]: [ReplayKey; 2]| {
+        let parts = [back, on].map(KeyAction::Move).iter().filter_map(part).collect::<Vec<_>>();
+        match parts.as_slice() {
+            [back, on] => vec![back.clone(), ("/".to_string(), None), on.clone()],
+            _ => parts,
+        }
+    };
+    let group = |words: String, filter: &'static str| vec![(words, Some(ClickAction::Palette(filter)))];
+    let keys = match binding.action {
+        KeyAction::Note(_) if session.spec.console.notes.len() > 1 => {
+            group(format!("1-{}", session.spec.console.notes.len()), "markers")
+        }
+        KeyAction::Rate(RaterKey::Belief(_)) => group("letters".to_string(), "wrongabout"),
+        KeyAction::Move(ReplayKey::StepForward) => pair([ReplayKey::StepBack, ReplayKey::StepForward]),
+        KeyAction::Move(ReplayKey::SeekForward) => pair([ReplayKey::SeekBack, ReplayKey::SeekForward]),
+        KeyAction::Move(ReplayKey::Faster) => pair([ReplayKey::Faster, ReplayKey::Slower]),
+        KeyAction::Move(ReplayKey::ToEnd) => pair([ReplayKey::ToStart, ReplayKey::ToEnd]),
+        _ => part(&binding.action).into_iter().collect(),
+    };
+    (!keys.is_empty()).then_some(Hint { keys, label, role })
+}
+
+/// Draws the line of messages: the question whether to send what was clicked, or the last notice; without one, that the arm has
+/// stopped itself, for as long as it stands.
+pub fn message(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.message;
-    let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
     if area.area() == 0 {
         return;
     }
+    if let Some(Dialog::Send(question)) = &model.dialog {
+        let words = wording::signal(&question.signal);
+        let strong = brush.theme.badge(TextRole::Strong);
+        let text = format!(" Send {words}? enter or a second click sends it, esc leaves it ");
+        brush.text(area.x + 1, area.y, area.width - 1, &text, strong);
+        return;
+    }
+    let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
     if let Some(notice) = notice {
         let style = style_of(brush, notice);
         brush.text(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
@@ -124,53 +176,19 @@ pub(super) fn onward(session: &Session) -> Option<String> {
     })
 }
 
-/// Label of a key in the footer, if the key is possible now.
+/// Label of an entry in the hint line, if it has one there; what is possible decides elsewhere.
 fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -> Option<Cow<'a, str>> {
-    if is_over(session, model)
-        && binding.action == KeyAction::Advance
-        && model.dialog.is_none()
-        && sheet(session).is_none()
-    {
-        return onward(session).map(Cow::Owned);
-    }
-    fixed_label(binding, session, model).map(Cow::Borrowed)
-}
-
-/// The same for a key whose label does not name what comes next.
-fn fixed_label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -> Option<&'a str> {
-    match &model.dialog {
-        // In text input the space bar types a space.
-        Some(Dialog::Note(_)) => return None,
-        Some(_) if binding.action != KeyAction::StopRobot => return None,
-        _ => {}
-    }
-    let can_redo = session.aborted.is_some() || session.excluded.is_some();
-    if binding.action == KeyAction::Hand(ManualAction::Redo) && matches!(session.phase, Phase::Over(_)) && can_redo {
-        return Some("do it again");
-    }
-    let label = binding.footer?;
     if binding.layer.is_some_and(|layer| layer != model.layer) {
         return None;
     }
-    if model.playback.is_none() && sheet(session).is_some() {
-        // The sheet shows its own key hints.
-        return matches!(binding.action, KeyAction::Quit | KeyAction::Help | KeyAction::StopRobot).then_some(label);
-    }
-    let runs = matches!(session.phase, Phase::Running | Phase::Paused);
-    if is_over(session, model) {
-        return match binding.action {
-            KeyAction::Quit if !session.is_step_done() => Some(label),
-            KeyAction::Quit => Some("closes the session"),
-            KeyAction::Note(_) if session.phase != Phase::Closed => Some(label),
-            KeyAction::Help => Some(label),
-            _ => None,
-        };
-    }
-    match binding.action {
+    let label = binding.footer.map(Cow::Borrowed);
+    let plays = model.playback.as_ref().is_some_and(|playback| playback.playing);
+    let is_over = is_over(session, model);
+    let word = match binding.action {
+        KeyAction::Hand(ManualAction::Redo) => can_redo(session).then_some("do it again"),
         KeyAction::Advance if model.lesson.is_some() => {
-            let runs = model.playback.as_ref().is_some_and(|playback| playback.playing);
             let begun = model.lesson.as_ref().is_some_and(|lesson| lesson.begun);
-            Some(if runs {
+            Some(if plays {
                 "pause"
             } else if begun {
                 "go on"
@@ -178,26 +196,25 @@ fn fixed_label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleMo
                 "start"
             })
         }
+        KeyAction::Advance if is_over => return onward(session).map(Cow::Owned),
         KeyAction::Advance => match session.phase {
-            Phase::Ready => Some("start"),
             Phase::Running => Some("pause"),
             Phase::Paused => Some("resume"),
-            Phase::Over(_) | Phase::Closed => None,
+            _ => Some("start"),
         },
-        KeyAction::EndTrial => runs.then_some(label),
-        KeyAction::StopRobot => (!session.robot.stopped).then_some(label),
-        KeyAction::ResumeRobot => session.robot.stopped.then_some(label),
-        KeyAction::Accept => can_accept(session, model).then_some(label),
-        KeyAction::TakeBack => session.shown.is_some().then_some(label),
-        KeyAction::Look(PanelKey::All) => {
-            (model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0).then_some(label)
+        KeyAction::Move(ReplayKey::PlayPause) => Some(if plays { "pause" } else { "play" }),
+        KeyAction::Quit if is_over && session.is_step_done() => Some("closes the session"),
+        // After the trial the robot rests, and the screen asks for what comes next.
+        KeyAction::StopRobot
+        | KeyAction::ResumeRobot
+        | KeyAction::SwitchLayer
+        | KeyAction::TakeBack
+        | KeyAction::Look(PanelKey::Next)
+            if is_over =>
+        {
+            None
         }
-        _ => Some(label),
-    }
-}
-
-/// Whether there is an offer that can be sent now.
-fn can_accept(session: &Session, model: &ConsoleModel) -> bool {
-    offer_line::shown(session, model).is_some_and(|offer| offer.is_signal())
-        && may_send(session, Sender::Wizard).is_ok()
+        _ => return label,
+    };
+    word.map(Cow::Borrowed)
 }

@@ -1,12 +1,16 @@
 //! The gaze accuracy check: the target in the kitchen panel, and the result.
 
+use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
 use super::paint::Painter;
 use super::popup::open;
 use super::theme::TextRole;
 use crate::console::arrange::KitchenMap;
-use crate::console::gaze_targets::{AS_IT_IS, CORRECTED, CalibrationAdvice, REPEAT};
+use crate::console::chord::KeyChord;
+use crate::console::console_model::ConsoleModel;
+use crate::console::gaze_advice::CalibrationAdvice;
+use crate::console::gaze_targets::{AS_IT_IS, CORRECTED, REPEAT, chosen};
 use crate::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use crate::session::Session;
 
@@ -30,7 +34,7 @@ pub fn target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Ses
 }
 
 /// Draws the result of the check, once all targets have been shown.
-pub fn draw(brush: &mut Painter, screen: Rect, session: &Session) {
+pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let Some(outcome) = session.calibration.as_ref().and_then(|check| check.result.as_ref()) else { return };
     let inside = open(brush, screen, (COLUMNS, 13), "Calibration check", "space stops the robot");
     let columns = inside.width.saturating_sub(2);
@@ -40,17 +44,13 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session) {
         brush.parts(inside.x + 1 + VALUE, y, columns.saturating_sub(VALUE), &[(text, role)]);
         y += 1;
     };
+    let esc = KeyChord::plain(KeyCode::Esc);
     let again = format!("enter or {REPEAT}");
     let Some(found) = &outcome.found else {
         line(brush, "accuracy", "not known: too few usable samples at the targets", TextRole::Alarm);
         line(brush, "fix", "look at every target; see that the tracker sends gaze", TextRole::Text);
-        let keys = [
-            (again.as_str(), TextRole::Strong),
-            (" repeats it   ", TextRole::Quiet),
-            ("esc", TextRole::Strong),
-            (" leaves", TextRole::Quiet),
-        ];
-        brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), columns, &keys);
+        let hints = [(again.as_str(), "repeats it", Some(KeyChord::char(REPEAT))), ("esc", "leaves", Some(esc))];
+        brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), columns, &hints);
         return;
     };
     let (words, role) = verdict(found.accuracy_deg);
@@ -70,7 +70,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session) {
     );
     line(brush, "precision", &format!("{:.2} deg from sample to sample", found.precision_deg), TextRole::Text);
     line(brush, "targets", &targets(found), TextRole::Text);
-    let best = CalibrationAdvice::for_result(Some(found));
+    let taken = chosen(model, Some(found));
     let rows = [
         (CORRECTED, "takes it with the offset taken off", CalibrationAdvice::Corrected),
         (AS_IT_IS, "takes it as it is", CalibrationAdvice::AsItIs),
@@ -78,17 +78,19 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session) {
     ];
     y += 1;
     for (key, does, is) in rows {
-        let (enter, role) = if is == best { ("enter or ", TextRole::Strong) } else { ("         ", TextRole::Quiet) };
-        let key = format!("{key}  ");
-        brush.parts(inside.x + 1, y, columns, &[(enter, TextRole::Strong), (&key, TextRole::Strong), (does, role)]);
+        let is_taken = is == taken;
+        let (enter, role) = if is_taken { ("enter    ", TextRole::Strong) } else { ("         ", TextRole::Quiet) };
+        let words = format!("{key}  ");
+        let parts = [(enter, TextRole::Strong), (words.as_str(), TextRole::Strong), (does, role)];
+        let end = brush.parts(inside.x + 1, y, columns, &parts);
+        // The first click chooses, the next one takes.
+        let chord = if is_taken { KeyChord::plain(KeyCode::Enter) } else { KeyChord::char(key) };
+        brush.key_target(inside.x + 1, y, end, chord);
         y += 1;
     }
-    brush.parts(
-        inside.x + 1,
-        y,
-        columns,
-        &[("         esc  ", TextRole::Strong), ("leaves it as it was", TextRole::Quiet)],
-    );
+    let parts = [("         esc  ", TextRole::Strong), ("leaves it as it was", TextRole::Quiet)];
+    let end = brush.parts(inside.x + 1, y, columns, &parts);
+    brush.key_target(inside.x + 1, y, end, esc);
 }
 
 fn verdict(accuracy_deg: f64) -> (&'static str, TextRole) {

@@ -1,10 +1,12 @@
 //! The list of preflight checks, and the input line of a note.
 
+use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
 use super::paint::{Painter, wrap};
 use super::popup::open;
 use super::theme::TextRole;
+use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::console::note::TextInput;
@@ -42,16 +44,15 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
             y += 1;
         }
     }
-    let start = model.keys.chord_for(&KeyAction::Advance).map(|key| key.to_string()).unwrap_or_default();
-    let anyway = OVERRIDE.to_string();
-    let (key, does) = match (session.phase, all_ok(&checks)) {
-        (Phase::Ready, true) => (start.as_str(), " starts the trial   "),
-        (Phase::Ready, false) => (anyway.as_str(), " starts all the same   "),
-        _ => ("", ""),
+    let start = model.keys.chord_for(&KeyAction::Advance);
+    let (key, chord, does) = match all_ok(&checks) {
+        true => (start.map_or(String::new(), |key| key.to_string()), start, "starts the trial"),
+        false => (OVERRIDE.to_string(), Some(KeyChord::char(OVERRIDE)), "starts all the same"),
     };
-    let parts =
-        [(key, TextRole::Strong), (does, TextRole::Quiet), ("esc", TextRole::Strong), (" leaves", TextRole::Quiet)];
-    brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), &parts);
+    let esc = ("esc", "leaves", Some(KeyChord::plain(KeyCode::Esc)));
+    let hints = [(key.as_str(), does, chord), esc];
+    let hints = if session.phase == Phase::Ready { &hints[..] } else { &hints[1..] };
+    brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), hints);
 }
 
 fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
@@ -83,11 +84,7 @@ pub fn note(brush: &mut Painter, screen: Rect, text: &TextInput) {
     for (row, line) in lines.iter().enumerate() {
         brush.text(x, inside.y + 3 + row as u16, columns, line, quiet);
     }
-    let parts = [
-        ("enter", TextRole::Strong),
-        (" keeps it   ", TextRole::Quiet),
-        ("esc", TextRole::Strong),
-        (" leaves", TextRole::Quiet),
-    ];
-    brush.parts(x, inside.bottom().saturating_sub(1), columns, &parts);
+    let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
+    let hints = [("enter", "keeps it", enter), ("esc", "leaves", esc)];
+    brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
 }

@@ -12,6 +12,7 @@ use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::console::arrange::{KitchenMap, MapElement};
 use crate::console::beliefs::beliefs;
+use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyLayer;
 use crate::history::wording;
@@ -89,13 +90,16 @@ fn storage(brush: &mut Painter, session: &Session, model: &ConsoleModel, index: 
     let key = participant_key(session, model, storage.agent, is_it);
     let text = brush.style(TextRole::Text);
     let x = match key {
-        Some(key) => badge(brush, cells.x, cells, &key, TextRole::Human),
+        Some(key) => badge(brush, cells.x, cells, key, TextRole::Human),
         None => cells.x,
     };
-    brush.text(x + 1, cells.y, cells.right().saturating_sub(x + 1), &storage.label, text);
+    let end = brush.text(x + 1, cells.y, cells.right().saturating_sub(x + 1), &storage.label, text);
+    if let Some(key) = key {
+        brush.key_target(cells.x, cells.y, end, key);
+    }
 }
 
-fn badge(brush: &mut Painter, x: u16, cells: Rect, key: &str, role: TextRole) -> u16 {
+fn badge(brush: &mut Painter, x: u16, cells: Rect, key: KeyChord, role: TextRole) -> u16 {
     let style = brush.style(role).add_modifier(Modifier::BOLD);
     let label = format!("[{key}]");
     brush.text(x, cells.y, cells.right().saturating_sub(x), &label, style)
@@ -107,12 +111,12 @@ fn participant_key(
     model: &ConsoleModel,
     agent: Agent,
     is_it: impl Fn(ButtonAction) -> bool,
-) -> Option<String> {
+) -> Option<KeyChord> {
     if model.layer != KeyLayer::Participant || agent != Agent::Human {
         return None;
     }
     let index = session.kitchen.buttons[Agent::Human.index()].iter().position(|button| is_it(button.action))?;
-    model.keys.of_button(ButtonId(index as u8)).map(|chord| chord.to_string())
+    model.keys.of_button(ButtonId(index as u8))
 }
 
 fn agent_role(agent: Option<Agent>) -> TextRole {
@@ -207,10 +211,7 @@ impl<'a> Place<'a> {
         let label = self.kitchen.location(self.id).label();
         let mut x = cells.x + 1;
         if let Some((key, role)) = self.key() {
-            let fits = x + width(&key) + 2 + width(&label) <= cells.right();
-            let style = brush.style(role).add_modifier(Modifier::BOLD);
-            let key = if fits { format!("[{key}]") } else { format!("{key} ") };
-            x = brush.text(x, cells.y, cells.width, &key, style);
+            x = badge(brush, x, cells, key, role);
         }
         let style = match self.is_shown {
             true => brush.style(TextRole::Signal).add_modifier(Modifier::UNDERLINED),
@@ -219,17 +220,21 @@ impl<'a> Place<'a> {
         };
         let room = cells.right().saturating_sub(x);
         let label = if width(&label) < room { format!(" {label}") } else { label };
-        brush.text(x, cells.y, room, &squeeze(&label, room), style)
+        let end = brush.text(x, cells.y, room, &squeeze(&label, room), style);
+        if let Some((key, _)) = self.key() {
+            brush.key_target(cells.x, cells.y, end, key);
+        }
+        end
     }
 
     /// The key of this place in the active layer.
-    fn key(&self) -> Option<(String, TextRole)> {
+    fn key(&self) -> Option<(KeyChord, TextRole)> {
         match self.model.layer {
             KeyLayer::Wizard => {
                 let sends = self.session.spec.trial.condition == Condition::Wizard || self.model.playback.is_some();
                 let key = self.model.keys.of_signal(self.id).filter(|_| sends);
                 let key = key.or_else(|| self.model.keys.of_belief(self.id));
-                key.map(|chord| (chord.to_string(), TextRole::Signal))
+                key.map(|key| (key, TextRole::Signal))
             }
             KeyLayer::Participant => {
                 let main = |action| matches!(action, ButtonAction::Use(at) | ButtonAction::Serve(at) if at == self.id);
@@ -369,7 +374,7 @@ impl<'a> Place<'a> {
     }
 
     /// Further buttons of the participant at this place (processes, trash): key and name.
-    fn other_buttons(&self) -> Vec<(String, String)> {
+    fn other_buttons(&self) -> Vec<(KeyChord, String)> {
         if self.model.layer != KeyLayer::Participant {
             return Vec::new();
         }
@@ -384,14 +389,14 @@ impl<'a> Place<'a> {
         let buttons = self.kitchen.buttons[Agent::Human.index()].iter().enumerate();
         let with_key = buttons.filter(|(_, button)| is_here(button.action)).filter_map(|(index, button)| {
             let key = self.model.keys.of_button(ButtonId(index as u8))?;
-            Some((key.to_string(), button.name.replace('_', " ")))
+            Some((key, button.name.replace('_', " ")))
         });
         with_key.collect()
     }
 }
 
 /// Draws one button per line from the lower edge of the card upwards, or all in the last line if the card is too low.
-fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(String, String)]) {
+fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(KeyChord, String)]) {
     let style = brush.style(TextRole::Human).add_modifier(Modifier::BOLD);
     let count = buttons.len() as u16;
     for (index, (key, name)) in buttons.iter().enumerate() {
@@ -401,6 +406,7 @@ fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(String, String)]) {
             false => (room.x + index * room.width / count, room.bottom() - 1, room.width / count),
         };
         let name = fit(name, columns.saturating_sub(3), "");
-        brush.text(x, y, columns, &format!("[{key}]{name}"), style);
+        let end = brush.text(x, y, columns, &format!("[{key}]{name}"), style);
+        brush.key_target(x, y, end, *key);
     }
 }

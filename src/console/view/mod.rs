@@ -28,6 +28,7 @@ pub mod timeline;
 
 use ratatui::Frame;
 
+use super::click::ClickTarget;
 use super::console_model::{ConsoleModel, Dialog};
 use crate::session::Session;
 use paint::Painter;
@@ -36,31 +37,40 @@ use theme::TextRole;
 
 /// Draws the console.
 pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
-    let area = frame.area();
-    let mut brush = Painter { buffer: frame.buffer_mut(), theme: model.theme };
+    draw(&mut Painter::new(frame.buffer_mut(), model.theme), session, model);
+}
+
+/// What can be clicked on the console as it is drawn now.
+pub fn click_targets(session: &Session, model: &ConsoleModel) -> Vec<ClickTarget> {
+    paint::targets(model.theme, model.size, |brush| draw(brush, session, model))
+}
+
+fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
+    let area = *brush.buffer.area();
     if area.width < LEAST.0 || area.height < LEAST.1 {
-        too_small(&mut brush, session, model);
+        too_small(brush, session, model);
         return;
     }
     let regions = Regions::showing((area.width, area.height), session, model);
-    head::draw(&mut brush, &regions, session, model);
-    offer_line::draw(&mut brush, &regions, session, model);
-    kitchen::draw(&mut brush, &regions, session, model);
-    belief_panel::draw(&mut brush, &regions, session, model);
-    recommendation_panel::draw(&mut brush, &regions, session, model);
-    gaze::draw_map(&mut brush, &regions, session, model);
-    lesson::draw(&mut brush, &regions, model);
-    shown::draw(&mut brush, &regions, session, model);
-    robot_panel::draw(&mut brush, &regions, session, model);
-    gaze::draw(&mut brush, &regions, session, model);
-    events::draw(&mut brush, &regions, session, model);
-    timeline::draw(&mut brush, &regions, session, model);
-    comparison_panel::draw(&mut brush, &regions, session, model);
-    scrub::draw(&mut brush, &regions, session, model);
-    footer::draw(&mut brush, &regions, session, model);
-    cards::draw(&mut brush, &regions, session, model);
-    sheet::draw(&mut brush, area, session, model);
-    dialog::draw(&mut brush, area, session, model);
+    head::draw(brush, &regions, session, model);
+    offer_line::draw(brush, &regions, session, model);
+    kitchen::draw(brush, &regions, session, model);
+    belief_panel::draw(brush, &regions, session, model);
+    recommendation_panel::draw(brush, &regions, session, model);
+    gaze::draw_map(brush, &regions, session, model);
+    lesson::draw(brush, &regions, model);
+    shown::draw(brush, &regions, session, model);
+    robot_panel::draw(brush, &regions, session, model);
+    gaze::draw(brush, &regions, session, model);
+    events::draw(brush, &regions, session, model);
+    timeline::draw(brush, &regions, session, model);
+    comparison_panel::draw(brush, &regions, session, model);
+    scrub::draw(brush, &regions, session, model);
+    footer::message(brush, &regions, session, model);
+    cards::draw(brush, &regions, session, model);
+    sheet::draw(brush, area, session, model);
+    dialog::draw(brush, area, &regions, session, model);
+    footer::draw(brush, &regions, session, model);
 }
 
 fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
@@ -74,11 +84,12 @@ fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
         Some(Dialog::Quit) => "Quit tomcom? y yes, any other key no",
         Some(Dialog::EndTrial) => "End the trial? y yes, any other key no",
         Some(Dialog::Help) => "The help needs more room; any key closes it",
-        Some(Dialog::Pick(_)) => "The list needs more room; esc leaves it",
+        Some(Dialog::Pick(_) | Dialog::Palette(_)) => "The list needs more room; esc leaves it",
+        Some(Dialog::Send(_)) => "Send the signal that was clicked? enter sends, esc leaves",
         Some(Dialog::Preflight) => "Not all is ok for the trial; more room shows what; esc leaves",
         Some(Dialog::Calibration) if session.is_calibrating() => "The gaze is being checked; esc ends the check",
         Some(Dialog::Calibration) => {
-            "The check of the gaze: enter does what is marked, o offset off, u as it is, r repeats, esc leaves"
+            "The check of the gaze: o offset off, u as it is, enter takes what is chosen, r repeats, esc leaves"
         }
         Some(Dialog::Note(_)) => "A note: enter keeps it, esc leaves",
         Some(Dialog::Difference(_)) => "What each knew needs more room; any key closes it",

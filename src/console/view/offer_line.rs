@@ -11,8 +11,9 @@ use crate::communication::concept::ConceptName;
 use crate::communication::offer::OfferedAct;
 use crate::communication::recommendation::Reason;
 use crate::console::beliefs::{self, BeliefStanding, EstimatedBelief, beliefs, percent};
+use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
-use crate::console::key_action::KeyAction;
+use crate::console::key_action::{KeyAction, KeyLayer};
 use crate::history::wording;
 use crate::kitchen::LocationId;
 use crate::session::offers;
@@ -58,11 +59,6 @@ impl ShownOffer<'_> {
         }
     }
 
-    /// Whether a signal is offered, and not presses.
-    pub(super) fn is_signal(&self) -> bool {
-        matches!(self.act, OfferedAct::Signal(_))
-    }
-
     /// The label with the keys: " enter  SHOW RECIPE OF ORDER 1 [q] ".
     fn label(&self, session: &Session, model: &ConsoleModel) -> String {
         let words = match &self.act {
@@ -72,7 +68,9 @@ impl ShownOffer<'_> {
         };
         let own = self.place(session).and_then(|place| model.keys.mark(place));
         let own = own.map_or(String::new(), |key| format!(" [{key}]"));
-        let enter = model.keys.chord_for(&KeyAction::Accept).filter(|_| model.playback.is_none());
+        // Enter in dialogs never sends the offer.
+        let is_free = model.playback.is_none() && model.dialog.is_none();
+        let enter = model.keys.chord_for(&KeyAction::Accept).filter(|_| is_free);
         let enter = enter.map_or(String::new(), |key| format!("{key}  "));
         format!(" {enter}{}{own} ", words.to_uppercase())
     }
@@ -116,6 +114,11 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let area = regions.offer;
     if area.area() == 0 {
         return;
+    }
+    // A click asks also where the offer has just closed: then it says so.
+    let takes = model.layer == KeyLayer::Wizard && model.playback.is_none() && offers::are_made(session);
+    if let Some(chord) = model.keys.chord_for(&KeyAction::Accept).filter(|_| takes) {
+        brush.target(area, ClickAction::Key(chord));
     }
     let Some(offer) = shown(session, model) else {
         let style = brush.style(TextRole::Quiet);

@@ -1,4 +1,4 @@
-//! The brush: text that is cut to its room, frames with titles, bars.
+//! The brush: text that is cut to its room, frames with titles, bars, and what can be clicked.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -8,13 +8,31 @@ use ratatui::text::Span;
 use super::regions::below_title;
 use super::theme::{TextRole, Theme};
 use crate::base::printable::printable;
+use crate::console::chord::KeyChord;
+use crate::console::click::{ClickAction, ClickTarget};
 
-/// Paints on a buffer in a theme.
+/// Paints on a buffer in a theme, and notes what can be clicked.
 pub struct Painter<'a> {
     /// The cells that are painted.
     pub buffer: &'a mut Buffer,
     /// Colours and signs.
     pub theme: Theme,
+    /// What can be clicked, in the order in which it was drawn.
+    pub targets: Vec<ClickTarget>,
+}
+
+/// A key hint: the key as it is written, what it does, and the key that a click stands for.
+pub type KeyHint<'a> = (&'a str, &'a str, Option<KeyChord>);
+
+/// Columns between two hints.
+const HINT_GAP: u16 = 3;
+
+/// What can be clicked on a screen of `size` columns and rows, once this is drawn on it.
+pub(super) fn targets(theme: Theme, size: (u16, u16), draw: impl FnOnce(&mut Painter)) -> Vec<ClickTarget> {
+    let mut buffer = Buffer::empty(Rect { x: 0, y: 0, width: size.0, height: size.1 });
+    let mut brush = Painter::new(&mut buffer, theme);
+    draw(&mut brush);
+    brush.targets
 }
 
 /// Columns that a text takes.
@@ -85,6 +103,35 @@ pub fn wrap_to(text: &str, columns: u16, rows: u16, ellipsis: &str) -> Vec<Strin
 }
 
 impl Painter<'_> {
+    /// Paints on this buffer.
+    pub fn new(buffer: &mut Buffer, theme: Theme) -> Painter<'_> {
+        Painter { buffer, theme, targets: Vec::new() }
+    }
+
+    /// Notes that these cells can be clicked.
+    pub fn target(&mut self, cells: Rect, action: ClickAction) {
+        self.targets.push(ClickTarget { cells, action });
+    }
+
+    /// Notes that the columns from `x` to `end` of a row do what a key does.
+    pub fn key_target(&mut self, x: u16, y: u16, end: u16, chord: KeyChord) {
+        self.target(Rect { x, y, width: end.saturating_sub(x), height: 1 }, ClickAction::Key(chord));
+    }
+
+    /// Writes hints one after another; each can be clicked if it is one key's.
+    pub fn hints(&mut self, x: u16, y: u16, columns: u16, hints: &[KeyHint]) {
+        let mut at = x;
+        for (key, words, chord) in hints {
+            let room = (x + columns).saturating_sub(at);
+            let end =
+                self.parts(at, y, room, &[(key, TextRole::Strong), (" ", TextRole::Quiet), (words, TextRole::Quiet)]);
+            if let Some(chord) = chord {
+                self.key_target(at, y, end, *chord);
+            }
+            at = end + HINT_GAP;
+        }
+    }
+
     /// The style of a role in this theme.
     pub fn style(&self, role: TextRole) -> Style {
         self.theme.style(role)

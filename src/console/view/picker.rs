@@ -1,58 +1,117 @@
-//! A list dialog above the panels.
+//! List dialogs above the panels: a question with its answers, and the palette.
 
 use ratatui::layout::Rect;
 
 use super::paint::{Painter, width};
 use super::popup::open;
 use super::theme::TextRole;
-use crate::console::picker::{Picker, PickerEntry};
+use crate::console::chord::KeyChord;
+use crate::console::click::ClickAction;
+use crate::console::console_model::ConsoleModel;
+use crate::console::list_cursor::ListCursor;
+use crate::console::palette;
+use crate::console::picker::Picker;
+use crate::console::possible::is_possible_behind;
 use crate::session::Session;
+use crossterm::event::KeyCode;
 
 /// Largest size of the list: columns and rows.
-const MOST: (u16, u16) = (64, 26);
+const MOST: (u16, u16) = (72, 26);
 /// Rows around the list: frame, search line, separator, key hints.
 const AROUND: u16 = 6;
+/// Says how a list is searched.
+pub(super) const TYPE: &str = "type to filter, without spaces: ";
 
-/// Draws an open list.
-pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picker) {
-    let choices = picker.choices(session);
-    // The height stays the same while the filter changes.
-    let all = Picker::new(picker.question).choices(session).len() as u16;
-    let size = (MOST.0.min(screen.width), (all + AROUND).min(MOST.1).min(screen.height));
-    let inside = open(brush, screen, size, &picker.title(session), "space stops the robot");
-    let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
-    let cursor = brush.theme.signs().to;
-    let typed = format!("{}_", picker.filter);
-    let found = format!("{} of {all}", choices.len());
-    brush.parts(x, inside.y, columns, &[("search ", TextRole::Quiet), (&typed, TextRole::Strong)]);
-    let quiet = brush.style(TextRole::Quiet);
-    brush.text_right(x + columns, inside.y, 12, &found, quiet);
-    let list = Rect { x, y: inside.y + 2, width: columns, height: inside.height.saturating_sub(4) };
-    let rows = usize::from(list.height).max(1);
-    let first = picker.at.saturating_sub(rows / 2).min(choices.len().saturating_sub(rows));
-    for (row, choice) in choices.iter().skip(first).take(rows).enumerate() {
-        line(brush, list, row as u16, choice, (first + row == picker.at).then_some(cursor));
-    }
-    if choices.is_empty() {
-        brush.text(list.x, list.y, list.width, "nothing is called so: bksp deletes", quiet);
-    }
-    let keys = [
-        ("up/down", TextRole::Strong),
-        (" or type  ", TextRole::Quiet),
-        ("enter", TextRole::Strong),
-        (" takes it  ", TextRole::Quiet),
-        ("esc", TextRole::Strong),
-        (" leaves", TextRole::Quiet),
-    ];
-    brush.parts(x, inside.bottom().saturating_sub(1), columns, &keys);
+/// A row: its text, its remark at the right, and whether it does something now.
+struct Row {
+    label: String,
+    remark: String,
+    counts: bool,
 }
 
-fn line(brush: &mut Painter, list: Rect, row: u16, choice: &PickerEntry, cursor: Option<&str>) {
-    let y = list.y + row;
-    let role = if cursor.is_some() { TextRole::Strong } else { TextRole::Text };
-    let remark = width(&choice.remark).min(list.width / 2);
-    let label = list.width.saturating_sub(remark + 3);
-    brush.parts(list.x, y, label + 2, &[(cursor.unwrap_or(" "), TextRole::Signal), (" ", role), (&choice.label, role)]);
-    let quiet = brush.style(TextRole::Quiet);
-    brush.text_right(list.x + list.width, y, remark, &choice.remark, quiet);
+/// A list as it is drawn.
+struct ListPage<'a> {
+    title: String,
+    cursor: &'a ListCursor,
+    rows: Vec<Row>,
+    /// Number of rows without a filter.
+    all: usize,
+    /// What the space bar does.
+    space: &'a str,
+    /// What enter does.
+    takes: &'a str,
+}
+
+/// Draws an open list of answers.
+pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picker) {
+    let rows = picker.choices(session).into_iter();
+    let rows = rows.map(|choice| Row { label: choice.label, remark: choice.remark, counts: true }).collect();
+    let all = Picker::new(picker.question).choices(session).len();
+    let title = picker.title(session);
+    ListPage { title, cursor: &picker.cursor, rows, all, space: STOPS, takes: "takes it" }.draw(brush, screen);
+}
+
+/// What the space bar does in a list of a live session.
+const STOPS: &str = "space stops the robot";
+
+/// Draws the palette: key, action, and group; what does nothing now is grey.
+pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel, cursor: &ListCursor) {
+    let row = |line: &&crate::console::key_action::KeyBinding| {
+        let key = line.chords.first().map_or(String::new(), KeyChord::to_string);
+        Row {
+            label: format!("{key:>7}  {}", line.help),
+            remark: line.group.to_string(),
+            counts: is_possible_behind(session, model, &line.action),
+        }
+    };
+    let rows = palette::actions(&model.keys, model.layer, cursor).iter().map(row).collect();
+    let all = palette::actions(&model.keys, model.layer, &ListCursor::default()).len();
+    let space = if model.playback.is_none() { STOPS } else { "" };
+    let title = "All actions".to_string();
+    ListPage { title, cursor, rows, all, space, takes: "does it (signals: shows the key)" }.draw(brush, screen);
+}
+
+impl ListPage<'_> {
+    fn draw(&self, brush: &mut Painter, screen: Rect) {
+        // The height stays the same while the filter changes.
+        let size = (MOST.0.min(screen.width), (self.all as u16 + AROUND).min(MOST.1).min(screen.height));
+        let inside = open(brush, screen, size, &self.title, self.space);
+        let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+        let typed = format!("{}_", self.cursor.filter);
+        let found = format!("{} of {}", self.rows.len(), self.all);
+        brush.parts(x, inside.y, columns, &[(TYPE, TextRole::Quiet), (&typed, TextRole::Strong)]);
+        let quiet = brush.style(TextRole::Quiet);
+        brush.text_right(x + columns, inside.y, 12, &found, quiet);
+        let list = Rect { x, y: inside.y + 2, width: columns, height: inside.height.saturating_sub(4) };
+        let shown = usize::from(list.height).max(1);
+        let first = self.cursor.at.saturating_sub(shown / 2).min(self.rows.len().saturating_sub(shown));
+        for (line, row) in self.rows.iter().skip(first).take(shown).enumerate() {
+            let cells = Rect { y: list.y + line as u16, height: 1, ..list };
+            row.draw(brush, cells, first + line == self.cursor.at);
+            brush.target(cells, ClickAction::Row(first + line));
+        }
+        if self.rows.is_empty() {
+            brush.text(list.x, list.y, list.width, "nothing is called so: bksp deletes", quiet);
+        }
+        let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
+        let hints = [("up/down", "choose", None), ("enter", self.takes, enter), ("esc", "back", esc)];
+        brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
+    }
+}
+
+impl Row {
+    fn draw(&self, brush: &mut Painter, cells: Rect, is_at: bool) {
+        let cursor = if is_at { brush.theme.signs().to } else { " " };
+        let role = match (is_at, self.counts) {
+            (true, _) => TextRole::Strong,
+            (false, true) => TextRole::Text,
+            (false, false) => TextRole::Quiet,
+        };
+        let remark = width(&self.remark).min(cells.width / 2);
+        let label = cells.width.saturating_sub(remark + 3);
+        let parts = [(cursor, TextRole::Signal), (" ", role), (self.label.as_str(), role)];
+        brush.parts(cells.x, cells.y, label + 2, &parts);
+        let quiet = brush.style(TextRole::Quiet);
+        brush.text_right(cells.right(), cells.y, remark, &self.remark, quiet);
+    }
 }

@@ -15,6 +15,8 @@ pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &
         width: columns,
         height: rows,
     };
+    // What lies below cannot be clicked; the hint line is drawn later.
+    brush.targets.clear();
     for y in area.y..area.bottom() {
         for x in area.x..area.right() {
             if let Some(cell) = brush.buffer.cell_mut((x, y)) {

@@ -9,6 +9,7 @@ use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::{Recommendation, SignalOption};
+use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::history::wording;
 use crate::session::Session;
@@ -100,12 +101,10 @@ fn worth(option: &SignalOption, session: &Session) -> String {
     }
 }
 
-/// The key of an option's signal, if it has one: "[q] ".
-fn key(option: &SignalOption, session: &Session, model: &ConsoleModel) -> String {
+/// The key of an option's signal, if it has one.
+fn key(option: &SignalOption, session: &Session, model: &ConsoleModel) -> Option<KeyChord> {
     let location = session.kitchen.location_named(option.signal.target());
-    let chord =
-        location.and_then(|location| model.keys.mark(location)).filter(|_| may_send(session, Sender::Wizard).is_ok());
-    chord.map_or(String::new(), |chord| format!("[{}] ", chord.name()))
+    location.and_then(|location| model.keys.mark(location)).filter(|_| may_send(session, Sender::Wizard).is_ok())
 }
 
 fn option_line(
@@ -121,7 +120,8 @@ fn option_line(
     let role = if is_offered { TextRole::Strong } else { TextRole::Quiet };
     let worth = worth(option, session);
     let mut x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
-    let (key, words) = (key(option, session, model), wording::signal(&option.signal));
+    let (chord, words) = (key(option, session, model), wording::signal(&option.signal));
+    let key = chord.map_or(String::new(), |chord| format!("[{}] ", chord.name()));
     // The words of a signal have priority over its gauge.
     if inside.right().saturating_sub(x) >= GAUGE + 1 + LONGEST_SIGNAL {
         x = gauge(brush, x, y, option, session, role);
@@ -131,6 +131,9 @@ fn option_line(
     if is_offered && end + 2 + OFFERED.len() as u16 <= inside.right() {
         let style = brush.style(TextRole::Signal);
         brush.text_right(inside.right(), y, OFFERED.len() as u16, OFFERED, style);
+    }
+    if let Some(chord) = chord.filter(|_| model.playback.is_none()) {
+        brush.key_target(x, y, end, chord);
     }
 }
 

@@ -1,11 +1,15 @@
 //! The list from which a recording is chosen, on an otherwise empty screen.
 
+use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, width};
+use super::paint::{Painter, targets, width};
+use super::picker::TYPE;
 use super::popup::open;
 use super::theme::{TextRole, Theme};
+use crate::console::chord::KeyChord;
+use crate::console::click::{ClickAction, ClickTarget};
 use crate::console::recording_picker::RecordingPicker;
 
 /// Rows around the list: frame, search line, headings, key hints.
@@ -13,21 +17,29 @@ const AROUND: u16 = 7;
 
 /// Draws the list as large as the screen allows.
 pub fn draw_recordings(picker: &RecordingPicker, theme: Theme, frame: &mut Frame) {
-    let screen = frame.area();
-    let mut brush = Painter { buffer: frame.buffer_mut(), theme };
+    draw(&mut Painter::new(frame.buffer_mut(), theme), picker);
+}
+
+/// What can be clicked on a list that is drawn on a screen of `size` columns and rows.
+pub fn recording_targets(picker: &RecordingPicker, theme: Theme, size: (u16, u16)) -> Vec<ClickTarget> {
+    targets(theme, size, |brush| draw(brush, picker))
+}
+
+fn draw(brush: &mut Painter, picker: &RecordingPicker) {
+    let screen = *brush.buffer.area();
     let widths: Vec<u16> = (0..picker.headings.len()).map(|column| column_width(picker, column)).collect();
     let wanted = widths.iter().map(|width| width + 2).sum::<u16>() + 6;
     let hint = width(&picker.title) + 4;
     let size = (wanted.max(hint).max(64).min(screen.width), (picker.rows.len() as u16 + AROUND).min(screen.height));
-    let inside = open(&mut brush, screen, size, &picker.title, "");
+    let inside = open(brush, screen, size, &picker.title, "");
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let left = picker.left();
-    let typed = format!("{}_", picker.filter);
-    brush.parts(x, inside.y, columns, &[("search, without spaces: ", TextRole::Quiet), (&typed, TextRole::Strong)]);
+    let typed = format!("{}_", picker.cursor.filter);
+    brush.parts(x, inside.y, columns, &[(TYPE, TextRole::Quiet), (&typed, TextRole::Strong)]);
     let quiet = brush.style(TextRole::Quiet);
     brush.text_right(x + columns, inside.y, 16, &format!("{} of {}", left.len(), picker.rows.len()), quiet);
     row(
-        &mut brush,
+        brush,
         Rect { x: x + 2, y: inside.y + 2, width: columns.saturating_sub(2), height: 1 },
         &picker.headings,
         &widths,
@@ -35,27 +47,22 @@ pub fn draw_recordings(picker: &RecordingPicker, theme: Theme, frame: &mut Frame
     );
     let list = Rect { x, y: inside.y + 3, width: columns, height: inside.height.saturating_sub(5) };
     let rows = usize::from(list.height).max(1);
-    let first = picker.at.saturating_sub(rows / 2).min(left.len().saturating_sub(rows));
+    let first = picker.cursor.at.saturating_sub(rows / 2).min(left.len().saturating_sub(rows));
     let cursor = brush.theme.signs().to;
     for (line, &index) in left.iter().skip(first).take(rows).enumerate() {
-        let (y, is_at) = (list.y + line as u16, first + line == picker.at);
+        let (y, is_at) = (list.y + line as u16, first + line == picker.cursor.at);
         let role = if is_at { TextRole::Strong } else { TextRole::Text };
         brush.parts(list.x, y, 2, &[(if is_at { cursor } else { " " }, TextRole::Signal)]);
         let cells = Rect { x: list.x + 2, y, width: list.width.saturating_sub(2), height: 1 };
-        row(&mut brush, cells, &picker.rows[index], &widths, role);
+        row(brush, cells, &picker.rows[index], &widths, role);
+        brush.target(Rect { y, height: 1, ..list }, ClickAction::Row(first + line));
     }
     if left.is_empty() {
         brush.text(list.x, list.y, list.width, "No recording has this; backspace deletes a letter", quiet);
     }
-    let keys = [
-        ("up/down", TextRole::Strong),
-        (" or type  ", TextRole::Quiet),
-        ("enter", TextRole::Strong),
-        (" opens  ", TextRole::Quiet),
-        ("esc", TextRole::Strong),
-        (" leaves", TextRole::Quiet),
-    ];
-    brush.parts(x, inside.bottom().saturating_sub(1), columns, &keys);
+    let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
+    let hints = [("up/down", "choose", None), ("enter", "opens it", enter), ("esc", "back", esc)];
+    brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
 }
 
 fn column_width(picker: &RecordingPicker, column: usize) -> u16 {

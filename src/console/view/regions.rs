@@ -264,6 +264,12 @@ impl Regions {
         panels.into_iter().filter(|(_, area)| area.area() > 0).map(|(name, _)| name).collect()
     }
 
+    /// What lists and cards may cover: head line, messages and keys stay visible.
+    pub fn middle(&self) -> Rect {
+        let (top, bottom) = (self.head.bottom(), self.message.y);
+        Rect { x: self.head.x, y: top, width: self.head.width, height: bottom.saturating_sub(top) }
+    }
+
     /// The kitchen panel without its title, which shows the area of the display.
     pub fn kitchen_inside(&self) -> Rect {
         match self.room {

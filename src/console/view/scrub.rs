@@ -1,8 +1,12 @@
 //! The position in a recording: a bar over its whole length, with the time reached and the whole time.
 
+use ratatui::layout::Rect;
+
 use super::paint::{Painter, width};
 use super::regions::Regions;
 use super::theme::TextRole;
+use crate::base::time::SessionTime;
+use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::session::Session;
 
@@ -27,4 +31,13 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     brush.text(x, area.y, here, &brush.theme.signs().frame[4].repeat(usize::from(here)), strong);
     let sign = brush.theme.signs().recording;
     brush.text(x + here, area.y, 1, sign, strong);
+    if model.lesson.is_some() {
+        return;
+    }
+    let length_s = playback.length.max(session.time).as_secs_f64();
+    for column in 0..columns {
+        let share = f64::from(column) / f64::from(columns.saturating_sub(1).max(1));
+        let time = SessionTime::from_secs_f64(length_s * share);
+        brush.target(Rect { x: x + column, width: 1, ..area }, ClickAction::Seek(time));
+    }
 }

@@ -1,11 +1,13 @@
 //! Sheets around a trial: instruction, questionnaire, debriefing, and questions before a recording.
 
+use crossterm::event::KeyCode;
 use ratatui::Frame;
 use ratatui::layout::Rect;
 
-use super::paint::{Painter, width, wrap};
+use super::paint::{KeyHint, Painter, width, wrap};
 use super::popup::open;
 use super::theme::{TextRole, Theme};
+use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::form::{SheetContent, WAIVERS, sheet};
 use crate::console::question::QuestionPage;
@@ -29,6 +31,8 @@ struct Page {
     lines: Vec<(u16, String, TextRole)>,
     /// Index of the line that must be visible.
     focus: usize,
+    /// Lines that can be clicked, each with its key.
+    keys: Vec<(usize, KeyChord)>,
 }
 
 impl Page {
@@ -50,12 +54,19 @@ impl Page {
         }
     }
 
+    /// Adds a choice with its digit, which can be clicked.
+    fn choice(&mut self, index: usize, mark: &str, text: &str, role: TextRole) {
+        let digit = char::from_digit(index as u32 + 1, 10).unwrap_or(' ');
+        self.keys.push((self.lines.len(), KeyChord::char(digit)));
+        self.marked(mark, text, role);
+    }
+
     fn space(&mut self) {
         self.lines.push((0, String::new(), TextRole::Text));
     }
 
     /// Draws the visible part of the page around its focus, with key hints on the last line.
-    fn draw(self, pen: &mut Pen, screen: Rect, title: &str, remark: &str, keys: &[(&str, TextRole)]) {
+    fn draw(self, pen: &mut Pen, screen: Rect, title: &str, remark: &str, keys: &[KeyHint]) {
         let rows = (self.lines.len() as u16 + 5).min(screen.height.saturating_sub(2));
         let brush = &mut *pen.brush;
         let inside = open(brush, screen, (self.columns + 4, rows), title, remark);
@@ -64,10 +75,15 @@ impl Page {
         let from = (self.focus + 2).saturating_sub(room).min(last);
         for (row, (indent, line, role)) in self.lines.iter().skip(from).take(room).enumerate() {
             let style = brush.style(*role);
-            brush.text(inside.x + 1 + indent, inside.y + 1 + row as u16, self.columns - indent, line, style);
+            let (x, y) = (inside.x + 1, inside.y + 1 + row as u16);
+            let end = brush.text(x + indent, y, self.columns - indent, line, style);
+            let key = self.keys.iter().find(|(line, _)| *line == from + row);
+            if let Some((_, chord)) = key.filter(|_| pen.with_keys) {
+                brush.key_target(x, y, end, *chord);
+            }
         }
         if pen.with_keys {
-            brush.parts(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 1, keys);
+            brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 1, keys);
         }
     }
 }
@@ -83,15 +99,15 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
         SheetContent::Questions(questionnaire) => {
             draw_questions(pen, screen, &where_, questionnaire, protocol, session)
         }
-        SheetContent::Failed => draw_failed(pen, screen, &where_, session),
+        SheetContent::Failed => draw_failed(pen, screen, &where_, session, model.waiver),
     }
 }
 
 /// Label of the advance key: the next phase.
 fn onward(session: &Session) -> String {
     match session.next_phase() {
-        Some(phase) => format!(" on to the {}", phase.name()),
-        None => " on to the next recording".to_string(),
+        Some(phase) => format!("on to the {}", phase.name()),
+        None => "on to the next recording".to_string(),
     }
 }
 
@@ -122,14 +138,16 @@ fn draw_steps(
     if open.is_none() {
         page.focus = page.lines.len();
     }
-    let on = if open.is_some() { " this step is done".to_string() } else { onward(session) };
-    let keys = [
-        ("enter", TextRole::Strong),
-        (on.as_str(), TextRole::Text),
-        ("   left", TextRole::Strong),
-        (" back", TextRole::Text),
-    ];
-    page.draw(pen, screen, heads.0, heads.1, &keys);
+    let on = if open.is_some() { "this step is done".to_string() } else { onward(session) };
+    let undo = ("bksp", "takes the last tick back", plain(KeyCode::Backspace));
+    let hints = [("enter", on.as_str(), plain(KeyCode::Enter)), undo];
+    let has_ticks = protocol.ticks.contains(&true);
+    page.draw(pen, screen, heads.0, heads.1, if has_ticks { &hints } else { &hints[..1] });
+}
+
+/// The key of a hint that can be clicked.
+fn plain(code: KeyCode) -> Option<KeyChord> {
+    Some(KeyChord::plain(code))
 }
 
 fn draw_questions(
@@ -151,12 +169,10 @@ fn draw_questions(
         scale(&mut page, questionnaire, given);
         let points = format!("1-{}", questionnaire.scale.points);
         let keys = [
-            (points.as_str(), TextRole::Strong),
-            (" answer   ", TextRole::Text),
-            ("0", TextRole::Strong),
-            (" no answer   ", TextRole::Text),
-            ("left right", TextRole::Strong),
-            (" back, on", TextRole::Text),
+            (points.as_str(), "answer", None),
+            ("0", "no answer", plain(KeyCode::Char('0'))),
+            ("enter", "next item", plain(KeyCode::Enter)),
+            ("left/right", "go between items", None),
         ];
         return page.draw(pen, screen, &questionnaire.title, where_, &keys);
     }
@@ -169,15 +185,14 @@ fn draw_questions(
         page.marked(&format!("{answer:>3}"), &item.text, TextRole::Text);
     }
     page.focus = page.lines.len();
-    let (on, back) = match (protocol.confirmed, protocol.open_item()) {
-        (true, _) => (onward(session), ""),
-        (false, Some(_)) => (" to the item without an answer".to_string(), " back"),
-        (false, None) => (" confirm the answers".to_string(), " back"),
+    let on = match (protocol.confirmed, protocol.open_item()) {
+        (true, _) => onward(session),
+        (false, Some(_)) => "to the item without an answer".to_string(),
+        (false, None) => "confirm the answers".to_string(),
     };
-    let left = if back.is_empty() { "" } else { "   left" };
-    let keys =
-        [("enter", TextRole::Strong), (on.as_str(), TextRole::Text), (left, TextRole::Strong), (back, TextRole::Text)];
-    page.draw(pen, screen, &questionnaire.title, where_, &keys);
+    let hints = [("enter", on.as_str(), plain(KeyCode::Enter)), ("left", "back", plain(KeyCode::Left))];
+    let hints = if protocol.confirmed { &hints[..1] } else { &hints };
+    page.draw(pen, screen, &questionnaire.title, where_, hints);
 }
 
 /// Draws the scale with its end labels and the given answer marked.
@@ -198,7 +213,7 @@ fn scale(page: &mut Page, questionnaire: &Questionnaire, given: Option<ItemAnswe
     }
 }
 
-fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session) {
+fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, waiver: Option<usize>) {
     let Some((step, protocol)) = session.step() else { return };
     let (Some(criterion), Some(practice)) = (step.criterion, &protocol.practice) else { return };
     let mut page = Page::new(screen);
@@ -211,22 +226,24 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session) {
     page.space();
     page.text(0, "To go on to the first trial all the same, say why:", TextRole::Text);
     for (index, reason) in WAIVERS.iter().enumerate() {
-        page.marked(&format!("  {}", index + 1), reason, TextRole::Text);
+        let is_chosen = waiver == Some(index);
+        let mark = if is_chosen { format!(" [{}]", index + 1) } else { format!("  {} ", index + 1) };
+        page.choice(index, &mark, reason, if is_chosen { TextRole::Strong } else { TextRole::Text });
     }
     let waivers = format!("1-{}", WAIVERS.len());
-    let keys = [
-        ("enter", TextRole::Strong),
-        (" practise again   ", TextRole::Text),
-        (waivers.as_str(), TextRole::Strong),
-        (" go on all the same", TextRole::Text),
+    let hints = [
+        ("enter", if waiver.is_some() { "go on for this reason" } else { "practise again" }, plain(KeyCode::Enter)),
+        (waivers.as_str(), "choose a reason", None),
+        ("left", "choose none", plain(KeyCode::Left)),
     ];
-    page.draw(pen, screen, "The criterion is not met", where_, &keys);
+    let hints = if waiver.is_some() { &hints } else { &hints[..2] };
+    page.draw(pen, screen, "The criterion is not met", where_, hints);
 }
 
 /// Draws a question before a recording, on an otherwise empty screen.
 pub fn draw_question(question: &QuestionPage, theme: Theme, frame: &mut Frame) {
     let screen = frame.area();
-    let mut brush = Painter { buffer: frame.buffer_mut(), theme };
+    let mut brush = Painter::new(frame.buffer_mut(), theme);
     let mut page = Page::new(screen);
     for paragraph in &question.text {
         page.text(0, paragraph, TextRole::Text);
@@ -236,6 +253,6 @@ pub fn draw_question(question: &QuestionPage, theme: Theme, frame: &mut Frame) {
         page.marked(&format!("  {}", index + 1), answer, TextRole::Strong);
     }
     page.focus = page.lines.len();
-    let keys = [("esc", TextRole::Strong), (" leave: nothing is recorded", TextRole::Text)];
+    let keys = [("esc", "leave: nothing is recorded", plain(KeyCode::Esc))];
     page.draw(&mut Pen { brush: &mut brush, with_keys: true }, screen, &question.title, "", &keys);
 }

@@ -10,6 +10,7 @@ use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::communication::offer::OfferUse;
 use crate::console::beliefs::visibility;
+use crate::console::click::ClickAction;
 use crate::console::coding::press;
 use crate::console::console_model::ConsoleModel;
 use crate::kitchen::Agent;
@@ -62,6 +63,12 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     place(brush, plot, &in_view);
     if rows.len() > 6 {
         offers(brush, Rect { y: plot.y + 6, height: 1, ..plot }, session, model);
+    }
+    if model.playback.is_some() && model.lesson.is_none() {
+        for x in plot.x..plot.right() {
+            let ago = i64::from(plot.right() - 1 - x) + back;
+            brush.target(Rect { x, width: 1, ..plot }, ClickAction::Seek(column_end(session, model, ago)));
+        }
     }
     if let Some(words) = coding(session, model).filter(|_| is_small) {
         let strong = brush.style(TextRole::Strong);
@@ -125,6 +132,20 @@ pub(super) fn columns_ago(session: &Session, model: &ConsoleModel, time: Session
     let column = |time: SessionTime| (time.as_secs_f64() / column_s) as i64;
     let now = session.trial_clock(model.now);
     column(now) - column(now - session.age(time, model.now))
+}
+
+/// Session time of the end of the column that is so many columns ago.
+fn column_end(session: &Session, model: &ConsoleModel, ago: i64) -> SessionTime {
+    // The columns count down while the time goes on.
+    let (mut from, mut until) = (session.trial_start.0, model.now.0);
+    while from < until {
+        let middle = until - (until - from) / 2;
+        match columns_ago(session, model, SessionTime(middle), COLUMN_S) >= ago {
+            true => from = middle,
+            false => until = middle - 1,
+        }
+    }
+    SessionTime(from)
 }
 
 /// A sign in the plot.

@@ -2,7 +2,7 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::gaze_targets::CalibrationAdvice;
+use tomcom::console::gaze_advice::CalibrationAdvice;
 use tomcom::gaze::calibration::{GazeAccuracy, TargetAccuracy};
 use tomcom::session::accuracy_check::CalibrationEvent;
 use tomcom::session::event::Event;
@@ -34,6 +34,11 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
         check_snapshot("console", format!("calibration_{}x{}", size.0, size.1), stage.screen(size));
     }
     stage.wait(1.0);
+    // Letters choose, and only enter takes the gaze.
+    for (letter, marked) in [('u', "enter    u  takes it as it is"), ('o', "enter    o  takes it with")] {
+        assert_eq!(stage.key(KeyCode::Char(letter)), None);
+        assert!(stage.screen((80, 24)).contains(marked), "{}", stage.screen((80, 24)));
+    }
     let accepted = input(stage.key(KeyCode::Enter));
     assert_eq!(accepted, Some(Event::Calibration(CalibrationEvent::Accepted { corrected: true })));
     assert_eq!(stage.model.dialog, None);

@@ -13,7 +13,7 @@ use crate::check_snapshot;
 #[test]
 fn the_kitchen_is_corrected_from_two_lists() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.control('k');
+    stage.control('u');
     for size in SIZES {
         check_snapshot("console", format!("correct_{}x{}", size.0, size.1), stage.screen(size));
     }
@@ -34,11 +34,11 @@ fn the_kitchen_is_corrected_from_two_lists() {
     assert!(stage.screen((120, 40)).contains("cooked rice"));
     // Esc goes back a step, then leaves; what nothing is called leads nowhere.
     stage.wait(1.0);
-    stage.control('k');
+    stage.control('u');
     type_in(&mut stage, "zzz");
     assert_eq!(stage.key(KeyCode::Enter), None);
     for left in [3, 2, 1] {
-        assert!(matches!(&stage.model.dialog, Some(Dialog::Pick(list)) if list.filter.len() == left));
+        assert!(matches!(&stage.model.dialog, Some(Dialog::Pick(list)) if list.cursor.filter.len() == left));
         stage.key(KeyCode::Backspace);
     }
     stage.key(KeyCode::Down);

@@ -3,12 +3,15 @@
 mod advice;
 mod belief;
 mod calibration;
+mod clicks;
 mod colours;
 mod comparison;
 mod hands;
+mod hints;
 mod keys;
 mod layers;
 mod notices;
+mod palette;
 mod pointer;
 mod recording_picker;
 mod screens;

@@ -37,13 +37,13 @@ fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
 }
 
 #[test]
-fn a_click_sends_no_signal_and_the_wheel_goes_back_in_time() {
+fn a_click_beside_the_keys_explains_a_place_or_shows_a_panel_and_the_wheel_goes_back_in_time() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     let regions = Regions::new((120, 40), Visibility::Recommendation, None);
     let plan = KitchenMap::new(&stage.session.kitchen, regions.kitchen_inside(), false);
     for spot in &plan.spots {
         let MapElement::Location(location) = spot.thing else { continue };
-        let click = ConsoleMessage::Click(spot.cells.x + 1, spot.cells.y);
+        let click = ConsoleMessage::Click(spot.cells.x + 1, spot.cells.bottom() - 1);
         assert_eq!(update(&mut stage.model, &stage.session, click), None);
         let label = stage.session.kitchen.location(location).label();
         assert!(stage.notice().contains(&label), "{label}: {}", stage.notice());

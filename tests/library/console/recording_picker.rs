@@ -33,7 +33,7 @@ fn typing_filters_without_spaces_and_enter_takes_the_row() {
     for letter in "p07 wiz".chars() {
         assert_eq!(press(&mut picker, KeyCode::Char(letter)), None);
     }
-    assert_eq!((picker.filter.as_str(), picker.left()), ("p07wiz", vec![1]));
+    assert_eq!((picker.cursor.filter.as_str(), picker.left()), ("p07wiz", vec![1]));
     assert_eq!(press(&mut picker, KeyCode::Enter), Some(RecordingReply::Chosen(1)));
     assert_eq!(press(&mut picker, KeyCode::Char('x')), None);
     assert_eq!(press(&mut picker, KeyCode::Enter), None, "nothing is left, nothing is taken");

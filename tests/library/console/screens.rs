@@ -244,7 +244,7 @@ fn what_the_wizard_sees_is_told_by_size_visibility_and_dialog() {
     }
     assert_eq!(rooms, ["too_small", "small", "medium", "large"]);
     stage.session.spec.console.visibility = Visibility::State;
-    stage.control('k');
+    stage.control('u');
     let seen = screen(&stage.session, &stage.model);
     assert!(!seen.panels.iter().any(|panel| panel == "belief" || panel == "recommendation"), "{seen:?}");
     assert_eq!((seen.visibility, seen.dialog.as_deref()), (Visibility::State, Some("correct_place")));

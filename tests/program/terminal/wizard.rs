@@ -94,7 +94,7 @@ fn an_aborted_trial_is_done_again_in_a_recording_of_its_own() {
         terminal.tmux(&["send-keys", "-l", report]);
         terminal.wait(event, || terminal.count(event) == 1);
     }
-    terminal.key("C-k");
+    terminal.key("C-u");
     terminal.see("Correct the kitchen");
     terminal.key("Enter");
     terminal.see("What is at human hand?");

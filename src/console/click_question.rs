@@ -1,0 +1,72 @@
+//! A click on a signal or on the offer asks once before it sends, unless the session file says `click_sends = true`.
+
+use crossterm::event::KeyCode;
+
+use super::chord::KeyChord;
+use super::click::SendQuestion;
+use super::console_actions::act;
+use super::console_message::ConsoleCommand;
+use super::console_model::{ConsoleModel, Dialog};
+use super::key_action::KeyAction;
+use super::notice::NoticeLevel;
+use super::sending::refusal;
+use crate::communication::{Sender, Signal};
+use crate::session::offers;
+use crate::session::{Event, Session};
+
+/// Asks whether to send a clicked signal, or the signal of the clicked offer; or says why it cannot be sent.
+pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, action: &KeyAction) {
+    let asked = match action {
+        KeyAction::Signal(_, signal) => match refusal(session, model.now, &shown(signal)) {
+            None => Ok((signal.clone(), None)),
+            Some(reason) => Err(reason),
+        },
+        _ => offers::enter(session, model.now)
+            .and_then(|(offer, _)| Ok((offer.signal().cloned().ok_or("no signal is on offer")?, Some(offer.seq)))),
+    };
+    match asked {
+        Ok((signal, offer)) => {
+            model.notice = None;
+            model.dialog = Some(Dialog::Send(SendQuestion { chord, signal, offer, asked: model.clock }));
+        }
+        Err(reason) => model.say(NoticeLevel::Refused, format!("not sent: {reason}")),
+    }
+}
+
+/// Answers the question: enter sends, if it is pressed and not held; esc leaves.
+pub(super) fn answer(
+    model: &mut ConsoleModel,
+    session: &Session,
+    code: KeyCode,
+    is_press: bool,
+) -> Option<ConsoleCommand> {
+    match model.dialog.clone() {
+        Some(Dialog::Send(question)) if code == KeyCode::Enter && is_press => confirm(model, session, question),
+        Some(Dialog::Send(_)) if code == KeyCode::Esc => {
+            model.dialog = None;
+            None
+        }
+        _ => None,
+    }
+}
+
+/// Sends what was clicked. Of an offer only the one that was clicked.
+pub(super) fn confirm(model: &mut ConsoleModel, session: &Session, question: SendQuestion) -> Option<ConsoleCommand> {
+    model.dialog = None;
+    let now_meant = offers::enter(session, model.now).ok().map(|(offer, _)| offer.seq);
+    match question.offer {
+        Some(offer) if now_meant != Some(offer) => {
+            model.say(NoticeLevel::Refused, "not sent: the offer that was clicked is closed");
+            None
+        }
+        Some(_) => act(model, session, KeyAction::Accept),
+        None => {
+            let location = session.kitchen.location_named(question.signal.target())?;
+            act(model, session, KeyAction::Signal(location, question.signal))
+        }
+    }
+}
+
+fn shown(signal: &Signal) -> Event {
+    Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None, offer: None }
+}

@@ -1,0 +1,160 @@
+//! Actions of the console, as the key table names them.
+
+use super::beliefs::{beliefs, visibility};
+use super::coding;
+use super::compared::ComparisonKey;
+use super::console_message::ConsoleCommand;
+use super::console_model::{ConsoleModel, Dialog};
+use super::form;
+use super::hands;
+use super::held_keys::ANSWER_S;
+use super::key_action::{KeyAction, KeyLayer};
+use super::list_cursor::ListCursor;
+use super::notice::NoticeLevel;
+use super::panel::Panel;
+use super::panels;
+use super::preflight;
+use super::sending::{resume_robot, send};
+use crate::communication::Sender;
+use crate::history::wording;
+use crate::kitchen::{Agent, AspectId};
+use crate::session::event::SignalEnd;
+use crate::session::offers;
+use crate::session::settings::Visibility;
+use crate::session::{Event, Phase, Session};
+
+/// Sends the signal of the offer that the wizard has read.
+fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
+    if model.answered.is_some_and(|answered| model.clock.secs_since(answered) < ANSWER_S) {
+        model.say(NoticeLevel::Refused, "not sent: this enter came right after that of a list");
+        return None;
+    }
+    match offers::enter(session, model.now) {
+        Ok((offer, event)) => {
+            let words = format!("sent: {}", offer.signal().map_or(String::new(), wording::signal));
+            send(model, session, event, NoticeLevel::Done, &words)
+        }
+        Err(reason) => {
+            model.say(NoticeLevel::Refused, format!("not sent: {reason}"));
+            None
+        }
+    }
+}
+
+/// Does what a key stands for.
+pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
+    match action {
+        KeyAction::Signal(_, signal) => {
+            let words = format!("shown: {}", wording::signal(&signal));
+            send(
+                model,
+                session,
+                Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None },
+                NoticeLevel::Done,
+                &words,
+            )
+        }
+        KeyAction::Accept => accept(model, session),
+        KeyAction::Press(button) => {
+            let why = wording::no_effect(&session.kitchen, session.state, button).unwrap_or_default();
+            let button = session.kitchen.button(Agent::Human, button).name.clone();
+            send(model, session, Event::Press { agent: Agent::Human, button, at_ns: None }, NoticeLevel::Refused, &why)
+        }
+        KeyAction::TakeBack => {
+            send(model, session, Event::SignalEnded { reason: SignalEnd::TakenBack }, NoticeLevel::Done, "taken back")
+        }
+        KeyAction::Note(index) => {
+            let note = session.spec.console.notes.get(index)?.clone();
+            let words = format!("marked: {note}");
+            send(model, session, Event::Marker { note }, NoticeLevel::Done, &words)
+        }
+        KeyAction::Advance => advance(model, session),
+        KeyAction::ResumeRobot => resume_robot(model, session),
+        KeyAction::EndTrial => match session.phase {
+            Phase::Running | Phase::Paused => {
+                model.dialog = Some(Dialog::EndTrial);
+                None
+            }
+            _ => {
+                model.say(NoticeLevel::Refused, "there is no trial to end");
+                None
+            }
+        },
+        KeyAction::Hand(hand) => hands::act(model, session, hand),
+        KeyAction::SwitchLayer => {
+            let (layer, words) = match model.layer {
+                KeyLayer::Wizard => (KeyLayer::Participant, "from now on, keys press the participant's buttons"),
+                KeyLayer::Participant => (KeyLayer::Wizard, "from now on, keys send the wizard's signals"),
+            };
+            model.layer = layer;
+            let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility(session, model), model.comparison.is_some());
+            model.alone = model.alone.filter(may_be_seen);
+            model.say(NoticeLevel::Done, words);
+            None
+        }
+        KeyAction::Look(at) => {
+            panels::look(model, session, at);
+            None
+        }
+        KeyAction::Belief if visibility(session, model) < Visibility::Belief => {
+            model.say(NoticeLevel::Refused, "the belief is not shown in this session");
+            None
+        }
+        KeyAction::Belief => {
+            let ranked: Vec<AspectId> = beliefs(session, model).iter().map(|belief| belief.aspect).collect();
+            if ranked.is_empty() {
+                model.say(NoticeLevel::Refused, "the belief is estimated from the trial's start on");
+            }
+            model.focus_next_belief(&ranked);
+            None
+        }
+        KeyAction::Differ(step) => {
+            differ(model, session, step);
+            None
+        }
+        KeyAction::Rate(rate) => coding::act(model, session, rate),
+        KeyAction::Help => {
+            (model.dialog, model.help_from) = (Some(Dialog::Help), 0);
+            None
+        }
+        KeyAction::Palette => {
+            model.dialog = Some(Dialog::Palette(ListCursor::default()));
+            None
+        }
+        // A recording loses nothing by being left; a training does.
+        KeyAction::Quit if model.playback.is_some() && model.lesson.is_none() => Some(ConsoleCommand::Quit),
+        KeyAction::Quit if session.phase == Phase::Closed => Some(ConsoleCommand::Quit),
+        KeyAction::Quit => {
+            model.dialog = Some(Dialog::Quit);
+            None
+        }
+        KeyAction::StopRobot | KeyAction::Move(_) => None,
+    }
+}
+
+/// Another difference between wizard and assistant, or what each knew at this one.
+pub(super) fn differ(model: &mut ConsoleModel, session: &Session, step: ComparisonKey) {
+    let Some(compared) = &mut model.comparison else { return };
+    compared.choose(step);
+    match compared.chosen() {
+        None => model.say(NoticeLevel::Refused, "they do not differ yet"),
+        Some((at, seen)) if step == ComparisonKey::Open => {
+            model.dialog = Some(Dialog::Difference(seen.opened(&session.kitchen, &seen.differences[at])));
+        }
+        Some(_) => {}
+    }
+}
+
+fn advance(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
+    let (event, words) = match session.phase {
+        Phase::Ready => return preflight::start(model, session),
+        Phase::Running => (Event::TrialPaused, "paused"),
+        Phase::Paused => (Event::TrialResumed, "the trial runs"),
+        Phase::Over(_) => return form::leave(model, session),
+        Phase::Closed => {
+            model.say(NoticeLevel::Refused, "the session is over");
+            return None;
+        }
+    };
+    send(model, session, event, NoticeLevel::Done, words)
+}

@@ -1,0 +1,243 @@
+//! A pressed key: who takes it (dialog, sheet or console), and whether it counts.
+
+use crossterm::event::{KeyCode, KeyEvent};
+
+use super::chord::KeyChord;
+use super::click_question;
+use super::compared::ComparisonKey;
+use super::console_actions::{act, differ};
+use super::console_message::ConsoleCommand;
+use super::console_model::{ConsoleModel, Dialog};
+use super::form::{self, sheet};
+use super::gaze_targets;
+use super::hands;
+use super::held_keys::{Touch, may_follow_at_once, touch};
+use super::key_action::{KeyAction, KeyLayer, PanelKey};
+use super::list_cursor::{ListCursor, ListReply};
+use super::notice::NoticeLevel;
+use super::palette;
+use super::panels;
+use super::possible::acts_on_sheet;
+use super::preflight;
+use super::sending::send;
+use super::view::dialog::{help_pages, report_rest};
+use crate::session::event::EndReason;
+use crate::session::{Event, Phase, Session};
+
+/// Takes a report of the terminal about a key.
+pub(super) fn key(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -> Option<ConsoleCommand> {
+    match touch(model, key) {
+        Touch::Release => None,
+        touch => press(model, session, key.code, KeyChord::from_event(key), touch),
+    }
+}
+
+/// Takes a key that is pressed or held, or a click that does the same. `code` is the key as it was typed, with capitals.
+pub(super) fn press(
+    model: &mut ConsoleModel,
+    session: &Session,
+    code: KeyCode,
+    chord: KeyChord,
+    touch: Touch,
+) -> Option<ConsoleCommand> {
+    let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
+    if matches!(model.dialog, Some(Dialog::Send(_))) && action != Some(KeyAction::StopRobot) {
+        if matches!(chord.code, KeyCode::Enter | KeyCode::Esc) {
+            return click_question::answer(model, session, chord.code, touch == Touch::Press);
+        }
+        // Every other key means itself.
+        model.dialog = None;
+    }
+    match action {
+        // Only where the trial is paused, and the robot stands, does the space bar type a space.
+        _ if let Some(Dialog::Note(line)) = &model.dialog => {
+            let line = line.clone();
+            let counts = !chord.ctrl && (code != KeyCode::Enter || touch == Touch::Press);
+            if counts { hands::write(model, session, line, code) } else { None }
+        }
+        Some(KeyAction::StopRobot) => stop_robot(model, session),
+        Some(KeyAction::Quit) if chord.ctrl && touch == Touch::Press && may_leave_for_quit(model) => {
+            act(model, session, KeyAction::Quit)
+        }
+        Some(KeyAction::Move(to)) if model.dialog.is_none() => Some(ConsoleCommand::Move(to)),
+        _ if matches!(model.dialog, Some(Dialog::Pick(_) | Dialog::Palette(_))) => {
+            in_list(model, session, chord, touch)
+        }
+        action if model.dialog == Some(Dialog::Preflight) => {
+            preflight::answer(model, session, chord.code, action, touch == Touch::Press)
+        }
+        _ if model.dialog == Some(Dialog::Calibration) => {
+            gaze_targets::answer(model, session, chord.code, touch == Touch::Press)
+        }
+        _ if touch == Touch::Held => {
+            if model.dialog.is_none() {
+                model.say(NoticeLevel::Refused, format!("\"{chord}\" is held down: it counts once"));
+            }
+            None
+        }
+        action if model.dialog.is_none() && model.playback.is_none() && sheet(session).is_some() => {
+            on_sheet(model, session, code, action, touch)
+        }
+        Some(action) if touch == Touch::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
+            model.say(NoticeLevel::Refused, format!("\"{chord}\" may be held down: press again"));
+            None
+        }
+        action if model.dialog.is_some() => answer(model, session, chord, action, touch),
+        Some(action) => act(model, session, action),
+        None => {
+            unknown(model, session, code);
+            None
+        }
+    }
+}
+
+/// Takes a key of an open list: quick typing and held arrows count; the key that opened it, and a held enter, answer nothing.
+fn in_list(model: &mut ConsoleModel, session: &Session, chord: KeyChord, touch: Touch) -> Option<ConsoleCommand> {
+    if chord.ctrl || (chord.code == KeyCode::Enter && touch != Touch::Press) {
+        return None;
+    }
+    match model.dialog.clone() {
+        Some(Dialog::Pick(picker)) => hands::pick(model, session, picker, chord.code),
+        Some(Dialog::Palette(cursor)) => choose(model, session, cursor, chord.code),
+        _ => None,
+    }
+}
+
+/// Takes a key of the palette. The chosen action is done as by its key; but no list sends a signal, so of those the key is told.
+fn choose(
+    model: &mut ConsoleModel,
+    session: &Session,
+    mut cursor: ListCursor,
+    code: KeyCode,
+) -> Option<ConsoleCommand> {
+    let left = palette::actions(&model.keys, model.layer, &cursor);
+    let reply = cursor.key(left.len(), code);
+    let chosen = left.get(cursor.at).filter(|_| reply == ListReply::Taken);
+    let chosen = chosen.and_then(|line| Some((line.action.clone(), *line.chords.first()?, line.help.clone())));
+    model.dialog = Some(Dialog::Palette(cursor)).filter(|_| reply == ListReply::Open);
+    let (action, chord, help) = chosen?;
+    model.answered = Some(model.clock);
+    match action {
+        KeyAction::Signal(..) | KeyAction::Accept => {
+            model.say(NoticeLevel::Done, format!("press {chord} to {help}: a list sends nothing"));
+            None
+        }
+        _ => press(model, session, chord.code, chord, Touch::Press),
+    }
+}
+
+/// Whether the question of quitting takes the place of the dialog: of those that wait for something else. A check of the
+/// gaze is ended first.
+fn may_leave_for_quit(model: &ConsoleModel) -> bool {
+    matches!(
+        model.dialog,
+        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Preflight | Dialog::Help | Dialog::Difference(_))
+    )
+}
+
+/// A key while a sheet lies in front of the console: of the others, those that help and leave still work.
+fn on_sheet(
+    model: &mut ConsoleModel,
+    session: &Session,
+    code: KeyCode,
+    action: Option<KeyAction>,
+    touch: Touch,
+) -> Option<ConsoleCommand> {
+    match (form::stroke(code, action == Some(KeyAction::Advance)), action) {
+        // Nobody reads a step so fast: the key is still down from the last one. An answer is always taken: one that is lost
+        // would put those after it at the wrong items, one too many is seen.
+        (Some(form::SheetKey::Confirm | form::SheetKey::Leave), _) if touch == Touch::Again => {
+            model.say(NoticeLevel::Refused, "not yet: read it, then press the key again");
+            None
+        }
+        (Some(stroke), _) => form::write(model, session, stroke),
+        (None, Some(action)) if acts_on_sheet(&action) => act(model, session, action),
+        (None, _) => {
+            model.say(
+                NoticeLevel::Refused,
+                "this key has no meaning before the trial: the last line of the sheet says what has",
+            );
+            None
+        }
+    }
+}
+
+/// The space bar: works in every view, and does nothing twice.
+fn stop_robot(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
+    if session.robot.is_stopped_by_wizard() {
+        return None;
+    }
+    send(model, session, Event::RobotStopped, NoticeLevel::Alarm, "the robot is stopped")
+}
+
+fn answer(
+    model: &mut ConsoleModel,
+    session: &Session,
+    chord: KeyChord,
+    action: Option<KeyAction>,
+    touch: Touch,
+) -> Option<ConsoleCommand> {
+    let dialog = model.dialog.clone()?;
+    if let (Dialog::Help, Some(KeyAction::Look(look))) = (&dialog, &action)
+        && *look != PanelKey::All
+        && help_pages(model) > 0
+    {
+        panels::leaf(model, *look);
+        return None;
+    }
+    if let (Dialog::Difference(_), Some(KeyAction::Differ(step @ (ComparisonKey::Next | ComparisonKey::Last)))) =
+        (&dialog, &action)
+    {
+        differ(model, session, *step);
+        differ(model, session, ComparisonKey::Open);
+        return None;
+    }
+    if matches!(dialog, Dialog::Report(_)) {
+        report(model, chord.code, action);
+        return None;
+    }
+    let again = match dialog {
+        Dialog::Quit => action == Some(KeyAction::Quit),
+        Dialog::EndTrial => action == Some(KeyAction::EndTrial),
+        _ => false,
+    };
+    // A nervous second press ends no trial.
+    let goes_on = matches!(session.phase, Phase::Running | Phase::Paused);
+    if again && (goes_on || touch == Touch::Again) {
+        return None;
+    }
+    model.dialog = None;
+    let yes = chord == KeyChord::char('y') || again;
+    match dialog {
+        Dialog::Quit if yes => Some(ConsoleCommand::Quit),
+        Dialog::EndTrial if yes => Some(ConsoleCommand::Input(Event::TrialEnded { reason: EndReason::Wizard })),
+        _ => None,
+    }
+}
+
+/// A report is not closed by a key that was meant for what went before: only by enter, and by the key that quits.
+fn report(model: &mut ConsoleModel, code: KeyCode, action: Option<KeyAction>) {
+    match (code, action) {
+        (KeyCode::Enter, _) | (_, Some(KeyAction::Quit)) => model.dialog = None,
+        (_, Some(KeyAction::Look(PanelKey::Back | PanelKey::Last | PanelKey::Earlier))) => {
+            model.help_from = model.help_from.saturating_sub(1)
+        }
+        (_, Some(KeyAction::Look(PanelKey::Forward | PanelKey::Next | PanelKey::Later))) => {
+            model.help_from = (model.help_from + 1).min(report_rest(model));
+        }
+        _ => {}
+    }
+}
+
+/// A key without a meaning here: says so if it has one in the other layer.
+fn unknown(model: &mut ConsoleModel, session: &Session, code: KeyCode) {
+    let KeyCode::Char(key) = code else { return };
+    let other = if model.layer == KeyLayer::Wizard { KeyLayer::Participant } else { KeyLayer::Wizard };
+    let chord = KeyChord { code, ctrl: false };
+    if model.keys.find(other, chord).is_some() {
+        let whose = if other == KeyLayer::Wizard { "wizard" } else { "participant" };
+        model.say(NoticeLevel::Refused, format!("\"{key}\" is a key of the {whose}: switch with tab"));
+    } else if (model.playback.is_none() || model.coding.is_some()) && session.phase != Phase::Closed {
+        model.say(NoticeLevel::Refused, format!("\"{key}\" has no meaning: ? shows the keys"));
+    }
+}

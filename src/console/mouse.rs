@@ -1,0 +1,156 @@
+//! The mouse: the pointer as gaze, clicks on what the view offers, and the wheel. A click does what a key does, by the same way.
+
+use crossterm::event::KeyCode;
+
+use super::arrange::{KitchenMap, MapElement};
+use super::chord::KeyChord;
+use super::click::ClickAction;
+use super::click_question;
+use super::console_message::ConsoleCommand;
+use super::console_model::{ConsoleModel, Dialog};
+use super::form::sheet;
+use super::held_keys::{ANSWER_S, Touch};
+use super::key_action::{KeyAction, KeyLayer};
+use super::key_press::press;
+use super::list_cursor::ListCursor;
+use super::notice::NoticeLevel;
+use super::panel::Panel;
+use super::panels;
+use super::playback::ReplayKey;
+use super::view::click_targets;
+use super::view::regions::Regions;
+use crate::kitchen::{Agent, ButtonAction as Use, ButtonId, LocationId};
+use crate::session::Session;
+use crate::session::settings::ParticipantKind;
+
+/// A second click within this time belongs to the first: it confirms nothing.
+const DOUBLE_CLICK_S: f64 = 0.4;
+
+/// Notes where the pointer is on the display, which may stand for the gaze.
+pub(super) fn point(model: &mut ConsoleModel, session: &Session, (column, row): (u16, u16)) {
+    let regions = Regions::showing(model.size, session, model);
+    model.pointer = Some(map(session, &regions).display_point(column, row));
+}
+
+fn map(session: &Session, regions: &Regions) -> KitchenMap {
+    let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
+    KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys)
+}
+
+/// Handles a click: on what the view offers it does what the key does; on a place it tells the place's key; elsewhere it shows the
+/// panel at full size, or all panels again.
+pub(super) fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) -> Option<ConsoleCommand> {
+    // The click that brings the keyboard back to this window means nothing else.
+    if !model.focused {
+        return None;
+    }
+    let targets = click_targets(session, model);
+    // What was drawn last lies above.
+    let target = targets.iter().rev().find(|target| target.cells.contains(cell.into()));
+    match target.map(|target| target.action) {
+        Some(ClickAction::Key(chord)) => key(model, session, chord),
+        Some(ClickAction::Row(row)) => choose(model, session, row),
+        Some(ClickAction::Palette(filter)) => {
+            model.dialog = Some(Dialog::Palette(ListCursor { filter: filter.to_string(), at: 0 }));
+            None
+        }
+        Some(ClickAction::Belief(aspect)) => {
+            model.focus_belief(Some(aspect));
+            None
+        }
+        Some(ClickAction::Seek(time)) => Some(ConsoleCommand::Move(ReplayKey::ToTime(time))),
+        None => {
+            let is_covered = model.playback.is_none() && sheet(session).is_some();
+            if model.dialog.is_none() && !is_covered {
+                look(model, session, cell);
+            }
+            None
+        }
+    }
+}
+
+/// Does what a key does. A signal is asked about first; the second click on it confirms.
+fn key(model: &mut ConsoleModel, session: &Session, chord: KeyChord) -> Option<ConsoleCommand> {
+    let now = model.clock;
+    if let Some(Dialog::Send(question)) = &model.dialog
+        && question.chord == chord
+    {
+        let question = question.clone();
+        let is_double = now.secs_since(question.asked) < DOUBLE_CLICK_S;
+        return if is_double { None } else { click_question::confirm(model, session, question) };
+    }
+    let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
+    let asks = matches!(model.dialog, None | Some(Dialog::Send(_))) && !session.spec.console.click_sends;
+    if let Some(action @ (KeyAction::Signal(..) | KeyAction::Accept)) = action.filter(|_| asks) {
+        click_question::ask(model, session, chord, &action);
+        return None;
+    }
+    let last = model.clicked.replace((chord, now));
+    let is_again = last.is_some_and(|(last, at)| last == chord && now.secs_since(at) < ANSWER_S);
+    press(model, session, chord.code, chord, if is_again { Touch::Again } else { Touch::Press })
+}
+
+/// Goes to a row of the open list; takes the row if the cursor was there.
+fn choose(model: &mut ConsoleModel, session: &Session, row: usize) -> Option<ConsoleCommand> {
+    let cursor = match &mut model.dialog {
+        Some(Dialog::Pick(picker)) => &mut picker.cursor,
+        Some(Dialog::Palette(cursor)) => cursor,
+        _ => return None,
+    };
+    if cursor.at == row {
+        return press(model, session, KeyCode::Enter, KeyChord::plain(KeyCode::Enter), Touch::Press);
+    }
+    cursor.at = row;
+    None
+}
+
+/// A click on the panels.
+fn look(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
+    let regions = Regions::showing(model.size, session, model);
+    if regions.kitchen_inside().contains(cell.into()) {
+        let plan = map(session, &regions);
+        let thing = plan.spots.iter().find(|spot| spot.cells.contains(cell.into())).map(|spot| spot.thing);
+        if let Some(MapElement::Location(location)) = thing {
+            return tell(model, session, location);
+        }
+    }
+    match (model.alone, panel_at(&regions, cell)) {
+        (Some(_), _) => model.focus_belief(None),
+        (None, panel) => model.alone = panel,
+    }
+}
+
+/// Shows the key of a location and its meaning.
+fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
+    let is_main = |action| matches!(action, Use::Use(at) | Use::Serve(at) if at == location);
+    let buttons = &session.kitchen.buttons[Agent::Human.index()];
+    let line = model.keys.bindings.iter().find(|line| match (&line.action, model.layer) {
+        (KeyAction::Signal(about, _), KeyLayer::Wizard) => *about == location,
+        (KeyAction::Press(ButtonId(button)), KeyLayer::Participant) => is_main(buttons[usize::from(*button)].action),
+        _ => false,
+    });
+    let told = line.and_then(|line| Some(format!("{}: {}", line.chords.first()?, line.help)));
+    let label = session.kitchen.location(location).label();
+    model.say(NoticeLevel::Done, told.unwrap_or_else(|| format!("{label}: no key is about it")));
+}
+
+/// Handles the mouse wheel over a cell: in a list or a text it is an arrow key.
+pub(super) fn wheel(
+    model: &mut ConsoleModel,
+    session: &Session,
+    cell: (u16, u16),
+    steps: i64,
+) -> Option<ConsoleCommand> {
+    if matches!(model.dialog, Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Report(_) | Dialog::Help)) {
+        let arrow = if steps > 0 { KeyCode::Up } else { KeyCode::Down };
+        return press(model, session, arrow, KeyChord::plain(arrow), Touch::Press);
+    }
+    let regions = Regions::showing(model.size, session, model);
+    panels::scroll(model, session, panel_at(&regions, cell), steps);
+    None
+}
+
+/// The panel under a cell.
+fn panel_at(regions: &Regions, cell: (u16, u16)) -> Option<Panel> {
+    Panel::ALL.into_iter().find(|panel| regions.panel_area(*panel).contains(cell.into()))
+}

@@ -1,0 +1,164 @@
+//! Which actions do something now: the hint line shows no others.
+
+use super::beliefs::{beliefs, visibility};
+use super::compared::ComparisonKey;
+use super::console_model::{ConsoleModel, Dialog};
+use super::form::sheet;
+use super::key_action::{KeyAction, ManualAction, PanelKey, RaterKey};
+use super::playback::{Playback, ReplayKey, SPEEDS};
+use super::preflight;
+use super::sending::refusal;
+use crate::communication::Sender;
+use crate::session::accuracy_check::CalibrationEvent;
+use crate::session::admit::admit;
+use crate::session::event::SignalEnd;
+use crate::session::offers;
+use crate::session::settings::Visibility;
+use crate::session::{Event, Phase, Session};
+
+/// Whether an action would do something now, through whatever lies in front of the console.
+pub(super) fn is_possible(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
+    reaches(session, model, action) && does(session, model, action)
+}
+
+/// The same once the open dialog is closed.
+pub(super) fn is_possible_behind(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
+    (!has_sheet(session, model) || acts_on_sheet(action)) && does(session, model, action)
+}
+
+/// Whether a sheet lies in front of the console and takes the keys.
+fn has_sheet(session: &Session, model: &ConsoleModel) -> bool {
+    model.playback.is_none() && sheet(session).is_some()
+}
+
+/// Whether an action is possible while a sheet lies in front of the console: what helps, leaves, or mends.
+pub(super) fn acts_on_sheet(action: &KeyAction) -> bool {
+    matches!(
+        action,
+        KeyAction::Help
+            | KeyAction::Palette
+            | KeyAction::Quit
+            | KeyAction::StopRobot
+            | KeyAction::ResumeRobot
+            | KeyAction::Hand(ManualAction::Calibrate)
+    )
+}
+
+/// Whether the trial can be done again.
+pub(super) fn can_redo(session: &Session) -> bool {
+    matches!(session.phase, Phase::Over(_)) && (session.aborted.is_some() || session.excluded.is_some())
+}
+
+/// Whether the open dialog or sheet lets the key of an action through.
+fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
+    let has_control = || model.keys.chord_for(action).is_some_and(|chord| chord.ctrl);
+    let stops = *action == KeyAction::StopRobot;
+    match &model.dialog {
+        None if has_sheet(session, model) => acts_on_sheet(action),
+        None => true,
+        // Enter answers the question, esc leaves it.
+        Some(Dialog::Send(_)) => !matches!(action, KeyAction::Accept | KeyAction::Look(PanelKey::All)),
+        // In text input the space bar types a space.
+        Some(Dialog::Note(_) | Dialog::Report(_)) => false,
+        Some(Dialog::Preflight) => match action {
+            KeyAction::Advance => preflight::all_ok(&preflight::checks(session, model)),
+            KeyAction::ResumeRobot | KeyAction::Hand(ManualAction::HoldRobot) => true,
+            KeyAction::Quit => has_control(),
+            _ => stops,
+        },
+        Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Help | Dialog::Difference(_)) => {
+            stops || (*action == KeyAction::Quit && has_control())
+        }
+        Some(Dialog::Quit | Dialog::EndTrial | Dialog::Calibration) => stops,
+    }
+}
+
+/// Whether the console's state lets an action do something.
+fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
+    let admits = |event: Event| admit(session, &event).is_ok();
+    let runs = matches!(session.phase, Phase::Running | Phase::Paused);
+    match action {
+        KeyAction::Signal(_, signal) => {
+            let (by, signal) = (Sender::Wizard, signal.clone());
+            let event = Event::SignalShown { by, signal, accepted: None, offer: None };
+            refusal(session, model.now, &event).is_none()
+        }
+        KeyAction::Accept => offers::enter(session, model.now).is_ok(),
+        KeyAction::TakeBack => admits(Event::SignalEnded { reason: SignalEnd::TakenBack }),
+        KeyAction::Press(_) => session.is_running(),
+        KeyAction::Note(_) => session.phase != Phase::Closed,
+        KeyAction::Advance => advances(session, model),
+        KeyAction::EndTrial => runs,
+        KeyAction::StopRobot => admits(Event::RobotStopped),
+        KeyAction::ResumeRobot => admits(Event::RobotResumed),
+        KeyAction::Hand(hand) => intervenes(session, *hand),
+        KeyAction::Move(to) => model.playback.as_ref().is_some_and(|playback| moves(playback, *to)),
+        KeyAction::Look(PanelKey::All) => model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0,
+        KeyAction::Belief => visibility(session, model) >= Visibility::Belief && !beliefs(session, model).is_empty(),
+        KeyAction::Differ(step) => differs(model, *step),
+        KeyAction::Rate(rate) => rates(model, *rate),
+        KeyAction::SwitchLayer | KeyAction::Look(_) | KeyAction::Help | KeyAction::Palette | KeyAction::Quit => true,
+    }
+}
+
+/// Whether the key that starts, pauses and goes on does so.
+fn advances(session: &Session, model: &ConsoleModel) -> bool {
+    match session.phase {
+        _ if model.lesson.is_some() => true,
+        Phase::Ready => admit(session, &Event::TrialStarted).is_ok(),
+        Phase::Running => true,
+        Phase::Paused => admit(session, &Event::TrialResumed).is_ok(),
+        Phase::Over(_) => session.protocol.is_some() && (session.aborted.is_some() || session.phase_lacks().is_none()),
+        Phase::Closed => false,
+    }
+}
+
+fn intervenes(session: &Session, hand: ManualAction) -> bool {
+    let (phase, by) = (session.phase, Sender::Wizard);
+    let admits = |event: Event| admit(session, &event).is_ok();
+    match hand {
+        ManualAction::Correct | ManualAction::Abort => matches!(phase, Phase::Running | Phase::Paused),
+        ManualAction::HoldRobot => phase != Phase::Closed,
+        ManualAction::SkipPress => admits(Event::RobotSkipped { by }),
+        ManualAction::DriveRobot => session.is_running() && !session.robot.stopped,
+        ManualAction::Redo => can_redo(session),
+        ManualAction::Preflight => phase == Phase::Ready,
+        ManualAction::Calibrate => admits(Event::Calibration(CalibrationEvent::begin())),
+        ManualAction::NoteInWords => phase == Phase::Paused,
+        ManualAction::Exclude => !matches!(phase, Phase::Ready | Phase::Closed),
+    }
+}
+
+fn moves(playback: &Playback, to: ReplayKey) -> bool {
+    let (at_start, at_end) = (playback.event == 0, playback.event == playback.events);
+    match to {
+        ReplayKey::StepBack | ReplayKey::SeekBack | ReplayKey::ToStart | ReplayKey::BackTo(_) => !at_start,
+        // A recording that grows is followed from its end on.
+        ReplayKey::ToEnd => !playback.follows && playback.events > 0,
+        ReplayKey::StepForward | ReplayKey::SeekForward | ReplayKey::On(_) => !at_end,
+        ReplayKey::Faster => playback.speed + 1 < SPEEDS.len(),
+        ReplayKey::Slower => playback.speed > 0,
+        ReplayKey::PlayPause => playback.events > 0,
+        ReplayKey::ToEvent(_) | ReplayKey::ToTime(_) => true,
+    }
+}
+
+fn differs(model: &ConsoleModel, step: ComparisonKey) -> bool {
+    let chosen = model.comparison.as_ref().and_then(|compared| compared.chosen());
+    chosen.is_some_and(|(at, seen)| match step {
+        ComparisonKey::Open => true,
+        ComparisonKey::Next => at + 1 < seen.differences.len(),
+        ComparisonKey::Last => at > 0,
+    })
+}
+
+fn rates(model: &ConsoleModel, rate: RaterKey) -> bool {
+    let (Some(coding), Some(playback)) = (&model.coding, &model.playback) else { return false };
+    let at = coding.at(playback.event);
+    match rate {
+        RaterKey::Next => at.map_or(0, |at| at + 1) < coding.errors.len(),
+        RaterKey::Last => at.is_some_and(|at| at > 0),
+        RaterKey::Clear => at.is_some_and(|at| coding.codes.0.contains_key(&coding.errors[at])),
+        RaterKey::Belief(_) | RaterKey::Cause(_) => at.is_some(),
+    }
+}

@@ -1,0 +1,168 @@
+//! Clicks: on signals and the offer, on hints, rows, beliefs and the timeline. A click does what a key does.
+
+use crossterm::event::KeyCode;
+use tomcom::base::time::SessionTime;
+use tomcom::communication::Signal;
+use tomcom::console::console_model::Dialog;
+use tomcom::console::picker::{Picker, PickerQuestion};
+use tomcom::console::playback::{Playback, ReplayKey};
+use tomcom::console::view::click_targets;
+use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyMap, update};
+use tomcom::session::Event;
+use tomcom::session::settings::ParticipantKind;
+
+use super::{SIZES, Stage, input};
+
+impl Stage {
+    /// Clicks on the first cell of a text on the screen.
+    fn click(&mut self, text: &str) -> Option<ConsoleCommand> {
+        let screen = self.screen(self.model.size);
+        let found = screen.lines().enumerate().find_map(|(row, line)| Some((row, line.find(text)?, line)));
+        let (row, at, line) = found.unwrap_or_else(|| panic!("no {text:?} in\n{screen}"));
+        // Lines begin with a quotation mark.
+        let column = line[..at].chars().count() as u16 - 1;
+        update(&mut self.model, &self.session, ConsoleMessage::Click(column, row as u16))
+    }
+
+    fn asks_to_send(&self) -> bool {
+        matches!(self.model.dialog, Some(Dialog::Send(_)))
+    }
+}
+
+fn highlight(place: &str) -> Signal {
+    Signal::Highlight(place.to_string())
+}
+
+fn signal(command: Option<ConsoleCommand>) -> Option<Signal> {
+    match input(command) {
+        Some(Event::SignalShown { signal, .. }) => Some(signal),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_click_on_a_signal_asks_once_and_enter_or_a_second_click_sends_it() {
+    for size in SIZES {
+        let mut stage = Stage::sushi(ParticipantKind::Simulated);
+        stage.model.size = size;
+        stage.wait(0.0);
+        assert_eq!(stage.click("[a]"), None);
+        assert!(stage.asks_to_send(), "{size:?}");
+        assert!(stage.screen(size).contains("Send highlight assembly board? enter"), "{}", stage.screen(size));
+        stage.wait(0.1);
+        assert_eq!(stage.click("[a]"), None, "a double click confirms nothing");
+        stage.wait(1.0);
+        assert_eq!(signal(stage.click("[a]")), Some(highlight("assembly_board")));
+        assert_eq!(stage.model.dialog, None);
+        stage.wait(1.0);
+        stage.click("[n]");
+        assert_eq!(signal(stage.key(KeyCode::Enter)), Some(highlight("counter")));
+    }
+}
+
+#[test]
+fn the_question_of_a_click_is_left_by_esc_and_other_keys_mean_themselves() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.click("[a]");
+    assert_eq!(stage.key(KeyCode::Esc), None);
+    assert_eq!(stage.model.dialog, None);
+    stage.click("[a]");
+    assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
+    assert!(stage.asks_to_send(), "the robot stop answers nothing");
+    stage.wait(1.0);
+    assert_eq!(signal(stage.key(KeyCode::Char('n'))), Some(highlight("counter")));
+    assert_eq!(stage.model.dialog, None);
+    stage.click("[a]");
+    stage.click("[c]");
+    stage.wait(1.0);
+    assert_eq!(signal(stage.click("[c]")), Some(highlight("cutting_board")), "the question is about the last click");
+}
+
+#[test]
+fn with_click_sends_a_click_sends_at_once() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.click_sends = true;
+    assert_eq!(signal(stage.click("[a]")), Some(highlight("assembly_board")));
+    assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn a_click_that_cannot_send_says_why_and_asks_nothing() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.at(23.0, Event::TrialPaused);
+    stage.click("[a]");
+    assert_eq!(stage.model.dialog, None);
+    assert!(stage.notice().contains("while the trial runs"), "{}", stage.notice());
+}
+
+#[test]
+fn hints_buttons_of_the_participant_and_beliefs_are_clicked() {
+    let mut stage = Stage::sushi(ParticipantKind::Keyboard);
+    assert_eq!(input(stage.click("STOP ROBOT")), Some(Event::RobotStopped));
+    assert_eq!(input(stage.click("pause")), Some(Event::TrialPaused));
+    stage.wait(0.2);
+    assert_eq!(stage.click("pause"), None, "a double click pauses once");
+    stage.click("switch");
+    assert!(matches!(input(stage.click(" cooking pot")), Some(Event::Press { .. })), "{}", stage.screen((120, 40)));
+    stage.wait(1.0);
+    stage.click("switch");
+    stage.click("1-5");
+    assert!(matches!(&stage.model.dialog, Some(Dialog::Palette(cursor)) if cursor.filter == "markers"));
+    stage.key(KeyCode::Down);
+    stage.wait(1.0);
+    assert_eq!(input(stage.key(KeyCode::Enter)), Some(Event::Marker { note: "overlooked a change".to_string() }));
+    stage.click("90 %");
+    assert!(stage.model.belief_focus.is_some());
+}
+
+#[test]
+fn a_row_is_gone_to_by_a_click_and_taken_by_the_next() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.dialog = Some(Dialog::Pick(Picker::new(PickerQuestion::Abort)));
+    assert_eq!(stage.click("technical failure"), None);
+    assert!(matches!(&stage.model.dialog, Some(Dialog::Pick(picker)) if picker.cursor.at == 1));
+    let aborted = Event::TrialAborted { reason: "technical failure".to_string() };
+    assert_eq!(input(stage.click("technical failure")), Some(aborted));
+    stage.model.dialog = Some(Dialog::EndTrial);
+    stage.click("any other key");
+    assert_eq!(stage.model.dialog, None);
+    stage.model.dialog = Some(Dialog::EndTrial);
+    assert!(matches!(input(stage.click("y yes")), Some(Event::TrialEnded { .. })));
+}
+
+#[test]
+fn nothing_below_a_dialog_can_be_clicked() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let all = click_targets(&stage.session, &stage.model).len();
+    stage.model.dialog = Some(Dialog::Quit);
+    let targets = click_targets(&stage.session, &stage.model);
+    assert!(targets.len() < all && targets.len() <= 4, "{targets:?}");
+}
+
+#[test]
+fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.keys = KeyBindings::replay(&stage.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    let length = SessionTime::from_secs_f64(40.0);
+    stage.model.playback = Some(Playback { length, event: 10, events: 90, ..Playback::new("S001".to_string()) });
+    for size in SIZES {
+        stage.model.size = size;
+        let rows = size.1;
+        let mut seek = |column: u16, row: u16| match update(
+            &mut stage.model,
+            &stage.session,
+            ConsoleMessage::Click(column, row),
+        ) {
+            Some(ConsoleCommand::Move(ReplayKey::ToTime(time))) => time.as_secs_f64(),
+            other => panic!("{other:?} at {column}, {row} of {size:?}"),
+        };
+        let row = rows - 3;
+        assert_eq!(seek(11, row), 0.0);
+        let [early, late] = [30, 50].map(|column| seek(column, row));
+        assert!(0.0 < early && early < late && late < 40.0, "{early} {late}");
+        // The timeline ends at the present; ten columns are five seconds.
+        let right = if size.0 == 80 { size.0 - 2 } else { size.0 - 3 };
+        let [then, now] = [right - 10, right].map(|column| seek(column, row - 2));
+        assert!((now - then - 5.0).abs() < 0.6 && (now - 22.6).abs() < 0.6, "{then} {now}");
+    }
+}

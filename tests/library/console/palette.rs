@@ -1,0 +1,123 @@
+//! The palette: every action with a key is found by typing and done as by its key; only signals it does not send.
+
+use crossterm::event::{KeyCode, KeyEventKind};
+use tomcom::console::console_model::Dialog;
+use tomcom::console::key_action::KeyLayer;
+use tomcom::console::list_cursor::ListCursor;
+use tomcom::console::palette::actions;
+use tomcom::console::playback::{Playback, ReplayKey};
+use tomcom::console::{ConsoleCommand, KeyBindings, KeyMap};
+use tomcom::session::event::Event;
+use tomcom::session::settings::ParticipantKind;
+
+use super::{SIZES, Stage, input, type_in};
+use crate::check_snapshot;
+
+#[test]
+fn the_palette_lists_every_action_and_keeps_head_and_stop_visible() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('k');
+    for size in SIZES {
+        stage.model.size = size;
+        let screen = stage.screen(size);
+        for text in ["RUNNING", "STOP ROBOT", "type to filter, without spaces", "space stops the robot"] {
+            assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
+        }
+        check_snapshot("console", format!("palette_{}x{}", size.0, size.1), screen);
+    }
+    let layer = KeyLayer::Wizard;
+    let listed = actions(&stage.model.keys, layer, &ListCursor::default()).len();
+    let active = stage.model.keys.bindings.iter().filter(|line| line.layer.is_none_or(|only| only == layer));
+    assert_eq!(listed, active.count() - 1, "all but the palette itself");
+}
+
+#[test]
+fn an_action_is_found_by_typing_and_done_as_by_its_key() {
+    for (typed, expected) in [
+        ("hold", Event::RobotHeld { by: tomcom::communication::Sender::Wizard }),
+        ("stoprobot", Event::RobotStopped),
+        ("stpause", Event::TrialPaused),
+    ] {
+        let mut stage = Stage::sushi(ParticipantKind::Simulated);
+        stage.key(KeyCode::Char(':'));
+        type_in(&mut stage, typed);
+        stage.wait(0.1);
+        assert_eq!(input(stage.key(KeyCode::Enter)), Some(expected), "{typed}: {}", stage.notice());
+        assert_eq!(stage.model.dialog, None);
+    }
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('k');
+    type_in(&mut stage, "endthetrial");
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    assert_eq!(stage.model.dialog, Some(Dialog::EndTrial), "it asks as its key does");
+}
+
+#[test]
+fn enter_in_the_palette_sends_no_signal_and_neither_does_the_next_one() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('k');
+    type_in(&mut stage, "highlightcounter");
+    stage.wait(0.1);
+    // A terminal that reports releases tells two presses apart.
+    assert_eq!(stage.kind(KeyCode::Enter, KeyEventKind::Press), None);
+    assert_eq!(stage.kind(KeyCode::Enter, KeyEventKind::Release), None);
+    assert_eq!(stage.model.dialog, None);
+    assert!(stage.notice().contains("press n to highlight counter"), "{}", stage.notice());
+    stage.wait(0.3);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    assert!(stage.notice().contains("right after that of a list"), "{}", stage.notice());
+}
+
+#[test]
+fn space_stops_the_robot_in_the_palette_and_esc_goes_back() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.control('k');
+    type_in(&mut stage, "pan");
+    assert_eq!(input(stage.key(KeyCode::Char(' '))), Some(Event::RobotStopped));
+    stage.at(23.0, Event::RobotStopped);
+    assert_eq!(stage.key(KeyCode::Char(' ')), None);
+    stage.key(KeyCode::Char('?'));
+    assert!(matches!(&stage.model.dialog, Some(Dialog::Palette(cursor)) if cursor.filter == "pan"));
+    stage.key(KeyCode::Esc);
+    assert!(matches!(&stage.model.dialog, Some(Dialog::Palette(cursor)) if cursor.filter.is_empty()));
+    stage.wait(1.0);
+    stage.key(KeyCode::Esc);
+    assert_eq!(stage.model.dialog, None);
+}
+
+#[test]
+fn a_replay_has_its_actions_in_the_palette_and_the_space_bar_does_nothing() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.model.keys = KeyBindings::replay(&stage.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    stage.model.playback = Some(Playback { event: 10, events: 90, ..Playback::new("S001".to_string()) });
+    stage.control('k');
+    assert_eq!(stage.key(KeyCode::Char(' ')), None);
+    type_in(&mut stage, "faster");
+    stage.wait(0.1);
+    assert_eq!(stage.key(KeyCode::Enter), Some(ConsoleCommand::Move(ReplayKey::Faster)));
+}
+
+#[test]
+fn rows_are_found_by_parts_and_by_beginnings_of_words() {
+    let keeps = |typed: &str, text: &str| ListCursor { filter: typed.to_string(), at: 0 }.keeps(text);
+    for typed in ["", "tuna", "tunaraw", "una", "traw", "tr", "TunaR", "raw"] {
+        assert!(keeps(typed, "tuna raw"), "{typed}");
+    }
+    for typed in ["rawtuna", "tx", "tw", "tunaraws"] {
+        assert!(!keeps(typed, "tuna raw"), "{typed}");
+    }
+    assert!(keeps("20260314", "2026-03-14 P07"), "signs do not count");
+}
+
+#[test]
+fn a_key_file_that_has_the_palettes_key_for_something_else_is_still_read() {
+    let map: KeyMap = toml::from_str("[console]\ncorrect = \"ctrl+k\"\n").expect("a key file");
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    let kitchen = stage.session.kitchen.clone();
+    stage.model.keys = KeyBindings::live(&kitchen, &stage.session.spec, &map).expect("the palette has another key");
+    stage.control('k');
+    assert!(matches!(stage.model.dialog, Some(Dialog::Pick(_))));
+    stage.model.dialog = None;
+    stage.key(KeyCode::Char(':'));
+    assert!(matches!(stage.model.dialog, Some(Dialog::Palette(_))));
+}

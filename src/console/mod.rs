@@ -4,7 +4,9 @@
 pub mod arrange;
 mod beliefs;
 pub mod chord;
+pub mod codebook;
 pub mod coding;
+pub mod coding_list;
 pub mod compared;
 pub mod console_message;
 pub mod console_model;

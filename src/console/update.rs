@@ -50,6 +50,9 @@ pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessa
             None
         }
         ConsoleMessage::Click(column, row) => {
+            if let Some(taken) = coding::click(model, session, (column, row)) {
+                return taken;
+            }
             panels::click(model, session, (column, row));
             None
         }

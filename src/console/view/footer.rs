@@ -13,7 +13,6 @@ use crate::console::console_model::{ConsoleModel, Dialog, Notice};
 use crate::console::form::sheet;
 use crate::console::key_action::ManualAction;
 use crate::console::key_action::PanelKey;
-use crate::console::key_action::RaterKey;
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer};
 use crate::console::notice::NoticeLevel;
 use crate::console::playback::ReplayKey;
@@ -51,11 +50,12 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         false => matches!(binding.action, KeyAction::EndTrial | KeyAction::Look(PanelKey::Next)),
     };
     let (late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
-    // The robot stop comes first, then the key back to all panels if one panel is at full size.
+    // The robot stop comes first, then the key back to all panels if one panel is at full size, and a rater's keys.
     first.sort_by_key(|binding| match binding.action {
         KeyAction::StopRobot => 0,
         KeyAction::Look(PanelKey::All) => 1,
-        _ => 2,
+        KeyAction::Rate(_) => 2,
+        _ => 3,
     });
     for binding in first.into_iter().chain(late) {
         let Some(label) = label(binding, session, model) else { continue };
@@ -65,7 +65,6 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
                 format!("1-{}", session.spec.console.notes.len())
             }
             // The keys of both directions share one label.
-            KeyAction::Rate(RaterKey::Belief(_)) => "letters".to_string(),
             KeyAction::Move(ReplayKey::StepForward) => "left/right".to_string(),
             KeyAction::Move(ReplayKey::SeekForward) => "pgup/pgdn".to_string(),
             KeyAction::Move(ReplayKey::Faster) => "+/-".to_string(),

@@ -2,6 +2,7 @@
 
 pub mod belief_panel;
 mod cards;
+mod coding_panel;
 pub mod comparison_panel;
 pub mod dialog;
 pub mod events;
@@ -56,6 +57,7 @@ pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     events::draw(&mut brush, &regions, session, model);
     timeline::draw(&mut brush, &regions, session, model);
     comparison_panel::draw(&mut brush, &regions, session, model);
+    coding_panel::draw(&mut brush, &regions, session, model);
     scrub::draw(&mut brush, &regions, session, model);
     footer::draw(&mut brush, &regions, session, model);
     cards::draw(&mut brush, &regions, session, model);

@@ -7,7 +7,8 @@ use miette::Diagnostic;
 use tomcom::edge::log::LOG_NAME;
 use tomcom::edge::log::rater_codes::{read_all, write};
 use tomcom::measures::cause_codes::{AgreementTable, CauseKind, Code, Codes, most_complete};
-use tomcom::run::codes::{CodedRecording, CodesSummary, export, import};
+use tomcom::run::code_exchange::{export, import};
+use tomcom::run::codes::{CodedRecording, CodesSummary};
 use tomcom::run::simulate::Shard;
 use tomcom::run::study::reading::{self, AnalysisScope};
 

@@ -24,7 +24,7 @@ use crate::session::settings::is_code;
 #[command(after_help = "tomcom replay RECORDING --rater R1 is where errors are coded;\n\
                   tomcom replay RECORDING --settle R1 R2 is where two raters settle what they coded differently.\n\
                   Examples: tomcom codes sessions/2026-03-14-P07-1\n          \
-                  tomcom codes sessions/*-P*-* --export codes.csv\nMore: docs/recordings.md")]
+                  tomcom codes sessions/*-P*-* --export codes.csv\nMore: docs/raters.md")]
 pub(super) struct CodesArgs {
     /// The folders of recordings, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]

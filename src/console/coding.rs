@@ -41,7 +41,7 @@ pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterKey) -> Optio
         model.say(NoticeLevel::Refused, words);
         return None;
     }
-    let Some(press) = at.and_then(|at| coding.errors.get(at)).map(|error| error.press) else {
+    let Some(press) = coding.present(events).map(|error| error.press) else {
         model.say(NoticeLevel::Refused, "there is no error yet that could be coded");
         return None;
     };

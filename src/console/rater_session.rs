@@ -59,6 +59,11 @@ impl RaterSession {
         self.errors.partition_point(|error| error.press < events as u64).checked_sub(1)
     }
 
+    /// The last error among the first `events` events.
+    pub fn present(&self, events: usize) -> Option<&ListedError> {
+        self.errors.get(self.at(events)?)
+    }
+
     /// Index of the first error without a code.
     pub fn first_open(&self) -> Option<usize> {
         self.errors.iter().position(|error| self.code(error).is_none())

@@ -295,6 +295,6 @@ fn describe_disagreements(all: &[Disagreement]) -> String {
             one.recording, one.of, one.with
         );
     }
-    let remedy = format!("tomcom replay {} --settle {} {}", first.recording, first.of, first.with);
-    text + &format!("settle them together, recording by recording: {remedy}\n")
+    let (of, with) = (&first.of, &first.with);
+    text + &format!("settle them together, recording by recording: tomcom replay RECORDING --settle {of} {with}\n")
 }

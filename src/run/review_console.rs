@@ -155,7 +155,10 @@ impl Review {
 
     /// Saves the raters' codes, and shows the error of which one changed.
     fn keep(&mut self, press: u64) {
-        self.go(ReplayKey::ToEvent(press));
+        let present = self.model.coding.as_ref().and_then(|coding| coding.present(self.film.position));
+        if present.map(|error| error.press) != Some(press) {
+            self.go(ReplayKey::ToEvent(press));
+        }
         let Some(coding) = &self.model.coding else { return };
         let error = coding.errors.iter().find(|error| error.press == press);
         let said = match (coding.next_step(), error) {

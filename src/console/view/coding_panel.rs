@@ -66,7 +66,7 @@ fn draw_errors(brush: &mut Painter, regions: &Regions, coding: &RaterSession, ev
     let list = CodingList::new(regions, coding, events);
     match list.head.y > area.y {
         true => {
-            brush.panel(area, &format!("Errors: {}", coding.progress()), "");
+            brush.panel(area, &coding.progress(), "");
             draw_head(brush, list.head, coding, events);
         }
         false => draw_lines(brush, list.head, coding, events),
@@ -98,7 +98,7 @@ fn draw_lines(brush: &mut Painter, head: Rect, coding: &RaterSession, events: us
     if end + BAR + 3 < head.right() {
         brush.bar(end + 2, head.y, BAR, share(coding), TextRole::Strong);
     }
-    let own = coding.at(events).map(|at| coding.own(&coding.errors[at])).unwrap_or_default();
+    let own = coding.present(events).map(|error| coding.own(error)).unwrap_or_default();
     if !own.is_empty() {
         let text = brush.style(TextRole::Text);
         let words = format!("{:columns$}", own.join("   "), columns = usize::from(columns));
@@ -110,11 +110,10 @@ fn draw_lines(brush: &mut Painter, head: Rect, coding: &RaterSession, events: us
 fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usize) {
     let (x, columns) = (head.x + 1, head.width.saturating_sub(2));
     brush.bar(x, head.y, columns, share(coding), TextRole::Strong);
-    let present = coding.at(events).map(|at| &coding.errors[at]);
     let mut lines: Vec<(String, TextRole)> = Vec::new();
     if let Some(next) = coding.next_step() {
         lines.extend(wrap(&next, columns).into_iter().map(|line| (line, TextRole::Strong)));
-    } else if let Some(error) = present {
+    } else if let Some(error) = coding.present(events) {
         let code = RaterSession::words(coding.code(error));
         lines.push((format!("{} {}", error.error, error.words()), TextRole::Strong));
         match coding.party {

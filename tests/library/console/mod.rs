@@ -3,6 +3,7 @@
 mod advice;
 mod belief;
 mod calibration;
+mod coding;
 mod colours;
 mod comparison;
 mod hands;

@@ -96,7 +96,7 @@ impl CodedRecording {
             return Err((format!("the consensus of {}", new.raters.join(" and ")), remedy));
         }
         let decided = Codes([(press, code.clone())].into());
-        let consensus = consensus.with_decided(&decided, own.each_ref());
+        let consensus = consensus.with_agreed(own.each_ref()).with_decided(&decided, own.each_ref());
         if let Some(remedy) = consensus.settled.get(&press).and_then(|settled| settled.fault()) {
             return Err((format!("press {press} with another cause than both raters say"), remedy.to_string()));
         }

@@ -75,7 +75,7 @@ impl CodedRecording {
         let none = Codes::default();
         let own = consensus.raters.each_ref().map(|rater| self.codes.get(rater).unwrap_or(&none));
         let [of, with] = consensus.raters.clone();
-        let agreed = own[0].agreed(own[1]).0.len() as u64;
+        let agreed = consensus.agreed() as u64;
         let settled = consensus.current(own).0.len() as u64;
         let stale = consensus.changed(own).into_iter().map(|changed| StaleCode {
             error: self.codable.errors.partition_point(|&press| press < changed.press) as u64 + 1,

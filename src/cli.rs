@@ -144,6 +144,9 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     if let Some(rater) = &args.rater {
         return data::rate(recording, rater);
     }
+    if let Some(raters) = &args.settle {
+        return data::settle(recording, raters);
+    }
     if args.format == OutputFormat::Text && std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
         return Ok(console_over::review(recording, args.follow, None)?);
     }

@@ -6,6 +6,7 @@ pub mod advisor;
 pub mod belief_check;
 pub mod compared_recording;
 pub mod comparison_summary;
+pub mod error_list;
 pub mod event_lines;
 pub mod exclusion_status;
 #[cfg(feature = "cli")]

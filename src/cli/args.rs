@@ -89,10 +89,15 @@ pub(super) struct ReplayArgs {
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,
-    /// Code the errors of the recording as this rater (a code, never a name), without any estimate in view: letters code
-    /// false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Codes are saved beside the log.
+    /// Code the errors of the recording as this rater (a code, never a name), without estimate, signals or condition in view: letters
+    /// code false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Begins at the first error without a code. Codes
+    /// are saved beside the log at once.
     #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
     pub(super) rater: Option<String>,
+    /// Settle as two raters together what they coded differently: goes through these errors with both codes in view, and saves the
+    /// consensus beside the log.
+    #[arg(long, value_names = ["A", "B"], num_args = 2, conflicts_with_all = ["rater", "verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
+    pub(super) settle: Option<Vec<String>>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,

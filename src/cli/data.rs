@@ -11,23 +11,25 @@ use super::list::each_chosen;
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::base::words::count;
 use crate::edge::forget::{self, ParticipantData};
+use crate::run::code_exchange;
 use crate::run::codes::{self, CodedRecording, CodesSummary};
 use crate::run::review_console;
 use crate::session::participant_code;
 use crate::session::settings::is_code;
 
-/// Prints raters' codes of errors, and their agreement.
+/// Prints raters' codes of errors, their agreement, and where they disagree.
 ///
-/// Can import codes from a table, or export them.
+/// Also what two raters settled. Can import codes from a table, or export them.
 #[derive(Debug, Args)]
-#[command(after_help = "tomcom replay RECORDING --rater R1 is where errors are coded.\n\
+#[command(after_help = "tomcom replay RECORDING --rater R1 is where errors are coded;\n\
+                  tomcom replay RECORDING --settle R1 R2 is where two raters settle what they coded differently.\n\
                   Examples: tomcom codes sessions/2026-03-14-P07-1\n          \
-                  tomcom codes sessions/*-P*-* --export codes.csv\nMore: docs/recordings.md")]
+                  tomcom codes sessions/*-P*-* --export codes.csv\nMore: docs/raters.md")]
 pub(super) struct CodesArgs {
     /// The folders of recordings, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
-    /// Import codes from this table, with the columns recording, rater, press, cause, aspect.
+    /// Import codes from this table, with the columns recording, rater (R1+R2: a consensus), press, cause, aspect.
     #[arg(long, value_name = "FILE")]
     import: Option<PathBuf>,
     /// Export all codes to such a table.
@@ -45,10 +47,10 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     bar.finish_and_clear();
     let mut recordings = read.into_iter().collect::<Result<Vec<CodedRecording>, _>>()?;
     if let Some(file) = &args.import {
-        codes::import(&mut recordings, file)?;
+        code_exchange::import(&mut recordings, file)?;
     }
     if let Some(file) = &args.export {
-        codes::export(&recordings, file)?;
+        code_exchange::export(&recordings, file)?;
     }
     let figures = CodesSummary::from_recordings(&recordings);
     print(args.format, &figures, || codes::describe(&figures))
@@ -56,7 +58,27 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
 
 /// Codes the errors of a recording at the console.
 pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
-    if !is_code(rater) {
+    check_raters(&[rater])?;
+    Ok(review_console::rate(recording, rater)?)
+}
+
+/// Settles at the console what two raters coded differently.
+pub(super) fn settle(recording: &Path, raters: &[String]) -> Result<(), Failure> {
+    let [one, other] = raters else {
+        let help = "the codes of two raters: --settle R1 R2";
+        return Err(Failure::Wrong(miette::miette!(help = help, "found {} raters to settle with", raters.len())));
+    };
+    check_raters(&[one, other])?;
+    if one == other {
+        let help = "two raters, each of whom coded the errors alone: --settle R1 R2";
+        return Err(Failure::Wrong(miette::miette!(help = help, "found the rater \"{one}\" twice")));
+    }
+    Ok(review_console::settle(recording, [one, other])?)
+}
+
+/// Checks that raters have codes, and that there is a terminal to code errors at.
+fn check_raters(raters: &[&str]) -> Result<(), Failure> {
+    if let Some(rater) = raters.iter().find(|rater| !is_code(rater)) {
         let help = "a code of 1 to 32 letters, digits, - and _, such as R1; never a name";
         return Err(Failure::Wrong(miette::miette!(help = help, "found the rater \"{rater}\"")));
     }
@@ -64,7 +86,7 @@ pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
         let help = "a terminal; tomcom codes takes codes from a table";
         return Err(Failure::Wrong(miette::miette!(help = help, "found no terminal to code errors at")));
     }
-    Ok(review_console::rate(recording, rater)?)
+    Ok(())
 }
 
 /// Deletes everything about a participant below a folder.

@@ -61,11 +61,23 @@ struct Item {
 
 const MIN_CARD: u16 = 12;
 const MAX_ORDER: u16 = 44;
+/// Columns beside the name of the participant's hand: rule and gap; where it has a key, that and its space, too.
+const OWN_HAND: u16 = 2;
+const KEYED_OWN_HAND: u16 = 4;
 
 impl KitchenMap {
     /// Computes the map of a kitchen in these cells; `with_keys` reserves room for the keys of the human's storage.
     pub fn new(kitchen: &Kitchen, cells: Rect, with_keys: bool) -> KitchenMap {
-        let items = items(kitchen, with_keys);
+        KitchenMap::with_room(kitchen, cells, with_keys, OWN_HAND)
+    }
+
+    /// The map for a rater, for whom the participant's own hand has a key, too.
+    pub fn for_rater(kitchen: &Kitchen, cells: Rect) -> KitchenMap {
+        KitchenMap::with_room(kitchen, cells, false, KEYED_OWN_HAND)
+    }
+
+    fn with_room(kitchen: &Kitchen, cells: Rect, with_keys: bool, own_hand: u16) -> KitchenMap {
+        let items = items(kitchen, with_keys, own_hand);
         let (strip, body): (Vec<&Item>, Vec<&Item>) = items.iter().partition(|item| is_order(kitchen, item.thing));
         let lowest = |items: &[&Item]| items.iter().map(|item| item.area.y + item.area.h).fold(0.0, f64::max);
         let highest = |items: &[&Item]| items.iter().map(|item| item.area.y).fold(1.0, f64::min);
@@ -200,13 +212,13 @@ fn along(value: f64, knots: &[(f64, f64); 4], order: impl Fn((f64, f64)) -> (f64
     }
 }
 
-fn items(kitchen: &Kitchen, with_keys: bool) -> Vec<Item> {
+fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
     let location = |(index, location): (usize, &crate::kitchen::Location)| {
         let owner = if let LocationKind::Hand(agent) = location.kind { Some(agent) } else { None };
         let thing = MapElement::Location(LocationId(index as u8));
-        // Rule, key and gap beside the name (the own hand is seldom highlighted); orders stand in a strip of their own.
+        // Rule, key and gap beside the name (the own hand seldom has a key); orders stand in a strip of their own.
         let beside = match location.kind {
-            LocationKind::Hand(Agent::Human) => 2,
+            LocationKind::Hand(Agent::Human) => own_hand,
             // Without brackets around the key there is room for those of the storage.
             _ if with_keys => 4,
             _ => 5,

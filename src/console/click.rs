@@ -19,6 +19,8 @@ pub enum ClickAction {
     Palette(&'static str),
     /// Show the belief about this aspect over time.
     Belief(AspectId),
+    /// Go to this error of the list, while errors are coded.
+    Error(usize),
     /// Move a replay to this session time.
     Seek(SessionTime),
 }

@@ -5,49 +5,72 @@ use super::console_model::ConsoleModel;
 use super::key_action::RaterKey;
 use super::notice::NoticeLevel;
 use super::playback::ReplayKey;
-use crate::history::wording;
-use crate::kitchen::Kitchen;
 use crate::measures::cause_codes::Code;
-use crate::session::{Session, TimelineEvent};
-
-/// A press in words: its button, and whether it did anything.
-pub fn press(kitchen: &Kitchen, what: &TimelineEvent) -> String {
-    let TimelineEvent::Press { agent, button, no_effect } = what else { return String::new() };
-    let effect = if no_effect.is_none() { "with" } else { "without" };
-    format!("\"{}\" {effect} effect", wording::button(kitchen, *agent, *button))
-}
+use crate::session::Session;
 
 /// Does what a key asks for.
 pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterKey) -> Option<ConsoleCommand> {
     let events = model.playback.as_ref().map_or(0, |playback| playback.event);
     let coding = model.coding.as_mut()?;
     let at = coding.at(events);
-    let kitchen = &session.kitchen;
+    let chosen = coding.chosen.take().filter(|chosen| Some(*chosen) != at);
     let code = match rate {
-        RaterKey::Next | RaterKey::Last => {
-            let to = match rate {
-                RaterKey::Next => Some(at.map_or(0, |at| at + 1)),
-                _ => at.and_then(|at| at.checked_sub(1)),
-            };
-            let Some(&press) = to.and_then(|to| coding.errors.get(to)) else {
-                model.say(NoticeLevel::Refused, "there is no other error");
-                return None;
-            };
-            return Some(ConsoleCommand::Move(ReplayKey::ToEvent(press)));
+        RaterKey::Next => return go(model, chosen.or(Some(at.map_or(0, |at| at + 1)))),
+        RaterKey::Last => return go(model, at.and_then(|at| at.checked_sub(1))),
+        RaterKey::ChooseLater | RaterKey::ChooseEarlier => {
+            let last = coding.errors.len().checked_sub(1)?;
+            let from = chosen.or(at);
+            coding.chosen = Some(match rate {
+                RaterKey::ChooseLater => from.map_or(0, |from| (from + 1).min(last)),
+                _ => from.map_or(0, |from| from.saturating_sub(1)),
+            });
+            return None;
         }
-        RaterKey::Belief(location) => Some(Code::Belief(kitchen.location(location).name.clone())),
+        RaterKey::Undo => return undone(model, false),
+        RaterKey::Redo => return undone(model, true),
+        RaterKey::Belief(location) => Some(Code::Belief(session.kitchen.location(location).name.clone())),
         RaterKey::Cause(kind) => Code::new(kind, None),
         RaterKey::Clear => None,
     };
-    let Some(&press) = at.and_then(|at| coding.errors.get(at)) else {
+    if let Some(error) = chosen.and_then(|chosen| coding.errors.get(chosen)) {
+        let words = format!("not coded: error {} is chosen; enter goes there, esc stays here", error.error);
+        coding.chosen = chosen;
+        model.say(NoticeLevel::Refused, words);
+        return None;
+    }
+    let Some(press) = coding.present(events).map(|error| error.press) else {
         model.say(NoticeLevel::Refused, "there is no error yet that could be coded");
         return None;
     };
-    match code {
-        Some(code) => coding.codes.0.insert(press, code),
-        None => coding.codes.0.remove(&press),
+    coding.give(press, code);
+    Some(ConsoleCommand::Code { press })
+}
+
+/// Goes to an error, if there is one.
+fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
+    let errors = model.coding.as_ref().map(|coding| &coding.errors)?;
+    let Some(error) = to.and_then(|to| errors.get(to)) else {
+        model.say(NoticeLevel::Refused, "there is no other error");
+        return None;
     };
-    // What was said stands beside the error, where an older notice would hide it.
-    model.notice = None;
-    Some(ConsoleCommand::Code)
+    Some(ConsoleCommand::Move(ReplayKey::ToEvent(error.press)))
+}
+
+/// Takes a step back, or does it again.
+fn undone(model: &mut ConsoleModel, again: bool) -> Option<ConsoleCommand> {
+    let coding = model.coding.as_mut()?;
+    let press = if again { coding.redo() } else { coding.undo() };
+    if press.is_none() {
+        let nothing = if again { "nothing to do again" } else { "nothing to undo since the recording was opened" };
+        model.say(NoticeLevel::Refused, nothing);
+    }
+    press.map(|press| ConsoleCommand::Code { press })
+}
+
+/// Goes to an error of the list.
+pub(super) fn go_to(model: &mut ConsoleModel, index: usize) -> Option<ConsoleCommand> {
+    if let Some(coding) = &mut model.coding {
+        coding.chosen = None;
+    }
+    go(model, Some(index))
 }

@@ -31,8 +31,11 @@ pub enum ConsoleCommand {
     Start(Event),
     /// Seek in a recording.
     Move(ReplayKey),
-    /// Save the rater's codes.
-    Code,
+    /// Save the rater's codes, and show the error of which one changed.
+    Code {
+        /// Sequence number of the press that was the error.
+        press: u64,
+    },
     /// Close this recording and repeat its trial in another one.
     Redo,
     /// Close this finished recording and continue with the next one of the series.

@@ -119,6 +119,14 @@ pub enum RaterKey {
     Cause(CauseKind),
     /// Remove the code of the error.
     Clear,
+    /// Take the last code back.
+    Undo,
+    /// Do what was undone again.
+    Redo,
+    /// Choose the error below in the list.
+    ChooseLater,
+    /// Choose the error above in the list.
+    ChooseEarlier,
 }
 
 /// A table of a key file.

@@ -6,7 +6,9 @@
 use super::chord::KeyChord;
 use super::key_action::{KeyAction, KeyBinding, KeyError, KeyLayer, KeyPlace, KeySection, RaterKey};
 use super::keymap::KeyMap;
+use super::playback::ReplayKey;
 use super::table;
+use crate::history::landmark::ReplayLandmark;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, LocationKind};
 use crate::session::settings::{ParticipantKind, SessionSpec};
 
@@ -89,9 +91,23 @@ impl KeyBindings {
         self
     }
 
-    /// Adds the keys of a rater: letters of signals then code false beliefs, so no letter quits the program.
+    /// Adds the keys of a rater: letters of signals then code false beliefs, so no letter quits the program, and the arrows choose
+    /// an error. Removes those that would tell what is estimated or sent.
     pub fn with_coding(mut self, kitchen: &Kitchen) -> KeyBindings {
+        use ReplayKey::{BackTo, On};
+        use ReplayLandmark::{FalseBelief, Signal};
+        self.bindings.retain(|line| {
+            let tells = matches!(line.action, KeyAction::Move(On(FalseBelief | Signal) | BackTo(FalseBelief | Signal)));
+            !tells && line.action != KeyAction::Belief
+        });
         for line in &mut self.bindings {
+            let marks = &self.marks;
+            line.chords.retain(|chord| !marks.contains(&Some(*chord)));
+            if let Some((rate, help)) = table::choosing(&line.action) {
+                (line.action, line.help) = (KeyAction::Rate(rate), help.to_string());
+            }
+        }
+        for line in &mut self.coding {
             let marks = &self.marks;
             line.chords.retain(|chord| !marks.contains(&Some(*chord)));
         }

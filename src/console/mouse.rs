@@ -6,11 +6,12 @@ use super::arrange::{KitchenMap, MapElement};
 use super::chord::KeyChord;
 use super::click::ClickAction;
 use super::click_question;
+use super::coding;
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
 use super::held_keys::{ANSWER_S, Touch};
-use super::key_action::{KeyAction, KeyLayer};
+use super::key_action::{KeyAction, KeyLayer, RaterKey};
 use super::key_press::press;
 use super::list_cursor::ListCursor;
 use super::notice::NoticeLevel;
@@ -29,12 +30,15 @@ const DOUBLE_CLICK_S: f64 = 0.4;
 /// Notes where the pointer is on the display, which may stand for the gaze.
 pub(super) fn point(model: &mut ConsoleModel, session: &Session, (column, row): (u16, u16)) {
     let regions = Regions::showing(model.size, session, model);
-    model.pointer = Some(map(session, &regions).display_point(column, row));
+    model.pointer = Some(map(model, session, &regions).display_point(column, row));
 }
 
-fn map(session: &Session, regions: &Regions) -> KitchenMap {
+fn map(model: &ConsoleModel, session: &Session, regions: &Regions) -> KitchenMap {
     let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
-    KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys)
+    match model.coding.is_some() {
+        true => KitchenMap::for_rater(&session.kitchen, regions.kitchen_inside()),
+        false => KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys),
+    }
 }
 
 /// Handles a click: on what the view offers it does what the key does; on a place it tells the place's key; elsewhere it shows the
@@ -58,6 +62,7 @@ pub(super) fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16
             model.focus_belief(Some(aspect));
             None
         }
+        Some(ClickAction::Error(index)) => coding::go_to(model, index),
         Some(ClickAction::Seek(time)) => Some(ConsoleCommand::Move(ReplayKey::ToTime(time))),
         None => {
             let is_covered = model.playback.is_none() && sheet(session).is_some();
@@ -108,7 +113,7 @@ fn choose(model: &mut ConsoleModel, session: &Session, row: usize) -> Option<Con
 fn look(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
     let regions = Regions::showing(model.size, session, model);
     if regions.kitchen_inside().contains(cell.into()) {
-        let plan = map(session, &regions);
+        let plan = map(model, session, &regions);
         let thing = plan.spots.iter().find(|spot| spot.cells.contains(cell.into())).map(|spot| spot.thing);
         if let Some(MapElement::Location(location)) = thing {
             return tell(model, session, location);
@@ -125,7 +130,9 @@ fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
     let is_main = |action| matches!(action, Use::Use(at) | Use::Serve(at) if at == location);
     let buttons = &session.kitchen.buttons[Agent::Human.index()];
     let line = model.keys.bindings.iter().find(|line| match (&line.action, model.layer) {
-        (KeyAction::Signal(about, _), KeyLayer::Wizard) => *about == location,
+        (KeyAction::Signal(about, _) | KeyAction::Rate(RaterKey::Belief(about)), KeyLayer::Wizard) => {
+            *about == location
+        }
         (KeyAction::Press(ButtonId(button)), KeyLayer::Participant) => is_main(buttons[usize::from(*button)].action),
         _ => false,
     });

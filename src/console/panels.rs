@@ -21,6 +21,9 @@ pub fn look(model: &mut ConsoleModel, session: &Session, look: PanelKey) {
         PanelKey::All => {
             (model.alone, model.events_back, model.timeline_back_s) = (None, 0, 0);
             model.belief_focus = None;
+            if let Some(coding) = &mut model.coding {
+                coding.chosen = None;
+            }
         }
         PanelKey::Next => model.alone = seen.get(at.map_or(0, |at| at + 1)).copied(),
         PanelKey::Last => {

@@ -156,9 +156,13 @@ fn rates(model: &ConsoleModel, rate: RaterKey) -> bool {
     let (Some(coding), Some(playback)) = (&model.coding, &model.playback) else { return false };
     let at = coding.at(playback.event);
     match rate {
+        RaterKey::Next if coding.chosen.is_some() => true,
         RaterKey::Next => at.map_or(0, |at| at + 1) < coding.errors.len(),
         RaterKey::Last => at.is_some_and(|at| at > 0),
-        RaterKey::Clear => at.is_some_and(|at| coding.codes.0.contains_key(&coding.errors[at])),
+        RaterKey::Clear => at.is_some_and(|at| coding.code(&coding.errors[at]).is_some()),
+        RaterKey::Undo => coding.can_undo(),
+        RaterKey::Redo => coding.can_redo(),
+        RaterKey::ChooseLater | RaterKey::ChooseEarlier => !coding.errors.is_empty(),
         RaterKey::Belief(_) | RaterKey::Cause(_) => at.is_some(),
     }
 }

@@ -206,31 +206,41 @@ pub fn replay() -> Vec<KeyBinding> {
 }
 
 /// What a rater says about errors; only where they are coded.
-fn codes() -> [KeyBinding; 7] {
+fn codes() -> [KeyBinding; 9] {
     let code =
-        |name, key: KeyChord, rate, help, footer| line(name, &[key], KeyAction::Rate(rate), CODING, help, footer);
-    let cause = |name, key, kind, help| code(name, KeyChord::char(key), RaterKey::Cause(kind), help, None);
+        |name, keys: &[KeyChord], rate, help, footer| line(name, keys, KeyAction::Rate(rate), CODING, help, footer);
+    let cause = |name, key, kind: CauseKind| {
+        let help = format!("{}: {}", kind.title(), kind.definition());
+        line(name, &[KeyChord::char(key)], KeyAction::Rate(RaterKey::Cause(kind)), CODING, &help, None)
+    };
     [
-        code("code_next", KeyChord::plain(Enter), RaterKey::Next, "to the next error", Some("next error")),
-        code("code_last", KeyChord::plain(Backspace), RaterKey::Last, "to the error before", None),
-        KeyBinding {
-            footer: Some("slip"),
-            ..cause("slip", '1', CauseKind::Slip, "a slip: nothing was believed wrong")
-        },
-        KeyBinding { footer: Some("race"), ..cause("race", '2', CauseKind::Race, "a race: the robot was quicker") },
-        KeyBinding { footer: Some("other"), ..cause("other_cause", '3', CauseKind::Other, "another cause") },
-        cause("mixed_up_buttons", '4', CauseKind::Buttons, "mixed up buttons: another one was wanted"),
-        code("clear_code", KeyChord::plain(Delete), RaterKey::Clear, "not coded after all", None),
+        code("code_next", &plain(Enter), RaterKey::Next, "to the next error, or the chosen one", Some("next error")),
+        code("code_last", &plain(Backspace), RaterKey::Last, "to the error before", None),
+        cause("slip", '1', CauseKind::Slip),
+        cause("race", '2', CauseKind::Race),
+        cause("other_cause", '3', CauseKind::Other),
+        cause("mixed_up_buttons", '4', CauseKind::Buttons),
+        code("clear_code", &plain(Delete), RaterKey::Clear, "not coded after all", Some("no code")),
+        code("undo_code", &[KeyChord::char('u'), KeyChord::ctrl('z')], RaterKey::Undo, "undo a code", Some("undo")),
+        code("redo_code", &[KeyChord::ctrl('y')], RaterKey::Redo, "redo it", Some("redo")),
     ]
+}
+
+/// The arrows of a rater: they choose an error of the list.
+pub fn choosing(action: &KeyAction) -> Option<(RaterKey, &'static str)> {
+    match action {
+        KeyAction::Look(PanelKey::Back) => Some((RaterKey::ChooseEarlier, "choose the error above; enter goes there")),
+        KeyAction::Look(PanelKey::Forward) => Some((RaterKey::ChooseLater, "choose the error below; enter goes there")),
+        _ => None,
+    }
 }
 
 /// What was believed wrong, by the letters of the signals.
 pub fn causes(kitchen: &Kitchen, marks: &[Option<KeyChord>]) -> Vec<KeyBinding> {
     let cause = |(index, mark): (usize, &Option<KeyChord>)| {
         let (id, chord) = (LocationId(index as u8), (*mark)?);
-        let help = format!("wrong about {}", kitchen.location(id).label());
-        let footer = (index == 0).then_some("wrong about ...");
-        Some(line(&kitchen.location(id).name, &[chord], KeyAction::Rate(RaterKey::Belief(id)), CODING, &help, footer))
+        let help = format!("{} {}", CauseKind::Belief.title(), kitchen.location(id).label());
+        Some(line(&kitchen.location(id).name, &[chord], KeyAction::Rate(RaterKey::Belief(id)), CODING, &help, None))
     };
     marks.iter().enumerate().filter_map(cause).collect()
 }

@@ -26,6 +26,7 @@ pub mod parse;
 mod place;
 pub mod pupil;
 pub mod recordings;
+mod replace_file;
 #[cfg(feature = "rerun")]
 pub mod rerun;
 pub mod rescue;

@@ -10,6 +10,7 @@ use crate::kitchen::no_effect::NoEffect;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Dish, Kitchen, LocationId, OrderContent, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
+use crate::measures::cause_codes::{CauseKind, Code};
 use crate::robot::moment::ArmPhase;
 use crate::robot::safety::SafetyMode;
 use crate::session::accuracy_check::CalibrationEvent;
@@ -27,6 +28,14 @@ pub fn button(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> 
 /// A location's name in words.
 pub fn location(name: &str) -> String {
     name.replace('_', " ")
+}
+
+/// A rater's code in words: "slip", "wrong about cooking pot".
+pub fn code(code: &Code) -> String {
+    match code {
+        Code::Belief(place) => format!("{} {}", CauseKind::Belief.title(), location(place)),
+        other => other.kind().title().to_string(),
+    }
 }
 
 /// Why the human's press of this button would have no effect now: "no effect: the cooking pot is empty"; `None` if it would have one.

@@ -57,6 +57,37 @@ impl CauseKind {
         }
     }
 
+    /// Name in the codebook.
+    pub fn title(self) -> &'static str {
+        match self {
+            CauseKind::Belief => "wrong about",
+            CauseKind::Slip => "slip",
+            CauseKind::Race => "race",
+            CauseKind::Other => "other cause",
+            CauseKind::Buttons => "mixed up buttons",
+        }
+    }
+
+    /// Definition in the codebook, in one line.
+    pub fn definition(self) -> &'static str {
+        match self {
+            CauseKind::Belief => "order: or its recipe",
+            CauseKind::Slip => "nothing was believed wrong",
+            CauseKind::Race => "the robot was quicker",
+            CauseKind::Other => "none of these causes",
+            CauseKind::Buttons => "wanted another",
+        }
+    }
+
+    /// The definition in two words, for narrow screens; `None` where the title says enough.
+    pub fn short_definition(self) -> Option<&'static str> {
+        match self {
+            CauseKind::Slip => Some("belief right"),
+            CauseKind::Race => Some("robot first"),
+            CauseKind::Belief | CauseKind::Other | CauseKind::Buttons => None,
+        }
+    }
+
     /// The kind with this name.
     pub fn named(name: &str) -> Option<CauseKind> {
         CauseKind::ALL.into_iter().find(|kind| kind.name() == name)

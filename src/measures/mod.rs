@@ -7,12 +7,13 @@
 //! - An estimate of beliefs: [`detection`], `press_view` (what was known before a press), [`flags`],
 //!   [`belief_detection`] (all of these).
 //! - Communication: `median`, [`matching`] of two lanes, [`wizard_performance`]. [`cause_codes`] by people has its
-//!   agreement from `matching`.
+//!   agreement from `matching`; [`consensus`] of two raters.
 
 pub mod attribution;
 pub mod belief_detection;
 pub mod cause_codes;
 pub mod cause_kinds;
+pub mod consensus;
 pub mod detection;
 pub mod errors;
 pub mod flags;

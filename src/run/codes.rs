@@ -1,17 +1,19 @@
-//! `tomcom codes`: raters' codes of errors, and the agreement between raters.
+//! `tomcom codes`: raters' codes of errors, the agreement between raters, where they disagree, and what they settled.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::error::RunError;
 use super::replay::Replay;
+use crate::analysis::error_list::ListedError;
 use crate::base::words::count;
 use crate::edge::file_error::FileResult;
-use crate::edge::log::rater_codes;
-use crate::measures::cause_codes::{Agreement, AgreementTable, Codable, Codes};
-use crate::session::settings::{ParticipantKind, is_code};
+use crate::edge::log::{consensus_file, rater_codes};
+use crate::history::wording;
+use crate::measures::cause_codes::{Agreement, AgreementTable, Codable, Code, Codes};
+use crate::measures::consensus::{Consensus, unsettled};
+use crate::session::settings::ParticipantKind;
 
 /// A recording with the codes of its errors.
 #[derive(Clone, Debug)]
@@ -20,8 +22,12 @@ pub struct CodedRecording {
     pub folder: PathBuf,
     /// The errors that can be coded, and where they can lie.
     pub codable: Codable,
+    /// These errors with their times and presses.
+    pub errors: Vec<ListedError>,
     /// Codes by rater.
     pub codes: BTreeMap<String, Codes>,
+    /// What two raters settled.
+    pub consensus: Option<Consensus>,
     /// True causes, for a simulated participant.
     pub known: Option<Codes>,
 }
@@ -44,7 +50,9 @@ impl CodedRecording {
         let codable = Codable::from_presses(kitchen, judged);
         Ok(CodedRecording {
             codes: rater_codes::read_all(&folder, &codable)?,
+            consensus: consensus_file::read(&folder, &codable)?,
             codable,
+            errors: ListedError::all(&replay.follower),
             known: is_known.then(|| Codes::known(kitchen, judged)),
             folder,
         })
@@ -55,6 +63,51 @@ impl CodedRecording {
         let resolved = self.folder.canonicalize().unwrap_or_else(|_| self.folder.clone());
         resolved.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
+
+    /// The settled codes that still hold.
+    pub fn current(&self, consensus: &Consensus) -> Codes {
+        let none = Codes::default();
+        consensus.current(consensus.raters.each_ref().map(|rater| self.codes.get(rater).unwrap_or(&none)))
+    }
+
+    fn settled(&self) -> Option<SettledSummary> {
+        let consensus = self.consensus.as_ref()?;
+        let none = Codes::default();
+        let own = consensus.raters.each_ref().map(|rater| self.codes.get(rater).unwrap_or(&none));
+        let [of, with] = consensus.raters.clone();
+        let agreed = consensus.agreed() as u64;
+        let settled = consensus.current(own).0.len() as u64;
+        let stale = consensus.changed(own).into_iter().map(|changed| StaleCode {
+            error: self.codable.errors.partition_point(|&press| press < changed.press) as u64 + 1,
+            press: changed.press,
+            rater: changed.rater,
+        });
+        let errors = self.codable.errors.len() as u64;
+        Some(SettledSummary { of, with, agreed, settled, open: errors - settled, stale: stale.collect() })
+    }
+
+    /// The errors about which two raters disagree.
+    fn disagreements(&self, of: (&String, &Codes), with: (&String, &Codes)) -> Vec<Disagreement> {
+        let differ = unsettled(&self.codable.errors, [of.1, with.1]);
+        let listed = self.errors.iter().filter(|error| differ.contains(&error.press));
+        let disagreement = |error: &ListedError| {
+            let (of_code, with_code) = (of.1.0.get(&error.press)?, with.1.0.get(&error.press)?);
+            let parts = |code: &Code| (code.kind().name().to_string(), code.aspect().map(str::to_string));
+            let ((of_cause, of_aspect), (with_cause, with_aspect)) = (parts(of_code), parts(with_code));
+            Some(Disagreement {
+                recording: self.name(),
+                error: error.clone(),
+                of: of.0.clone(),
+                with: with.0.clone(),
+                of_cause,
+                of_aspect,
+                with_cause,
+                with_aspect,
+                words: [wording::code(of_code), wording::code(with_code)],
+            })
+        };
+        listed.filter_map(disagreement).collect()
+    }
 }
 
 /// Output of `tomcom codes`.
@@ -62,10 +115,12 @@ impl CodedRecording {
 pub struct CodesSummary {
     /// The recordings with what each rater has coded.
     pub recordings: Vec<CodedRecordingSummary>,
-    /// Agreement of each pair of raters with common errors.
+    /// Agreement of each pair of raters with common errors. A consensus is no rater.
     pub agreements: Vec<RaterPairSummary>,
     /// Agreement of each rater with the true causes of simulated participants.
     pub known: Vec<RaterPairSummary>,
+    /// The errors that two raters coded differently, pair by pair.
+    pub disagreements: Vec<Disagreement>,
 }
 
 /// Summary of one recording.
@@ -77,6 +132,61 @@ pub struct CodedRecordingSummary {
     pub errors: u64,
     /// Number of errors coded by each rater.
     pub coded: BTreeMap<String, u64>,
+    /// What two raters settled; null if nothing was.
+    pub consensus: Option<SettledSummary>,
+}
+
+/// What two raters settled about a recording.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SettledSummary {
+    /// The first rater.
+    pub of: String,
+    /// The second rater.
+    pub with: String,
+    /// Number of errors that both code alike.
+    pub agreed: u64,
+    /// Number of errors with a shared code that holds, these among them.
+    pub settled: u64,
+    /// Number of errors without one.
+    pub open: u64,
+    /// Raters' codes that changed after they were settled.
+    pub stale: Vec<StaleCode>,
+}
+
+/// A rater's code that changed after it was settled.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct StaleCode {
+    /// Number of the error in the recording, from 1.
+    pub error: u64,
+    /// Sequence number of the press in the log.
+    pub press: u64,
+    /// The rater who changed the code.
+    pub rater: String,
+}
+
+/// An error that two raters coded differently.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Disagreement {
+    /// The name of the recording's folder.
+    pub recording: String,
+    /// The error.
+    #[serde(flatten)]
+    pub error: ListedError,
+    /// The first rater.
+    pub of: String,
+    /// The second rater.
+    pub with: String,
+    /// The first rater's cause.
+    pub of_cause: String,
+    /// What the first rater says was believed wrong; null for other causes.
+    pub of_aspect: Option<String>,
+    /// The second rater's cause.
+    pub with_cause: String,
+    /// What the second rater says was believed wrong; null for other causes.
+    pub with_aspect: Option<String>,
+    /// Both codes in words.
+    #[serde(skip)]
+    pub words: [String; 2],
 }
 
 /// Agreement of two raters.
@@ -94,12 +204,14 @@ pub struct RaterPairSummary {
 impl CodesSummary {
     /// Summary of recordings.
     pub fn from_recordings(recordings: &[CodedRecording]) -> CodesSummary {
-        let mut pairs: BTreeMap<(String, String), AgreementTable> = BTreeMap::new();
+        let mut pairs: BTreeMap<(String, String), (AgreementTable, Vec<Disagreement>)> = BTreeMap::new();
         let mut known: BTreeMap<String, AgreementTable> = BTreeMap::new();
         for one in recordings {
             for (index, (of, codes)) in one.codes.iter().enumerate() {
                 for (with, other) in one.codes.iter().skip(index + 1) {
-                    pairs.entry((of.clone(), with.clone())).or_default().add(codes, other);
+                    let (table, differ) = pairs.entry((of.clone(), with.clone())).or_default();
+                    table.add(codes, other);
+                    differ.extend(one.disagreements((of, codes), (with, other)));
                 }
                 if let Some(truth) = &one.known {
                     known.entry(of.clone()).or_default().add(codes, truth);
@@ -110,75 +222,25 @@ impl CodesSummary {
             recording: one.name(),
             errors: one.codable.errors.len() as u64,
             coded: one.codes.iter().map(|(rater, codes)| (rater.clone(), codes.0.len() as u64)).collect(),
+            consensus: one.settled(),
         };
-        let pair = |((of, with), table): ((String, String), AgreementTable)| RaterPairSummary {
+        let pair = |(of, with): (String, String), table: AgreementTable| RaterPairSummary {
             of,
             with,
             agreement: table.agreement(),
         };
+        let (mut agreements, mut disagreements) = (Vec::new(), Vec::new());
+        for (raters, (table, differ)) in pairs {
+            agreements.push(pair(raters, table));
+            disagreements.extend(differ);
+        }
         CodesSummary {
             recordings: recordings.iter().map(recording).collect(),
-            agreements: pairs.into_iter().map(pair).collect(),
-            known: known.into_iter().map(|(of, table)| pair(((of, "simulation".to_string()), table))).collect(),
+            agreements,
+            known: known.into_iter().map(|(of, table)| pair((of, "simulation".to_string()), table)).collect(),
+            disagreements,
         }
     }
-}
-
-/// Imports the rows of a file into the recordings, in addition to existing codes. Nothing is written if a row is invalid.
-///
-/// # Errors
-/// The file cannot be read, a row does not refer to an error of these recordings, or a folder is not writable.
-pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, RunError> {
-    let (text, rows) = rater_codes::read_export(file)?;
-    let mut changed = vec![Vec::new(); recordings.len()];
-    let names: Vec<String> = recordings.iter().map(CodedRecording::name).collect();
-    for row in &rows {
-        let wrong = |found: String, remedy: &str| rater_codes::wrong_line(file, &text, row.line, found, remedy);
-        let Some(index) = names.iter().position(|name| *name == row.recording) else {
-            let found = format!("the recording \"{}\"", row.recording);
-            let remedy = format!("a recording that was named: {}", names.join(", "));
-            return Err(wrong(found, &remedy).into());
-        };
-        let one = &mut recordings[index];
-        if !is_code(&row.rater) {
-            let remedy = "a code of 1 to 32 letters, digits, - and _; never a name";
-            return Err(wrong(format!("the rater \"{}\"", row.rater), remedy).into());
-        }
-        if let Some((found, remedy)) = one.codable.fault(row.press, &row.code) {
-            return Err(wrong(found, &remedy).into());
-        }
-        one.codes.entry(row.rater.clone()).or_default().0.insert(row.press, row.code.clone());
-        changed[index].push(row.rater.clone());
-    }
-    for (one, mut raters) in recordings.iter().zip(changed) {
-        raters.sort();
-        raters.dedup();
-        for rater in raters {
-            rater_codes::write(&one.folder, &rater, &one.codes[&rater])?;
-        }
-    }
-    Ok(rows.len() as u64)
-}
-
-/// Writes all codes of the recordings into a file.
-///
-/// # Errors
-/// The file cannot be written.
-pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RunError> {
-    let mut rows = Vec::new();
-    for one in recordings {
-        for (rater, codes) in &one.codes {
-            rows.extend(codes.0.iter().map(|(press, code)| rater_codes::CodeRow {
-                line: 0,
-                recording: one.name(),
-                rater: rater.clone(),
-                press: *press,
-                code: code.clone(),
-            }));
-        }
-    }
-    rater_codes::write_export(file, &rows)?;
-    Ok(rows.len() as u64)
 }
 
 /// The summary as text.
@@ -191,6 +253,7 @@ pub fn describe(figures: &CodesSummary) -> String {
             false => format!("coded: {}", coded.join(", ")),
         };
         text += &format!("{}: {}, {coded}\n", one.recording, count(one.errors, "error", "errors"));
+        text += &one.consensus.as_ref().map_or(String::new(), describe_consensus);
     }
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     for pair in figures.agreements.iter().chain(&figures.known) {
@@ -204,5 +267,34 @@ pub fn describe(figures: &CodesSummary) -> String {
             number(kappa_aspect),
         );
     }
+    text + &describe_disagreements(&figures.disagreements)
+}
+
+fn describe_consensus(found: &SettledSummary) -> String {
+    let SettledSummary { of, with, agreed, settled, open, stale } = found;
+    let decided = settled.saturating_sub(*agreed);
+    let mut text = format!("  consensus of {of} and {with}: {agreed} agreed, {decided} settled, {open} open\n");
+    for StaleCode { error, press, rater } in stale {
+        text += &format!("  stale: {rater} changed the code of error {error} (press {press}) after it was settled\n");
+    }
     text
+}
+
+/// The disagreements as a table, below it how to settle them.
+fn describe_disagreements(all: &[Disagreement]) -> String {
+    let Some(first) = all.first() else { return String::new() };
+    let recordings = all.iter().map(|one| one.recording.chars().count()).max().unwrap_or(0).max(9);
+    let mut text = format!("{}:\n", count(all.len() as u64, "disagreement", "disagreements"));
+    text += &format!("  {:<recordings$}  error   time  press  button\n", "recording");
+    for one in all {
+        let ListedError { error, press, .. } = one.error;
+        let (clock, words) = (one.error.clock(), one.error.words());
+        let [of, with] = &one.words;
+        text += &format!(
+            "  {:<recordings$}  {error:>5}  {clock:>5}  {press:>5}  {words}: {} {of}, {} {with}\n",
+            one.recording, one.of, one.with
+        );
+    }
+    let (of, with) = (&first.of, &first.with);
+    text + &format!("settle them together, recording by recording: tomcom replay RECORDING --settle {of} {with}\n")
 }

@@ -106,6 +106,10 @@ pub enum ReviewError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
+    /// The consensus of two raters cannot be written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Recording(#[from] WriteError),
     /// The record of a training cannot be written.
     #[error("{}: the training cannot be recorded: {reason}", path.display())]
     #[diagnostic(help("a folder that can be written to, with --out"))]

@@ -7,7 +7,11 @@ mod advisor_desk;
 #[cfg(feature = "cli")]
 pub mod check_beliefs;
 #[cfg(feature = "cli")]
+pub mod code_exchange;
+#[cfg(feature = "cli")]
 pub mod codes;
+#[cfg(feature = "cli")]
+mod coding_desk;
 #[cfg(feature = "cli")]
 mod desk;
 pub mod engine;

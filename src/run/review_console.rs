@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use super::coding_desk;
 use super::desk::OperatorDesk;
 use super::error::{ReviewError, TerminalError};
 use super::event_loop::{self, ConsoleShell, LoopEvent, ShellView};
@@ -16,10 +17,9 @@ use crate::console::playback::{Playback, ReplayKey, SPEEDS};
 use crate::console::rater_session::RaterSession;
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::key_file::key_map;
-use crate::edge::log::{LogEnding, rater_codes};
+use crate::edge::log::LogEnding;
 use crate::edge::terminal::TerminalScreen;
 use crate::history::landmark::ReplayLandmark;
-use crate::measures::cause_codes::Codable;
 use crate::session::Event;
 
 /// Time per frame for applying events at full speed.
@@ -37,16 +37,26 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) 
     at_desk(film, recording, follow, compare, None)
 }
 
-/// Opens the console over a recording for a rater, who codes its errors without seeing estimates; codes are saved beside the log
-/// after every key.
+/// Opens the console over a recording for a rater, who codes its errors without seeing estimates, signals or condition; codes are
+/// saved beside the log after every key.
 ///
 /// # Errors
 /// The recording or its codes cannot be read, or there is no terminal.
 pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
-    let codable = Codable::from_presses(&film.replay.session().kitchen, &film.replay.follower.judged);
-    let codes = rater_codes::read(film.replay.log().folder(), rater, &codable)?;
-    let coding = RaterSession { rater: rater.to_string(), errors: codable.errors, codes };
+    let coding = coding_desk::of_rater(&film, rater)?;
+    at_desk(film, recording, false, None, Some(coding))
+}
+
+/// Opens the console over a recording for two raters, who settle together what they coded differently; their consensus is saved
+/// beside the log after every key.
+///
+/// # Errors
+/// The recording or its codes cannot be read, one of the raters has no codes, other raters settled the recording already, the
+/// consensus cannot be written, or there is no terminal.
+pub fn settle(recording: &Path, raters: [&str; 2]) -> Result<(), ReviewError> {
+    let film = SeekableReplay::open(recording)?.blinded();
+    let coding = coding_desk::of_pair(&film, raters)?;
     at_desk(film, recording, false, None, Some(coding))
 }
 
@@ -120,9 +130,9 @@ impl Review {
             comparison,
         };
         review.tell(0);
-        // A rater starts at the first error.
         let plays = review.model.coding.is_none();
         review.playback(|playback| playback.playing = plays);
+        review.begin_coding();
         if follow {
             review.go(ReplayKey::ToEnd);
         }
@@ -135,7 +145,7 @@ impl Review {
         self.tick();
         match update(&mut self.model, &self.film.session, message) {
             Some(ConsoleCommand::Move(to)) => self.go(to),
-            Some(ConsoleCommand::Code) => self.keep(),
+            Some(ConsoleCommand::Code { press }) => self.keep(press),
             Some(ConsoleCommand::Quit) => return true,
             Some(ConsoleCommand::Input(_) | ConsoleCommand::Start(_) | ConsoleCommand::Next | ConsoleCommand::Redo)
             | None => {}
@@ -143,12 +153,36 @@ impl Review {
         false
     }
 
-    /// Saves the rater's codes.
-    fn keep(&mut self) {
-        let Some(coding) = &self.model.coding else { return };
-        if let Err(error) = rater_codes::write(self.film.replay.log().folder(), &coding.rater, &coding.codes) {
-            self.model.say(NoticeLevel::Alarm, format!("not kept: {error}"));
+    /// Saves the raters' codes, and shows the error of which one changed.
+    fn keep(&mut self, press: u64) {
+        let present = self.model.coding.as_ref().and_then(|coding| coding.present(self.film.position));
+        if present.map(|error| error.press) != Some(press) {
+            self.go(ReplayKey::ToEvent(press));
         }
+        let Some(coding) = &self.model.coding else { return };
+        let error = coding.errors.iter().find(|error| error.press == press);
+        let said = match (coding.next_step(), error) {
+            (Some(next), _) => format!("saved; {next}"),
+            (None, Some(error)) => {
+                format!("saved: error {}, {}", error.error, RaterSession::words(coding.code(error)))
+            }
+            (None, None) => "saved".to_string(),
+        };
+        match coding_desk::save(&self.film, coding) {
+            Ok(()) => self.model.say(NoticeLevel::Done, said),
+            Err(error) => self.model.say(NoticeLevel::Alarm, format!("not saved: {error}")),
+        }
+    }
+
+    /// Begins at the first error without a code, and says so.
+    fn begin_coding(&mut self) {
+        let Some(coding) = &self.model.coding else { return };
+        let said = coding_desk::greeting(coding);
+        let first = coding.errors.get(coding.first_open().unwrap_or(0)).map(|error| error.press);
+        if let Some(press) = first {
+            self.go(ReplayKey::ToEvent(press));
+        }
+        self.model.say(NoticeLevel::Done, said);
     }
 
     /// Advances the clock that also runs while the replay is paused.

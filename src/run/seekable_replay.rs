@@ -16,6 +16,28 @@ use crate::session::{Event, Session, Stamped, apply};
 /// Number of events between snapshots.
 const KEEP_EVERY: usize = 4096;
 
+/// Stands in a blinded replay for what is hidden, so that the numbers of events stay; a witness without effect.
+const HIDDEN: Event = Event::ClockJumped { by_ms: 0 };
+
+/// Whether an event belongs to the assistance: a signal, an offer, a recommendation.
+fn tells_condition(event: &Event) -> bool {
+    matches!(
+        event,
+        Event::SignalShown { .. }
+            | Event::SignalDrawn { .. }
+            | Event::SignalEnded { .. }
+            | Event::OfferOpened(_)
+            | Event::OfferClosed { .. }
+            | Event::Advised(_)
+            | Event::Unblinded { .. }
+    )
+}
+
+/// Whether the replay stops at an event when it steps.
+fn is_step(event: &Event) -> bool {
+    !event.is_sample() && *event != HIDDEN
+}
+
 /// A recording that can be moved to any position.
 #[derive(Debug)]
 pub struct SeekableReplay {
@@ -57,10 +79,14 @@ impl SeekableReplay {
         Ok(film)
     }
 
-    /// Hides the estimate, for raters. Must be called before the replay is moved.
+    /// Hides the estimate and all signals, for raters, who must not know whether the participant was assisted. Must be called before
+    /// the replay is moved.
     pub fn blinded(mut self) -> SeekableReplay {
         for session in self.kept.iter_mut().chain([&mut self.session]) {
             session.spec.console.visibility = Visibility::State;
+        }
+        for stamped in self.events.iter_mut().filter(|stamped| tells_condition(&stamped.event)) {
+            stamped.event = HIDDEN;
         }
         self
     }
@@ -134,15 +160,15 @@ impl SeekableReplay {
         self.events.partition_point(|stamped| stamped.time <= time)
     }
 
-    /// Position after the next event that is not a gaze sample.
+    /// Position after the next event that is neither a sample nor hidden.
     pub fn next_step(&self) -> usize {
         let rest = self.events[self.position..].iter();
-        self.position + rest.take_while(|stamped| stamped.event.is_sample()).count() + 1
+        self.position + rest.take_while(|stamped| !is_step(&stamped.event)).count() + 1
     }
 
-    /// Position after the previous event that is not a gaze sample.
+    /// Position after the previous event that is neither a sample nor hidden.
     pub fn last_step(&self) -> usize {
-        let steps = |end: usize| self.events[..end].iter().rposition(|stamped| !stamped.event.is_sample());
+        let steps = |end: usize| self.events[..end].iter().rposition(|stamped| is_step(&stamped.event));
         let last = steps(self.position).unwrap_or(0);
         steps(last).map_or(0, |index| index + 1)
     }

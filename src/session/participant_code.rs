@@ -33,6 +33,7 @@ pub const TABLE_WORDS: &[&str] = &[
     "concepts",
     "condition",
     "confidence",
+    "consensus",
     "contacts",
     "contents",
     "counts",

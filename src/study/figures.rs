@@ -79,6 +79,10 @@ pub struct StudySummary {
     pub questionnaires: Vec<ItemSummary>,
     /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<Agreement>,
+    /// Trials whose causes of errors are the consensus of two raters, by the raters ("R1+R2").
+    pub consensus: BTreeMap<String, u64>,
+    /// Consensus codes that are not used, since a rater's code changed afterwards.
+    pub stale_consensus: Vec<StaleConsensus>,
     /// The trials that do not count, with the reasons.
     pub left_out: Vec<ExcludedTrial>,
     /// Number of practice recordings, which are not analysed as trials.
@@ -173,6 +177,15 @@ pub struct TrialSimilarity {
     pub recall: Option<f64>,
 }
 
+/// A consensus of two raters that no longer holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StaleConsensus {
+    /// The recording's folder.
+    pub recording: String,
+    /// Which code changed.
+    pub reason: String,
+}
+
 /// A trial that is excluded from the analysis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExcludedTrial {
@@ -230,6 +243,8 @@ impl StudySummary {
             acceptance: acceptance(&counting),
             questionnaires: items(&counting),
             raters: agreement(&counting),
+            consensus: consensus(&counting),
+            stale_consensus: counting.iter().filter_map(|trial| stale(trial)).collect(),
             left_out: left_out.collect(),
             practice,
         }
@@ -358,6 +373,20 @@ fn similarity_of_trial(trial: &Trial) -> Option<TrialSimilarity> {
     let Similarity { of_n, with_n, matched, signal, .. } = own.similarity();
     let (recording, wizard_saw_advice) = (trial.recording.clone(), trial.wizard_saw_advice);
     Some(TrialSimilarity { recording, wizard_saw_advice, of_n, with_n, matched, recall: signal.recall })
+}
+
+/// Number of trials with the consensus of two raters, by the raters.
+fn consensus(trials: &[&Trial]) -> BTreeMap<String, u64> {
+    let mut settled = BTreeMap::new();
+    for raters in trials.iter().filter_map(|trial| trial.settled_by.as_ref()) {
+        *settled.entry(raters.join("+")).or_default() += 1;
+    }
+    settled
+}
+
+fn stale(trial: &Trial) -> Option<StaleConsensus> {
+    let reason = trial.stale_consensus.clone()?;
+    Some(StaleConsensus { recording: trial.recording.clone(), reason })
 }
 
 /// Agreement of the raters over all trials.

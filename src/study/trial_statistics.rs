@@ -85,8 +85,12 @@ pub struct Trial {
     pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
     /// In unassisted trials: prevention counts of the concepts.
     pub swept: Vec<SweptTrial>,
-    /// Codes of two raters, if they define the causes of errors.
+    /// Codes of two raters, if they or their consensus define the causes of errors.
     pub raters: Option<[Codes; 2]>,
+    /// The two raters whose consensus defines the causes of errors.
+    pub settled_by: Option<[String; 2]>,
+    /// Why a consensus is not used: a rater's code that changed after it was settled.
+    pub stale_consensus: Option<String>,
 }
 
 /// Source of the causes of errors.
@@ -95,6 +99,8 @@ pub struct Trial {
 pub enum BeliefBasis {
     /// Recorded beliefs of a simulated participant.
     Recorded,
+    /// Consensus of two raters for every error.
+    Consensus,
     /// Codes of two raters for every error; an error is belief related if both coded a false belief.
     Raters,
     /// The assistant's estimate; insufficient for headline results.
@@ -106,6 +112,7 @@ impl BeliefBasis {
     pub fn name(self) -> &'static str {
         match self {
             BeliefBasis::Recorded => "recorded",
+            BeliefBasis::Consensus => "consensus",
             BeliefBasis::Raters => "raters",
             BeliefBasis::Estimate => "estimate",
         }

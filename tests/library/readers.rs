@@ -85,6 +85,9 @@ fn input(reader: &str) -> Vec<u8> {
         "events" => log().splitn(2, |byte| *byte == b'\n').nth(1).expect("events after the header").to_vec(),
         "exclusion" => b"[[ruling]]\nexcluded = true\nreason = \"fire alarm\"\nat = \"2026-03-14T10:00:00Z\"\n".to_vec(),
         "rater_codes" => b"press,cause,aspect\n3,belief,cooking_pot\n7,slip,\n".to_vec(),
+        "consensus" => b"rater_1,cause_1,aspect_1,rater_2,cause_2,aspect_2,press,cause,aspect\n\
+            R1,slip,,R2,belief,plate,3,slip,\nR1,race,,R2,race,,7,race,\n"
+            .to_vec(),
         "training" => br#"{"wizard":"W1","at":"2026-03-14T10:00:00Z","minutes":2.5,"criterion":{"hits":0.5,"wrong":0.2},"met":false,"recordings":[]}"#.to_vec(),
         "table" => b"participant,press,kind\nP07,1,\"slip, seen\"\n".to_vec(),
         "gaze_export" => file("tests/pupil/gaze_positions_on_surface_wall.csv"),

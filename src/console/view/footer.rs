@@ -53,11 +53,12 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         false => matches!(binding.action, KeyAction::EndTrial | KeyAction::Look(PanelKey::Next)),
     };
     let (late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
-    // The robot stop comes first, then the key back to all panels if one panel is at full size.
+    // The robot stop comes first, then the key back to all panels if one panel is at full size, and a rater's keys.
     first.sort_by_key(|binding| match binding.action {
         KeyAction::StopRobot => 0,
         KeyAction::Look(PanelKey::All) => 1,
-        _ => 2,
+        KeyAction::Rate(_) => 2,
+        _ => 3,
     });
     for binding in first.into_iter().chain(late) {
         let Some(hint) = hint(binding, session, model) else { continue };

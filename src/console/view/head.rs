@@ -100,6 +100,10 @@ fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
     }
     let mut facts = match &model.playback {
         None => vec![code, condition.to_string(), served],
+        // A rater does not know who was assisted.
+        Some(playback) if let Some(coding) = &model.coding => {
+            vec![format!("rater {}", coding.name()), served, playback.name.clone()]
+        }
         Some(playback) => vec![served, code, condition.to_string(), playback.name.clone()],
     };
     facts.push(session.kitchen.title.clone());

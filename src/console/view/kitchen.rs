@@ -48,7 +48,10 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         brush.panel(area, &session.kitchen.title, remark);
     }
     let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
-    let plan = KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys);
+    let plan = match model.coding.is_some() {
+        true => KitchenMap::for_rater(&session.kitchen, regions.kitchen_inside()),
+        false => KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys),
+    };
     zones(brush, &plan);
     let believed = beliefs(session, model);
     let offered = offer_line::shown(session, model).and_then(|offer| offer.place(session));

@@ -2,6 +2,7 @@
 
 pub mod belief_panel;
 mod cards;
+mod coding_panel;
 pub mod comparison_panel;
 pub mod dialog;
 pub mod events;
@@ -65,6 +66,7 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     events::draw(brush, &regions, session, model);
     timeline::draw(brush, &regions, session, model);
     comparison_panel::draw(brush, &regions, session, model);
+    coding_panel::draw(brush, &regions, session, model);
     scrub::draw(brush, &regions, session, model);
     footer::message(brush, &regions, session, model);
     cards::draw(brush, &regions, session, model);

@@ -3,6 +3,7 @@
 use ratatui::layout::Rect;
 
 use crate::console::beliefs::visibility;
+use crate::console::codebook;
 use crate::console::compared::ComparisonView;
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel;
@@ -57,6 +58,10 @@ pub struct Regions {
     pub comparison: Rect,
     /// Training panel.
     pub lesson: Rect,
+    /// The codes of a rater with their keys and definitions.
+    pub codebook: Rect,
+    /// The errors that a rater codes.
+    pub errors: Rect,
     /// Position in a recording.
     pub scrub: Rect,
     /// The line of messages.
@@ -74,9 +79,20 @@ const TIMELINE_ROWS: u16 = 7;
 /// Height of the list of recommendations on large terminals.
 const RECOMMENDATION_ROWS: u16 = 9;
 
+/// Height of the list of errors where it has no panel of its own: progress, and three errors.
+const ERROR_LINES: u16 = 4;
+/// The same on terminals with fewer than this number of rows: progress, and the present error.
+const FEW_ERROR_LINES: (u16, u16) = (24, 2);
+/// Least columns of the codebook beside the kitchen.
+const CODEBOOK_COLUMNS: u16 = 35;
+/// Height of the list of errors that the codebook leaves below it, with its title.
+const ERRORS_ROWS: u16 = 6;
+
 /// Lines that only some consoles have.
 #[derive(Clone, Copy, Debug, Default)]
 struct LineRows {
+    /// Number of lines of a rater's codebook across the screen, and in a column beside the kitchen, if errors are coded.
+    codebook: Option<[u16; 2]>,
     /// Number of compared assistants, if a comparison is shown.
     comparison: Option<u16>,
     /// Whether there is a position in a recording.
@@ -88,7 +104,12 @@ impl Regions {
     pub fn showing(size: (u16, u16), session: &Session, model: &ConsoleModel) -> Regions {
         let assistants = |compared: &ComparisonView| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
         let compared = model.comparison.as_ref().map(assistants);
-        let lines = LineRows { comparison: compared, scrubs: model.playback.is_some() };
+        let codebook = model.coding.as_ref().map(|_| {
+            let (keys, kitchen) = (&model.keys, &session.kitchen);
+            let compact = codebook::compact(keys, kitchen, size.0.saturating_sub(2)).len() as u16;
+            [compact, codebook::full(keys, kitchen, CODEBOOK_COLUMNS).len() as u16]
+        });
+        let lines = LineRows { codebook, comparison: compared, scrubs: model.playback.is_some() };
         let regions = Regions::with(size, visibility(session, model), model.alone, lines);
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
@@ -128,6 +149,15 @@ impl Regions {
         let (rest, message) = bottom(rest, 1);
         let (rest, scrub) = bottom(rest, u16::from(lines.scrubs));
         let blank = Rect::default();
+        let (rest, codebook, errors) = match lines.codebook {
+            Some([rows, _]) if alone.is_some() || room == ScreenSize::Small => {
+                let few = size.1 < FEW_ERROR_LINES.0;
+                let (rest, errors) = bottom(rest, if few { FEW_ERROR_LINES.1 } else { ERROR_LINES });
+                let (rest, codebook) = bottom(rest, rows);
+                (rest, codebook, errors)
+            }
+            _ => (rest, Rect::default(), Rect::default()),
+        };
         let rows = lines.comparison.filter(|_| alone.is_none()).map_or(0, |number| comparison_rows(room, number));
         let (rest, comparison) = bottom(rest, rows);
         let bare = Regions {
@@ -145,15 +175,44 @@ impl Regions {
             timeline: blank,
             comparison,
             lesson: blank,
+            codebook,
+            errors,
             scrub,
             message,
             footer,
         };
-        match room {
-            _ if let Some(panel) = alone => bare.alone(panel),
+        let regions = match room {
+            _ if let Some(panel) = alone => return bare.alone(panel),
             ScreenSize::Small => bare.small(visibility),
             ScreenSize::Medium => bare.medium(visibility),
             ScreenSize::Large => bare.large(visibility),
+        };
+        lines.codebook.map_or(regions, |[_, rows]| regions.coding(rows + 1))
+    }
+
+    /// Gives codebook and errors the room of what a rater does not see: signals, estimates.
+    fn coding(self, codebook_rows: u16) -> Regions {
+        let blank = Rect::default();
+        match self.room {
+            // Robot and gaze share a line, and the timeline leaves out its last row.
+            ScreenSize::Small => {
+                let (_, timeline) = bottom(self.timeline, self.timeline.height.saturating_sub(1));
+                let robot = Rect { y: self.gaze.y + 1, ..self.robot };
+                let gaze = Rect { y: robot.y, ..self.shown };
+                let kitchen = Rect { height: self.kitchen.height + 2, ..self.kitchen };
+                Regions { kitchen, robot, gaze, timeline, shown: blank, ..self }
+            }
+            ScreenSize::Medium => {
+                let (codebook, errors) = codes_and_errors(self.gaze_map.union(self.shown), codebook_rows);
+                Regions { codebook, errors, gaze_map: blank, shown: blank, ..self }
+            }
+            ScreenSize::Large => {
+                let (codebook, errors) = codes_and_errors(self.gaze_map, codebook_rows);
+                let gaze = self.shown.union(self.gaze);
+                let gaze_map =
+                    Rect { x: gaze.right(), width: self.kitchen.right().saturating_sub(gaze.right()), ..gaze };
+                Regions { codebook, errors, gaze, gaze_map, shown: blank, ..self }
+            }
         }
     }
 
@@ -277,6 +336,11 @@ impl Regions {
             _ => below_title(self.kitchen),
         }
     }
+}
+
+/// Divides a column between the codebook and the list of errors.
+fn codes_and_errors(column: Rect, codebook_rows: u16) -> (Rect, Rect) {
+    top(column, codebook_rows.min(column.height.saturating_sub(ERRORS_ROWS)))
 }
 
 /// Height of the comparison: axis, first lane, three rows for each assistant (lane, matches, statistics), differences, and a title

@@ -11,7 +11,6 @@ use crate::communication::Signal;
 use crate::communication::offer::OfferUse;
 use crate::console::beliefs::visibility;
 use crate::console::click::ClickAction;
-use crate::console::coding::press;
 use crate::console::console_model::ConsoleModel;
 use crate::kitchen::Agent;
 use crate::session::event::SignalEnd;
@@ -25,7 +24,6 @@ const COLUMN_S: f64 = 0.5;
 const TICKS_S: [f64; 4] = [10.0, 20.0, 30.0, 60.0];
 const LABEL_COLUMNS: f64 = 8.0;
 const LABELS: u16 = 10;
-const TITLE: &str = "Timeline";
 
 /// Draws the timeline.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
@@ -34,15 +32,17 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         return;
     }
     let is_small = regions.room == ScreenSize::Small;
-    let inside = if is_small { area } else { brush.panel(area, &title(session, model), &legend(brush)) };
+    let inside = if is_small { area } else { brush.panel(area, "Timeline", &legend(brush)) };
     let rows: &[&str] = match is_small {
         // Signals, orders and notes share a row.
         true => &["", "human", "robot", "events"],
+        // A rater sees no signals.
+        false if model.coding.is_some() => &["", "human", "robot", "", "orders", "notes"],
         false if has_offers(inside, session, model) => &["", "human", "robot", "signals", "orders", "notes", "offers"],
         false => &["", "human", "robot", "signals", "orders", "notes"],
     };
     let quiet = brush.style(TextRole::Quiet);
-    for (row, label) in rows.iter().enumerate() {
+    for (row, label) in rows.iter().enumerate().take(usize::from(inside.height)) {
         brush.text(inside.x + 1, inside.y + row as u16, LABELS, label, quiet);
     }
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
@@ -69,10 +69,6 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
             let ago = i64::from(plot.right() - 1 - x) + back;
             brush.target(Rect { x, width: 1, ..plot }, ClickAction::Seek(column_end(session, model, ago)));
         }
-    }
-    if let Some(words) = coding(session, model).filter(|_| is_small) {
-        let strong = brush.style(TextRole::Strong);
-        brush.text(inside.x + 1, inside.y, inside.width, &format!("{words} "), strong);
     }
 }
 
@@ -112,19 +108,6 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
             brush.text(at as u16, row.y, 1, sign, style);
         }
     }
-}
-
-/// Title, with the rater's position.
-fn title(session: &Session, model: &ConsoleModel) -> String {
-    coding(session, model).map_or(TITLE.to_string(), |words| format!("{TITLE}: {words}"))
-}
-
-/// The rater's position, while errors are coded.
-fn coding(session: &Session, model: &ConsoleModel) -> Option<String> {
-    let (coding, playback) = (model.coding.as_ref()?, model.playback.as_ref()?);
-    let error = session.timeline.iter().rev().find(|entry| model.is_error(entry));
-    let press = error.map_or(String::new(), |entry| press(&session.kitchen, &entry.what));
-    Some(coding.describe(&session.kitchen, playback.event, &press))
 }
 
 /// Number of columns between a time and the present, on the trial's clock.

@@ -2,7 +2,6 @@
 //! all. The log of a closed recording stays as it is; what was said at the console is an event in it. Every entry is kept,
 //! and the last one holds.
 
-use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -11,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::{LogReader, RecordingLock, WriteError, check_continued};
 use crate::edge::clock::WallTime;
 use crate::edge::file_error::{FileError, FileResult, read_regular};
+use crate::edge::replace_file;
 
 /// The name of the file in the folder of a recording.
 pub const EXCLUSION_NAME: &str = "exclusion.toml";
@@ -100,7 +100,6 @@ pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionR
     let path = folder.join(EXCLUSION_NAME);
     let failed = |reason| WriteError::unwritable(&path, reason);
     let text = toml::to_string(&all).map_err(|error| failed(std::io::Error::other(error)))?;
-    let new = folder.join(format!("{EXCLUSION_NAME}.new"));
-    fs::write(&new, text).and_then(|()| fs::rename(&new, &path)).map_err(failed)?;
+    replace_file::replace(&path, text.as_bytes()).map_err(failed)?;
     Ok(ruling)
 }

@@ -2,6 +2,7 @@
 //! log: a header line, then one event a line; the only source of truth). A recording that was cut is continued by a part
 //! in a folder beside it, whose header names the one before.
 
+pub mod consensus_file;
 mod exclusion;
 mod guarded;
 mod lock;

@@ -9,6 +9,7 @@ use super::WriteError;
 use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::overwrite;
+use crate::edge::replace_file;
 use crate::measures::cause_codes::{CauseKind, Codable, Code, Codes};
 use crate::session::settings::is_code;
 
@@ -74,7 +75,7 @@ pub fn read_all(folder: &Path, codable: &Codable) -> FileResult<BTreeMap<String,
     Ok(all)
 }
 
-/// Writes what a rater says; whoever reads meanwhile finds the old file or the new one.
+/// Writes what a rater says, to the disk; whoever reads meanwhile finds the old file or the new one.
 ///
 /// # Errors
 /// The folder cannot be written to.
@@ -88,8 +89,7 @@ pub fn write(folder: &Path, rater: &str, codes: &Codes) -> Result<(), WriteError
         put([&press.to_string(), code.kind().name(), code.aspect().unwrap_or_default()]).map_err(failed)?;
     }
     let bytes = table.into_inner().map_err(|error| failed(std::io::Error::other(error.to_string())))?;
-    let new = folder.join(format!("codes-{rater}.csv.new"));
-    fs::write(&new, bytes).and_then(|()| fs::rename(&new, &path)).map_err(failed)
+    replace_file::replace(&path, &bytes).map_err(failed)
 }
 
 /// Reads an export: the codes of several raters about several recordings.
@@ -133,7 +133,7 @@ pub fn write_export(path: &Path, rows: &[CodeRow]) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// A line is no UTF-8.
-fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
+pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count();
@@ -150,11 +150,11 @@ pub fn wrong_line(path: &Path, text: &str, line: usize, found: String, remedy: &
 }
 
 /// Line, the fields before the code, the number of the press, and the code.
-type ParsedRow = (usize, Vec<String>, u64, Code);
+pub(super) type ParsedRow = (usize, Vec<String>, u64, Code);
 
 /// The rows of a table; the last three of its columns are a press and its code. No press stands twice in it, of a rater in a
 /// recording.
-fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>> {
+pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>> {
     let mut table = csv::Reader::from_reader(text.as_bytes());
     // The position of a row is that of the first empty line before it.
     let (mut counted, mut number) = (0, 1);
@@ -203,11 +203,16 @@ fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>>
 fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, Code), (String, &'static str)> {
     let number = press.parse();
     let number = number.map_err(|_| (format!("the press \"{press}\""), "the number of the press in its log"))?;
+    Ok((number, code_of(cause, aspect)?))
+}
+
+/// The code of a cause and an aspect, or what was found and what would be right.
+pub(super) fn code_of(cause: &str, aspect: &str) -> Result<Code, (String, &'static str)> {
     let kind = CauseKind::named(cause);
     let kind = kind.ok_or_else(|| (format!("the cause \"{cause}\""), "belief, slip, race, other or buttons"))?;
     let code = Code::new(kind, Some(aspect).filter(|aspect| !aspect.is_empty()));
     let remedy = "the location that is believed wrong with \"belief\", and none with other causes";
-    Ok((number, code.ok_or_else(|| (format!("the cause \"{cause}\" with the aspect \"{aspect}\""), remedy))?))
+    code.ok_or_else(|| (format!("the cause \"{cause}\" with the aspect \"{aspect}\""), remedy))
 }
 
 fn path(folder: &Path, rater: &str) -> PathBuf {

@@ -24,7 +24,7 @@ impl Live {
             Some(ConsoleCommand::Quit) => return Some(LeavingReason::Quit),
             Some(ConsoleCommand::Next) => return Some(LeavingReason::Next),
             Some(ConsoleCommand::Redo) => return Some(LeavingReason::Redo),
-            Some(ConsoleCommand::Move(_) | ConsoleCommand::Code) | None => {}
+            Some(ConsoleCommand::Move(_) | ConsoleCommand::Code { .. }) | None => {}
         }
         None
     }

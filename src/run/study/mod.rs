@@ -1,5 +1,6 @@
 //! `tomcom study`: replays the recordings of a study on all processors and writes tables, charts and the report.
 
+mod coded_errors;
 pub mod reading;
 mod rows;
 mod sweep;

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::coded_errors::CodedErrors;
 use super::rows::{PressFacts, RowCollector};
 use super::sweep::ConceptSweep;
 use super::twin::useful_signals;
@@ -15,12 +16,11 @@ use crate::analysis::wizard_log::{WizardLog, clock_at};
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileResult;
-use crate::edge::log::{LogReader, at_line, rater_codes};
+use crate::edge::log::{LogReader, at_line};
 use crate::history::comparison::CommunicationContent;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Change, Kitchen};
 use crate::measures::attribution::{Attributor, Cause};
-use crate::measures::cause_codes::{CauseKind, Codable, Codes, most_complete};
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::{CommunicationEvent, WINDOW};
 use crate::measures::sequences::{Sequence, sequences, sequences_any_aspect};
@@ -186,11 +186,11 @@ pub fn read(
         }
     }
     let standing = exclusion_status(&pass.follower().session, &log)?;
-    let raters = raters(&log, pass.follower())?;
+    let coded = CodedErrors::read(&log, pass.follower())?;
     let lanes = lanes(&mut pass);
     let follower = pass.follower();
     let by_estimate = by_estimate.map(|found| found.causes);
-    let (judged, basis) = judged(follower, by_estimate.as_deref(), raters.as_ref());
+    let (judged, basis) = coded.judged(follower, by_estimate.as_deref());
     let mut trial = trial(name, &header, follower, standing);
     trial.ended = robot.ended;
     trial.robot = robot.into_figures();
@@ -210,14 +210,14 @@ pub fn read(
     }
     let follower = pass.follower();
     let sequences = sequences(&judged);
-    let known = PressFacts {
-        judged: &judged,
-        sequences: &sequences,
-        by_estimate: by_estimate.as_deref(),
-        raters: raters.as_ref(),
-    };
+    let known =
+        PressFacts { judged: &judged, sequences: &sequences, by_estimate: by_estimate.as_deref(), coded: &coded };
     let rows = rows.finish(&follower.session, &known, &lanes, WINDOW);
-    trial.raters = raters.filter(|_| basis == Some(BeliefBasis::Raters));
+    if matches!(basis, Some(BeliefBasis::Consensus | BeliefBasis::Raters)) {
+        trial.raters = coded.raters;
+    }
+    trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefBasis::Consensus));
+    trial.stale_consensus = coded.stale.filter(|_| !is_simulated);
     Ok(Some((kitchen, RecordingAnalysis { trial, facts: Facts::from_session(&header, &follower.session), rows })))
 }
 
@@ -248,47 +248,6 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
         }
     }
     sent
-}
-
-/// Codes of the two raters who coded most errors of a recording; `None` with fewer than two raters.
-fn raters(log: &LogReader, follower: &Follower) -> FileResult<Option<[Codes; 2]>> {
-    let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
-    Ok(most_complete(rater_codes::read_all(log.folder(), &codable)?.into_values().collect()))
-}
-
-/// Human presses with the causes of errors, and the source of the causes: recorded beliefs for simulated participants; for people
-/// the codes of two raters who both coded every error, else the estimate. The source is `None` for a simulated participant without
-/// recorded beliefs.
-fn judged(
-    follower: &Follower,
-    by_estimate: Option<&[(u64, Cause)]>,
-    raters: Option<&[Codes; 2]>,
-) -> (Vec<JudgedPress>, Option<BeliefBasis>) {
-    let mut judged = follower.judged.clone();
-    let Some(estimated) = by_estimate else {
-        let is_known = judged.iter().all(|press| press.belief_known);
-        return (judged, is_known.then_some(BeliefBasis::Recorded));
-    };
-    let coded = |codes: &Codes| judged.iter().all(|press| !press.verdict.error || codes.0.contains_key(&press.seq));
-    let raters = raters.filter(|raters| raters.iter().all(coded));
-    for press in judged.iter_mut().filter(|press| press.verdict.error) {
-        press.cause = match raters {
-            Some(raters) => agreed(&follower.session.kitchen, press, raters),
-            None => estimated.iter().find(|(seq, _)| *seq == press.seq).map(|(_, cause)| *cause),
-        };
-    }
-    (judged, Some(if raters.is_some() { BeliefBasis::Raters } else { BeliefBasis::Estimate }))
-}
-
-/// The cause of an error by two raters. If both coded a false belief, the target is the first rater's; otherwise the error counts
-/// as not belief related.
-fn agreed(kitchen: &Kitchen, press: &JudgedPress, [one, other]: &[Codes; 2]) -> Option<Cause> {
-    let (a, b) = (one.0.get(&press.seq)?, other.0.get(&press.seq)?);
-    if a.kind() != CauseKind::Belief || b.kind() != CauseKind::Belief {
-        return Some(Cause::Slip);
-    }
-    let target = a.target(kitchen, press.before)?;
-    Some(Cause::Belief { gain_nats: f64::NAN, target, with: None })
 }
 
 fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> BeliefErrors {
@@ -379,6 +338,8 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         lanes: None,
         swept: Vec::new(),
         raters: None,
+        settled_by: None,
+        stale_consensus: None,
     }
 }
 

@@ -1,5 +1,6 @@
 //! Collects the rows of the tables of events during the replay of a recording. [`crate::study::tables`] declares their columns.
 
+use super::coded_errors::CodedErrors;
 use crate::analysis::follower::Follower;
 use crate::analysis::offer_summary::TimedOffer;
 use crate::analysis::wizard_log::clock_at;
@@ -9,7 +10,6 @@ use crate::gaze::{MIN_CONFIDENCE, nearest_location};
 use crate::kitchen::{Agent, AspectId, Change, LocationId, Press, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
-use crate::measures::cause_codes::Codes;
 use crate::measures::matching::{CommunicationEvent, MatchCriterion, matched};
 use crate::measures::sequences::Sequence;
 use crate::mind::BeliefWitness;
@@ -56,8 +56,8 @@ pub struct PressFacts<'a> {
     pub sequences: &'a [Sequence],
     /// Causes of people's errors by the estimated beliefs, with the log number of the press.
     pub by_estimate: Option<&'a [(u64, Cause)]>,
-    /// The codes of two raters, if they coded the trial.
-    pub raters: Option<&'a [Codes; 2]>,
+    /// The codes of raters, if they coded the trial.
+    pub coded: &'a CodedErrors,
 }
 
 impl<'a> PressFacts<'a> {
@@ -70,7 +70,11 @@ impl<'a> PressFacts<'a> {
             judged: &self.judged[index],
             sequence: sequence.map(|number| number + 1),
             by_estimate: estimated.map(|(_, cause)| *cause),
-            codes: self.raters.map_or([None, None], |raters| raters.each_ref().map(|codes| codes.0.get(&seq))),
+            codes: match &self.coded.raters {
+                Some(raters) => raters.each_ref().map(|codes| codes.0.get(&seq)),
+                None => [None, None],
+            },
+            shared: self.coded.consensus.as_ref().and_then(|codes| codes.0.get(&seq)),
         })
     }
 }

@@ -51,6 +51,13 @@ pub fn describe(figures: &StudySummary) -> String {
             number(found.kappa_aspect)
         );
     }
+    for (raters, trials) in &figures.consensus {
+        let raters = raters.replace('+', " and ");
+        text += &format!("codes: consensus of {raters} in {}\n", count(*trials, "trial", "trials"));
+    }
+    for one in &figures.stale_consensus {
+        text += &format!("stale consensus, not used: {}: {}; settle it again\n", one.recording, one.reason);
+    }
     if figures.ended.keys().any(|reason| *reason != EndReason::Presses) {
         let ended: Vec<String> =
             figures.ended.iter().map(|(reason, count)| format!("{count} {}", reason.name())).collect();

@@ -97,6 +97,9 @@ fn analysis(figures: &StudySummary) -> String {
         Some(BeliefBasis::Recorded) => {
             "Causes of errors were attributed by the recorded beliefs of the simulated participants."
         }
+        Some(BeliefBasis::Consensus) => {
+            "Causes of errors were coded by two raters, who settled together what they had coded differently."
+        }
         Some(BeliefBasis::Raters) => "Causes of errors were coded by two raters.",
         Some(BeliefBasis::Estimate) => "Causes of errors were attributed by the assistant's estimate of the beliefs.",
         None => "Causes of errors are not known for all trials.",

@@ -52,7 +52,10 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
             }
             "\n"
         }
-        @if let Some(found) = &figures.raters { (raters(found)) }
+        @if let Some(found) = &figures.raters { (raters(found, figures)) }
+        @for one in &figures.stale_consensus {
+            p class="warning" { "Stale consensus, not used: " (one.recording) ": " (one.reason) "." } "\n"
+        }
         div class="cards" {
             "\n"
             (card(&percent(totals.error_rate), "of the presses of both agents are errors of the human"))
@@ -65,13 +68,17 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
 }
 
 /// Paragraph on the agreement of two raters.
-fn raters(found: &Agreement) -> Markup {
+fn raters(found: &Agreement, figures: &StudySummary) -> Markup {
     html! {
         p {
             "Two raters coded the causes of errors. They agree on the cause of " (found.same_cause) " of " (found.errors)
             " errors (Cohen\u{2019}s kappa " (number(found.kappa_cause, 2)) "). Of " (found.beliefs) " errors that both \
             attribute to a false belief, they agree on its location for " (found.same_aspect) " (kappa "
-            (number(found.kappa_aspect, 2)) "). An error counts as belief related if both coded a false belief."
+            (number(found.kappa_aspect, 2)) "). Without a consensus an error counts as belief related if both coded a false belief."
+            @for (pair, trials) in &figures.consensus {
+                " Codes of " (words::count(*trials, "trial", "trials")) ": consensus of " (pair.replace('+', " and "))
+                ", settled together after each had coded alone; agreement is that of their own codes."
+            }
         }
         "\n"
     }

@@ -33,8 +33,10 @@ pub struct PressAnalysis<'a> {
     pub sequence: Option<usize>,
     /// Cause of a person's error by the assistant's estimate.
     pub by_estimate: Option<Cause>,
-    /// Codes of the first two raters.
+    /// Codes of two raters.
     pub codes: [Option<&'a Code>; 2],
+    /// The consensus of these two, where it defines the causes of errors.
+    pub shared: Option<&'a Code>,
 }
 
 /// A press with its analysis.
@@ -72,15 +74,20 @@ impl ActionRow<'_> {
         }
     }
 
-    fn code(&self, rater: usize) -> TableCell<'static> {
-        let code = self.analysis.and_then(|analysis| analysis.codes[rater]);
+    fn code(&self, code: impl Fn(&PressAnalysis) -> Option<Code>) -> TableCell<'static> {
+        let code = self.analysis.as_ref().and_then(code);
         let words = |code: &Code| {
             let kind = code.kind().name();
             code.aspect().map_or(kind.to_string(), |aspect| format!("{kind} {aspect}"))
         };
-        code.map(words).into()
+        code.as_ref().map(words).into()
     }
 }
+
+/// Meanings of columns that take more than a line.
+const SECOND_ASPECT: &str = "second aspect, if only two false beliefs together explain the error";
+const RATER: &str = "code of one of the two raters, who settled a consensus or else coded most errors: belief (with location), slip, race, \
+                     other or buttons";
 
 fn cause_name(cause: Cause) -> &'static str {
     match cause {
@@ -102,9 +109,7 @@ impl TableRow for ActionRow<'_> {
 
     fn columns() -> Vec<Column<Self>> {
         let cause = "cause of an error: belief, planning or slip; source in the trial's beliefs_from; empty: unknown";
-        let second = "second aspect, if only two false beliefs together explain the error";
         let sequence = "number of a belief related error's sequence in the trial, from 1";
-        let rater = "code of the rater who coded most errors: belief (with location), slip, race, other or buttons";
         vec![
             Self::column("recording", "", "as in trials", |row| row.recording.into()),
             Self::column("seq", "", "number of the event in the log", |row| row.recorded.seq.into()),
@@ -140,7 +145,7 @@ impl TableRow for ActionRow<'_> {
                 let [first, _] = row.targets();
                 first.into()
             }),
-            Self::column("second_aspect", "", second, |row| {
+            Self::column("second_aspect", "", SECOND_ASPECT, |row| {
                 let [_, second] = row.targets();
                 second.into()
             }),
@@ -156,12 +161,13 @@ impl TableRow for ActionRow<'_> {
                 "cause of a person's error by the assistant's estimate: belief or slip",
                 |row| row.analysis.and_then(|analysis| analysis.by_estimate).map(cause_name).into(),
             ),
-            Self::column("rater_1", "", rater, |row| row.code(0)),
-            Self::column("rater_2", "", "code of the second of the two raters who coded most errors", |row| {
-                row.code(1)
-            }),
+            Self::column("rater_1", "", RATER, |row| row.code(|press| press.codes[0].cloned())),
+            Self::column("rater_2", "", "code of the other rater", |row| row.code(|press| press.codes[1].cloned())),
             Self::column("log_p", "nats", "log probability of the human's press under the estimated belief", |row| {
                 row.recorded.log_p.map(rounded).into()
+            }),
+            Self::column("consensus", "", "code that the two raters share, where it defines the cause", |row| {
+                row.code(|press| press.shared.cloned())
             }),
         ]
     }

@@ -143,7 +143,7 @@ fn errors() -> Vec<TrialColumn> {
         plain(
             "beliefs_from",
             "",
-            "source of the errors' causes: recorded (beliefs of simulated participants), raters, or estimate",
+            "source of the errors' causes: recorded (beliefs of simulated participants), consensus (of two raters), raters, or estimate",
             |t| t.beliefs.as_ref().map(|beliefs| beliefs.basis.name()).into(),
         ),
         plain("belief_related_errors", "errors", "", |t| t.beliefs.as_ref().map(|beliefs| beliefs.errors).into()),

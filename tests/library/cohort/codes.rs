@@ -4,10 +4,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use miette::Diagnostic;
-use tomcom::edge::log::LOG_NAME;
 use tomcom::edge::log::rater_codes::{read_all, write};
+use tomcom::edge::log::{LOG_NAME, consensus_file};
 use tomcom::measures::cause_codes::{AgreementTable, CauseKind, Code, Codes, most_complete};
-use tomcom::run::codes::{CodedRecording, CodesSummary, export, import};
+use tomcom::measures::consensus::{Consensus, unsettled};
+use tomcom::run::code_exchange::{export, import};
+use tomcom::run::codes::{CodedRecording, CodesSummary, describe};
 use tomcom::run::simulate::Shard;
 use tomcom::run::study::reading::{self, AnalysisScope};
 
@@ -109,6 +111,80 @@ fn check_wrong_rows(coded: &mut [CodedRecording], recording: &Path, table: &Path
         assert!(told.contains("codes.csv:3:") && told.contains(found) && help.contains(remedy), "{told}; {help}");
     }
     assert!(!recording.join("codes-R3.csv").exists(), "nothing of a table with a wrong row is taken over");
+}
+
+/// Two raters of one recording: the second takes every other belief for a slip, and leaves the last error out.
+fn two_raters(recording: &Path) -> (CodedRecording, [Codes; 2]) {
+    let coded = CodedRecording::open(recording).expect("a recording");
+    let one = coded.known.clone().expect("a simulated participant tells");
+    let mut other = Codes::default();
+    for (index, (press, code)) in one.0.iter().enumerate().take(one.0.len() - 1) {
+        other.0.insert(*press, if index % 2 == 0 { code.clone() } else { Code::Race });
+    }
+    write(recording, "R1", &one).expect("written");
+    write(recording, "R2", &other).expect("written");
+    (CodedRecording::open(recording).expect("a recording"), [one, other])
+}
+
+#[test]
+fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
+    let out = folder("consensus");
+    let made = run(&paper(304), 1, Shard::WHOLE, &out);
+    let recording = PathBuf::from(&made.recordings[0]);
+    let (coded, [one, other]) = two_raters(&recording);
+    let open = unsettled(&coded.codable.errors, [&one, &other]);
+    assert!(open.len() > 2, "{open:?}");
+    let before = CodesSummary::from_recordings(&[coded.clone()]);
+    // The last one is not coded by the second rater: to be settled, and no disagreement.
+    assert_eq!(before.disagreements.len(), open.len() - 1);
+    let first = &before.disagreements[0];
+    assert_eq!((first.error.press, first.with_cause.as_str(), &first.with_aspect), (open[0], "race", &None));
+    assert_eq!(coded.codable.errors[first.error.error as usize - 1], open[0]);
+
+    let decided = Codes(open.iter().map(|press| (*press, Code::Buttons)).collect());
+    let settled = Consensus::new("R2", "R1").with_agreed([&one, &other]).with_decided(&decided, [&one, &other]);
+    consensus_file::write(&recording, &settled).expect("written");
+    let read = consensus_file::read(&recording, &coded.codable).expect("readable");
+    assert_eq!(read.as_ref(), Some(&settled), "it is read as it was written");
+
+    let after = CodedRecording::open(&recording).expect("a recording");
+    let figures = CodesSummary::from_recordings(std::slice::from_ref(&after));
+    assert_eq!(figures.agreements, before.agreements, "kappa is that of the raters' own codes");
+    assert_eq!(after.codes.len(), 2, "a consensus is no rater");
+    let found = figures.recordings[0].consensus.clone().expect("a consensus");
+    assert_eq!((found.settled, found.open, found.stale.len()), (made.errors, 0, 0));
+
+    // It comes and goes with the export.
+    let table = out.join("codes.csv");
+    export(std::slice::from_ref(&after), &table).expect("written");
+    for name in ["codes-R1.csv", "codes-R2.csv", "consensus.csv"] {
+        fs::remove_file(recording.join(name)).expect("removed");
+    }
+    let mut bare = vec![CodedRecording::open(&recording).expect("a recording")];
+    import(&mut bare, &table).expect("its own export");
+    assert_eq!(consensus_file::read(&recording, &coded.codable).expect("readable"), Some(settled.clone()));
+    let name = after.name();
+    let agreed = settled.settled.iter().find(|(_, settled)| settled.is_agreed()).map(|(press, _)| *press);
+    for (row, found) in [
+        (format!("{name},R1+R2,{},other,", agreed.expect("one")), "with another cause than both raters say"),
+        (format!("{name},R1+R3,{},other,", open[0]), "the consensus of R1 and R3"),
+        (format!("{name},R1+R1,{},other,", open[0]), "the rater \"R1+R1\""),
+    ] {
+        fs::write(&table, format!("recording,rater,press,cause,aspect\n{row}\n")).expect("written");
+        let mut coded = vec![CodedRecording::open(&recording).expect("a recording")];
+        let told = import(&mut coded, &table).expect_err(&row).to_string();
+        assert!(told.contains("codes.csv:2:") && told.contains(found), "{told}");
+    }
+
+    // A rater thinks again.
+    let mut later = other.clone();
+    later.0.insert(open[0], Code::Other);
+    write(&recording, "R2", &later).expect("written");
+    let stale = CodesSummary::from_recordings(&[CodedRecording::open(&recording).expect("a recording")]);
+    let found = stale.recordings[0].consensus.clone().expect("a consensus");
+    assert_eq!((found.open, found.stale.len()), (1, 1));
+    assert_eq!((found.stale[0].press, found.stale[0].rater.as_str()), (open[0], "R2"));
+    assert!(describe(&stale).contains("stale: R2 changed the code of error"), "{}", describe(&stale));
 }
 
 #[test]

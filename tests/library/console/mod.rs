@@ -4,6 +4,7 @@ mod advice;
 mod belief;
 mod calibration;
 mod clicks;
+mod coding;
 mod colours;
 mod comparison;
 mod hands;

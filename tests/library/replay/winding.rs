@@ -6,6 +6,7 @@ use rand::RngExt;
 use tomcom::base::rng::stream;
 use tomcom::history::landmark::ReplayLandmark;
 use tomcom::run::seekable_replay::SeekableReplay;
+use tomcom::session::TimelineEvent;
 use tomcom::session::settings::ArmKind;
 
 use super::{SESSIONS, simulated};
@@ -46,6 +47,39 @@ fn a_recording_can_be_wound_forward_and_back() {
         }
         assert_eq!(film.position, 0, "as many steps back as forward");
     }
+}
+
+#[test]
+fn a_blinded_replay_shows_no_signal_and_the_same_kitchen() {
+    let recording = std::path::Path::new("tests/golden/format-1-hand.jsonl");
+    let mut open = SeekableReplay::open(recording).expect("it opens");
+    let mut blind = SeekableReplay::open(recording).expect("it opens").blinded();
+    let is_signal = |film: &SeekableReplay| {
+        let signals = film.session.timeline.iter();
+        signals
+            .filter(|entry| matches!(entry.what, TimelineEvent::Signal { .. } | TimelineEvent::SignalEnded(_)))
+            .count()
+    };
+    let (_, events) = open.length();
+    for position in 0..=events {
+        open.wind(position);
+        blind.wind(position);
+        assert_eq!(open.session.state, blind.session.state, "at {position}");
+        assert!(blind.session.shown.is_none() && blind.session.advice.is_none() && is_signal(&blind) == 0);
+    }
+    assert!(is_signal(&open) > 0, "there are signals to be hidden");
+    assert_eq!(open.errors, blind.errors);
+    assert_eq!(blind.landmark(ReplayLandmark::Signal, false), None);
+    // Steps do not stop where something is hidden.
+    let steps = |film: &mut SeekableReplay| {
+        film.wind(0);
+        std::iter::from_fn(|| {
+            let next = film.next_step();
+            (film.position < events).then(|| film.wind(next))
+        })
+        .count()
+    };
+    assert!(steps(&mut blind) < steps(&mut open));
 }
 
 #[test]

@@ -72,6 +72,8 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         lanes: None,
         swept: Vec::new(),
         raters: None,
+        settled_by: None,
+        stale_consensus: None,
     }
 }
 

@@ -8,11 +8,13 @@ use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
 use tomcom::communication::offer::{Offer, OfferEnd, OfferUse, OfferedAct, OfferedAdvice, UsedOffer};
 use tomcom::communication::{Sender, Signal};
-use tomcom::edge::log::rater_codes;
+use tomcom::edge::log::{consensus_file, rater_codes};
 use tomcom::measures::cause_codes::{Code, Codes};
+use tomcom::measures::consensus::Consensus;
 use tomcom::robot::AbortReason;
 use tomcom::robot::safety::SafetyMode;
 use tomcom::run::codes::CodedRecording;
+use tomcom::run::study::describe;
 use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::session::Event;
 use tomcom::session::event::EndReason;
@@ -245,4 +247,47 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
     ] {
         assert!(page.contains(words), "{words} is missing:\n{page}");
     }
+}
+
+/// What two raters settled says why people erred, and their agreement stays that of their own codes.
+#[test]
+fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("study-consensus");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
+    let extent = AnalysisScope { concepts: false, events: true };
+    let read = || reading::read(&folder, "hand", extent).expect("readable").expect("no practice").1;
+    let errors = CodedRecording::open(&folder).expect("a recording").codable.errors;
+    let all = |code: Code| Codes(errors.iter().map(|press| (*press, code.clone())).collect());
+    let (slips, beliefs) = (all(Code::Slip), all(Code::Belief("assembly_board".to_string())));
+    rater_codes::write(&folder, "anna", &slips).expect("a file");
+    rater_codes::write(&folder, "ben", &beliefs).expect("a file");
+    let decided = Codes(beliefs.0.clone().into_iter().skip(1).collect());
+    let settle = |decided: &Codes| {
+        let settled = Consensus::new("anna", "ben").with_decided(decided, [&slips, &beliefs]);
+        consensus_file::write(&folder, &settled).expect("a file");
+    };
+    settle(&decided);
+    let basis = |trial: &Trial| trial.beliefs.as_ref().map(|beliefs| (beliefs.basis, beliefs.errors));
+    assert_eq!(basis(&read().trial), Some((BeliefBasis::Raters, 0)), "one error is not settled");
+    settle(&beliefs);
+    let settled = read();
+    assert_eq!(basis(&settled.trial), Some((BeliefBasis::Consensus, errors.len() as u64)));
+    let rows = String::from_utf8(settled.rows[0].clone()).expect("text");
+    assert!(
+        rows.lines().any(|row| row.contains("slip,belief assembly_board,") && row.ends_with(",belief assembly_board"))
+    );
+    let figures = StudySummary::from_trials(&[settled.trial], &settled.facts, 0);
+    assert_eq!(figures.consensus, [("anna+ben".to_string(), 1)].into());
+    let agreement = figures.raters.as_ref().expect("the raters' own agreement");
+    assert_eq!((agreement.errors, agreement.same_cause), (errors.len() as u64, 0));
+    assert!(describe(&figures).contains("codes: consensus of anna and ben in 1 trial"));
+
+    rater_codes::write(&folder, "ben", &all(Code::Race)).expect("a file");
+    let stale = read();
+    assert_eq!(basis(&stale.trial), Some((BeliefBasis::Raters, 0)));
+    let figures = StudySummary::from_trials(&[stale.trial], &stale.facts, 0);
+    assert!(figures.stale_consensus[0].reason.starts_with("ben changed the code of error 1"));
+    assert!(describe(&figures).contains("stale consensus, not used: hand: ben changed"));
 }

@@ -42,7 +42,7 @@ const PUBLISHED: [(Table, &str); 9] = [
     (
         Table::Actions,
         "recording seq time_s agent press button effective since_s regret excess race error cause aspect second_aspect \
-         gain_nats sequence cause_estimated rater_1 rater_2 log_p",
+         gain_nats sequence cause_estimated rater_1 rater_2 log_p consensus",
     ),
     (Table::Communications, "recording lane time_s press kind target matched"),
     (

@@ -37,50 +37,92 @@ fn a_running_session_is_watched_from_another_terminal_and_looked_at_again() {
     other.is_whole("0");
 }
 
-#[test]
-#[serial]
-fn a_rater_codes_errors_by_keys_and_sees_no_estimate() {
-    let Some(terminal) = Terminal::open("rater") else { return };
-    let out = terminal.folder.join("recordings");
-    let simulated =
-        tmux::tomcom(&["simulate", "sessions/default.toml", "--seed", "7", "--out", &out.display().to_string()]);
-    assert!(simulated.status.success(), "{simulated:?}");
-    let recording = terminal.recording();
-    let log = terminal.log();
-    let codes = recording.join("codes-R1.csv");
-    let rows =
-        || fs::read_to_string(&codes).unwrap_or_default().lines().skip(1).map(str::to_string).collect::<Vec<_>>();
-    terminal.run(&format!("{TOMCOM} replay {} --rater R1", recording.display()));
-    terminal.see("R1, before the first of");
-    assert!(!terminal.screen().contains("Belief"), "{}", terminal.screen());
-    let kitchen = kitchen("default.toml");
-    let place = kitchen.locations.iter().find(|location| location.name == "cooking_pot").expect("a pot");
-    let letter = place.signal_key.expect("a key").to_string();
-    for (key, seen) in [
-        ("9", "\"9\" has no meaning"),
-        ("1", "no error yet"),
-        ("Enter", "R1, error 1 of"),
-        ("1", "slip (1 coded)"),
-        ("Enter", "R1, error 2 of"),
-        (&letter, "wrong about cooking pot (2 coded)"),
-        ("Enter", "R1, error 3 of"),
-        ("3", "other (3 coded)"),
-        ("DC", " effect: not coded (2 coded)"),
-        ("BSpace", "R1, error 2 of"),
-    ] {
+/// Presses keys, each after the delay of key repeat, and waits for what the screen says.
+fn press_each(terminal: &Terminal, keys: &[(&str, &str)]) {
+    for (key, seen) in keys {
         terminal.key(key);
         terminal.see(seen);
         std::thread::sleep(Duration::from_millis(800));
     }
+}
+
+#[test]
+#[serial]
+fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one() {
+    let Some(terminal) = Terminal::open("rater") else { return };
+    let out = terminal.folder.join("recordings");
+    let out = out.display().to_string();
+    let simulated =
+        tmux::tomcom(&["simulate", "sessions/default.toml", "--seed", "7", "--condition", "assistant", "--out", &out]);
+    assert!(simulated.status.success(), "{simulated:?}");
+    let recording = terminal.recording();
+    let name = recording.display().to_string();
+    let log = terminal.log();
+    let rows = |file: &str| {
+        let text = fs::read_to_string(recording.join(file)).unwrap_or_default();
+        text.lines().skip(1).map(str::to_string).collect::<Vec<_>>()
+    };
+    terminal.run(&format!("{TOMCOM} replay {name} --rater R1"));
+    terminal.see("R1: 0 of");
+    terminal.see("error 1 is the first without a code");
+    for telling in ["Beliefs", "assistant", "Recommendation", "On the participant's display"] {
+        assert!(!terminal.screen().contains(telling), "{}", terminal.screen());
+    }
+    let kitchen = kitchen("default.toml");
+    let place = kitchen.locations.iter().find(|location| location.name == "cooking_pot").expect("a pot");
+    let letter = place.signal_key.expect("a key").to_string();
+    let first = [
+        ("9", "\"9\" has no meaning"),
+        ("1", "saved: error 1, slip"),
+        ("Enter", "coded, 1 since opening"),
+        (&letter, "saved: error 2, wrong about cooking pot"),
+        ("u", "saved: error 2, -"),
+        ("C-y", "saved: error 2, wrong about cooking pot"),
+        ("Down", "coded, 2 since opening"),
+        ("3", "not coded: error 3 is chosen"),
+        ("Enter", "coded, 2 since opening"),
+        ("3", "saved: error 3, other cause"),
+        ("DC", "saved: error 3, -"),
+        ("BSpace", "2 since opening"),
+    ];
+    press_each(&terminal, &first);
     terminal.key("C-c");
     terminal.is_whole("0");
-    let kept = rows();
+    let kept = rows("codes-R1.csv");
     assert!(matches!(&kept[..], [a, b] if a.ends_with(",slip,") && b.ends_with(",belief,cooking_pot")), "{kept:?}");
-    assert_eq!(terminal.log(), log, "the log stays as it is");
-    terminal.run(&format!("{TOMCOM} replay {} --rater R1", recording.display()));
-    terminal.see("(2 coded)");
+
+    terminal.run(&format!("{TOMCOM} replay {name} --rater R1"));
+    terminal.see("R1: 2 of");
+    terminal.see("error 3 is the first without a code");
     terminal.key("C-c");
     terminal.is_whole("0");
+
+    // The other rater codes the first error alike, the second otherwise, and the third alone.
+    let presses: Vec<&str> = kept.iter().filter_map(|row| row.split(',').next()).collect();
+    let codes = format!("press,cause,aspect\n{},slip,\n{},race,\n", presses[0], presses[1]);
+    fs::write(recording.join("codes-R2.csv"), codes).expect("written");
+    terminal.run(&format!("{TOMCOM} replay {name} --settle R2 R1"));
+    terminal.see("error 2 is the first without a code");
+    terminal.see("R1: wrong about cooking pot");
+    terminal.see("R2: race");
+    press_each(
+        &terminal,
+        &[("2", "saved: error 2, race"), ("u", "saved: error 2, -"), ("C-y", "saved: error 2, race")],
+    );
+    terminal.key("C-c");
+    terminal.is_whole("0");
+    let settled = rows("consensus.csv");
+    let agreed = format!("R1,slip,,R2,slip,,{},slip,", presses[0]);
+    let decided = format!("R1,belief,cooking_pot,R2,race,,{},race,", presses[1]);
+    assert_eq!(settled, [agreed, decided]);
+    assert_eq!(rows("codes-R1.csv"), kept, "a consensus leaves the raters' codes");
+    assert_eq!(terminal.log(), log, "the log stays as it is");
+    let told = tmux::tomcom(&["codes", &name]);
+    let told = String::from_utf8_lossy(&told.stdout).into_owned();
+    assert!(told.contains("consensus of R1 and R2: 1 agreed, 1 settled"), "{told}");
+    terminal.run(&format!("{TOMCOM} replay {name} --settle R1 R3"));
+    terminal.is_whole("2");
+    terminal.see("no codes of the rater R3");
 }
 
 #[test]

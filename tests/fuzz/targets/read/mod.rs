@@ -10,7 +10,7 @@ use tomcom::edge::file_error::FileResult;
 use tomcom::edge::files::compile_kitchen;
 use tomcom::edge::key_file::key_map;
 use tomcom::edge::language::LanguageFile;
-use tomcom::edge::log::{EXCLUSION_NAME, LogReader, rater_codes, ruling};
+use tomcom::edge::log::{EXCLUSION_NAME, LogReader, consensus_file, rater_codes, ruling};
 use tomcom::edge::parse::parse;
 use tomcom::edge::pupil::message as pupil_message;
 use tomcom::edge::pupil::zmtp::FrameAssembler;
@@ -32,7 +32,7 @@ const RECORDING: &str = include_str!("../../../golden/format-1-hand.jsonl");
 pub type Reader = fn(&[u8]);
 
 /// The readers with the names that `tests/fuzz/run` takes.
-pub const READERS: [(&str, Reader); 19] = [
+pub const READERS: [(&str, Reader); 20] = [
     ("layout", layout),
     ("recipes", recipes),
     ("session", session),
@@ -44,6 +44,7 @@ pub const READERS: [(&str, Reader); 19] = [
     ("events", events),
     ("exclusion", exclusion),
     ("rater_codes", codes),
+    ("consensus", consensus),
     ("training", trained),
     ("table", table),
     ("gaze_export", gaze_export),
@@ -123,9 +124,18 @@ fn exclusion(bytes: &[u8]) {
 /// Codes of one rater beside a log, and of several in an export.
 fn codes(bytes: &[u8]) {
     let path = file("codes-R1.csv", bytes);
-    let codable = Codable { errors: (1..20).collect(), places: vec!["cooking_pot".to_string(), "plate".to_string()] };
-    shown(rater_codes::read(&folder(), "R1", &codable).map(drop));
+    shown(rater_codes::read(&folder(), "R1", &codable()).map(drop));
     shown(rater_codes::read_export(&path).map(drop));
+}
+
+/// What two raters settled, beside a log.
+fn consensus(bytes: &[u8]) {
+    file(consensus_file::CONSENSUS_NAME, bytes);
+    shown(consensus_file::read(&folder(), &codable()).map(drop));
+}
+
+fn codable() -> Codable {
+    Codable { errors: (1..20).collect(), places: vec!["cooking_pot".to_string(), "plate".to_string()] }
 }
 
 fn trained(bytes: &[u8]) {

@@ -1,0 +1,60 @@
+//! The errors of a recording as raters see them: number, time, press.
+
+use serde::Serialize;
+
+use super::follower::Follower;
+use super::wizard_log::clock_at;
+use crate::base::time::SessionTime;
+use crate::history::wording;
+use crate::kitchen::Agent;
+use crate::session::TimelineEvent;
+
+/// An error of the human.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ListedError {
+    /// Number among the errors of the recording, from 1.
+    pub error: u64,
+    /// Sequence number of the press in the log.
+    pub press: u64,
+    /// Time on the trial's clock in seconds.
+    pub time_s: f64,
+    /// The button in words.
+    pub button: String,
+    /// Whether the press changed the kitchen.
+    pub effective: bool,
+}
+
+impl ListedError {
+    /// The errors of a recording that was followed to its end, in order.
+    pub fn all(follower: &Follower) -> Vec<ListedError> {
+        let session = &follower.session;
+        let presses = session.timeline.iter().filter_map(|entry| match entry.what {
+            TimelineEvent::Press { agent: Agent::Human, button, no_effect } => Some((button, no_effect.is_none())),
+            _ => None,
+        });
+        // The nth judged press is the nth press of the human on the timeline.
+        let errors = follower.judged.iter().zip(presses).filter(|(judged, _)| judged.verdict.error);
+        let listed =
+            |(index, (judged, (button, effective))): (usize, (&crate::measures::JudgedPress, _))| ListedError {
+                error: index as u64 + 1,
+                press: judged.seq,
+                time_s: clock_at(session, judged.time).as_secs_f64(),
+                button: wording::button(&session.kitchen, Agent::Human, button),
+                effective,
+            };
+        errors.enumerate().map(listed).collect()
+    }
+
+    /// Its time as the console shows it: "1:34".
+    pub fn clock(&self) -> String {
+        SessionTime::from_secs_f64(self.time_s).to_string()
+    }
+
+    /// The press in words: "take rice", "cooking pot (no effect)".
+    pub fn words(&self) -> String {
+        match self.effective {
+            true => self.button.clone(),
+            false => format!("{} (no effect)", self.button),
+        }
+    }
+}

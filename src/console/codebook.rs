@@ -1,0 +1,121 @@
+//! The codebook: the codes that a rater can give, with their keys and definitions.
+
+use ratatui::text::Span;
+
+use super::key_action::{KeyAction, KeyBinding, RaterKey};
+use super::keys::KeyBindings;
+use crate::kitchen::Kitchen;
+use crate::measures::cause_codes::CauseKind;
+
+/// Columns between two entries of a line.
+const GAP: u16 = 2;
+
+/// A piece of the codebook: a key, and what it says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CodebookEntry {
+    /// The key; empty for a heading.
+    pub key: String,
+    /// The code in words, or the heading.
+    pub words: String,
+}
+
+impl CodebookEntry {
+    fn heading(words: String) -> CodebookEntry {
+        CodebookEntry { key: String::new(), words }
+    }
+
+    /// Columns that the entry takes, with a space behind its key.
+    fn columns(&self) -> u16 {
+        let key = if self.key.is_empty() { 0 } else { columns_of(&self.key) + 1 };
+        key + columns_of(&self.words)
+    }
+}
+
+/// A line of the codebook: entries, each with the columns before it.
+pub type CodebookLine = Vec<(u16, CodebookEntry)>;
+
+/// The codebook for a panel of so many columns: causes with their definitions, a line each, then the places about which something
+/// can be believed wrong.
+pub fn full(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<CodebookLine> {
+    let mut lines: Vec<CodebookLine> = Vec::new();
+    for CodebookEntry { key, words } in of_kinds(keys, |kind| Some(kind.definition())) {
+        let indent = columns_of(&key) + 1;
+        for (row, words) in wrap(&words, columns.saturating_sub(indent)).into_iter().enumerate() {
+            let (before, key) = if row == 0 { (0, key.clone()) } else { (indent, String::new()) };
+            lines.push(vec![(before, CodebookEntry { key, words })]);
+        }
+    }
+    let belief = format!("{} ({}):", CauseKind::Belief.title(), CauseKind::Belief.definition());
+    lines.extend(wrap(&belief, columns).into_iter().map(|words| vec![(0, CodebookEntry::heading(words))]));
+    let places = places(keys, kitchen);
+    let widest = places.iter().map(CodebookEntry::columns).max().unwrap_or(0) + GAP;
+    let across = usize::from(((columns + GAP) / widest).max(1));
+    let down = places.len().div_ceil(across).max(1);
+    for row in 0..down {
+        let of_row = places.iter().skip(row).step_by(down).enumerate();
+        lines.push(of_row.map(|(column, entry)| (column as u16 * widest, entry.clone())).collect());
+    }
+    lines
+}
+
+/// The codebook in as few lines of at most `columns` as possible.
+pub fn compact(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<CodebookLine> {
+    let mut beliefs = vec![CodebookEntry::heading(CauseKind::Belief.title().to_string())];
+    beliefs.extend(places(keys, kitchen));
+    let mut lines = flow(of_kinds(keys, CauseKind::short_definition), columns);
+    lines.extend(flow(beliefs, columns));
+    lines
+}
+
+/// The places about which something can be believed wrong: "q order 1".
+fn places(keys: &KeyBindings, kitchen: &Kitchen) -> Vec<CodebookEntry> {
+    let entry = |line: &KeyBinding| match line.action {
+        KeyAction::Rate(RaterKey::Belief(location)) => {
+            Some(CodebookEntry { key: line.chords.first()?.to_string(), words: kitchen.location(location).label() })
+        }
+        _ => None,
+    };
+    keys.bindings.iter().filter_map(entry).collect()
+}
+
+/// The codes without a place: "1 slip: nothing was believed wrong".
+fn of_kinds(keys: &KeyBindings, definition: impl Fn(CauseKind) -> Option<&'static str>) -> Vec<CodebookEntry> {
+    let entry = |kind: CauseKind| {
+        let key = keys.chord_for(&KeyAction::Rate(RaterKey::Cause(kind)))?.to_string();
+        let definition = definition(kind).map_or(String::new(), |definition| format!(": {definition}"));
+        Some(CodebookEntry { key, words: format!("{}{definition}", kind.title()) })
+    };
+    CauseKind::ALL.into_iter().filter_map(entry).collect()
+}
+
+fn flow(entries: Vec<CodebookEntry>, columns: u16) -> Vec<CodebookLine> {
+    let mut lines: Vec<CodebookLine> = Vec::new();
+    let mut used = 0;
+    for entry in entries {
+        let needed = entry.columns();
+        if lines.is_empty() || used + needed > columns {
+            (used, lines) = (0, [lines, vec![Vec::new()]].concat());
+        }
+        if let Some(line) = lines.last_mut() {
+            line.push((used, entry));
+        }
+        used += needed + GAP;
+    }
+    lines
+}
+
+/// The text in lines of at most `columns`, broken between words.
+fn wrap(text: &str, columns: u16) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if columns_of(line) + 1 + columns_of(word) <= columns => *line += &format!(" {word}"),
+            _ => lines.push(word.to_string()),
+        }
+    }
+    lines
+}
+
+fn columns_of(text: &str) -> u16 {
+    Span::raw(text).width() as u16
+}

@@ -1,0 +1,40 @@
+//! Where the rows of the list of errors stand.
+
+use ratatui::layout::Rect;
+
+use super::rater_session::{CodingParty, RaterSession};
+use super::view::regions::{Regions, ScreenSize, below_title};
+
+/// The list of errors on the screen.
+#[derive(Clone, Copy, Debug)]
+pub struct CodingList {
+    /// Lines above the rows: progress, and the present error in words.
+    pub head: Rect,
+    /// The rows.
+    pub rows: Rect,
+    /// Index of the error in the first row.
+    pub first: usize,
+}
+
+impl CodingList {
+    /// The list while the replay stands after so many events.
+    pub fn new(regions: &Regions, coding: &RaterSession, events: usize) -> CodingList {
+        let area = regions.errors;
+        let is_lines = regions.room == ScreenSize::Small || area.height < 8;
+        let (inside, head_rows) = match (&coding.party, is_lines) {
+            (CodingParty::Pair { .. }, true) if area.height > 3 => (area, 2),
+            (_, true) => (area, 1),
+            // A bar, then what comes next or the present error.
+            (CodingParty::Rater(_), false) => (below_title(area), 3),
+            (CodingParty::Pair { .. }, false) => (below_title(area), 4),
+        };
+        let head_rows = head_rows.min(inside.height);
+        let head = Rect { height: head_rows, ..inside };
+        let rows = Rect { y: inside.y + head_rows, height: inside.height - head_rows, ..inside };
+        let number = coding.errors.len();
+        let focus = coding.chosen.or(coding.at(events)).unwrap_or(0);
+        let height = usize::from(rows.height);
+        let first = focus.saturating_sub(height / 2).min(number.saturating_sub(height));
+        CodingList { head, rows, first }
+    }
+}

@@ -1,0 +1,189 @@
+//! A rater's panels: the codebook, which is always in view, and the errors with their codes.
+
+use ratatui::layout::Rect;
+
+use super::paint::{Painter, fit, width, wrap};
+use super::regions::{Regions, ScreenSize};
+use super::theme::TextRole;
+use crate::analysis::error_list::ListedError;
+use crate::console::click::ClickAction;
+use crate::console::codebook::{self, CodebookEntry};
+use crate::console::coding_list::CodingList;
+use crate::console::console_model::ConsoleModel;
+use crate::console::rater_session::{CodingParty, RaterSession};
+use crate::history::wording;
+use crate::measures::cause_codes::Code;
+use crate::session::Session;
+
+/// Columns of an error's number, and of its time.
+const NUMBER: u16 = 4;
+const CLOCK: u16 = 6;
+/// Number of columns from which a row has room for whole codes.
+const WIDE: u16 = 62;
+/// Columns of a code in words ("wrong about assembly board"), and in short ("assembly board").
+const WHOLE_CODE: u16 = 27;
+const SHORT_CODE: u16 = 14;
+/// Columns of the bar in a line.
+const BAR: u16 = 16;
+
+/// Draws codebook and errors, while errors are coded.
+pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+    let Some(coding) = &model.coding else { return };
+    let events = model.playback.as_ref().map_or(0, |playback| playback.event);
+    let is_panel = regions.room != ScreenSize::Small && model.alone.is_none();
+    draw_codebook(brush, regions.codebook, session, model, is_panel);
+    draw_errors(brush, regions, coding, events);
+}
+
+/// Draws the codebook as lines, or as a panel where it stands in a column beside the kitchen.
+fn draw_codebook(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel, is_panel: bool) {
+    if area.area() == 0 {
+        return;
+    }
+    let inside = match is_panel {
+        true => brush.panel(area, "Codebook", "why was it an error?"),
+        false => area,
+    };
+    let (left, columns) = (inside.x + 1, inside.width.saturating_sub(2));
+    let lines = match is_panel {
+        true => codebook::full(&model.keys, &session.kitchen, columns),
+        false => codebook::compact(&model.keys, &session.kitchen, columns),
+    };
+    for (row, line) in lines.iter().enumerate().take(usize::from(inside.height)) {
+        for (before, CodebookEntry { key, words }) in line {
+            let x = left + before;
+            let (gap, role) = if key.is_empty() { ("", TextRole::Quiet) } else { (" ", TextRole::Text) };
+            let parts = [(key.as_str(), TextRole::Signal), (gap, TextRole::Text), (words.as_str(), role)];
+            brush.parts(x, inside.y + row as u16, inside.right().saturating_sub(x), &parts);
+        }
+    }
+}
+
+fn draw_errors(brush: &mut Painter, regions: &Regions, coding: &RaterSession, events: usize) {
+    let area = regions.errors;
+    if area.area() == 0 {
+        return;
+    }
+    let list = CodingList::new(regions, coding, events);
+    match list.head.y > area.y {
+        true => {
+            brush.panel(area, &coding.progress(), "");
+            draw_head(brush, list.head, coding, events);
+        }
+        false => draw_lines(brush, list.head, coding, events),
+    }
+    let at = coding.at(events);
+    for (row, index) in (list.first..coding.errors.len()).enumerate().take(usize::from(list.rows.height)) {
+        let error = &coding.errors[index];
+        let line = Rect { y: list.rows.y + row as u16, height: 1, ..list.rows };
+        let mark = match (coding.chosen == Some(index), at == Some(index)) {
+            (true, _) => RowMark::Chosen,
+            (_, true) => RowMark::Present,
+            _ => RowMark::None,
+        };
+        draw_row(brush, line, coding, error, mark);
+        brush.target(line, ClickAction::Error(index));
+    }
+}
+
+/// The part of the errors that have a code.
+fn share(coding: &RaterSession) -> f64 {
+    coding.coded() as f64 / coding.errors.len().max(1) as f64
+}
+
+/// Draws progress or what comes next in a line, and the codes of a pair in the last one.
+fn draw_lines(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usize) {
+    let words = coding.next_step().unwrap_or_else(|| coding.progress());
+    let (x, columns) = (head.x + 1, head.width.saturating_sub(1));
+    let strong = brush.style(TextRole::Strong);
+    let end = brush.text(x, head.y, columns, &format!("{}: {words}", coding.name()), strong);
+    if end + BAR + 3 < head.right() {
+        brush.bar(end + 2, head.y, BAR, share(coding), TextRole::Strong);
+    }
+    let own = coding.present(events).map(|error| coding.own(error)).unwrap_or_default();
+    if !own.is_empty() {
+        let text = brush.style(TextRole::Text);
+        let words = format!("{:columns$}", own.join("   "), columns = usize::from(columns));
+        brush.text(x, head.bottom().saturating_sub(1), columns, &words, text);
+    }
+}
+
+/// Draws the bar of progress, and below it the present error in words, or what comes next.
+fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usize) {
+    let (x, columns) = (head.x + 1, head.width.saturating_sub(2));
+    brush.bar(x, head.y, columns, share(coding), TextRole::Strong);
+    let mut lines: Vec<(String, TextRole)> = Vec::new();
+    if let Some(next) = coding.next_step() {
+        lines.extend(wrap(&next, columns).into_iter().map(|line| (line, TextRole::Strong)));
+    } else if let Some(error) = coding.present(events) {
+        let code = RaterSession::words(coding.code(error));
+        lines.push((format!("{} {}", error.error, error.words()), TextRole::Strong));
+        match coding.party {
+            CodingParty::Rater(_) => lines.push((format!("  {code}"), TextRole::Text)),
+            CodingParty::Pair { .. } => {
+                let own = coding.own(error);
+                let beside = own.join("   ");
+                let lines_of_own = if width(&beside) + 2 <= columns { vec![beside] } else { own };
+                lines.extend(lines_of_own.into_iter().map(|own| (format!("  {own}"), TextRole::Text)));
+            }
+        }
+    } else {
+        lines.push(("before the first error: enter goes there".to_string(), TextRole::Quiet));
+    }
+    for (row, (line, role)) in lines.iter().enumerate().take(usize::from(head.height.saturating_sub(1))) {
+        let style = brush.style(*role);
+        brush.text(x, head.y + 1 + row as u16, columns, line, style);
+    }
+}
+
+/// Whether the replay stands at an error of the list, or the arrows are on it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum RowMark {
+    None,
+    Present,
+    Chosen,
+}
+
+/// Draws number, time, press and codes of an error.
+fn draw_row(brush: &mut Painter, line: Rect, coding: &RaterSession, error: &ListedError, mark: RowMark) {
+    let signs = brush.theme.signs();
+    let role = if mark == RowMark::None { TextRole::Text } else { TextRole::Strong };
+    let sign = match mark {
+        RowMark::Present => signs.to,
+        RowMark::Chosen => signs.by_hand,
+        RowMark::None => " ",
+    };
+    brush.parts(line.x, line.y, 1, &[(sign, TextRole::Strong)]);
+    let style = match mark {
+        RowMark::Chosen => brush.theme.badge(TextRole::Strong),
+        _ => brush.style(role),
+    };
+    let quiet = brush.style(TextRole::Quiet);
+    let mut x = line.x + 1;
+    brush.text(x, line.y, NUMBER, &format!("{:>3} ", error.error), style);
+    x += NUMBER;
+    brush.text(x, line.y, CLOCK, &format!("{:>5}", error.clock()), quiet);
+    x += CLOCK;
+    let is_wide = line.width >= WIDE;
+    let code_columns = if is_wide { WHOLE_CODE } else { SHORT_CODE };
+    let right = line.right().saturating_sub(1);
+    let press_columns = right.saturating_sub(x + code_columns + 1);
+    let press = fit(&error.words(), press_columns, signs.ellipsis);
+    brush.parts(x, line.y, press_columns, &[(&press, role)]);
+    x += press_columns + 1;
+    let code = coding.code(error);
+    let words = match is_wide {
+        true => RaterSession::words(code),
+        false => short(code),
+    };
+    let role = if code.is_some() { TextRole::Strong } else { TextRole::Quiet };
+    brush.parts(x, line.y, right.saturating_sub(x), &[(&words, role)]);
+}
+
+/// A code in few columns: of a false belief only the place.
+fn short(code: Option<&Code>) -> String {
+    match code.and_then(Code::aspect) {
+        Some(place) => wording::location(place),
+        None => RaterSession::words(code),
+    }
+}

@@ -1,0 +1,158 @@
+//! Consensus codes: what two raters decide together where their codes differ. A consensus is no third rater: agreement is computed
+//! from the raters' own codes alone.
+
+use std::collections::BTreeMap;
+
+use super::cause_codes::{Code, Codes};
+
+/// A code that two raters share, with the codes that it was decided from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SettledCode {
+    /// The code of both.
+    pub code: Code,
+    /// The code of each rater at that time; `None` if the rater had not coded the error.
+    pub from: [Option<Code>; 2],
+}
+
+/// The consensus of two raters about the errors of one recording, by log number of the erroneous press.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Consensus {
+    /// The two raters, in the order of their codes.
+    pub raters: [String; 2],
+    /// The shared codes, decided together or agreed from the beginning.
+    pub settled: BTreeMap<u64, SettledCode>,
+}
+
+/// A rater's code that changed after the error was settled.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChangedCode {
+    /// Log number of the erroneous press.
+    pub press: u64,
+    /// The rater whose code changed.
+    pub rater: String,
+}
+
+impl Consensus {
+    /// A consensus in which nothing is settled. The order of the two raters has no meaning.
+    pub fn new(one: &str, other: &str) -> Consensus {
+        let mut raters = [one.to_string(), other.to_string()];
+        raters.sort();
+        Consensus { raters, settled: BTreeMap::new() }
+    }
+
+    /// Its name in tables: "R1+R2". No rater is called that.
+    pub fn name(&self) -> String {
+        self.raters.join("+")
+    }
+
+    /// Adds what both raters coded alike.
+    pub fn with_agreed(mut self, codes: [&Codes; 2]) -> Consensus {
+        for (press, code) in codes[0].agreed(codes[1]).0 {
+            let from = [Some(code.clone()), Some(code.clone())];
+            self.settled.insert(press, SettledCode { code, from });
+        }
+        self
+    }
+
+    /// Adds codes that the raters, who have these codes, decide together.
+    pub fn with_decided(mut self, decided: &Codes, codes: [&Codes; 2]) -> Consensus {
+        for (press, code) in &decided.0 {
+            let from = codes.map(|codes| codes.0.get(press).cloned());
+            self.settled.insert(*press, SettledCode { code: code.clone(), from });
+        }
+        self
+    }
+
+    /// The raters' codes that changed since they were settled; with any of them the consensus is stale.
+    pub fn changed(&self, codes: [&Codes; 2]) -> Vec<ChangedCode> {
+        let mut changed = Vec::new();
+        for (press, settled) in &self.settled {
+            for (index, rater) in self.raters.iter().enumerate() {
+                if codes[index].0.get(press) != settled.from[index].as_ref() {
+                    changed.push(ChangedCode { press: *press, rater: rater.clone() });
+                }
+            }
+        }
+        changed
+    }
+
+    /// The shared codes for which the raters still have the codes that they were decided from.
+    pub fn current(&self, codes: [&Codes; 2]) -> Codes {
+        let stale = self.changed(codes);
+        let holds = |press: &u64| stale.iter().all(|changed| changed.press != *press);
+        let settled = self.settled.iter().filter(|(press, _)| holds(press));
+        Codes(settled.map(|(press, settled)| (*press, settled.code.clone())).collect())
+    }
+
+    /// Number of errors that both raters had coded alike.
+    pub fn agreed(&self) -> usize {
+        self.settled.values().filter(|settled| settled.is_agreed()).count()
+    }
+}
+
+impl SettledCode {
+    /// Whether both raters had given this code.
+    pub fn is_agreed(&self) -> bool {
+        self.from.iter().all(|from| from.as_ref() == Some(&self.code))
+    }
+
+    /// What is wrong with a code that differs from what both raters said alike; `None` for a valid one.
+    pub fn fault(&self) -> Option<&'static str> {
+        let [one, other] = &self.from;
+        let overrules = one.is_some() && one == other && one.as_ref() != Some(&self.code);
+        overrules.then_some("the code that both raters gave: what they agree on needs no other decision")
+    }
+}
+
+/// The errors that two raters have to settle: their codes differ, or one of them has none.
+pub fn unsettled(errors: &[u64], codes: [&Codes; 2]) -> Vec<u64> {
+    let [one, other] = codes;
+    let differs = |press: &u64| match (one.0.get(press), other.0.get(press)) {
+        (Some(a), Some(b)) => a != b,
+        _ => true,
+    };
+    errors.iter().copied().filter(differs).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn codes(of: &[(u64, Code)]) -> Codes {
+        Codes(of.iter().cloned().collect())
+    }
+
+    #[test]
+    fn what_both_say_is_taken_over_and_the_rest_is_to_be_settled() {
+        let one = codes(&[(3, Code::Slip), (5, Code::Race), (8, Code::Other)]);
+        let other = codes(&[(3, Code::Slip), (5, Code::Slip)]);
+        assert_eq!(unsettled(&[3, 5, 8, 9], [&one, &other]), [5, 8, 9]);
+        let begun = Consensus::new("R2", "R1").with_agreed([&one, &other]);
+        assert_eq!((begun.name().as_str(), begun.agreed()), ("R1+R2", 1));
+        let decided = codes(&[(5, Code::Race), (8, Code::Buttons)]);
+        let settled = begun.with_decided(&decided, [&one, &other]);
+        assert_eq!(settled.current([&one, &other]).0.len(), 3);
+        assert_eq!(settled.settled[&8].from, [Some(Code::Other), None]);
+    }
+
+    #[test]
+    fn a_code_that_changes_afterwards_makes_its_error_stale_and_no_other() {
+        let one = codes(&[(3, Code::Slip), (5, Code::Race)]);
+        let other = codes(&[(3, Code::Slip), (5, Code::Slip)]);
+        let settled = Consensus::new("R1", "R2")
+            .with_agreed([&one, &other])
+            .with_decided(&codes(&[(5, Code::Race)]), [&one, &other]);
+        assert_eq!(settled.changed([&one, &other]), []);
+        let later = codes(&[(3, Code::Slip), (5, Code::Other)]);
+        assert_eq!(settled.changed([&one, &later]), [ChangedCode { press: 5, rater: "R2".to_string() }]);
+        assert_eq!(settled.current([&one, &later]), codes(&[(3, Code::Slip)]));
+    }
+
+    #[test]
+    fn nobody_overrules_what_both_raters_say() {
+        let both = [Some(Code::Slip), Some(Code::Slip)];
+        assert!(SettledCode { code: Code::Race, from: both.clone() }.fault().is_some());
+        assert!(SettledCode { code: Code::Slip, from: both }.fault().is_none());
+        assert!(SettledCode { code: Code::Race, from: [None, None] }.fault().is_none());
+    }
+}

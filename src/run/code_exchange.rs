@@ -1,0 +1,129 @@
+//! Export and import of raters' codes, and of what two raters settled, as one table.
+
+use std::path::Path;
+
+use super::codes::CodedRecording;
+use super::error::RunError;
+use crate::edge::log::consensus_file;
+use crate::edge::log::rater_codes::{self, CodeRow};
+use crate::measures::cause_codes::{Code, Codes};
+use crate::measures::consensus::Consensus;
+use crate::session::settings::is_code;
+
+/// What would be right where the table names a rater.
+const RATER: &str =
+    "a code of 1 to 32 letters, digits, - and _, never a name; or two of them such as R1+R2, for their consensus";
+
+/// Who gave the code of a row.
+enum RowAuthor {
+    Rater(String),
+    Pair([String; 2]),
+}
+
+impl RowAuthor {
+    fn parse(text: &str) -> Option<RowAuthor> {
+        match text.split_once('+') {
+            None => is_code(text).then(|| RowAuthor::Rater(text.to_string())),
+            Some((one, other)) => {
+                let is_pair = is_code(one) && is_code(other) && one != other;
+                is_pair.then(|| RowAuthor::Pair([one.to_string(), other.to_string()]))
+            }
+        }
+    }
+}
+
+/// Imports the rows of a file into the recordings, in addition to existing codes. Nothing is written if a row is invalid.
+///
+/// # Errors
+/// The file cannot be read, a row does not refer to an error of these recordings, two raters settled what they agree on otherwise, or
+/// a folder is not writable.
+pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, RunError> {
+    let (text, rows) = rater_codes::read_export(file)?;
+    let mut changed = vec![Vec::new(); recordings.len()];
+    let mut settled = Vec::new();
+    let names: Vec<String> = recordings.iter().map(CodedRecording::name).collect();
+    for row in &rows {
+        let wrong = |found: String, remedy: &str| rater_codes::wrong_line(file, &text, row.line, found, remedy);
+        let Some(index) = names.iter().position(|name| *name == row.recording) else {
+            let found = format!("the recording \"{}\"", row.recording);
+            let remedy = format!("a recording that was named: {}", names.join(", "));
+            return Err(wrong(found, &remedy).into());
+        };
+        let one = &mut recordings[index];
+        let Some(author) = RowAuthor::parse(&row.rater) else {
+            return Err(wrong(format!("the rater \"{}\"", row.rater), RATER).into());
+        };
+        if let Some((found, remedy)) = one.codable.fault(row.press, &row.code) {
+            return Err(wrong(found, &remedy).into());
+        }
+        match author {
+            RowAuthor::Rater(rater) => {
+                one.codes.entry(rater.clone()).or_default().0.insert(row.press, row.code.clone());
+                changed[index].push(rater);
+            }
+            // The raters' own codes can stand below in the table.
+            RowAuthor::Pair(raters) => settled.push((index, raters, row)),
+        }
+    }
+    for (index, raters, row) in &settled {
+        let fault = recordings[*index].settle(raters, row.press, &row.code);
+        if let Err((found, remedy)) = fault {
+            return Err(rater_codes::wrong_line(file, &text, row.line, found, &remedy).into());
+        }
+    }
+    for (index, (one, mut raters)) in recordings.iter().zip(changed).enumerate() {
+        raters.sort();
+        raters.dedup();
+        for rater in raters {
+            rater_codes::write(&one.folder, &rater, &one.codes[&rater])?;
+        }
+        let is_settled = settled.iter().any(|(settled, ..)| *settled == index);
+        if let Some(consensus) = one.consensus.as_ref().filter(|_| is_settled) {
+            consensus_file::write(&one.folder, consensus)?;
+        }
+    }
+    Ok(rows.len() as u64)
+}
+
+impl CodedRecording {
+    /// Adds a code that two raters share; what was found and what would be right, if they cannot.
+    fn settle(&mut self, raters: &[String; 2], press: u64, code: &Code) -> Result<(), (String, String)> {
+        let new = Consensus::new(&raters[0], &raters[1]);
+        let own = new.raters.clone().map(|rater| self.codes.get(&rater).cloned().unwrap_or_default());
+        let consensus = self.consensus.take().unwrap_or_else(|| new.clone());
+        if consensus.raters != new.raters {
+            let remedy = format!("{}, who settled this recording; or delete its consensus first", consensus.name());
+            return Err((format!("the consensus of {}", new.raters.join(" and ")), remedy));
+        }
+        let decided = Codes([(press, code.clone())].into());
+        let consensus = consensus.with_agreed(own.each_ref()).with_decided(&decided, own.each_ref());
+        if let Some(remedy) = consensus.settled.get(&press).and_then(|settled| settled.fault()) {
+            return Err((format!("press {press} with another cause than both raters say"), remedy.to_string()));
+        }
+        self.consensus = Some(consensus);
+        Ok(())
+    }
+}
+
+/// Writes all codes of the recordings into a file: those of raters, and below them what two raters settled and still holds.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RunError> {
+    let mut rows = Vec::new();
+    for one in recordings {
+        let settled = one.consensus.as_ref().map(|consensus| (consensus.name(), one.current(consensus)));
+        let own = one.codes.iter().map(|(rater, codes)| (rater.clone(), codes.clone()));
+        for (rater, codes) in own.chain(settled) {
+            rows.extend(codes.0.into_iter().map(|(press, code)| CodeRow {
+                line: 0,
+                recording: one.name(),
+                rater: rater.clone(),
+                press,
+                code,
+            }));
+        }
+    }
+    rater_codes::write_export(file, &rows)?;
+    Ok(rows.len() as u64)
+}

@@ -1,0 +1,99 @@
+//! Opens and saves the codes of a rater, and of two raters who settle their differences.
+
+use super::error::ReviewError;
+use super::seekable_replay::SeekableReplay;
+use crate::analysis::error_list::ListedError;
+use crate::console::rater_session::{CodingParty, RaterSession};
+use crate::edge::file_error::FileError;
+use crate::edge::log::{WriteError, consensus_file, rater_codes};
+use crate::measures::cause_codes::{Codable, Codes};
+use crate::measures::consensus::{Consensus, unsettled};
+
+/// The session of one rater, with the codes that the rater gave earlier.
+///
+/// # Errors
+/// A file with codes is damaged.
+pub(super) fn of_rater(film: &SeekableReplay, rater: &str) -> Result<RaterSession, ReviewError> {
+    let follower = &film.replay.follower;
+    let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
+    let mut all = rater_codes::read_all(film.replay.log().folder(), &codable)?;
+    let codes = all.remove(rater).unwrap_or_default();
+    let party = CodingParty::Rater(rater.to_string());
+    let mut session = RaterSession::new(party, ListedError::all(follower), codes);
+    let is_complete = |codes: &Codes| codable.errors.iter().all(|press| codes.0.contains_key(press));
+    session.finished = all.into_iter().filter(|(_, codes)| is_complete(codes)).map(|(rater, _)| rater).collect();
+    Ok(session)
+}
+
+/// The session of two raters about the errors that they coded differently. What they agree on is taken over.
+///
+/// # Errors
+/// One of them has coded nothing, other raters settled this recording, a file is damaged, or the folder cannot be written to.
+pub(super) fn of_pair(film: &SeekableReplay, raters: [&str; 2]) -> Result<RaterSession, ReviewError> {
+    let (log, follower) = (film.replay.log(), &film.replay.follower);
+    let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
+    let mut all = rater_codes::read_all(log.folder(), &codable)?;
+    let new = Consensus::new(raters[0], raters[1]);
+    for rater in &new.raters {
+        if all.get(rater).is_none_or(|codes| codes.0.is_empty()) {
+            let found = format!("no codes of the rater {rater}");
+            let known: Vec<&str> = all.keys().map(String::as_str).collect();
+            let remedy = match known.is_empty() {
+                true => "two raters who have coded the errors, each with --rater CODE".to_string(),
+                false => format!("two raters who have coded the errors; there are codes of {}", known.join(", ")),
+            };
+            return Err(FileError::from_finding(log.folder(), found, remedy).into());
+        }
+    }
+    let before = consensus_file::read(log.folder(), &codable)?;
+    if let Some(other) = before.as_ref().filter(|before| before.raters != new.raters) {
+        let found = format!("the consensus of {}", other.raters.join(" and "));
+        let remedy = format!("--settle {}; or delete {} first", other.raters.join(" "), consensus_file::CONSENSUS_NAME);
+        return Err(FileError::from_finding(log.folder(), found, remedy).into());
+    }
+    let own = new.raters.clone().map(|rater| all.remove(&rater).unwrap_or_default());
+    let mut consensus = before.unwrap_or(new).with_agreed(own.each_ref());
+    let open = unsettled(&codable.errors, own.each_ref());
+    let errors: Vec<ListedError> =
+        ListedError::all(follower).into_iter().filter(|error| open.contains(&error.press)).collect();
+    let current = consensus.current(own.each_ref()).0.into_iter();
+    let codes = Codes(current.filter(|(press, _)| open.contains(press)).collect());
+    // What can be undone in this session stands in its codes; the consensus keeps the rest.
+    consensus.settled.retain(|press, _| !codes.0.contains_key(press));
+    let session = RaterSession::new(CodingParty::Pair { consensus, own }, errors, codes);
+    save(film, &session)?;
+    Ok(session)
+}
+
+/// What is to be said when the recording is opened: where the session begins, and what changed since the errors were settled.
+pub(super) fn greeting(session: &RaterSession) -> String {
+    let name = session.name();
+    let begins = match session.first_open() {
+        None => return format!("{name}: {}", session.next_step().unwrap_or_default()),
+        Some(open) => format!("error {} is the first without a code", session.errors[open].error),
+    };
+    let reopened = match &session.party {
+        CodingParty::Pair { consensus, own } => consensus.changed(own.each_ref()),
+        CodingParty::Rater(_) => Vec::new(),
+    };
+    let mut changed: Vec<&str> = reopened.iter().map(|changed| changed.rater.as_str()).collect();
+    changed.dedup();
+    match changed.is_empty() {
+        true => format!("{name}: {}; {begins}", session.progress()),
+        false => format!("{name}: {}; open again, since {} changed codes", session.progress(), changed.join(" and ")),
+    }
+}
+
+/// Saves the codes beside the log.
+///
+/// # Errors
+/// The folder cannot be written to.
+pub(super) fn save(film: &SeekableReplay, session: &RaterSession) -> Result<(), WriteError> {
+    let folder = film.replay.log().folder();
+    match &session.party {
+        CodingParty::Rater(rater) => rater_codes::write(folder, rater, &session.codes),
+        CodingParty::Pair { consensus, own } => {
+            consensus_file::write(folder, &consensus.clone().with_decided(&session.codes, own.each_ref()))
+        }
+    }
+}

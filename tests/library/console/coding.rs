@@ -1,0 +1,164 @@
+//! The rater's view: codebook and errors at three sizes, keys and clicks, undo, and two raters who settle.
+
+use crossterm::event::KeyCode;
+use tomcom::analysis::error_list::ListedError;
+use tomcom::console::key_action::{KeyAction, RaterKey};
+use tomcom::console::playback::{Playback, ReplayKey};
+use tomcom::console::rater_session::{CodingParty, RaterSession};
+use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyMap, update};
+use tomcom::measures::cause_codes::{Code, Codes};
+use tomcom::measures::consensus::Consensus;
+use tomcom::session::TimelineEvent;
+use tomcom::session::settings::{ParticipantKind, Visibility};
+
+use super::{SIZES, Stage};
+use crate::check_snapshot;
+
+fn codes(of: &[(u64, Code)]) -> Codes {
+    Codes(of.iter().cloned().collect())
+}
+
+/// A recording with twelve errors, of which the third is the present one.
+fn rated(party: CodingParty, given: Codes) -> Stage {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.session.spec.console.visibility = Visibility::State;
+    // As in a blinded replay, from which signals are taken out.
+    let is_signal = |what: &TimelineEvent| matches!(what, TimelineEvent::Signal { .. } | TimelineEvent::SignalEnded(_));
+    stage.session.timeline.retain(|entry| !is_signal(&entry.what));
+    stage.session.shown = None;
+    let (kitchen, map) = (stage.session.kitchen.clone(), KeyMap::default());
+    stage.model.keys = KeyBindings::replay(&kitchen, &map).expect("the keys are free").with_coding(&kitchen);
+    let buttons = ["take salmon", "cutting board", "assembly board", "trash"];
+    let error = |index: usize| ListedError {
+        error: index as u64 + 1,
+        press: 100 * index as u64,
+        time_s: 7.0 + 31.0 * index as f64,
+        button: buttons[index % buttons.len()].to_string(),
+        effective: index % 3 != 1,
+    };
+    stage.model.coding = Some(RaterSession::new(party, (0..12).map(error).collect(), given));
+    stage.model.playback = Some(Playback { event: 201, events: 1300, ..Playback::new("2026-03-14-P01-1".to_string()) });
+    stage
+}
+
+fn rater(given: Codes) -> Stage {
+    rated(CodingParty::Rater("R1".to_string()), given)
+}
+
+fn belief() -> Code {
+    Code::Belief("cutting_board".to_string())
+}
+
+fn coding(stage: &Stage) -> &RaterSession {
+    stage.model.coding.as_ref().expect("errors are coded")
+}
+
+#[test]
+fn codebook_and_errors_stand_beside_the_kitchen_at_three_sizes() {
+    let stage = rater(codes(&[(0, Code::Slip), (100, belief()), (200, Code::Buttons)]));
+    for size in SIZES {
+        let screen = stage.screen(size);
+        for name in ["slip", "race", "other cause", "mixed up buttons", "wrong about", "h human hand", "3 of 12 coded"]
+        {
+            assert!(screen.contains(name), "{name} at {size:?}\n{screen}");
+        }
+        for telling in ["unassisted", "assistant", "wizard", "P01 ", "Beliefs", "recipe of order", "thinks", "signal"] {
+            assert!(!screen.contains(telling), "{telling} at {size:?}\n{screen}");
+        }
+        check_snapshot("console", format!("rater_{}x{}", size.0, size.1), screen);
+    }
+}
+
+#[test]
+fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
+    let mut stage = rater(Codes::default());
+    for _ in 0..5 {
+        stage.wait(1.0);
+        stage.key(KeyCode::Tab);
+        let screen = stage.screen((80, 24));
+        for key in ["1 slip", "2 race", "3 other", "4 mixed up buttons", "q order 1", "m rolling mat"] {
+            assert!(screen.contains(key), "{key}\n{screen}");
+        }
+    }
+    let tells = |action: &KeyAction| *action == KeyAction::Belief || matches!(action, KeyAction::Differ(_));
+    assert!(stage.model.keys.bindings.iter().all(|line| !tells(&line.action)));
+    assert!(stage.model.keys.chord_for(&KeyAction::Rate(RaterKey::Undo)).is_some());
+}
+
+#[test]
+fn codes_are_undone_and_redone_step_by_step() {
+    let mut stage = rater(codes(&[(0, Code::Slip)]));
+    let press = 200;
+    assert_eq!(stage.key(KeyCode::Char('2')), Some(ConsoleCommand::Code { press }));
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('c')), Some(ConsoleCommand::Code { press }));
+    assert_eq!(coding(&stage).progress(), "2 of 12 coded, 1 since opening");
+    assert_eq!(coding(&stage).codes.0[&press], belief());
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('u')), Some(ConsoleCommand::Code { press }));
+    assert_eq!(coding(&stage).codes.0[&press], Code::Race);
+    stage.wait(1.0);
+    stage.key(KeyCode::Char('u'));
+    assert!(!coding(&stage).codes.0.contains_key(&press));
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('u')), None);
+    assert!(stage.notice().contains("nothing to undo"), "what was there at the opening stays");
+    for _ in 0..2 {
+        stage.wait(1.0);
+        stage.control('y');
+    }
+    assert_eq!(coding(&stage).codes.0[&press], belief());
+    stage.wait(1.0);
+    stage.key(KeyCode::Delete);
+    assert_eq!(coding(&stage).progress(), "1 of 12 coded");
+}
+
+#[test]
+fn arrows_and_clicks_go_to_an_error_of_the_list() {
+    let mut stage = rater(Codes::default());
+    let go = |press| Some(ConsoleCommand::Move(ReplayKey::ToEvent(press)));
+    assert_eq!(stage.key(KeyCode::Enter), go(300));
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Backspace), go(100));
+    for _ in 0..2 {
+        stage.wait(1.0);
+        assert_eq!(stage.key(KeyCode::Down), None);
+    }
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('1')), None, "the present error is not the chosen one");
+    assert!(stage.notice().contains("error 5 is chosen"), "{}", stage.notice());
+    assert_eq!(stage.key(KeyCode::Enter), go(400));
+    stage.model.size = (120, 40);
+    let screen = stage.screen((120, 40));
+    let row = screen.lines().position(|line| line.contains("   2  0:38")).expect("the second error");
+    assert_eq!(update(&mut stage.model, &stage.session, ConsoleMessage::Click(90, row as u16)), go(100));
+}
+
+#[test]
+fn two_raters_settle_with_both_codes_in_view() {
+    let all: Vec<u64> = (0..12).map(|index| 100 * index).collect();
+    let one = Codes(all.iter().map(|press| (*press, Code::Slip)).collect());
+    let other = Codes(all.iter().skip(1).map(|press| (*press, belief())).collect());
+    let party = CodingParty::Pair { consensus: Consensus::new("R1", "R2"), own: [one, other] };
+    let mut stage = rated(party, codes(&[(0, Code::Slip)]));
+    stage.key(KeyCode::Char('4'));
+    assert_eq!(coding(&stage).progress(), "2 of 12 settled, 1 since opening");
+    for size in SIZES {
+        let screen = stage.screen(size);
+        assert!(screen.contains("R1: slip") && screen.contains("R2: wrong about cutting board"), "{screen}");
+        check_snapshot("console", format!("settling_{}x{}", size.0, size.1), screen);
+    }
+}
+
+#[test]
+fn the_last_code_says_what_comes_next() {
+    let all = Codes((0..12).map(|index| (100 * index, Code::Slip)).collect());
+    let mut stage = rater(all);
+    for size in SIZES {
+        assert!(stage.screen(size).contains("all 12 coded; next: another rater"), "{}", stage.screen(size));
+    }
+    if let Some(coding) = &mut stage.model.coding {
+        coding.finished.push("R0".to_string());
+    }
+    assert!(stage.screen((120, 40)).contains("--settle R0 R1"), "{}", stage.screen((120, 40)));
+}

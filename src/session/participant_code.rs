@@ -38,6 +38,7 @@ pub const TABLE_WORDS: &[&str] = &[
     "contents",
     "counts",
     "dictionary",
+    "display_arm",
     "duration_s",
     "effective",
     "emergency_stops",

@@ -214,7 +214,15 @@ impl<'a> Place<'a> {
         let label = self.kitchen.location(self.id).label();
         let mut x = cells.x + 1;
         if let Some((key, role)) = self.key() {
-            x = badge(brush, x, cells, key, role);
+            // A whole name is worth more than the brackets around its key.
+            let (with_brackets, without) = (width(&label) + 3, width(&label) + 2);
+            x = match cells.right().saturating_sub(x) {
+                room if room < with_brackets && room >= without => {
+                    let style = brush.style(role).add_modifier(Modifier::BOLD);
+                    brush.text(x, cells.y, room, &format!("{key} "), style)
+                }
+                _ => badge(brush, x, cells, key, role),
+            };
         }
         let style = match self.is_shown {
             true => brush.style(TextRole::Signal).add_modifier(Modifier::UNDERLINED),

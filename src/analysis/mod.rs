@@ -23,9 +23,13 @@ pub mod planner_accuracy;
 pub mod recording_summary;
 #[cfg(feature = "cli")]
 pub mod recording_table;
+#[cfg(feature = "cli")]
+pub mod robustness;
 pub mod sweep_row;
 pub mod timing_summary;
 pub mod training_record;
+#[cfg(feature = "cli")]
+mod trial_bootstrap;
 pub mod trial_summary;
 pub mod watcher;
 pub mod wizard_log;

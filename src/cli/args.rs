@@ -10,6 +10,7 @@ use super::list::ListArgs;
 use super::operate::{OperateArgs, OperateFlags};
 use super::output::OutputFormat;
 use super::review::ReviewArgs;
+use super::robustness::RobustnessArgs;
 use super::study::StudyArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use crate::mind::fitting::Parameter;
@@ -38,6 +39,7 @@ pub(super) enum CliCommand {
     Review(ReviewArgs),
     List(ListArgs),
     Simulate(SimulateArgs),
+    Robustness(RobustnessArgs),
     Study(StudyArgs),
     Plan(PlanArgs),
     Fit(FitArgs),

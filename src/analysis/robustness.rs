@@ -142,16 +142,18 @@ impl CohortRates {
 
 /// The heading of the table as text, with the cohorts' names in so many columns.
 pub fn heading(width: usize) -> String {
-    let columns = |first: &str, names: [&str; 10]| {
-        let [places, recipes, ece, flagged, false_flags, gain, without, with, saved, signals] = names;
-        format!(
-            "{first:<width$}{places:>7}{recipes:>8}{ece:>6}{flagged:>12}{false_flags:>7}{gain:>7}{without:>9}{with:>6}{saved:>17}\
-             {signals:>9}"
-        )
+    let columns = |first: &str, names: [&str; 11]| {
+        let [places, recipes, ece, flagged, false_flags, gain, without, with, saved, signals, orders] = names;
+        let line = format!(
+            "{first:<width$}{places:>7}{recipes:>8}{ece:>6}{flagged:>12}{false_flags:>6}{gain:>6}{without:>8}{with:>6}{saved:>15}\
+             {signals:>8}{orders:>12}"
+        );
+        line.trim_end().to_string()
     };
-    let above = columns("", ["ROC", "ROC", "", "", "false", "", "errors", "", "", "signals"]);
-    let below = ["places", "recipes", "ECE", "flagged", "flags", "gain", "without", "with", "saved, %", "/100"];
-    format!("{above}  orders/min\n{}  without, with\n", columns("cohort", below))
+    let above = ["ROC", "ROC", "", "", "false", "", "errors", "", "", "signals", ""];
+    let below =
+        ["places", "recipes", "ECE", "flagged", "flags", "gain", "without", "with", "saved, %", "/100", "orders/min"];
+    format!("{}\n{}\n", columns("", above), columns("cohort", below))
 }
 
 /// One row of the table as text, with the cohort's name in so many columns.
@@ -171,7 +173,7 @@ pub fn describe_row(row: &CohortRow, width: usize) -> String {
     };
     let orders = [&row.unassisted, &row.assisted].map(|rates| format!("{:.2}", rates.orders_per_minute)).join(", ");
     format!(
-        "{:<width$}{:>7}{:>8}{:>6}{:>12}{:>7}{:>7}{:>9}{:>6}{saved:>17}{:>9}  {orders}\n",
+        "{:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{:>8}{:>6}{saved:>15}{:>8}{orders:>12}\n",
         row.cohort,
         number(found.auc_locations, 3),
         number(found.auc_recipes, 3),
@@ -203,7 +205,8 @@ pub fn describe(table: &RobustnessTable) -> String {
          {MOST_FALSE_FLAGS} false flags per 20 presses of the human.\n\
          gain: log likelihood per press beyond that of a human who knows everything, in nats.\n\
          errors, signals: belief related errors and signals per 100 presses of the human, without and with the assistant; saved: by how \
-         much fewer errors there are with it, with the 95 % interval by drawing pairs of trials.\n",
+         much fewer errors there are with it, with the 95 % interval by drawing pairs of trials; orders: served a minute, without and with \
+         it.\n",
         heading(width),
         table.cohorts.first().map_or(0, |row| row.trials),
         table.seed,

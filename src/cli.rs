@@ -2,6 +2,7 @@
 
 mod args;
 mod choices;
+mod cohorts;
 mod data;
 mod estimates;
 mod failure;
@@ -14,7 +15,6 @@ mod rerun_messages;
 #[path = "cli/without_rerun.rs"]
 mod rerun_messages;
 mod review;
-mod robustness;
 mod simulation;
 mod study;
 mod wizard;
@@ -70,7 +70,7 @@ pub fn main() -> ExitCode {
         CliCommand::Replay(args) => replay(&args),
         CliCommand::Review(args) => review::review(&args),
         CliCommand::List(args) => list::list(&args),
-        CliCommand::Robustness(args) => robustness::robustness(&args),
+        CliCommand::Robustness(args) => cohorts::robustness(&args),
         CliCommand::Simulate(args) => simulation::simulate(&args),
         CliCommand::Study(args) => study::study(&args),
         CliCommand::Plan(args) => show_plan(&args),

@@ -4,6 +4,8 @@
 pub mod advisor;
 #[cfg(feature = "cli")]
 pub mod belief_check;
+#[cfg(feature = "cli")]
+pub mod cohort_table;
 pub mod compared_recording;
 pub mod comparison_summary;
 pub mod event_lines;
@@ -23,8 +25,6 @@ pub mod planner_accuracy;
 pub mod recording_summary;
 #[cfg(feature = "cli")]
 pub mod recording_table;
-#[cfg(feature = "cli")]
-pub mod robustness;
 pub mod sweep_row;
 pub mod timing_summary;
 pub mod training_record;

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::choices::{ArmArg, ConceptArg, SimulatedCondition};
+use super::cohorts::RobustnessArgs;
 use super::data::{CodesArgs, ForgetArgs};
 use super::list::ListArgs;
 use super::operate::{OperateArgs, OperateFlags};
 use super::output::OutputFormat;
 use super::review::ReviewArgs;
-use super::robustness::RobustnessArgs;
 use super::study::StudyArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use crate::mind::fitting::Parameter;

@@ -1,4 +1,4 @@
-//! `tomcom robustness`: simulates the cohorts of a battery in memory, for [`crate::analysis::robustness`].
+//! `tomcom robustness`: simulates the cohorts of a battery in memory, for [`crate::analysis::cohort_table`].
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
@@ -9,9 +9,9 @@ use super::headless;
 use super::parallel::WorkerPool;
 use super::simulate::settings_of_trial;
 use crate::analysis::belief_check::PressViews;
-use crate::analysis::robustness::{CohortRow, CohortTrials, RobustnessTable};
+use crate::analysis::cohort_table::{CohortRow, CohortTrials, RobustnessTable};
 use crate::analysis::trial_summary::TrialSummary;
-use crate::edge::battery::BatteryFiles;
+use crate::edge::battery_file::BatteryFiles;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::measures::belief_detection::{EstimateView, TrialView};

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use tomcom::analysis::robustness::{CohortRow, RobustnessTable, describe};
-use tomcom::edge::battery::{BatteryFiles, read_battery};
+use tomcom::analysis::cohort_table::{CohortRow, RobustnessTable, describe_row, legend};
+use tomcom::edge::battery_file::{BatteryFiles, read_battery};
 use tomcom::measures::flags::ThresholdSource;
 use tomcom::participant::population::Population;
 use tomcom::run::check_beliefs;
@@ -46,8 +46,9 @@ fn the_table_follows_from_its_seeds_on_any_number_of_threads() {
     assert_eq!(one, several);
     assert_ne!(one.cohorts[0].unassisted, one.cohorts[1].unassisted, "cohorts differ");
     assert_ne!(one.cohorts[0].unassisted, table(&battery, 42).cohorts[0].unassisted, "seeds differ");
-    let text = describe(&one);
-    assert!(text.contains("confident wrong recipes") && text.lines().count() >= 4, "{text}");
+    let text = describe_row(&one.cohorts[1], 30);
+    assert!(text.starts_with("confident wrong recipes ") && text.lines().count() == 1, "{text}");
+    assert!(legend(&one).contains("3 trials of seed 41"), "{}", legend(&one));
     assert!(one.cohorts.iter().all(|row| row.assisted.signals_per_100 > 0.0), "{text}");
 }
 

@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::choices::ArmArg;
 use super::failure::{Failure, wrong_argument};
-use super::output::{OutputFormat, print, progress, put_aside};
-use crate::analysis::robustness::{describe, describe_row, heading, name_width};
-use crate::edge::battery::read_battery;
+use super::output::{OutputFormat, print, progress, put, put_aside};
+use crate::analysis::cohort_table::{CohortRow, describe_row, heading, legend, name_width};
+use crate::edge::battery_file::read_battery;
 use crate::edge::file_error::FileError;
 use crate::run::robustness::{self, RobustnessRequest};
 use crate::session::settings::ArmKind;
@@ -16,7 +16,8 @@ use crate::session::settings::ArmKind;
 /// Measures estimate and assistant with cohorts of simulated people.
 ///
 /// Each cohort is away from what the assistant's model of the human was fitted to. Its trials are simulated without signals and
-/// with the assistant acting by itself, and nothing is recorded. Finished rows are printed on standard error.
+/// with the assistant acting by itself, and nothing is recorded. Each row is printed when it is finished; with --format json on
+/// standard error.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: tomcom robustness sessions/people/robustness.toml --seed 9101 --choose-seed 9001 --arm timed\nMore: docs/study.md"
@@ -65,9 +66,21 @@ pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
     let width = name_width(battery.cohorts.iter().map(|cohort| cohort.name.get_ref().as_str()));
     let request = RobustnessRequest { battery, trials: args.trials, seed, choose_seed };
     let bar = progress(request.all_trials(), "trials");
-    put_aside(&heading(width));
-    let table =
-        robustness::measure(&request, || bar.inc(1), |row| bar.suspend(|| put_aside(&describe_row(row, width))));
+    let tell = |text: &str| match args.format {
+        OutputFormat::Text => put(text),
+        OutputFormat::Json => {
+            put_aside(text);
+            Ok(())
+        }
+    };
+    let mut told = tell(&heading(width));
+    let finished = |row: &CohortRow| {
+        if told.is_ok() {
+            told = bar.suspend(|| tell(&describe_row(row, width)));
+        }
+    };
+    let table = robustness::measure(&request, || bar.inc(1), finished);
     bar.finish_and_clear();
-    print(args.format, &table, || describe(&table))
+    told?;
+    print(args.format, &table, || legend(&table))
 }

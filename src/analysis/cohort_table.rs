@@ -145,7 +145,7 @@ pub fn heading(width: usize) -> String {
     let columns = |first: &str, names: [&str; 11]| {
         let [places, recipes, ece, flagged, false_flags, gain, without, with, saved, signals, orders] = names;
         let line = format!(
-            "{first:<width$}{places:>7}{recipes:>8}{ece:>6}{flagged:>12}{false_flags:>6}{gain:>6}{without:>8}{with:>6}{saved:>15}\
+            "{first:<width$}{places:>7}{recipes:>8}{ece:>6}{flagged:>12}{false_flags:>6}{gain:>6}{without:>8}{with:>6}{saved:>16}\
              {signals:>8}{orders:>12}"
         );
         line.trim_end().to_string()
@@ -173,7 +173,7 @@ pub fn describe_row(row: &CohortRow, width: usize) -> String {
     };
     let orders = [&row.unassisted, &row.assisted].map(|rates| format!("{:.2}", rates.orders_per_minute)).join(", ");
     format!(
-        "{:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{:>8}{:>6}{saved:>15}{:>8}{orders:>12}\n",
+        "{:<width$}{:>7}{:>8}{:>6}{:>12}{:>6}{:>6}{:>8}{:>6}{saved:>16}{:>8}{orders:>12}\n",
         row.cohort,
         number(found.auc_locations, 3),
         number(found.auc_recipes, 3),
@@ -192,22 +192,19 @@ pub fn name_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
     names.map(|name| name.chars().count()).max().unwrap_or_default().max("cohort".len()) + 1
 }
 
-/// The table as text.
-pub fn describe(table: &RobustnessTable) -> String {
-    let width = name_width(table.cohorts.iter().map(|row| row.cohort.as_str()));
-    let rows: String = table.cohorts.iter().map(|row| describe_row(row, width)).collect();
+/// What the columns of the table mean, as text.
+pub fn legend(table: &RobustnessTable) -> String {
     format!(
-        "{}{rows}\n{} trials of seed {} for each cohort without signals, and the same with the assistant acting by itself; thresholds of \
+        "\n{} trials of seed {} for each cohort without signals, and the same with the assistant acting by itself; thresholds of \
          flags from as many trials of seed {}.\n\
-         ROC: area under the curve, how well the estimate before each unassisted press finds false beliefs; ECE: expected calibration \
-         error, how far its predicted probabilities of a false belief are off.\n\
+         ROC: area under the curve, how well the estimate before each unassisted press finds false beliefs.\n\
+         ECE: expected calibration error, how far its predicted probabilities of a false belief are off.\n\
          flagged: false belief episodes of two or more errors that are flagged before the third; the thresholds allow \
          {MOST_FALSE_FLAGS} false flags per 20 presses of the human.\n\
          gain: log likelihood per press beyond that of a human who knows everything, in nats.\n\
-         errors, signals: belief related errors and signals per 100 presses of the human, without and with the assistant; saved: by how \
-         much fewer errors there are with it, with the 95 % interval by drawing pairs of trials; orders: served a minute, without and with \
-         it.\n",
-        heading(width),
+         errors, signals: belief related errors without and with the assistant, and signals, per 100 presses of the human.\n\
+         saved: by how much fewer errors there are with the assistant (95 % interval by drawing pairs of trials).\n\
+         orders/min: orders served a minute, without and with the assistant.\n",
         table.cohorts.first().map_or(0, |row| row.trials),
         table.seed,
         table.choose_seed,

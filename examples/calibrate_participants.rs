@@ -5,8 +5,8 @@
 //! run="cargo run --release --no-default-features --example calibrate_participants --"
 //! $run figures sessions/paper.toml 3001,3002          # the session's population
 //! $run planning sessions/paper.toml 3001,3002         # the same people, who know everything and do not slip
-//! $run search sessions/paper.toml 3001,3002 200       # vectors of belief parameters that agree with the paper
-//! $run each sessions/paper.toml 4001,4002 sessions/people/accepted.toml
+//! $run search sessions/paper.toml 3001,3002 200 > accepted.toml   # vectors of belief parameters that agree with the paper
+//! $run each sessions/paper.toml 4001,4002 accepted.toml
 //! ```
 
 use std::convert::Infallible;

@@ -2,6 +2,7 @@
 
 mod args;
 mod choices;
+mod cohorts;
 mod data;
 mod estimates;
 mod failure;
@@ -69,6 +70,7 @@ pub fn main() -> ExitCode {
         CliCommand::Replay(args) => replay(&args),
         CliCommand::Review(args) => review::review(&args),
         CliCommand::List(args) => list::list(&args),
+        CliCommand::Robustness(args) => cohorts::robustness(&args),
         CliCommand::Simulate(args) => simulation::simulate(&args),
         CliCommand::Study(args) => study::study(&args),
         CliCommand::Plan(args) => show_plan(&args),

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::follower::Follower;
 use super::likelihood::LogLikelihood;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
@@ -64,21 +63,26 @@ pub struct PressViews {
 }
 
 impl PressViews {
-    /// Adds an event that the follower has just applied.
-    pub fn add(&mut self, follower: &Follower, stamped: &Stamped, change: &Change) {
-        let kitchen = &follower.session.kitchen;
+    /// Adds an event that has just been applied to the session. If it is a counted press of the human: how it was judged, and the
+    /// estimate before it.
+    pub fn add(
+        &mut self,
+        session: &Session,
+        judged: Option<&JudgedPress>,
+        estimate: Option<EstimateView>,
+        stamped: &Stamped,
+        change: &Change,
+    ) {
+        let kitchen = &session.kitchen;
         if let Event::ParticipantBelieves(witness) = &stamped.event {
-            let fits = Belief::of_witness(kitchen, follower.session.state, witness).is_some();
+            let fits = Belief::of_witness(kitchen, session.state, witness).is_some();
             self.held = fits.then(|| witness.aspects.iter().map(|aspect| aspect.p_truth).collect());
         }
-        let judged = follower.judged.last().filter(|press| press.seq == stamped.seq).copied();
         if let (Some(judged), Some(press)) = (judged, change.human_press()) {
-            let estimated = follower.estimated.as_ref().filter(|one| one.press == stamped.seq);
-            let estimate = estimated.map(|one| EstimateView::from_witness(&one.witness(kitchen)));
-            let view = self.before.press(kitchen, &press, &judged, stamped.time, self.held.take());
+            let view = self.before.press(kitchen, &press, judged, stamped.time, self.held.take());
             self.trial.push(PressView { estimate, ..view });
         }
-        self.before.notice(&follower.session, &stamped.event, change);
+        self.before.notice(session, &stamped.event, change);
     }
 }
 

@@ -2,21 +2,16 @@
 //! an informed human, who knows the true world, with softmax temperature and lapse rate fitted to these presses, and a human who
 //! presses random buttons.
 
-use rand::RngExt;
 use serde::Serialize;
 
 use super::fitting::downhill_simplex::minimise;
-use crate::base::rng::stream;
+use super::trial_bootstrap::interval;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen, WeightedWorlds, World};
 use crate::measures::belief_detection::{PressView, TrialView};
 use crate::mind::ChoiceModel;
 use crate::mind::choice_parameters::DecisionModel;
 
-/// Number of bootstrap resamples.
-const RESAMPLES: usize = 2000;
-/// Quantiles of the bootstrap distribution that bound the interval.
-const INTERVAL: [f64; 2] = [0.025, 0.975];
 /// Tolerance of the informed human's fit, in nats per press.
 const TOLERANCE_NATS: f64 = 1e-6;
 /// Largest number of iterations of the informed human's fit.
@@ -75,8 +70,8 @@ impl LogLikelihood {
             model: estimated.map(|estimated| estimated.iter().sum::<f64>() / presses),
             informed: Some(informed.iter().sum::<f64>() / presses),
             uniform: Some(-(kitchen.buttons[Agent::Human.index()].len() as f64).ln()),
-            gain: gains.as_ref().map(|gains| ratio(gains.iter())),
-            gain_interval: gains.map(|gains| interval(&gains, seed)),
+            gain: gains.as_ref().map(|gains| ratio(gains)),
+            gain_interval: gains.map(|gains| interval(&gains, seed, ratio)),
             informed_tau: Some(best.tau),
             informed_lapse: Some(best.lapse),
         }
@@ -99,20 +94,7 @@ fn logistic(x: f64) -> f64 {
 }
 
 /// Ratio of the sum of the first elements to the sum of the second elements.
-fn ratio<'a>(pairs: impl Iterator<Item = &'a (f64, f64)>) -> f64 {
-    let (gain, presses) = pairs.fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
+fn ratio(pairs: &[(f64, f64)]) -> f64 {
+    let (gain, presses) = pairs.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
     gain / presses
-}
-
-/// A percentile interval of the gain per press: trials are drawn with replacement (Efron and Tibshirani 1993).
-fn interval(gains: &[(f64, f64)], seed: u64) -> [f64; 2] {
-    let mut random = stream(seed, "bootstrap over trials", 0);
-    let mut resampled: Vec<f64> = (0..RESAMPLES)
-        .map(|_| {
-            let drawn: Vec<(f64, f64)> = gains.iter().map(|_| gains[random.random_range(0..gains.len())]).collect();
-            ratio(drawn.iter())
-        })
-        .collect();
-    resampled.sort_by(f64::total_cmp);
-    INTERVAL.map(|share| resampled[((RESAMPLES - 1) as f64 * share).round() as usize])
 }

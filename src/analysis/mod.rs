@@ -4,6 +4,8 @@
 pub mod advisor;
 #[cfg(feature = "cli")]
 pub mod belief_check;
+#[cfg(feature = "cli")]
+pub mod cohort_table;
 pub mod compared_recording;
 pub mod comparison_summary;
 pub mod error_list;
@@ -27,6 +29,8 @@ pub mod recording_table;
 pub mod sweep_row;
 pub mod timing_summary;
 pub mod training_record;
+#[cfg(feature = "cli")]
+mod trial_bootstrap;
 pub mod trial_summary;
 pub mod watcher;
 pub mod wizard_log;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::choices::{ArmArg, ConceptArg, SimulatedCondition};
+use super::cohorts::RobustnessArgs;
 use super::data::{CodesArgs, ForgetArgs};
 use super::list::ListArgs;
 use super::operate::{OperateArgs, OperateFlags};
@@ -38,6 +39,7 @@ pub(super) enum CliCommand {
     Review(ReviewArgs),
     List(ListArgs),
     Simulate(SimulateArgs),
+    Robustness(RobustnessArgs),
     Study(StudyArgs),
     Plan(PlanArgs),
     Fit(FitArgs),

@@ -1,6 +1,7 @@
 //! Everything that touches the outside: files, terminal, network, clock.
 
 pub mod ask;
+pub mod battery_file;
 pub mod clock;
 pub mod connection_table;
 pub mod datagram_holder;

@@ -10,6 +10,7 @@ use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
+use crate::session::battery::BatterySpec;
 use crate::session::plan::Questionnaire;
 
 /// The kinds of files that people write.
@@ -29,6 +30,8 @@ pub enum FileKind {
     Questionnaire,
     /// Words of the participant's display in a language.
     Language,
+    /// A battery of cohorts.
+    Battery,
 }
 
 impl FileKind {
@@ -37,6 +40,7 @@ impl FileKind {
         let table: toml::Table = text.parse().ok()?;
         let has = |keys: &[&str]| keys.iter().any(|key| table.contains_key(*key));
         match () {
+            () if has(&["cohort"]) => Some(FileKind::Battery),
             () if has(&["recipes", "storage", "place"]) => Some(FileKind::Layout),
             () if has(&["ingredient", "slot", "dish"]) => Some(FileKind::Recipes),
             () if has(&["scale", "item"]) => Some(FileKind::Questionnaire),
@@ -57,6 +61,7 @@ impl FileKind {
             FileKind::Keys => "a key file",
             FileKind::Questionnaire => "a questionnaire",
             FileKind::Language => "words of the participant's display",
+            FileKind::Battery => "a battery of cohorts",
         }
     }
 
@@ -69,6 +74,7 @@ impl FileKind {
             FileKind::Language => "words of the participant's display, lines like \"rice\" = \"riz\"",
             FileKind::HumanModel => "parameters of the human model, like those that tomcom fit writes",
             FileKind::Keys => "a key file, as tomcom keys prints it",
+            FileKind::Battery => "a battery of cohorts, like sessions/people/robustness.toml",
         }
     }
 }
@@ -93,6 +99,10 @@ impl ParsedFile for RecipesSpec {
 
 impl ParsedFile for Questionnaire {
     const KIND: FileKind = FileKind::Questionnaire;
+}
+
+impl ParsedFile for BatterySpec {
+    const KIND: FileKind = FileKind::Battery;
 }
 
 impl ParsedFile for HumanModel {

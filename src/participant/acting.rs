@@ -1,5 +1,6 @@
 //! Timed behaviour of the simulated participant: actions that are due, and reactions to events of the session.
 
+use super::population::rare_chance;
 use super::simulated::{ParticipantAction, SimulatedParticipant};
 use super::true_beliefs::ParticipantBeliefs;
 use crate::base::time::SessionTime;
@@ -56,7 +57,10 @@ impl SimulatedParticipant {
         match press.agent {
             Agent::Robot => {
                 self.robot_pressed_at = now;
-                self.wonder();
+                match press.result().filter(|_| rare_chance(&mut self.mind, self.person.guesses_robot)) {
+                    Some(after) => self.guess(press.before, after),
+                    None => self.wonder(),
+                }
             }
             Agent::Human => {
                 let button = self.meant.take().unwrap_or(press.button);

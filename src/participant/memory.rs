@@ -3,7 +3,7 @@
 
 use rand::RngExt;
 
-use super::population::{Individual, Population, normal};
+use super::population::{Individual, Population, normal, rare_chance};
 use super::true_beliefs::ParticipantBeliefs;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
@@ -26,6 +26,8 @@ pub struct Memory {
     random: Stream,
     /// Distribution over the versions of each dish's recipe to which its memory fades.
     faded: Vec<Vec<f64>>,
+    /// The same once the recipe was shown or served: what was learned wrongly is corrected then.
+    corrected: Vec<Vec<f64>>,
     /// Distribution over the versions of each dish's recipe after the instruction; doubting a recipe restores it.
     learned: Vec<Vec<f64>>,
     /// Remaining weight of each version of a recipe after doubts; reset when a version is confirmed.
@@ -43,7 +45,7 @@ impl Memory {
         mut random: Stream,
         beliefs: &mut ParticipantBeliefs,
     ) -> Memory {
-        let (mut faded, mut learned) = (Vec::new(), Vec::new());
+        let (mut faded, mut learned, mut corrected) = (Vec::new(), Vec::new(), Vec::new());
         // Fewer dishes are easier to remember.
         let ease = USUAL_MENU_DISHES / kitchen.dishes.len() as f64;
         let odds_of = |p: f64| p / (1.0 - p) * ease;
@@ -60,13 +62,23 @@ impl Memory {
             // Individual dishes differ in how well they are remembered.
             let odds = odds_of(person.learned) * (0.5 * normal(&mut random)).exp();
             let known = with_truth(odds / (1.0 + odds));
+            let odds = odds_of(person.half_forgotten);
+            corrected.push(with_truth(odds / (1.0 + odds)));
+            let is_misremembered = !weights.is_empty() && rare_chance(&mut random, person.misremembers);
+            let [known, half_forgotten] = match is_misremembered {
+                true => {
+                    let wrong = sure_of(1 + drawn(&mut random, &weights), 1 + weights.len());
+                    [wrong.clone(), wrong]
+                }
+                false => [known, corrected[index].clone()],
+            };
             beliefs.replace(kitchen.aspect_of_dish(DishId(index as u8)), &known);
             learned.push(known);
-            let odds = odds_of(person.half_forgotten);
-            faded.push(with_truth(odds / (1.0 + odds)));
+            faded.push(half_forgotten);
         }
         let left = learned.iter().map(|known| vec![1.0; known.len()]).collect();
-        Memory { random, faded, learned, left, half_life_s: person.half_life_s, last: SessionTime::ZERO }
+        let (half_life_s, last) = (person.half_life_s, SessionTime::ZERO);
+        Memory { random, faded, corrected, learned, left, half_life_s, last }
     }
 
     /// Lets memories fade for dishes that are not in preparation.
@@ -142,6 +154,23 @@ impl Memory {
     /// Confirms a version of a recipe that was shown or served.
     pub fn confirm(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId, variant: usize) {
         self.left[dish.index()].fill(1.0);
+        self.faded[dish.index()].clone_from(&self.corrected[dish.index()]);
         beliefs.settle(kitchen.aspect_of_dish(dish), variant, CONFIRMED_CERTAINTY);
     }
+}
+
+/// The index of one of these weights, drawn in proportion to them.
+fn drawn(random: &mut Stream, weights: &[f64]) -> usize {
+    let mut draw = random.random::<f64>() * weights.iter().sum::<f64>();
+    let found = weights.iter().position(|weight| {
+        draw -= weight;
+        draw < 0.0
+    });
+    found.unwrap_or(0)
+}
+
+/// The distribution over `versions` of a recipe of somebody who is sure of one of them.
+fn sure_of(version: usize, versions: usize) -> Vec<f64> {
+    let other = (1.0 - CONFIRMED_CERTAINTY) / (versions - 1) as f64;
+    (0..versions).map(|index| if index == version { CONFIRMED_CERTAINTY } else { other }).collect()
 }

@@ -16,9 +16,17 @@ pub struct TraitSpread {
     pub sigma: f64,
 }
 
+/// A probability that is 0 for everybody: the trait of nobody in the calibrated population.
+const NEVER: TraitSpread = TraitSpread::from_median(0.0, 0.4);
+
 impl TraitSpread {
     const fn from_median(median: f64, sigma: f64) -> TraitSpread {
         TraitSpread { median, sigma }
+    }
+
+    /// Whether it is 0 for everybody. Recordings leave such a trait out.
+    fn is_never(&self) -> bool {
+        *self == NEVER
     }
 
     /// Draws a positive trait: log-normal, cut at three sigma.
@@ -41,6 +49,11 @@ pub(super) fn normal(random: &mut Stream) -> f64 {
 /// True with probability `p`.
 pub(super) fn chance(random: &mut Stream, p: f64) -> bool {
     random.random::<f64>() < p
+}
+
+/// The same, but nothing is drawn where `p` is 0, so that people without a trait are as they were before it existed.
+pub(super) fn rare_chance(random: &mut Stream, p: f64) -> bool {
+    p > 0.0 && chance(random, p)
 }
 
 /// Parameters of the simulated population. The defaults are calibrated to the error rates of the paper's participants
@@ -126,6 +139,15 @@ pub struct Population {
     pub tires_of_signals: TraitSpread,
     /// Probability of reading a shown recipe wrongly.
     pub misreads_signal: f64,
+    /// Probability of keeping the own version of a recipe when a signal shows another one.
+    #[serde(skip_serializing_if = "TraitSpread::is_never")]
+    pub keeps_own_recipe: TraitSpread,
+    /// Probability, for each recipe, of being sure of a wrong version of it after the instruction.
+    #[serde(skip_serializing_if = "TraitSpread::is_never")]
+    pub misremembers: TraitSpread,
+    /// Probability of guessing rightly what the robot did by a press that was not seen.
+    #[serde(skip_serializing_if = "TraitSpread::is_never")]
+    pub guesses_robot: TraitSpread,
     /// Factor per earlier trial on the odds of knowing a recipe (1: no learning between trials).
     pub recipes_gained: f64,
     /// Share of the presses of earlier trials that count as practice (0: no practice is kept).
@@ -187,6 +209,9 @@ impl Default for Population {
             resumes_after_s: 1.0,
             tires_of_signals: TraitSpread::from_median(0.1, 0.4),
             misreads_signal: 0.03,
+            keeps_own_recipe: NEVER,
+            misremembers: NEVER,
+            guesses_robot: NEVER,
             recipes_gained: 1.0,
             practice_kept: 0.0,
             tracker_offset_m: 0.02,
@@ -256,6 +281,12 @@ pub struct Individual {
     pub loses_intention: f64,
     /// How much the heed for signals follows the usefulness of each, 0 to 1.
     pub tires_of_signals: f64,
+    /// Chance to keep to the own version of a recipe when a signal shows another.
+    pub keeps_own_recipe: f64,
+    /// Chance to be sure of a wrong version of a recipe after the instruction.
+    pub misremembers: f64,
+    /// Chance to guess rightly what the robot did unseen.
+    pub guesses_robot: f64,
 }
 
 /// Least and largest number of own presses that a participant thinks through (study, "Simulated participants").
@@ -307,6 +338,9 @@ impl Population {
             takes_along: self.takes_along.draw_chance(random),
             loses_intention: self.loses_intention.draw_chance(random),
             tires_of_signals: self.tires_of_signals.draw_chance(random),
+            keeps_own_recipe: self.keeps_own_recipe.draw_chance(random),
+            misremembers: self.misremembers.draw_chance(random),
+            guesses_robot: self.guesses_robot.draw_chance(random),
         }
     }
 }

@@ -12,7 +12,7 @@
 
 use rand::RngExt;
 
-use super::population::chance;
+use super::population::{chance, rare_chance};
 use super::simulated::SimulatedParticipant;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
@@ -60,7 +60,10 @@ impl SimulatedParticipant {
                     let variants = kitchen.dish(dish).variants.len();
                     let is_wrong = variants > 1 && chance(&mut self.mind, self.population.misreads_signal);
                     let seen = if is_wrong { self.mind.random_range(1..variants) } else { 0 };
-                    self.memory.confirm(&kitchen, &mut self.beliefs, dish, seen);
+                    let is_own = self.beliefs.most_likely(kitchen.aspect_of_dish(dish)) == seen;
+                    if is_own || !rare_chance(&mut self.mind, self.person.keeps_own_recipe) {
+                        self.memory.confirm(&kitchen, &mut self.beliefs, dish, seen);
+                    }
                 }
             }
         }

@@ -15,6 +15,8 @@ use crate::kitchen::{
 const LOOKS_AT_RESULT: f64 = 0.5;
 /// Time since reading a location during which the participant relies on the content that it read, in seconds.
 const SEEN_JUST_NOW_S: f64 = 5.0;
+/// Probability that the participant assigns to what it rightly guesses of a press of the robot.
+const GUESSED_CERTAINTY: f64 = 0.85;
 /// Probability that the participant assigns to the disappearance of a served order after the usual time.
 const EXPECTED: f64 = 0.8;
 
@@ -50,6 +52,22 @@ impl SimulatedParticipant {
             let weight = if id == hand { self.person.doubts_robot_hand } else { self.person.doubts_places };
             self.beliefs.mix(aspect, &towards, weight);
         }
+    }
+
+    /// Reacts to a robot press whose effect the participant guesses rightly: the places that the press changed are believed as they
+    /// are now.
+    pub(super) fn guess(&mut self, before: State, after: State) {
+        let kitchen = self.kitchen.clone();
+        for index in 0..kitchen.locations.len() {
+            let location = LocationId(index as u8);
+            let aspect = AspectId::of_location(location);
+            if before.code(location) != after.code(location)
+                && let Some(value) = kitchen.aspects[aspect.index()].index_of(after.code(location))
+            {
+                self.beliefs.settle(aspect, value, GUESSED_CERTAINTY);
+            }
+        }
+        self.rethink = true;
     }
 
     /// Reacts to an own press that was effective or not.

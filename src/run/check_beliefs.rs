@@ -8,7 +8,7 @@ use super::replay::{Replay, SameKitchen, each_once};
 use crate::analysis::belief_check::{BeliefCheck, PressViews};
 use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::Kitchen;
-use crate::measures::belief_detection::{TrialView, aspect_groups};
+use crate::measures::belief_detection::{EstimateView, TrialView, aspect_groups};
 use crate::measures::flags::chosen_thresholds;
 
 /// Checks the pooled recordings of one kitchen. The thresholds of flags are chosen on the recordings `choose_on`, which are not
@@ -61,7 +61,11 @@ fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView)> {
     let mut replay = Replay::open(recording)?;
     let mut views = PressViews::default();
     while let Some(replayed) = replay.step()? {
-        views.add(&replay.follower, &replayed.stamped, &replayed.change);
+        let (follower, seq) = (&replay.follower, replayed.stamped.seq);
+        let judged = follower.judged.last().filter(|press| press.seq == seq);
+        let estimated = follower.estimated.as_ref().filter(|one| one.press == seq);
+        let estimate = estimated.map(|one| EstimateView::from_witness(&one.witness(&follower.session.kitchen)));
+        views.add(&follower.session, judged, estimate, &replayed.stamped, &replayed.change);
     }
     Ok((replay.session().kitchen.clone(), views.trial))
 }

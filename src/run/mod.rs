@@ -45,6 +45,8 @@ pub mod resume;
 #[cfg(feature = "cli")]
 pub mod review_console;
 #[cfg(feature = "cli")]
+pub mod robustness;
+#[cfg(feature = "cli")]
 pub mod seekable_replay;
 #[cfg(feature = "cli")]
 pub mod series;

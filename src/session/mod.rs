@@ -5,7 +5,7 @@
 //!
 //! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`, [`wall_display`],
 //!   [`stream_settings`], [`tracker`] (with its events and state), and the specifications in [`plan`]; [`settings`], all of
-//!   them together. On these stand `session_file`, `requirements`, [`participant_code`], [`header`], [`orders`], and the
+//!   them together. On these stand [`battery`], `session_file`, `requirements`, [`participant_code`], [`header`], [`orders`], and the
 //!   studies in [`plan`].
 //! - What happens: `gaze_check`, `protocol_event` (with the phases of a plan), `preflight_check`, [`wizard_screen`]; [`event`],
 //!   all of them together.
@@ -17,6 +17,7 @@
 pub mod accuracy_check;
 pub mod admit;
 pub mod apply;
+pub mod battery;
 mod condition;
 mod console_settings;
 pub mod event;

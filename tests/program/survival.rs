@@ -313,6 +313,7 @@ fn onward(screen: &str, turn: u64) -> Option<&'static str> {
     let shows = |text: &str| screen.contains(text);
     let on = if turn.is_multiple_of(2) { "Enter" } else { "." };
     match () {
+        () if shows("enter go on for this reason") => Some("Enter"),
         () if shows("and agrees to") || shows("is not done") || shows("is not met") => Some("1"),
         () if shows("0 no answer") => Some(if turn.is_multiple_of(2) { "3" } else { "5" }),
         () if shows("RUNNING") => None,

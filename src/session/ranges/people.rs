@@ -12,7 +12,13 @@ const fn chance(path: &'static str) -> NumberRange {
     NumberRange::real(path, [0.000_001, 0.999_999], "", reason).recorded(INSIDE_0_AND_1)
 }
 
-pub(super) const RANGES: [NumberRange; 51] = [
+/// The same of a trait that nobody may have.
+const fn rare_chance(path: &'static str) -> NumberRange {
+    NumberRange::real(path, [0.0, 0.999_999], "", "a probability; its odds are drawn, so not 1; 0: nobody does")
+        .recorded([0.0, INSIDE_0_AND_1[1]])
+}
+
+pub(super) const RANGES: [NumberRange; 54] = [
     chance("participant.population.slip.median"),
     chance("participant.population.look_alike_slip.median"),
     chance("participant.population.thoughtless.median"),
@@ -34,6 +40,9 @@ pub(super) const RANGES: [NumberRange; 51] = [
     chance("participant.population.takes_along.median"),
     chance("participant.population.loses_intention.median"),
     chance("participant.population.tires_of_signals.median"),
+    rare_chance("participant.population.keeps_own_recipe.median"),
+    rare_chance("participant.population.misremembers.median"),
+    rare_chance("participant.population.guesses_robot.median"),
     NumberRange::real(
         "participant.population.depth.median",
         [1.0, 10.0],

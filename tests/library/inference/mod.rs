@@ -2,6 +2,7 @@
 //! its own plain reference, and under whatever may come.
 
 mod calibration;
+mod drop_outs;
 mod exact;
 mod fitting;
 mod grid;

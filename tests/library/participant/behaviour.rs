@@ -13,18 +13,18 @@ use tomcom::participant::{ParticipantAction, SimulatedParticipant};
 use super::kitchen;
 
 /// A participant before a kitchen that nobody else changes.
-struct Bench {
-    kitchen: Arc<Kitchen>,
-    state: State,
-    now: SessionTime,
-    one: SimulatedParticipant,
+pub struct Bench {
+    pub kitchen: Arc<Kitchen>,
+    pub state: State,
+    pub now: SessionTime,
+    pub one: SimulatedParticipant,
     samples: Vec<GazeSample>,
     presses: Vec<(f64, ButtonId)>,
     reasons: Vec<BeliefWitness>,
 }
 
 impl Bench {
-    fn new(population: &Population, seed: u64) -> Bench {
+    pub fn new(population: &Population, seed: u64) -> Bench {
         let kitchen = kitchen("sushi");
         let state = kitchen.empty_state();
         let mut one = SimulatedParticipant::new(kitchen.clone(), population, seed, 0, 0, Experience::default());
@@ -41,22 +41,22 @@ impl Bench {
         }
     }
 
-    fn location(&self, name: &str) -> LocationId {
+    pub fn location(&self, name: &str) -> LocationId {
         self.kitchen.location_named(name).expect("a location")
     }
 
-    fn put(&mut self, location: &str, content: &str) {
+    pub fn put(&mut self, location: &str, content: &str) {
         let content = self.kitchen.content_named(content).expect("a content");
         self.state.set_content(self.location(location), content);
     }
 
-    fn order(&mut self, location: &str, dish: &str) {
+    pub fn order(&mut self, location: &str, dish: &str) {
         let dish = self.kitchen.dishes.iter().position(|other| other.name == dish).expect("a dish");
         self.state.set_order(self.location(location), OrderContent::Dish(DishId(dish as u8)));
     }
 
     /// What it gives to the truth about an aspect.
-    fn p_truth(&self, aspect: &str) -> f64 {
+    pub fn p_truth(&self, aspect: &str) -> f64 {
         let index = self.kitchen.aspects.iter().position(|other| other.name == aspect).expect("an aspect");
         self.one.beliefs().p_truth(&self.kitchen, self.state, AspectId(index as u8))
     }
@@ -67,7 +67,7 @@ impl Bench {
     }
 
     /// Lets so much time pass; presses have their effect.
-    fn pass(&mut self, seconds: f64) {
+    pub fn pass(&mut self, seconds: f64) {
         let end = self.now + SessionTime::from_secs_f64(seconds);
         while let Some(due) = self.one.next_due().filter(|&due| due <= end) {
             assert!(due >= self.now, "time runs forwards");
@@ -100,7 +100,7 @@ impl Bench {
 }
 
 /// Nothing draws its eye.
-fn unmoved() -> Population {
+pub fn unmoved() -> Population {
     let never = TraitSpread { median: 0.0, sigma: 0.0 };
     Population { capture: never, order_capture: never, ..Population::default() }
 }

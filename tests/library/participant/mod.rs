@@ -2,6 +2,7 @@
 
 mod behaviour;
 mod population;
+mod traits;
 
 use std::path::Path;
 use std::sync::Arc;

@@ -31,6 +31,9 @@ fn every_setting() -> toml::Table {
         other_looks_hz = 0.25
         capture = 0.35
         [participant.population]
+        keeps_own_recipe = { median = 0.5, sigma = 0.4 }
+        misremembers = { median = 0.5, sigma = 0.4 }
+        guesses_robot = { median = 0.5, sigma = 0.4 }
         [plan]
         name = "all"
         participants = 2

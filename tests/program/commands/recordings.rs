@@ -142,7 +142,7 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
         assert!(told.contains("found a folder with 4 recordings, where one recording is meant"), "{told}");
         assert!(told.contains(&format!("{out}/seed7-S001, {out}/seed7-S002")), "{told}");
     }
-    assert!(complaint(&["list", &format!("{out}/seed7-S001/nothing")]).contains("cannot be read"));
+    assert!(complaint(&["list", &format!("{out}/seed7-S001/nothing")]).contains("found no folder of this name"));
 }
 
 #[test]

@@ -68,7 +68,7 @@ fn each_bad_file_has_its_own_message_with_file_line_and_remedy() {
         let names = paths.iter().filter_map(|path| path.file_name()).map(|name| name.to_string_lossy());
         names.filter(|name| name.starts_with(kind)).count()
     };
-    let kinds = ["layout", "recipes", "session", "plan", "keys", "parameters", "questionnaire", "log"];
+    let kinds = ["layout", "recipes", "session", "plan", "keys", "parameters", "questionnaire", "battery", "log"];
     let counts: Vec<String> = kinds.iter().map(|kind| format!("{} {kind}", of_kind(kind))).collect();
     assert!(kinds.iter().all(|kind| of_kind(kind) >= 5), "{counts:?}");
     println!("{} bad files, each with its own message: {}", messages.len(), counts.join(", "));
@@ -85,6 +85,9 @@ fn told_about(name: &str, bad: &Bad) -> String {
         "keys" => ("sessions/keys.toml", &["keys", "sessions/default.toml"]),
         "parameters" => ("sessions/parameters.toml", &["keys", "sessions/parameterised.toml"]),
         "questionnaire" => ("sessions/questionnaires/acceptance.toml", &["plan", "sessions/study.toml"]),
+        "battery" => {
+            ("sessions/people/robustness.toml", &["robustness", "sessions/people/robustness.toml", "--arm", "timed"])
+        }
         "log" => ("recording/events.jsonl", &["replay", "recording", "--format", "json"]),
         other => panic!("{name}: the kind {other}"),
     };
@@ -101,6 +104,7 @@ fn told_about(name: &str, bad: &Bad) -> String {
         ("sessions/parameters.toml", String::new()),
         ("sessions/study.toml", read("sessions/study.toml")),
         ("sessions/questionnaires/acceptance.toml", read("sessions/questionnaires/acceptance.toml")),
+        ("sessions/people/robustness.toml", read("sessions/people/robustness.toml")),
         ("recording/events.jsonl", read("tests/golden/format-1-hand.jsonl")),
     ];
     let mut edited = String::new();

@@ -1,0 +1,26 @@
+//! Intervals of statistics over trials, by a percentile bootstrap: trials are drawn with replacement (Efron and Tibshirani 1993).
+
+use rand::RngExt;
+
+use crate::base::rng::stream;
+
+/// Number of bootstrap resamples.
+const RESAMPLES: usize = 2000;
+/// Quantiles of the bootstrap distribution that bound the interval.
+const INTERVAL: [f64; 2] = [0.025, 0.975];
+
+/// The 95 % interval of a statistic of these trials. The random stream is seeded by `seed`.
+///
+/// # Panics
+/// There are no trials.
+pub fn interval<T: Copy>(trials: &[T], seed: u64, statistic: impl Fn(&[T]) -> f64) -> [f64; 2] {
+    let mut random = stream(seed, "bootstrap over trials", 0);
+    let mut resampled: Vec<f64> = (0..RESAMPLES)
+        .map(|_| {
+            let drawn: Vec<T> = trials.iter().map(|_| trials[random.random_range(0..trials.len())]).collect();
+            statistic(&drawn)
+        })
+        .collect();
+    resampled.sort_by(f64::total_cmp);
+    INTERVAL.map(|share| resampled[((RESAMPLES - 1) as f64 * share).round() as usize])
+}

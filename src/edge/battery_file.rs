@@ -1,0 +1,75 @@
+//! Reads the file of a battery of cohorts, with the session file that it names.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::file_error::{FileError, FileResult, missing, read_text};
+use super::files::{SessionFiles, read_session};
+use super::parse::parse;
+use super::place::place_of;
+use crate::session::battery::{BatterySpec, CohortSpec};
+use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
+
+/// A battery of cohorts with the files of its session.
+#[derive(Clone, Debug)]
+pub struct BatteryFiles {
+    /// The session of all cohorts.
+    pub session: SessionFiles,
+    /// The cohorts, in the order of the table.
+    pub cohorts: Vec<CohortSpec>,
+}
+
+/// Reads a battery and its session.
+///
+/// # Errors
+/// A file cannot be read, the session's participant or gaze is not simulated, or a cohort has a setting that cannot be.
+pub fn read_battery(path: &Path) -> FileResult<BatteryFiles> {
+    let text = read_text(path)?;
+    let spec: BatterySpec = parse(path, &text)?;
+    let file = spec.session.get_ref();
+    let session_path = path.parent().unwrap_or(Path::new(".")).join(file);
+    if let Err(reason) = std::fs::metadata(&session_path) {
+        let remedy = "the path of a session file, relative to the battery's file";
+        return Err(missing(path, &text, ("session", 0, file), reason, remedy));
+    }
+    let session = read_session(&session_path)?;
+    let wrong = |span: Range<usize>, found: String, remedy: &str| {
+        Err(FileError::at(path, &text, Some(span), found, remedy.to_string()))
+    };
+    let participant = &session.spec.participant;
+    if participant.kind != ParticipantKind::Simulated || !is_simulated(participant.gaze) {
+        let found = format!("session = \"{file}\", whose participant or gaze is not simulated");
+        let remedy = "a session file with kind = \"simulated\", and gaze = \"simulated\" or \"none\"";
+        return wrong(spec.session.span(), found, remedy);
+    }
+    for (index, cohort) in spec.cohorts.iter().enumerate() {
+        let name = cohort.name.get_ref();
+        if name.trim().is_empty() || spec.cohorts[..index].iter().any(|other| other.name.get_ref() == name) {
+            return wrong(cohort.name.span(), format!("name = \"{name}\""), "a name that no other cohort has");
+        }
+        if let Some(gaze) = cohort.gaze.as_ref().filter(|gaze| !is_simulated(*gaze.get_ref())) {
+            let found = "gaze that is not simulated".to_string();
+            return wrong(gaze.span(), found, "gaze = \"simulated\" or \"none\"");
+        }
+        if let Err(error) = cohort.settings(&session.spec, Condition::None).check() {
+            let place = place_in_cohort(&text, cohort, &error);
+            return Err(FileError::at(path, &text, Some(place), error.found, error.remedy.into_owned()));
+        }
+    }
+    if spec.cohorts.is_empty() {
+        return wrong(0..0, "no cohort".to_string(), "a [[cohort]] with a name");
+    }
+    Ok(BatteryFiles { session, cohorts: spec.cohorts })
+}
+
+fn is_simulated(gaze: GazeSource) -> bool {
+    matches!(gaze, GazeSource::Simulated | GazeSource::None)
+}
+
+/// The place of a cohort's wrong setting: the first one of that name below the cohort's name.
+fn place_in_cohort(text: &str, cohort: &CohortSpec, error: &SettingError) -> Range<usize> {
+    let name = cohort.name.span();
+    let path = error.path.strip_prefix("participant.").unwrap_or(&error.path);
+    let places = (0..).map_while(|nth| place_of(text, path, nth));
+    places.filter(|place| place.start > name.start).min_by_key(|place| place.start).unwrap_or(name)
+}

@@ -1,0 +1,93 @@
+//! The robustness table: its trials are paired, what is in memory is what a recording gives, and threads change nothing.
+
+use std::path::{Path, PathBuf};
+
+use tomcom::analysis::cohort_table::{CohortRow, RobustnessTable, describe_row, legend};
+use tomcom::edge::battery_file::{BatteryFiles, read_battery};
+use tomcom::measures::flags::ThresholdSource;
+use tomcom::participant::population::Population;
+use tomcom::run::check_beliefs;
+use tomcom::run::robustness::{RobustnessRequest, measure};
+use tomcom::run::simulate::Shard;
+use tomcom::session::settings::{ArmKind, Condition};
+
+use super::{folder, run};
+
+/// Judged trials of each cohort in these tests, and presses of a trial.
+const TRIALS: u64 = 3;
+const PRESSES: u32 = 90;
+
+/// Two cohorts with short trials and few rollouts.
+fn battery() -> BatteryFiles {
+    let mut battery = read_battery(Path::new("sessions/people/robustness.toml")).expect("the battery");
+    battery.cohorts.retain(|cohort| ["base", "confident wrong recipes"].contains(&cohort.name.get_ref().as_str()));
+    let spec = &mut battery.session.spec;
+    (spec.trial.presses, spec.robot.arm) = (PRESSES, ArmKind::Timed);
+    (spec.assistant.rollout.rollouts, spec.assistant.rollout.least_rollouts) = (8, 8);
+    battery
+}
+
+fn table(battery: &BatteryFiles, seed: u64) -> RobustnessTable {
+    let request = RobustnessRequest { battery: battery.clone(), trials: TRIALS, seed, choose_seed: 51 };
+    let mut finished: Vec<CohortRow> = Vec::new();
+    let table = measure(&request, || (), |row| finished.push(row.clone()));
+    assert_eq!(finished, table.cohorts, "each row is told when it is finished");
+    table
+}
+
+#[test]
+fn the_table_follows_from_its_seeds_on_any_number_of_threads() {
+    let battery = battery();
+    let with_threads = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+        pool.install(|| table(&battery, 41))
+    };
+    let (one, several) = (with_threads(1), with_threads(3));
+    assert_eq!(one, several);
+    assert_ne!(one.cohorts[0].unassisted, one.cohorts[1].unassisted, "cohorts differ");
+    assert_ne!(one.cohorts[0].unassisted, table(&battery, 42).cohorts[0].unassisted, "seeds differ");
+    let text = describe_row(&one.cohorts[1], 30);
+    assert!(text.starts_with("confident wrong recipes ") && text.lines().count() == 1, "{text}");
+    assert!(legend(&one).contains("3 trials of seed 41"), "{}", legend(&one));
+    assert!(one.cohorts.iter().all(|row| row.assisted.signals_per_100 > 0.0), "{text}");
+}
+
+#[test]
+fn an_assistant_that_says_nothing_saves_nothing() {
+    let mut battery = battery();
+    battery.session.spec.assistant.cost_of_communication = 1000.0;
+    for row in table(&battery, 43).cohorts {
+        assert!(row.unassisted.related_per_100 > 0.0, "{}: nothing to save", row.cohort);
+        assert_eq!(row.unassisted, row.assisted, "{}: pairs are of the same trials", row.cohort);
+        assert_eq!((row.saved, row.saved_interval), (Some(0.0), Some([0.0, 0.0])), "{}", row.cohort);
+    }
+}
+
+#[test]
+fn the_table_has_what_recordings_of_the_same_trials_give() {
+    let battery = battery();
+    let row = &table(&battery, 44).cohorts[0];
+    let mut files = battery.session.clone();
+    files.spec.trial.condition = Condition::None;
+    let mut recorded = |seed: u64| -> (u64, Vec<PathBuf>) {
+        files.spec.seed = seed;
+        let figures = run(&files, TRIALS, Shard::WHOLE, &folder(&format!("robustness-{seed}")));
+        let related = figures.beliefs.belief_related_errors.expect("known of simulated people");
+        (related, figures.recordings.iter().map(PathBuf::from).collect())
+    };
+    let ((related, judged), (_, chosen_on)) = (recorded(44), recorded(51));
+    let check = check_beliefs::check(&judged, &chosen_on, || ()).expect("recordings");
+    assert_eq!(row.detection, check.detection);
+    assert_eq!(row.detection.flags.thresholds_from, Some(ThresholdSource::OtherRecordings));
+    assert_eq!(row.log_likelihood, check.log_likelihood);
+    let counted = row.unassisted.related_per_100 * check.human_actions as f64 / 100.0;
+    assert!((counted - related as f64).abs() < 1e-6, "{counted} and {related}");
+}
+
+#[test]
+fn the_battery_that_comes_with_the_program_has_its_cohorts() {
+    let battery = read_battery(Path::new("sessions/people/robustness.toml")).expect("a battery");
+    assert_eq!(battery.cohorts.len(), 16);
+    let defaults = battery.cohorts.iter().filter(|cohort| cohort.population == Some(Population::default())).count();
+    assert_eq!(defaults, 0, "a cohort names a population that is the default");
+}

@@ -1,0 +1,97 @@
+//! Traits that nobody has in the calibrated population: stubbornness, wrong recipes that one is sure of, right guesses of the robot.
+
+use tomcom::communication::Signal;
+use tomcom::kitchen::{Agent, ButtonAction, ButtonId, Kitchen};
+use tomcom::participant::population::{Population, TraitSpread};
+
+use super::behaviour::{Bench, unmoved};
+
+fn exactly(median: f64) -> TraitSpread {
+    TraitSpread { median, sigma: 0.0 }
+}
+
+#[test]
+fn people_without_a_trait_are_as_they_were_before_it_existed() {
+    let text = serde_json::to_string(&Population::default()).expect("JSON");
+    for name in ["keeps_own_recipe", "misremembers", "guesses_robot"] {
+        assert!(!text.contains(name), "{name} stands in every recording");
+    }
+    let read: Population = serde_json::from_str(&text).expect("a population");
+    assert_eq!(read, Population::default());
+    // Traits are drawn one after the other from one stream: a new one does not change those before it.
+    let plain = Bench::new(&Population::default(), 5);
+    let stubborn = Bench::new(&Population { keeps_own_recipe: exactly(0.5), ..Population::default() }, 5);
+    let (before, mut after) = (plain.one.person().clone(), stubborn.one.person().clone());
+    assert_eq!((before.keeps_own_recipe, after.keeps_own_recipe), (0.0, 0.5));
+    after.keeps_own_recipe = 0.0;
+    assert_eq!(before, after);
+}
+
+/// In how many of 100 cases the recipe is known after it was shown to somebody who did not know it.
+fn told(keeps_own_recipe: f64) -> usize {
+    let wrong = exactly(0.02);
+    let population =
+        Population { learned: wrong, half_forgotten: wrong, keeps_own_recipe: exactly(keeps_own_recipe), ..unmoved() };
+    let knows = |seed: u64| {
+        let mut bench = Bench::new(&population, seed);
+        bench.order("order_1", "tuna nigiri");
+        let order = bench.location("order_1");
+        bench.one.on_signal(bench.now, order, &Signal::ShowRecipe("order_1".to_string()), bench.state);
+        bench.pass(1.6);
+        bench.p_truth("recipe of tuna nigiri") > 0.9
+    };
+    (0..100).filter(|&seed| knows(seed)).count()
+}
+
+#[test]
+fn stubborn_people_keep_their_own_recipe_against_a_signal() {
+    let (open, half, stubborn) = (told(0.0), told(0.5), told(0.999_999));
+    assert!(
+        open >= 65 && (25..=55).contains(&half),
+        "{open} of 100 believe the signal, {half} where half keep their own"
+    );
+    // One or two recall the right recipe by themselves.
+    assert!(stubborn <= 4, "{stubborn} of 100");
+}
+
+#[test]
+fn misremembered_recipes_are_sure_and_wrong_until_they_are_shown() {
+    let population = Population { misremembers: exactly(0.999_999), notices_signal: exactly(0.999), ..unmoved() };
+    let mut bench = Bench::new(&population, 3);
+    let dishes: Vec<String> = bench.kitchen.dishes.iter().map(|dish| dish.name.clone()).collect();
+    for dish in &dishes {
+        assert!(bench.p_truth(&format!("recipe of {dish}")) < 0.05, "{dish} is known");
+    }
+    bench.pass(600.0);
+    assert!(bench.p_truth("recipe of tuna nigiri") < 0.05, "time alone corrects nothing");
+    bench.order("order_1", "tuna nigiri");
+    let order = bench.location("order_1");
+    // One of these is noticed.
+    for _ in 0..8 {
+        bench.one.on_signal(bench.now, order, &Signal::ShowRecipe("order_1".to_string()), bench.state);
+        bench.pass(2.0);
+    }
+    assert!(bench.p_truth("recipe of tuna nigiri") > 0.9, "a signal corrects it");
+    assert!(bench.p_truth("recipe of salmon nigiri") < 0.05, "and no other recipe");
+}
+
+/// A button of the robot that takes something from a storage.
+fn takes(kitchen: &Kitchen) -> ButtonId {
+    let buttons = &kitchen.buttons[Agent::Robot.index()];
+    let index = buttons.iter().position(|button| matches!(button.action, ButtonAction::Take(_)));
+    ButtonId(index.expect("the robot takes something") as u8)
+}
+
+#[test]
+fn who_guesses_the_robot_knows_what_it_did_unseen() {
+    let after_unseen_press = |guesses_robot: f64| {
+        let mut bench = Bench::new(&Population { guesses_robot: exactly(guesses_robot), ..unmoved() }, 7);
+        let press = bench.kitchen.try_press(bench.state, Agent::Robot, takes(&bench.kitchen));
+        assert!(press.effective);
+        bench.state = press.after;
+        bench.one.on_press(bench.now, &press);
+        bench.p_truth("robot_hand")
+    };
+    assert!(after_unseen_press(0.0) < 0.3, "known without a look");
+    assert!(after_unseen_press(0.999_999) > 0.8, "not guessed");
+}

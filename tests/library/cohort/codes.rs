@@ -134,7 +134,7 @@ fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
     let (coded, [one, other]) = two_raters(&recording);
     let open = unsettled(&coded.codable.errors, [&one, &other]);
     assert!(open.len() > 2, "{open:?}");
-    let before = CodesSummary::from_recordings(&[coded.clone()]);
+    let before = CodesSummary::from_recordings(std::slice::from_ref(&coded));
     // The last one is not coded by the second rater: to be settled, and no disagreement.
     assert_eq!(before.disagreements.len(), open.len() - 1);
     let first = &before.disagreements[0];

@@ -50,10 +50,10 @@ pub struct RobotHand {
 impl RobotHand {
     /// The hand at rest on its own place; `None` if the session does not show it.
     pub fn new(session: &Session) -> Option<RobotHand> {
-        let is_shown = session.spec.display.arm.is_some_and(|arm| arm != DisplayedArm::None);
+        session.spec.display.arm.filter(|arm| *arm != DisplayedArm::None)?;
         let kitchen = &session.kitchen;
         let [x, y] = kitchen.location(kitchen.hands[Agent::Robot.index()]).display.centre();
-        is_shown.then(|| RobotHand {
+        Some(RobotHand {
             pose: RobotPose { x, y, down: 0.0 },
             motion: None,
             last: SessionTime::ZERO,

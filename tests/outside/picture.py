@@ -70,15 +70,18 @@ if __name__ == "__main__":
     arguments = parser.parse_args()
     size = tuple(int(number) for number in arguments.size.split("x"))
     recordings = arguments.folder / f"picture-{os.getpid()}"
-    with Console(arguments.tomcom, ["sessions/default.toml", "--out", recordings], size) as console:
+    with Console(arguments.tomcom, ["sessions/default.toml", "--code", "P01", "--out", recordings], size) as console:
         console.wait_for("READY")
         console.start()
-        # Three signals on the way, so that the timeline has some; the last one is still shown in the picture.
-        for key, share in [("w", 0.6), ("p", 0.8), ("q", 1.0)]:
+        # Signals on the way, so that the timeline has some; the picture shows the next offer.
+        for key, share in [("w", 0.6), ("p", 0.8)]:
             until = arguments.seconds * share
             while console.trial_s() < until:
                 time.sleep(0.05)
             console.key(key)
+        while console.trial_s() < arguments.seconds:
+            time.sleep(0.05)
+        console.wait_for("saves . [0-9]+ press", 200)
         time.sleep(0.9)
         with console.lock:
             arguments.out.write_text(svg(console.screen))

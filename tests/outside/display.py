@@ -317,7 +317,7 @@ def has_phases(tomcom, browser, folder):
     text = text[: text.index("[plan.familiarisation]")] + text[text.index("[[plan.questionnaire]]"):]
     folder.mkdir(parents=True, exist_ok=True)
     session = folder / "session.toml"
-    session.write_text(f'{text}\n[display]\nport = {PORT}\nlanguage = "de"\nquestionnaire = "display"\n')
+    session.write_text(text.replace("[display]\n", f'[display]\nport = {PORT}\nlanguage = "de"\nquestionnaire = "display"\n'))
     console = Console(tomcom, [session, "--code", "P01", "--out", folder / "recordings"])
     with console:
         console.wait_for("agrees")

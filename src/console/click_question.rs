@@ -33,6 +33,21 @@ pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, 
     }
 }
 
+/// The question waits so long for its answer, in seconds: an enter that comes later is not meant for it.
+const WAITS_S: f64 = 5.0;
+
+/// Closes a question that has waited too long, and one that an offer has overtaken: enter means the offer then.
+pub fn expire(model: &mut ConsoleModel, session: &Session) {
+    let Some(Dialog::Send(question)) = &model.dialog else { return };
+    let is_late = model.clock.secs_since(question.asked) > WAITS_S;
+    let open = session.offers.open().filter(|offer| offer.opened > question.asked && Some(offer.seq) != question.offer);
+    if is_late || open.is_some() {
+        let why = if is_late { "nobody answered" } else { "an offer has appeared" };
+        model.dialog = None;
+        model.say(NoticeLevel::Refused, format!("not sent: {why}; click again"));
+    }
+}
+
 /// Answers the question: enter sends, if it is pressed and not held; esc leaves.
 pub(super) fn answer(
     model: &mut ConsoleModel,

@@ -5,7 +5,7 @@ pub mod arrange;
 mod beliefs;
 pub mod chord;
 pub mod click;
-mod click_question;
+pub mod click_question;
 pub mod codebook;
 pub mod coding;
 pub mod coding_list;

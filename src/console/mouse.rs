@@ -25,7 +25,7 @@ use crate::session::Session;
 use crate::session::settings::ParticipantKind;
 
 /// A second click within this time belongs to the first: it confirms nothing.
-const DOUBLE_CLICK_S: f64 = 0.4;
+const DOUBLE_CLICK_S: f64 = 0.25;
 
 /// Notes where the pointer is on the display, which may stand for the gaze.
 pub(super) fn point(model: &mut ConsoleModel, session: &Session, (column, row): (u16, u16)) {

@@ -1,5 +1,6 @@
 //! `update`: a message comes in, the model changes, and what concerns the session leaves as a command.
 
+use super::click_question;
 use super::console_message::{ConsoleCommand, ConsoleMessage};
 use super::console_model::ConsoleModel;
 use super::key_press;
@@ -8,6 +9,7 @@ use crate::session::{Event, Phase, Session};
 
 /// Takes a message at the time `model.now`.
 pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessage) -> Option<ConsoleCommand> {
+    click_question::expire(model, session);
     match message {
         ConsoleMessage::Key(key) => key_press::key(model, session, &key),
         ConsoleMessage::Pointer(column, row) => {

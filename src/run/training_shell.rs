@@ -154,6 +154,10 @@ impl TrainingShell {
     /// Judges a signal and gives feedback.
     fn signal(&mut self, shown: Event) {
         let Event::SignalShown { signal, .. } = &shown else { return };
+        if !self.model.playback.as_ref().is_some_and(|playback| playback.playing) {
+            self.model.say(NoticeLevel::Refused, "not counted: it stands; . lets it run");
+            return;
+        }
         let signal = signal.clone();
         let session = &self.film.session;
         let (clock, press) = (session.trial_clock(self.now), session.presses[Agent::Human.index()]);

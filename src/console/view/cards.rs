@@ -42,7 +42,9 @@ struct Card {
 
 /// Draws the card of the trial's start or end, if nothing else lies in front of the console.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
-    let is_covered = model.dialog.is_some() || model.alone.is_some() || sheet(session).is_some();
+    // What came of a trial is seen from every view.
+    let is_alone = model.alone.is_some() && !matches!(session.phase, Phase::Over(_));
+    let is_covered = model.dialog.is_some() || is_alone || sheet(session).is_some();
     let has_trial = session.study_phase().is_none_or(|phase| phase.phase().has_trial());
     if is_covered || !has_trial || model.playback.is_some() || model.lesson.is_some() || session.is_calibrating() {
         return;

@@ -31,6 +31,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Sess
         Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."], "y"),
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
+                _ if model.lesson.is_some() => &["The training ends here, without a result."],
                 Phase::Running | Phase::Paused => {
                     &["The trial is not over. Only y ends it.", "The session ends, the recording is kept."]
                 }

@@ -8,6 +8,7 @@ use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::console::arrange::KitchenMap;
 use crate::console::console_model::ConsoleModel;
+use crate::console::key_action::KeyLayer;
 use crate::gaze::nearest_location;
 use crate::kitchen::LocationId;
 use crate::session::Session;
@@ -106,7 +107,8 @@ pub fn draw_map(brush: &mut Painter, regions: &Regions, session: &Session, model
         let (x, y) = cell(location.display.centre());
         let seen = session.gaze.looked_at[index].map(|at| session.age(at, model.now).as_secs_f64());
         let y = y.min(inside.bottom().saturating_sub(2));
-        let label = match model.keys.of_signal(LocationId(index as u8)) {
+        let key = model.keys.of_signal(LocationId(index as u8)).filter(|_| model.layer == KeyLayer::Wizard);
+        let label = match key {
             Some(key) => format!("[{key}]"),
             None => fit(&location.label(), 6, brush.theme.signs().ellipsis),
         };

@@ -6,7 +6,8 @@ use ratatui::style::{Modifier, Style};
 
 use super::gaze;
 use super::offer_line;
-use super::paint::{Painter, fit, squeeze, width, wrap, wrap_to};
+use super::paint::{Painter, squeeze, width, wrap, wrap_to};
+use super::place_buttons;
 use super::regions::{Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
@@ -182,13 +183,13 @@ impl<'a> Place<'a> {
             (true, _) => self.order(brush, below),
             (false, 0) => {}
             (false, height) => {
-                let buttons = self.other_buttons();
+                let buttons = place_buttons::further(self.session, self.model, self.id);
                 let free = height - (buttons.len() as u16).min(height - 1);
                 let lines = self.contents(brush, Rect { height: free, ..below });
                 let lines = self.belief(brush, Rect { height: free, ..below }, lines);
                 match buttons.is_empty() {
                     true => self.news(brush, below, lines),
-                    false => draw_buttons(brush, below, &buttons),
+                    false => place_buttons::draw(brush, below, &buttons),
                 }
             }
         }
@@ -236,6 +237,11 @@ impl<'a> Place<'a> {
             brush.key_target(cells.x, cells.y, end, key);
         }
         end
+    }
+
+    /// Whether the wizard is told that the participant has not seen the last change; the participant is not.
+    fn is_unseen(&self) -> bool {
+        self.model.layer == KeyLayer::Wizard && wording::is_unseen(self.session, self.id)
     }
 
     /// The key of this place in the active layer.
@@ -335,7 +341,7 @@ impl<'a> Place<'a> {
         }
         if is_wanted && (thinks.is_none() || room.height > 1) {
             let gap = if room.height > 1 { 2 } else { 1 };
-            let unseen = if wording::is_unseen(self.session, self.id) { "unseen" } else { "" };
+            let unseen = if self.is_unseen() { "unseen" } else { "" };
             let left = |x: u16| room.right().saturating_sub(x);
             let x = brush.parts(end + gap, room.y, left(end + gap), &[(&age.to_string(), TextRole::Quiet)]) + gap;
             if width(unseen) <= left(x) {
@@ -362,7 +368,7 @@ impl<'a> Place<'a> {
             let words = by.map(|by| format!("{} {age_s:.0} s ago", by.name()));
             let words = words.filter(|words| news.is_empty() && width(words) <= room.width && lines < room.height);
             news.push((words.unwrap_or(format!("{}{age_s:.0}s", signs.changed)), agent_role(by)));
-        } else if wording::is_unseen(self.session, self.id) {
+        } else if self.is_unseen() {
             let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
             news.push((format!("unseen {age}"), TextRole::Gaze));
         }
@@ -382,42 +388,5 @@ impl<'a> Place<'a> {
                 x = brush.parts(x, y, width(&text), &[(&text, role)]) + 1;
             }
         }
-    }
-
-    /// Further buttons of the participant at this place (processes, trash): key and name.
-    fn other_buttons(&self) -> Vec<(KeyChord, String)> {
-        if self.model.layer != KeyLayer::Participant {
-            return Vec::new();
-        }
-        let hand = self.kitchen.hands[Agent::Human.index()];
-        let is_here = |action: ButtonAction| match action {
-            ButtonAction::Process(process) => {
-                self.kitchen.processes[usize::from(process)].place.unwrap_or(hand) == self.id
-            }
-            ButtonAction::Trash => self.id == hand,
-            _ => false,
-        };
-        let buttons = self.kitchen.buttons[Agent::Human.index()].iter().enumerate();
-        let with_key = buttons.filter(|(_, button)| is_here(button.action)).filter_map(|(index, button)| {
-            let key = self.model.keys.of_button(ButtonId(index as u8))?;
-            Some((key, button.name.replace('_', " ")))
-        });
-        with_key.collect()
-    }
-}
-
-/// Draws one button per line from the lower edge of the card upwards, or all in the last line if the card is too low.
-fn draw_buttons(brush: &mut Painter, room: Rect, buttons: &[(KeyChord, String)]) {
-    let style = brush.style(TextRole::Human).add_modifier(Modifier::BOLD);
-    let count = buttons.len() as u16;
-    for (index, (key, name)) in buttons.iter().enumerate() {
-        let index = index as u16;
-        let (x, y, columns) = match room.height > count {
-            true => (room.x, room.bottom() - count + index, room.width),
-            false => (room.x + index * room.width / count, room.bottom() - 1, room.width / count),
-        };
-        let name = fit(name, columns.saturating_sub(3), "");
-        let end = brush.text(x, y, columns, &format!("[{key}]{name}"), style);
-        brush.key_target(x, y, end, *key);
     }
 }

@@ -16,6 +16,7 @@ pub mod lesson;
 pub mod offer_line;
 pub mod paint;
 pub mod picker;
+mod place_buttons;
 mod popup;
 pub mod recommendation_panel;
 pub mod recordings_page;

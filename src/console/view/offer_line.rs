@@ -68,8 +68,8 @@ impl ShownOffer<'_> {
         };
         let own = self.place(session).and_then(|place| model.keys.mark(place));
         let own = own.map_or(String::new(), |key| format!(" [{key}]"));
-        // Enter in dialogs never sends the offer.
-        let is_free = model.playback.is_none() && model.dialog.is_none();
+        // Enter in dialogs never sends the offer, and in a pause nothing can be sent.
+        let is_free = model.playback.is_none() && model.dialog.is_none() && session.is_running();
         let enter = model.keys.chord_for(&KeyAction::Accept).filter(|_| is_free);
         let enter = enter.map_or(String::new(), |key| format!("{key}  "));
         format!(" {enter}{}{own} ", words.to_uppercase())

@@ -75,7 +75,8 @@ fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mom
     let signs = brush.theme.signs();
     let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
     let bars: String = moment.joints.iter().map(bar).collect();
-    let phase = if session.robot.stopped { "stands" } else { wording::arm_phase(moment.phase) };
+    let is_over = matches!(session.phase, Phase::Over(_) | Phase::Closed);
+    let phase = if session.robot.stopped || is_over { "stands" } else { wording::arm_phase(moment.phase) };
     let phase = format!("{phase:<10} ");
     let hand = match moment.hand_away_m {
         away_m if away_m < 0.005 => " hand at arm".to_string(),

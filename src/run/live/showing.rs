@@ -1,6 +1,7 @@
 //! Output of a live session: the wizard's screen (and its record), and the participant's display.
 
 use super::live_session::Live;
+use crate::console::click_question;
 use crate::console::screen::screen;
 use crate::run::watch_desk::ComparisonDesk;
 use crate::session::wall_display::DisplayEvent;
@@ -16,6 +17,7 @@ impl Live {
     /// Prepares the frame that is drawn next, and records the visible content.
     pub(super) fn prepare_frame(&mut self) {
         self.tick();
+        click_question::expire(&mut self.model, self.engine.session());
         if let (Some(newest), Some(compared)) =
             (self.comparison.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)
         {

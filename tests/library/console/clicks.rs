@@ -3,6 +3,7 @@
 use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::Signal;
+use tomcom::console::click_question;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::playback::{Playback, ReplayKey};
@@ -58,6 +59,19 @@ fn a_click_on_a_signal_asks_once_and_enter_or_a_second_click_sends_it() {
         stage.click("[n]");
         assert_eq!(signal(stage.key(KeyCode::Enter)), Some(highlight("counter")));
     }
+}
+
+#[test]
+fn the_question_of_a_click_waits_five_seconds_and_gives_way_to_an_offer() {
+    let mut stage = Stage::sushi(ParticipantKind::Simulated);
+    stage.wait(0.0);
+    stage.click("[a]");
+    stage.wait(4.9);
+    click_question::expire(&mut stage.model, &stage.session);
+    assert!(stage.asks_to_send());
+    stage.wait(0.2);
+    assert_eq!(stage.key(KeyCode::Enter), None, "an enter so late is not meant for it");
+    assert!(stage.notice().contains("not sent"), "{}", stage.notice());
 }
 
 #[test]

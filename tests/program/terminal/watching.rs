@@ -55,13 +55,7 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
     let simulated =
         tmux::tomcom(&["simulate", "sessions/default.toml", "--seed", "7", "--condition", "assistant", "--out", &out]);
     assert!(simulated.status.success(), "{simulated:?}");
-    let recording = terminal.recording();
-    let name = recording.display().to_string();
-    let log = terminal.log();
-    let rows = |file: &str| {
-        let text = fs::read_to_string(recording.join(file)).unwrap_or_default();
-        text.lines().skip(1).map(str::to_string).collect::<Vec<_>>()
-    };
+    let name = terminal.recording().display().to_string();
     terminal.run(&format!("{TOMCOM} replay {name} --rater R1"));
     terminal.see("R1: 0 of");
     terminal.see("error 1 is the first without a code");
@@ -88,7 +82,7 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
     press_each(&terminal, &first);
     terminal.key("C-c");
     terminal.is_whole("0");
-    let kept = rows("codes-R1.csv");
+    let kept = rows(&terminal, "codes-R1.csv");
     assert!(matches!(&kept[..], [a, b] if a.ends_with(",slip,") && b.ends_with(",belief,cooking_pot")), "{kept:?}");
 
     terminal.run(&format!("{TOMCOM} replay {name} --rater R1"));
@@ -97,7 +91,18 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
     terminal.key("C-c");
     terminal.is_whole("0");
 
-    // The other rater codes the first error alike, the second otherwise, and the third alone.
+    settle_with_another(&terminal, &name, &kept);
+}
+
+/// The rows of a file with codes beside the recording.
+fn rows(terminal: &Terminal, file: &str) -> Vec<String> {
+    let text = fs::read_to_string(terminal.recording().join(file)).unwrap_or_default();
+    text.lines().skip(1).map(str::to_string).collect()
+}
+
+/// The other rater codes the first error alike and the second otherwise; both settle the second.
+fn settle_with_another(terminal: &Terminal, name: &str, kept: &[String]) {
+    let (recording, log) = (terminal.recording(), terminal.log());
     let presses: Vec<&str> = kept.iter().filter_map(|row| row.split(',').next()).collect();
     let codes = format!("press,cause,aspect\n{},slip,\n{},race,\n", presses[0], presses[1]);
     fs::write(recording.join("codes-R2.csv"), codes).expect("written");
@@ -105,19 +110,16 @@ fn a_rater_codes_errors_undoes_goes_on_another_time_and_settles_with_another_one
     terminal.see("error 2 is the first without a code");
     terminal.see("R1: wrong about cooking pot");
     terminal.see("R2: race");
-    press_each(
-        &terminal,
-        &[("2", "saved: error 2, race"), ("u", "saved: error 2, -"), ("C-y", "saved: error 2, race")],
-    );
+    press_each(terminal, &[("2", "saved: error 2, race"), ("u", "saved: error 2, -"), ("C-y", "saved: error 2, race")]);
     terminal.key("C-c");
     terminal.is_whole("0");
-    let settled = rows("consensus.csv");
+    let settled = rows(terminal, "consensus.csv");
     let agreed = format!("R1,slip,,R2,slip,,{},slip,", presses[0]);
     let decided = format!("R1,belief,cooking_pot,R2,race,,{},race,", presses[1]);
     assert_eq!(settled, [agreed, decided]);
-    assert_eq!(rows("codes-R1.csv"), kept, "a consensus leaves the raters' codes");
+    assert_eq!(rows(terminal, "codes-R1.csv"), kept, "a consensus leaves the raters' codes");
     assert_eq!(terminal.log(), log, "the log stays as it is");
-    let told = tmux::tomcom(&["codes", &name]);
+    let told = tmux::tomcom(&["codes", name]);
     let told = String::from_utf8_lossy(&told.stdout).into_owned();
     assert!(told.contains("consensus of R1 and R2: 1 agreed, 1 settled"), "{told}");
     terminal.run(&format!("{TOMCOM} replay {name} --settle R1 R3"));

@@ -7,6 +7,8 @@
 use ratatui::layout::Rect;
 
 use crate::kitchen::{Agent, DisplayArea, Kitchen, LocationId, LocationKind};
+use crate::session::Session;
+use crate::session::settings::ParticipantKind;
 
 /// An element of the kitchen map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,8 +73,19 @@ impl KitchenMap {
         KitchenMap::with_room(kitchen, cells, with_keys, OWN_HAND)
     }
 
+    /// The map of a session in these cells; `is_coded` says that a rater codes its errors.
+    pub fn for_session(session: &Session, is_coded: bool, cells: Rect) -> KitchenMap {
+        match is_coded {
+            true => KitchenMap::for_rater(&session.kitchen, cells),
+            false => {
+                let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
+                KitchenMap::new(&session.kitchen, cells, with_keys)
+            }
+        }
+    }
+
     /// The map for a rater, for whom the participant's own hand has a key, too.
-    pub fn for_rater(kitchen: &Kitchen, cells: Rect) -> KitchenMap {
+    fn for_rater(kitchen: &Kitchen, cells: Rect) -> KitchenMap {
         KitchenMap::with_room(kitchen, cells, false, KEYED_OWN_HAND)
     }
 

@@ -22,7 +22,6 @@ use super::view::click_targets;
 use super::view::regions::Regions;
 use crate::kitchen::{Agent, ButtonAction as Use, ButtonId, LocationId};
 use crate::session::Session;
-use crate::session::settings::ParticipantKind;
 
 /// A second click within this time belongs to the first: it confirms nothing.
 const DOUBLE_CLICK_S: f64 = 0.25;
@@ -34,11 +33,7 @@ pub(super) fn point(model: &mut ConsoleModel, session: &Session, (column, row): 
 }
 
 fn map(model: &ConsoleModel, session: &Session, regions: &Regions) -> KitchenMap {
-    let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
-    match model.coding.is_some() {
-        true => KitchenMap::for_rater(&session.kitchen, regions.kitchen_inside()),
-        false => KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys),
-    }
+    KitchenMap::for_session(session, model.coding.is_some(), regions.kitchen_inside())
 }
 
 /// Handles a click: on what the view offers it does what the key does; on a place it tells the place's key; elsewhere it shows the

@@ -19,7 +19,7 @@ use crate::console::key_action::KeyLayer;
 use crate::history::wording;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::Session;
-use crate::session::settings::{Condition, ParticipantKind};
+use crate::session::settings::Condition;
 
 /// Stands in for what is falsely believed where there is no room for it.
 const FALSE_BELIEF: &str = "false belief";
@@ -48,11 +48,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         };
         brush.panel(area, &session.kitchen.title, remark);
     }
-    let with_keys = session.spec.participant.kind == ParticipantKind::Keyboard;
-    let plan = match model.coding.is_some() {
-        true => KitchenMap::for_rater(&session.kitchen, regions.kitchen_inside()),
-        false => KitchenMap::new(&session.kitchen, regions.kitchen_inside(), with_keys),
-    };
+    let plan = KitchenMap::for_session(session, model.coding.is_some(), regions.kitchen_inside());
     zones(brush, &plan);
     let believed = beliefs(session, model);
     let offered = offer_line::shown(session, model).and_then(|offer| offer.place(session));

@@ -2,6 +2,7 @@
 
 use ratatui::text::Span;
 
+use super::chord::KeyChord;
 use super::key_action::{KeyAction, KeyBinding, RaterKey};
 use super::keys::KeyBindings;
 use crate::kitchen::Kitchen;
@@ -13,21 +14,20 @@ const GAP: u16 = 2;
 /// A piece of the codebook: a key, and what it says.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodebookEntry {
-    /// The key; empty for a heading.
-    pub key: String,
+    /// The key; none for a heading, and for the rest of a definition.
+    pub key: Option<KeyChord>,
     /// The code in words, or the heading.
     pub words: String,
 }
 
 impl CodebookEntry {
     fn heading(words: String) -> CodebookEntry {
-        CodebookEntry { key: String::new(), words }
+        CodebookEntry { key: None, words }
     }
 
     /// Columns that the entry takes, with a space behind its key.
     fn columns(&self) -> u16 {
-        let key = if self.key.is_empty() { 0 } else { columns_of(&self.key) + 1 };
-        key + columns_of(&self.words)
+        key_columns(self.key) + columns_of(&self.words)
     }
 }
 
@@ -39,9 +39,9 @@ pub type CodebookLine = Vec<(u16, CodebookEntry)>;
 pub fn full(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<CodebookLine> {
     let mut lines: Vec<CodebookLine> = Vec::new();
     for CodebookEntry { key, words } in of_kinds(keys, |kind| Some(kind.definition())) {
-        let indent = columns_of(&key) + 1;
+        let indent = key_columns(key);
         for (row, words) in wrap(&words, columns.saturating_sub(indent)).into_iter().enumerate() {
-            let (before, key) = if row == 0 { (0, key.clone()) } else { (indent, String::new()) };
+            let (before, key) = if row == 0 { (0, key) } else { (indent, None) };
             lines.push(vec![(before, CodebookEntry { key, words })]);
         }
     }
@@ -71,7 +71,7 @@ pub fn compact(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<Codeb
 fn places(keys: &KeyBindings, kitchen: &Kitchen) -> Vec<CodebookEntry> {
     let entry = |line: &KeyBinding| match line.action {
         KeyAction::Rate(RaterKey::Belief(location)) => {
-            Some(CodebookEntry { key: line.chords.first()?.to_string(), words: kitchen.location(location).label() })
+            Some(CodebookEntry { key: Some(*line.chords.first()?), words: kitchen.location(location).label() })
         }
         _ => None,
     };
@@ -81,7 +81,7 @@ fn places(keys: &KeyBindings, kitchen: &Kitchen) -> Vec<CodebookEntry> {
 /// The codes without a place: "1 slip: nothing was believed wrong".
 fn of_kinds(keys: &KeyBindings, definition: impl Fn(CauseKind) -> Option<&'static str>) -> Vec<CodebookEntry> {
     let entry = |kind: CauseKind| {
-        let key = keys.chord_for(&KeyAction::Rate(RaterKey::Cause(kind)))?.to_string();
+        let key = Some(keys.chord_for(&KeyAction::Rate(RaterKey::Cause(kind)))?);
         let definition = definition(kind).map_or(String::new(), |definition| format!(": {definition}"));
         Some(CodebookEntry { key, words: format!("{}{definition}", kind.title()) })
     };
@@ -114,6 +114,11 @@ fn wrap(text: &str, columns: u16) -> Vec<String> {
         }
     }
     lines
+}
+
+/// Columns of a key and the space behind it.
+fn key_columns(key: Option<KeyChord>) -> u16 {
+    key.map_or(0, |key| columns_of(&key.to_string()) + 1)
 }
 
 fn columns_of(text: &str) -> u16 {

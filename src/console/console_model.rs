@@ -221,6 +221,11 @@ impl ConsoleModel {
         self.notice = Some(Notice { text: text.into(), level, at: self.clock });
     }
 
+    /// Removes the last notice, but for an alarm: the next key makes what was said of the one before old.
+    pub(super) fn forget_notice(&mut self) {
+        self.notice = self.notice.take().filter(|notice| notice.level == NoticeLevel::Alarm);
+    }
+
     /// Counts rejected senders of gaze. The first one, and every doubling of their number, gives a notice: whoever sends can
     /// neither flood the notices nor replace an alarm.
     pub fn count_rejected(&mut self, more: u64) {

@@ -41,6 +41,9 @@ pub(super) fn press(
     touch: Touch,
 ) -> Option<ConsoleCommand> {
     let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
+    if touch == Touch::Press {
+        model.forget_notice();
+    }
     if matches!(model.dialog, Some(Dialog::Send(_))) && action != Some(KeyAction::StopRobot) {
         if matches!(chord.code, KeyCode::Enter | KeyCode::Esc) {
             return click_question::answer(model, session, chord.code, touch == Touch::Press);

@@ -89,11 +89,16 @@ impl CodedRecording {
     /// The errors about which two raters disagree.
     fn disagreements(&self, of: (&String, &Codes), with: (&String, &Codes)) -> Vec<Disagreement> {
         let differ = unsettled(&self.codable.errors, [of.1, with.1]);
+        let is_pairs = |consensus: &&Consensus| consensus.raters.contains(of.0) && consensus.raters.contains(with.0);
+        let consensus = self.consensus.as_ref().filter(is_pairs);
+        let settled = consensus.map(|consensus| self.current(consensus)).unwrap_or_default();
         let listed = self.errors.iter().filter(|error| differ.contains(&error.press));
         let disagreement = |error: &ListedError| {
             let (of_code, with_code) = (of.1.0.get(&error.press)?, with.1.0.get(&error.press)?);
             let parts = |code: &Code| (code.kind().name().to_string(), code.aspect().map(str::to_string));
             let ((of_cause, of_aspect), (with_cause, with_aspect)) = (parts(of_code), parts(with_code));
+            let shared = settled.0.get(&error.press);
+            let (settled_cause, settled_aspect) = shared.map(parts).unzip();
             Some(Disagreement {
                 recording: self.name(),
                 error: error.clone(),
@@ -103,7 +108,10 @@ impl CodedRecording {
                 of_aspect,
                 with_cause,
                 with_aspect,
+                settled_cause,
+                settled_aspect: settled_aspect.flatten(),
                 words: [wording::code(of_code), wording::code(with_code)],
+                settled_words: shared.map(wording::code),
             })
         };
         listed.filter_map(disagreement).collect()
@@ -184,9 +192,16 @@ pub struct Disagreement {
     pub with_cause: String,
     /// What the second rater says was believed wrong; null for other causes.
     pub with_aspect: Option<String>,
+    /// The cause that both settled; null if they did not, or changed a code since.
+    pub settled_cause: Option<String>,
+    /// What they settled was believed wrong; null for other causes.
+    pub settled_aspect: Option<String>,
     /// Both codes in words.
     #[serde(skip)]
     pub words: [String; 2],
+    /// What both settled, in words.
+    #[serde(skip)]
+    pub settled_words: Option<String>,
 }
 
 /// Agreement of two raters.
@@ -284,16 +299,23 @@ fn describe_consensus(found: &SettledSummary) -> String {
 fn describe_disagreements(all: &[Disagreement]) -> String {
     let Some(first) = all.first() else { return String::new() };
     let recordings = all.iter().map(|one| one.recording.chars().count()).max().unwrap_or(0).max(9);
-    let mut text = format!("{}:\n", count(all.len() as u64, "disagreement", "disagreements"));
+    let open = all.iter().filter(|one| one.settled_words.is_none()).count();
+    let mut text = format!("{}, {open} of them open:\n", count(all.len() as u64, "disagreement", "disagreements"));
     text += &format!("  {:<recordings$}  error   time  press  button\n", "recording");
     for one in all {
         let ListedError { error, press, .. } = one.error;
         let (clock, words) = (one.error.clock(), one.error.words());
         let [of, with] = &one.words;
         text += &format!(
-            "  {:<recordings$}  {error:>5}  {clock:>5}  {press:>5}  {words}: {} {of}, {} {with}\n",
-            one.recording, one.of, one.with
+            "  {:<recordings$}  {error:>5}  {clock:>5}  {press:>5}  {words}: {} {of}, {} {with}{}\n",
+            one.recording,
+            one.of,
+            one.with,
+            one.settled_words.as_ref().map_or(String::new(), |settled| format!("; settled: {settled}")),
         );
+    }
+    if open == 0 {
+        return text;
     }
     let (of, with) = (&first.of, &first.with);
     text + &format!("settle them together, recording by recording: tomcom replay RECORDING --settle {of} {with}\n")

@@ -263,7 +263,10 @@ impl Panel<'_> {
                 brush.text(area.x, area.y, area.width, &thought, style);
             }
             false => {
-                brush.text(area.x, area.y, area.width, &format!("{name}: probability of {truth}"), style);
+                let whole = format!("{name}: probability of {truth}");
+                let titles = [whole, format!("{name}: {curve}"), format!("{name}: P(truth)")];
+                let fits = titles.iter().find(|title| width(title) <= area.width);
+                brush.text(area.x, area.y, area.width, fits.unwrap_or(&titles[2]), style);
             }
         }
         let plot = Rect {

@@ -52,9 +52,14 @@ fn draw_codebook(brush: &mut Painter, area: Rect, session: &Session, model: &Con
     for (row, line) in lines.iter().enumerate().take(usize::from(inside.height)) {
         for (before, CodebookEntry { key, words }) in line {
             let x = left + before;
-            let (gap, role) = if key.is_empty() { ("", TextRole::Quiet) } else { (" ", TextRole::Text) };
-            let parts = [(key.as_str(), TextRole::Signal), (gap, TextRole::Text), (words.as_str(), role)];
-            brush.parts(x, inside.y + row as u16, inside.right().saturating_sub(x), &parts);
+            let y = inside.y + row as u16;
+            let name = key.map_or(String::new(), |key| format!("{key} "));
+            let role = if key.is_none() { TextRole::Quiet } else { TextRole::Text };
+            let parts = [(name.as_str(), TextRole::Signal), (words.as_str(), role)];
+            let end = brush.parts(x, y, inside.right().saturating_sub(x), &parts);
+            if let Some(key) = key {
+                brush.key_target(x, y, end, *key);
+            }
         }
     }
 }

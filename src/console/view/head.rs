@@ -5,6 +5,7 @@ use ratatui::style::Style;
 use super::paint::{Painter, width};
 use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
 use super::theme::TextRole;
+use crate::base::time::SessionTime;
 use crate::console::console_model::{ConsoleModel, RecordingStatus, ViewerStreamStatus};
 use crate::history::wording;
 use crate::robot::safety::SafetyMode;
@@ -23,11 +24,26 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let is_tight = (model.playback.is_some() || session.step().is_some()) && room == ScreenSize::Small;
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
-    let stage = if model.lesson.is_some() { "TRAINING".to_string() } else { wording::stage(session) };
-    let (mark, style) = stage_mark(brush, session.phase);
+    // Of a recording nothing runs: whether it plays is told beside its position.
+    let is_replayed = model.playback.as_ref().is_some_and(|playback| !playback.follows);
+    let stage = match (model.lesson.is_some(), session.phase) {
+        (true, _) => "TRAINING".to_string(),
+        (false, Phase::Running) if is_replayed => "REPLAY".to_string(),
+        _ => wording::stage(session),
+    };
+    let (mark, style) = match session.phase {
+        Phase::Running if is_replayed => (" ".to_string(), strong),
+        phase => stage_mark(brush, phase),
+    };
     x = brush.text(x, area.y, 19, &format!("{mark}{stage} "), style) + gap;
-    if let (Some(label), None) = (series(session), &model.playback) {
-        x = brush.text(x, area.y, area.right() - x, &label, strong) + gap;
+    let whose = match (&model.coding, &model.playback) {
+        // A rater does not know who was assisted.
+        (Some(coding), _) => Some(format!("rater {}", coding.name())),
+        (None, None) => series(session),
+        (None, Some(_)) => None,
+    };
+    if let Some(whose) = whose {
+        x = brush.text(x, area.y, area.right() - x, &whose, strong) + gap;
     }
     if session.study_phase().is_none_or(|phase| phase.phase().has_trial()) {
         x = clock(brush, x, area.y, session, model) + gap;
@@ -71,8 +87,12 @@ fn stage_mark(brush: &Painter, phase: Phase) -> (String, Style) {
 
 fn clock(brush: &mut Painter, x: u16, y: u16, session: &Session, model: &ConsoleModel) -> u16 {
     let clock = session.trial_clock(model.now).to_string();
-    let total = crate::base::time::SessionTime::from_secs_f64(session.spec.trial.seconds);
-    brush.parts(x, y, 16, &[(&format!("{clock:>5}"), TextRole::Strong), (&format!(" / {total}"), TextRole::Quiet)])
+    // The line of a replay has the recording's length.
+    let limit = match model.playback.as_ref().is_some_and(|playback| !playback.follows) && model.lesson.is_none() {
+        true => String::new(),
+        false => format!(" / {}", SessionTime::from_secs_f64(session.spec.trial.seconds)),
+    };
+    brush.parts(x, y, 16, &[(&format!("{clock:>5}"), TextRole::Strong), (&limit, TextRole::Quiet)])
 }
 
 /// Who sends signals, in a word.
@@ -101,9 +121,7 @@ fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
     let mut facts = match &model.playback {
         None => vec![code, condition.to_string(), served],
         // A rater does not know who was assisted.
-        Some(playback) if let Some(coding) = &model.coding => {
-            vec![format!("rater {}", coding.name()), served, playback.name.clone()]
-        }
+        Some(playback) if model.coding.is_some() => vec![served, playback.name.clone()],
         Some(playback) => vec![served, code, condition.to_string(), playback.name.clone()],
     };
     facts.push(session.kitchen.title.clone());

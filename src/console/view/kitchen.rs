@@ -181,11 +181,14 @@ impl<'a> Place<'a> {
             (false, height) => {
                 let buttons = place_buttons::further(self.session, self.model, self.id);
                 let free = height - (buttons.len() as u16).min(height - 1);
-                let lines = self.contents(brush, Rect { height: free, ..below });
-                let lines = self.belief(brush, Rect { height: free, ..below }, lines);
+                let room = Rect { height: free, ..below };
+                let lines = self.contents(brush, room);
                 match buttons.is_empty() {
-                    true => self.news(brush, below, lines),
-                    false => place_buttons::draw(brush, below, &buttons),
+                    true => self.news_and_belief(brush, room, lines),
+                    false => {
+                        self.belief(brush, room, lines);
+                        place_buttons::draw(brush, below, &buttons);
+                    }
                 }
             }
         }
@@ -284,17 +287,32 @@ impl<'a> Place<'a> {
         lines.len() as u16
     }
 
-    /// Draws what is falsely believed about the place below its content, or beside it; returns the number of lines so far.
-    fn belief(&self, brush: &mut Painter, room: Rect, lines: u16) -> u16 {
-        let Some(thinks) = &self.thinks else { return lines };
+    /// Draws what changed below so many lines of content, or at their end, and then what is falsely believed: the age is that of
+    /// the content.
+    fn news_and_belief(&self, brush: &mut Painter, room: Rect, lines: u16) {
+        let free = room.height - lines.min(room.height);
+        let thought = self.thinks.as_ref().map_or(0, |thinks| wrap(&thinks_of(thinks), room.width).len() as u16);
+        let has_line = thought < free;
+        if has_line || (free > 0 && thought > 0) {
+            let is_drawn = self.news(brush, Rect { height: lines + u16::from(has_line), ..room }, lines);
+            self.belief(brush, room, lines + u16::from(has_line && is_drawn));
+        } else {
+            self.belief(brush, room, lines);
+            self.news(brush, room, room.height);
+        }
+    }
+
+    /// Draws what is falsely believed about the place below so many lines, or at the end of the last one.
+    fn belief(&self, brush: &mut Painter, room: Rect, lines: u16) {
+        let Some(thinks) = &self.thinks else { return };
         let style = brush.style(TextRole::FalseBelief);
-        let words = format!("thinks: {thinks}");
+        let words = thinks_of(thinks);
         if lines < room.height {
             let rows = wrap_to(&words, room.width, room.height - lines, brush.theme.signs().ellipsis);
             for (row, text) in rows.iter().enumerate() {
                 brush.text(room.x, room.y + lines + row as u16, room.width, text, style);
             }
-            return lines + rows.len() as u16;
+            return;
         }
         let y = room.bottom() - 1;
         let written = (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 2);
@@ -302,7 +320,6 @@ impl<'a> Place<'a> {
         // Without room for what is thought, a word says that something is: the list of beliefs has the rest.
         let words = [words.as_str(), FALSE_BELIEF].into_iter().find(|words| width(words) <= left).unwrap_or("");
         brush.text(room.x + written, y, left, words, style);
-        room.height
     }
 
     /// Draws an order: dish, age, what is falsely believed about it, and the recipe while it is shown.
@@ -317,7 +334,7 @@ impl<'a> Place<'a> {
             OrderContent::Dish(_) => self.content.clone(),
         };
         let end = brush.text(room.x, room.y, room.width.saturating_sub(6), &text, style);
-        let thinks = self.thinks.as_ref().map(|thinks| format!("thinks: {thinks}"));
+        let thinks = self.thinks.as_deref().map(thinks_of);
         let recipe = wording::recipe(self.session, self.id).filter(|_| self.is_shown && room.height > 1);
         let recipe_row = if thinks.is_some() && room.height > 2 { 2 } else { 1 };
         if let Some(thinks) = &thinks
@@ -350,8 +367,9 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Draws the robot's next action here and a recent change, below the content or at the end of its last line.
-    fn news(&self, brush: &mut Painter, room: Rect, lines: u16) {
+    /// Draws the robot's next action here and a recent change, below the content or at the end of its last line; tells whether
+    /// there was anything.
+    fn news(&self, brush: &mut Painter, room: Rect, lines: u16) -> bool {
         let signs = brush.theme.signs();
         let mut news: Vec<(String, TextRole)> = Vec::new();
         if let Some((button, _, _)) = self.session.robot.intention
@@ -368,6 +386,7 @@ impl<'a> Place<'a> {
             let age = self.session.age(self.session.changed_at[self.id.index()], self.model.now);
             news.push((format!("unseen {age}"), TextRole::Gaze));
         }
+        let has_news = !news.is_empty();
         let y = room.y + lines.min(room.height - 1);
         let needed = news.iter().map(|(text, _)| width(text) + 1).sum::<u16>();
         // Without a free line it uses the free end of the last line.
@@ -384,5 +403,10 @@ impl<'a> Place<'a> {
                 x = brush.parts(x, y, width(&text), &[(&text, role)]) + 1;
             }
         }
+        has_news
     }
+}
+
+fn thinks_of(thought: &str) -> String {
+    format!("thinks: {thought}")
 }

@@ -8,6 +8,7 @@ use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
+use crate::console::key_action::{KeyAction, KeyBinding};
 use crate::console::list_cursor::ListCursor;
 use crate::console::palette;
 use crate::console::picker::Picker;
@@ -56,7 +57,7 @@ const STOPS: &str = "space stops the robot";
 
 /// Draws the palette: key, action, and group; what does nothing now is grey.
 pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel, cursor: &ListCursor) {
-    let row = |line: &&crate::console::key_action::KeyBinding| {
+    let row = |line: &&KeyBinding| {
         let key = line.chords.first().map_or(String::new(), KeyChord::to_string);
         Row {
             label: format!("{key:>7}  {}", line.help),
@@ -65,10 +66,12 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
         }
     };
     let rows = palette::actions(&model.keys, model.layer, cursor).iter().map(row).collect();
-    let all = palette::actions(&model.keys, model.layer, &ListCursor::default()).len();
+    let all = palette::actions(&model.keys, model.layer, &ListCursor::default());
+    let has_signals = all.iter().any(|line| matches!(line.action, KeyAction::Signal(..)));
+    let takes = if has_signals { "does it (signals: shows the key)" } else { "does it" };
     let space = if model.playback.is_none() { STOPS } else { "" };
     let title = "All actions".to_string();
-    ListPage { title, cursor, rows, all, space, takes: "does it (signals: shows the key)" }.draw(brush, screen);
+    ListPage { title, cursor, rows, all: all.len(), space, takes }.draw(brush, screen);
 }
 
 impl ListPage<'_> {

@@ -54,8 +54,32 @@ impl Assignment {
         if goal.targets.len() > 1 {
             choice.exchange(ground, goal, state);
         }
-        choice.demand = PressDemand::from_tasks(ground, goal, state, choice.tasks[..choice.count].iter().copied());
+        choice.demand = choice.demanded(ground, goal, state);
+        choice.change_hands(ground, goal, state);
         choice
+    }
+
+    fn demanded(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> PressDemand {
+        PressDemand::from_tasks(ground, goal, state, self.tasks[..self.count].iter().copied())
+    }
+
+    /// Where both hands hold the same and one of the two is used: uses the other one, if less has to be cleared then.
+    fn change_hands(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) {
+        let [one, other] = ground.hands;
+        let both = 1 << one | 1 << other;
+        if state[one] != state[other] || !(self.used & both).is_power_of_two() {
+            return;
+        }
+        let (from, to) = if self.used & 1 << one != 0 { (one, other) } else { (other, one) };
+        let mut changed = *self;
+        for task in changed.tasks[..changed.count].iter_mut().filter(|task| usize::from(task.at) == from) {
+            task.at = to as u8;
+        }
+        changed.used ^= both;
+        changed.demand = changed.demanded(ground, goal, state);
+        if changed.demand.bound(ground, state) < self.demand.bound(ground, state) {
+            *self = changed;
+        }
     }
 
     fn choose_for(

@@ -35,6 +35,9 @@ const ROOM: usize = 200;
 /// Marks a state without a plan yet.
 const UNSEEN: u32 = u32::MAX;
 
+/// Ranks a state behind all others of its bound whose plans are known.
+const LAST: u32 = UNSEEN - 1;
+
 /// An open state of the search.
 struct Open {
     /// Presses so far plus lower bound of the rest.
@@ -134,9 +137,8 @@ impl<'a> BestFirstSearch<'a> {
     fn best(mut self, start: &ContentClasses, lower: u32) -> u32 {
         let rating = AssignmentRating::new(&self.costs.ground, self.goal, start);
         self.fidelity(start, rating, 0, lower);
-        if self.open.is_empty() {
-            self.keep(lower, 0, 0, start);
-        }
+        // What a plan settles first is nearly always right: the start itself comes last of its bound.
+        self.keep(lower, LAST, 0, start);
         let mut expansions = 0;
         while let Some(next) = self.open.pop() {
             if next.bound >= self.best || expansions >= self.reach.expansions && self.best < BLOCKED {

@@ -2,7 +2,8 @@
 //! on the screen that is inverse in the colour of signals.
 
 use super::belief_panel::QUIET;
-use super::paint::{Painter, width};
+use super::paint::{Painter, width, wrap};
+use super::recommendation_panel::NOTHING;
 use super::regions::Regions;
 use super::theme::TextRole;
 use crate::base::words::count;
@@ -122,7 +123,10 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
     let Some(offer) = shown(session, model) else {
         let style = brush.style(TextRole::Quiet);
-        brush.text(area.x + 1, area.y, area.width - 1, &silence(session, model), style);
+        let lines = wrap(&silence(session, model), area.width.saturating_sub(2));
+        for (line, y) in lines.iter().zip(area.rows().map(|row| row.y)) {
+            brush.text(area.x + 1, y, area.width - 1, line, style);
+        }
         return;
     };
     let badge = brush.theme.badge(TextRole::Signal);
@@ -165,7 +169,22 @@ fn silence(session: &Session, model: &ConsoleModel) -> String {
     let wrong = beliefs(session, model).iter().filter(|belief| belief.standing == BeliefStanding::False).count();
     match wrong {
         0 => QUIET.to_string(),
-        _ => format!("{}, no signal is offered", count(wrong as u64, "false belief", "false beliefs")),
+        _ => format!("{}, {}", count(wrong as u64, "false belief", "false beliefs"), too_little(session)),
+    }
+}
+
+/// What the best signal would save, where that is less than it costs to interrupt.
+fn too_little(session: &Session) -> String {
+    let none = "no signal is offered".to_string();
+    let options = session.advice.iter().flat_map(|advice| &advice.options);
+    let best = options.max_by(|one, other| one.net.total_cmp(&other.net));
+    match best.filter(|_| session.spec.assistant.concept == ConceptName::TomCom) {
+        Some(best) if best.net <= 0.0 && best.benefit >= NOTHING => {
+            let (words, benefit, cost) = (wording::signal(&best.signal), best.benefit, best.benefit - best.net);
+            format!("none worth a signal: {words} would save {benefit:.1} presses and costs {cost:.1}")
+        }
+        Some(best) if best.net <= 0.0 => "and no signal would save a press".to_string(),
+        _ => none,
     }
 }
 

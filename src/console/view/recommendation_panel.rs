@@ -20,7 +20,7 @@ use crate::session::settings::Condition;
 const GAUGE: u16 = 12;
 const PRESSES_A_COLUMN: f64 = 0.5;
 /// Options with a smaller benefit and standard error are not listed, since they would be shown as 0.0.
-const NOTHING: f64 = 0.05;
+pub(super) const NOTHING: f64 = 0.05;
 /// Width reserved for the signal ("[a] highlight assembly board"); a gauge is drawn only beside it.
 const LONGEST_SIGNAL: u16 = 28;
 /// Tag of the signal that is on offer.

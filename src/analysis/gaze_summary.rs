@@ -20,6 +20,8 @@ pub struct GazeSummary {
     /// Input that was not recorded, by kind.
     #[serde(flatten)]
     pub dropped: DropCounts,
+    /// How often the clock of the tracker's time stamps was set.
+    pub clock_steps: u64,
     /// Number of fixations that the tracker found.
     pub fixations: u64,
     /// Number of blinks that the tracker found.
@@ -42,6 +44,7 @@ impl GazeSummary {
             unusable: gaze.unusable,
             faults: gaze.judge.counts,
             dropped: tracker.dropped,
+            clock_steps: tracker.clock_steps,
             fixations: tracker.fixations,
             blinks: tracker.blinks,
             losses: tracker.losses,

@@ -14,6 +14,8 @@ pub enum GazeNews {
     Sample(GazeSample, Option<Instant>),
     /// Number of malformed messages, lines or samples.
     Malformed(u64),
+    /// A sample with this in place of a time.
+    WrongTime(f64),
     /// Number of rejected senders: connections and datagrams that are not a tracker's.
     Rejected(u64),
     /// Number of messages dropped because the queue was full.

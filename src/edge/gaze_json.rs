@@ -236,9 +236,25 @@ pub fn parse(line: &[u8]) -> Option<GazeNews> {
     if !(found.x.is_finite() && found.y.is_finite() && (0.0..=1.0).contains(&found.confidence)) {
         return Some(GazeNews::Malformed(1));
     }
-    let device_ns = found.t.filter(|t| (0.0..1e10).contains(t)).map(|t| (t * 1e9).round() as u64);
+    let device_ns = match found.t.map(|t| device_ns(t).ok_or(t)).transpose() {
+        Ok(device_ns) => device_ns,
+        Err(t) => return Some(GazeNews::WrongTime(t)),
+    };
     let sample = GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence) };
     Some(GazeNews::Sample(sample, None))
+}
+
+/// A time stamp in nanoseconds: seconds of any clock, or milliseconds, microseconds or nanoseconds since 1970, which have so many
+/// more digits that nothing else can be meant.
+fn device_ns(t: f64) -> Option<u64> {
+    let ns_per_unit = match t {
+        0.0..1e10 => 1e9,
+        1e11..1e13 => 1e6,
+        1e14..1e16 => 1e3,
+        1e17..1e19 => 1.0,
+        _ => return None,
+    };
+    Some((t * ns_per_unit).round() as u64)
 }
 
 #[cfg(test)]
@@ -262,6 +278,8 @@ mod tests {
             "{\"t\": 1.5, \"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n",
             "\n{\"x\": 0.1, \"y\": 2, \"confidence\": 0, \"more\": 1}\r\n",
             "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1.01}\n{\"x\": 0.5, \"y\": 0.5, \"confidence\": -0.1}\n",
+            "{\"t\": 1764057600123.5, \"x\": 0, \"y\": 0, \"confidence\": 1}\n",
+            "{\"t\": -3.5, \"x\": 0, \"y\": 0, \"confidence\": 1}\n",
             "{\"x\": NaN, \"y\": 2, \"confidence\": 1}\nnonsense\n",
             &"9".repeat(3 * MAX_LINE),
             "\n{\"x\": 1e999, \"y\": 0, \"confidence\": 1}\n",
@@ -279,6 +297,22 @@ mod tests {
         assert_eq!(found.remove(0), GazeNews::Began);
         let expected = [sample(0.25, 0.5, 0.9, Some(1_500_000_000)), sample(0.1, 2.0, 0.0, None)];
         assert_eq!(found[..2], expected);
-        assert_eq!(found[2..], vec![GazeNews::Malformed(1); 6]);
+        assert_eq!(found[2..4], vec![GazeNews::Malformed(1); 2]);
+        let milliseconds = sample(0.0, 0.0, 1.0, Some(1_764_057_600_123_500_032));
+        assert_eq!(found[4..6], [milliseconds, GazeNews::WrongTime(-3.5)]);
+        assert_eq!(found[6..], vec![GazeNews::Malformed(1); 4]);
+    }
+
+    #[test]
+    fn time_stamps_are_seconds_or_finer_units_since_1970_or_refused() {
+        let since_1970_s = 1_764_057_600.25;
+        for unit in [1.0, 1e3, 1e6, 1e9] {
+            let ns = device_ns(since_1970_s * unit).expect("a time");
+            assert!(ns.abs_diff(1_764_057_600_250_000_000) < 500, "{unit}: {ns}");
+        }
+        assert_eq!(device_ns(12.5), Some(12_500_000_000));
+        for wrong in [-0.001, 5e10, 5e13, 5e16, 1e20, f64::NAN, f64::INFINITY] {
+            assert_eq!(device_ns(wrong), None, "{wrong}");
+        }
     }
 }

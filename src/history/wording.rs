@@ -255,6 +255,13 @@ pub fn tracker(event: &TrackerEvent) -> Option<String> {
         TrackerEvent::DisplayFound => "eye tracker sees the display".to_string(),
         TrackerEvent::DisplayLost => "eye tracker does not see the display".to_string(),
         TrackerEvent::Dropped(counts) => format!("gaze not recorded so far: {}", drops(counts)),
+        TrackerEvent::ClockSet { by_s, .. } => {
+            format!(
+                "the eye tracker's clock was set {} by {:.3} s",
+                if *by_s < 0.0 { "back" } else { "ahead" },
+                by_s.abs()
+            )
+        }
         TrackerEvent::Fixation { .. } | TrackerEvent::Blink { .. } => return None,
     })
 }

@@ -135,6 +135,13 @@ pub enum TrackerEvent {
         /// Session time of its beginning.
         began_ns: SessionTime,
     },
+    /// The clock of the tracker's time stamps was set, as samples that agree show.
+    ClockSet {
+        /// By how much it went ahead, in seconds; negative: back.
+        by_s: f64,
+        /// Arrival, in session time, of the first sample whose time was uncertain until now.
+        uncertain_since_ns: SessionTime,
+    },
     /// Onset or offset of a blink, as detected by the tracker.
     Blink {
         /// Closed (onset); false: opened (offset).
@@ -179,6 +186,8 @@ pub struct TrackerStatus {
     pub losses: u64,
     /// What came and could not be recorded, by kind.
     pub dropped: DropCounts,
+    /// How often the clock of its time stamps was set.
+    pub clock_steps: u64,
     /// Number of fixations that it found.
     pub fixations: u64,
     /// Number of blinks that it found.
@@ -198,6 +207,7 @@ impl TrackerStatus {
             TrackerEvent::DisplayFound => self.sees_display = Some(true),
             TrackerEvent::DisplayLost => self.sees_display = Some(false),
             TrackerEvent::Dropped(counts) => self.dropped = *counts,
+            TrackerEvent::ClockSet { .. } => self.clock_steps += 1,
             TrackerEvent::Fixation { .. } => self.fixations += 1,
             TrackerEvent::Blink { closed, .. } => self.blinks += u64::from(*closed),
         }
@@ -215,6 +225,7 @@ pub(super) fn admit(event: &TrackerEvent) -> Result<(), &'static str> {
             vec![x, y, *duration_ms, *dispersion_deg, *confidence]
         }
         TrackerEvent::Blink { confidence, .. } => vec![*confidence],
+        TrackerEvent::ClockSet { by_s, .. } => vec![*by_s],
         _ => Vec::new(),
     };
     match numbers.iter().all(|number| number.is_finite()) {

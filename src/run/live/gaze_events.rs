@@ -10,7 +10,7 @@ use crate::edge::gaze_file::GazeFile;
 use crate::edge::gaze_input::{GazeNews, SampleTime};
 use crate::edge::pupil::CaptureRequest;
 use crate::gaze::GazeSample;
-use crate::gaze::device_clock::DeviceClock;
+use crate::gaze::device_clock::{ClockStep, DeviceClock};
 use crate::gaze::quality::{DropCounts, RateLimit};
 use crate::run::desk::GazeTracker;
 use crate::session::tracker::TrackerEvent;
@@ -22,6 +22,8 @@ pub(super) struct GazeInput {
     clock: DeviceClock,
     limit: RateLimit,
     dropped: DropCounts,
+    /// Whether a wrong time stamp was told.
+    has_complained: bool,
     /// Replayed gaze with the index of its next sample.
     file: Option<Arc<GazeFile>>,
     next: usize,
@@ -38,12 +40,30 @@ impl GazeInput {
         GazeInput { dropped, file: Some(file), next, ..GazeInput::default() }
     }
 
-    /// The event for a tracker message; `None` for messages that are only counted.
-    pub fn event(&mut self, news: GazeNews, now: SessionTime) -> Option<Event> {
+    /// What is to be said about the first sample with a wrong time stamp.
+    pub fn complaint(&mut self, news: &GazeNews) -> Option<String> {
+        let GazeNews::WrongTime(t) = news else { return None };
+        let is_first = !std::mem::replace(&mut self.has_complained, true);
+        is_first.then(|| format!("gaze is refused: t = {t} is no time in seconds, nor in ms, us or ns since 1970"))
+    }
+
+    /// The events for a tracker message; none for messages that are only counted.
+    pub fn events(&mut self, news: GazeNews, now: SessionTime) -> [Option<Event>; 2] {
+        match news {
+            GazeNews::Sample(sample, at) => self.sample(sample, at, now),
+            other => [self.event(other, now), None],
+        }
+    }
+
+    fn event(&mut self, news: GazeNews, now: SessionTime) -> Option<Event> {
         let tracker = match news {
-            GazeNews::Sample(sample, at) => return self.sample(sample, at, now),
+            GazeNews::Sample(..) => return None,
             GazeNews::Malformed(count) => {
                 self.dropped.malformed += count;
+                return None;
+            }
+            GazeNews::WrongTime(_) => {
+                self.dropped.malformed += 1;
                 return None;
             }
             GazeNews::Overrun(count) => {
@@ -74,17 +94,24 @@ impl GazeInput {
         Some(Event::Tracker(tracker))
     }
 
-    fn sample(&mut self, sample: GazeSample, at: Option<Instant>, now: SessionTime) -> Option<Event> {
+    /// The sample, and before it that the tracker's clock was set, if the sample shows that.
+    fn sample(&mut self, sample: GazeSample, at: Option<Instant>, now: SessionTime) -> [Option<Event>; 2] {
         if !self.limit.admits(now) {
             self.dropped.too_frequent += 1;
-            return None;
+            return [None, None];
         }
-        let taken_ns = match (at, sample.device_ns) {
-            (Some(at), _) => Some(ago(now, at)),
-            (None, Some(device_ns)) => Some(self.clock.session_time(device_ns, now)),
-            (None, None) => None,
+        let (taken_ns, step) = match (at, sample.device_ns) {
+            (Some(at), _) => (Some(ago(now, at)), None),
+            (None, Some(device_ns)) => {
+                let (taken, step) = self.clock.session_time(device_ns, now);
+                (Some(taken), step)
+            }
+            (None, None) => (None, None),
         };
-        Some(Event::Gaze(GazeSample { taken_ns, ..sample }))
+        let step = step.map(|ClockStep { by_ns, uncertain_since }| {
+            Event::Tracker(TrackerEvent::ClockSet { by_s: by_ns as f64 / 1e9, uncertain_since_ns: uncertain_since })
+        });
+        [step, Some(Event::Gaze(GazeSample { taken_ns, ..sample }))]
     }
 
     /// An event with the counts of dropped input, if they have grown.

@@ -6,8 +6,10 @@ use crate::console::notice::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
 use crate::edge::gaze_input::GazeNews;
 use crate::gaze::GazeSample;
+use crate::history::wording;
 use crate::run::desk::PageInput;
 use crate::run::leaving::LeavingReason;
+use crate::session::tracker::TrackerEvent;
 use crate::session::{Event, Phase};
 
 impl Live {
@@ -69,7 +71,16 @@ impl Live {
             self.model.count_rejected(count);
             self.dirty = true;
         }
-        if let Some(event) = self.gaze.event(news, self.clock.now()) {
+        if let Some(complaint) = self.gaze.complaint(&news) {
+            self.model.say(NoticeLevel::Refused, complaint);
+            self.dirty = true;
+        }
+        for event in self.gaze.events(news, self.clock.now()).into_iter().flatten() {
+            if let Event::Tracker(set @ TrackerEvent::ClockSet { .. }) = &event
+                && let Some(words) = wording::tracker(set)
+            {
+                self.model.say(NoticeLevel::Refused, words);
+            }
             self.input(event);
         }
     }

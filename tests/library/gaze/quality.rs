@@ -3,7 +3,7 @@
 use tomcom::base::time::SessionTime;
 use tomcom::gaze::GazeSample;
 use tomcom::gaze::device_clock::DeviceClock;
-use tomcom::gaze::quality::{GazeFault, RateLimit};
+use tomcom::gaze::quality::{GazeFault, RateLimit, SampleChecker};
 use tomcom::run::engine::Engine;
 use tomcom::session::Event;
 use tomcom::session::settings::{GazeSource, ParticipantKind};
@@ -78,11 +78,62 @@ fn device_time_is_told_from_the_samples_that_took_the_shortest_way() {
     for step in 0..200u64 {
         let late = 3 + [0, 9, 4, 30][step as usize % 4];
         let taken = clock.session_time(ms(1000 + 10 * step).0, ms(6000 + 10 * step + late));
-        assert_eq!(taken, ms(6000 + 10 * step + 3), "step {step}");
+        assert_eq!(taken, (ms(6000 + 10 * step + 3), None), "step {step}");
     }
-    // It begins anew at zero: the old offset does not hold for it.
-    assert_eq!(clock.session_time(0, ms(9000)), ms(9000));
-    assert_eq!(clock.session_time(ms(10).0, ms(9015)), ms(9010));
+}
+
+/// A stream at 100 Hz with delays of 3 to 12 ms, whose clock does what it says. Gives the samples that are not read, the largest error
+/// of the time of those that are, in ms, in the last second, and by how much the clock was set, in s.
+fn stream(device_ms: impl Fn(u64) -> u64) -> (u64, f64, Vec<f64>) {
+    let (mut clock, mut checker) = (DeviceClock::default(), SampleChecker::default());
+    let (mut unread, mut most_off, mut steps) = (0, 0.0f64, Vec::new());
+    for sample in 0..2000u64 {
+        let taken_ms = 20_000 + 10 * sample;
+        let arrived = SessionTime((taken_ms + 3 + [0, 9, 4, 2, 7][sample as usize % 5]) * 1_000_000);
+        let device_ns = 1_000_000 * device_ms(taken_ms);
+        let (taken, step) = clock.session_time(device_ns, arrived);
+        steps.extend(step.map(|step| step.by_ns as f64 / 1e9));
+        let seen = GazeSample { device_ns: Some(device_ns), taken_ns: Some(taken), ..GazeSample::new(0.5, 0.5, 0.9) };
+        unread += u64::from(checker.judge(&seen, arrived).is_some());
+        if sample >= 1900 {
+            most_off = most_off.max((taken.0 as f64 / 1e6 - taken_ms as f64).abs());
+        }
+    }
+    (unread, most_off, steps)
+}
+
+#[test]
+fn a_clock_that_was_set_costs_less_than_a_second_of_gaze_and_is_told() {
+    for by_ms in [-5000i64, -700, -300, -200, 200, 300, 700, 5000] {
+        let set = |ms: u64| if ms < 25_000 { ms } else { ms.saturating_add_signed(by_ms) };
+        let (unread, most_off, steps) = stream(set);
+        println!("{by_ms} ms: {unread} samples unread, {most_off:.1} ms off afterwards");
+        assert!(unread <= 100 && most_off <= 5.0, "{by_ms} ms: {unread} samples unread, {most_off} ms off");
+        assert_eq!(steps.len(), 1, "{by_ms} ms");
+        assert!((steps[0] - by_ms as f64 / 1e3).abs() <= 0.005, "{by_ms} ms: {steps:?}");
+    }
+}
+
+#[test]
+fn a_single_wrong_time_stamp_costs_that_sample_at_most() {
+    for by_ms in [-800i64, 800, 5000, 3_600_000] {
+        let (unread, most_off, steps) = stream(|ms| if ms == 25_000 { ms.saturating_add_signed(by_ms) } else { ms });
+        assert!(unread <= 1 && most_off <= 5.0 && steps.is_empty(), "{by_ms}: {unread}, {most_off}, {steps:?}");
+    }
+}
+
+#[test]
+fn samples_that_were_held_up_together_set_no_clock() {
+    let mut clock = DeviceClock::default();
+    let ms = |ms: u64| SessionTime(ms * 1_000_000);
+    for sample in 0..1000u64 {
+        let taken_ms = 5000 + 10 * sample;
+        // Once a second the network holds everything up for 0.3 s.
+        let arrived_ms = (taken_ms + 3).max(taken_ms / 1000 * 1000 + 303);
+        let (taken, step) = clock.session_time(ms(taken_ms).0, ms(arrived_ms));
+        assert_eq!(step, None, "sample {sample}");
+        assert!(sample < 30 || taken.0.abs_diff(ms(taken_ms).0) <= 5_000_000, "sample {sample}: {taken}");
+    }
 }
 
 #[test]

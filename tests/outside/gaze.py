@@ -161,7 +161,35 @@ def check_documented_sender(tomcom, scratch):
     print(f"the documented sender: {len(gaze)} samples in {seconds:.1f} s; the recording verifies")
 
 
+def check_set_clock(tomcom, scratch):
+    """A tracker whose clock is set back by 0.7 s, and that sends one stamp 0.8 s ahead, and one that is no time."""
+    with Console(tomcom, scratch / "clock") as console:
+        tracker = connect()
+        begun = time.monotonic()
+        for index in range(600):
+            t = 50 + time.monotonic() - begun - (0.7 if index >= 300 else 0) + (0.8 if index == 150 else 0)
+            sample = {"t": -1 if index == 200 else t, "x": 0.5, "y": 0.5, "confidence": 1}
+            tracker.sendall(json.dumps(sample).encode() + b"\n")
+            time.sleep(0.01)
+            if index == 205:
+                console.wait_for("t = -1 is no time")
+        console.wait_for("clock was set back by 0\\.7")
+        tracker.close()
+        recording = console.quit()
+    events = recorded(recording)
+    (step,) = [event for event in events if event["kind"] == "tracker" and event["what"] == "clock_set"]
+    assert abs(step["by_s"] + 0.7) < 0.01, step
+    after = [event for event in events if event["kind"] == "gaze" and event["t_ns"] > step["t_ns"]]
+    late_ms = [(event["t_ns"] - event["taken_ns"]) / 1e6 for event in after]
+    uncertain_s = (step["t_ns"] - step["uncertain_since_ns"]) / 1e9
+    assert len(after) > 200 and 0 <= min(late_ms) and sorted(late_ms)[len(late_ms) // 2] < 5, sorted(late_ms)
+    assert uncertain_s < 1, step
+    verify(tomcom, recording)
+    print(f"a clock set back by 0.7 s: told after {uncertain_s:.2f} s, then {len(after)} samples on time; it verifies")
+
+
 if __name__ == "__main__":
     program, folder = sys.argv[1], Path(sys.argv[2])
     check_sender(program, folder)
     check_documented_sender(program, folder)
+    check_set_clock(program, folder)

@@ -28,7 +28,12 @@ use crate::session::{Event, Phase, Session};
 pub(super) fn key(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -> Option<ConsoleCommand> {
     match touch(model, key) {
         Touch::Release => None,
-        touch => press(model, session, key.code, KeyChord::from_event(key), touch),
+        touch => {
+            if touch == Touch::Press {
+                model.forget_notice();
+            }
+            press(model, session, key.code, KeyChord::from_event(key), touch)
+        }
     }
 }
 
@@ -41,9 +46,6 @@ pub(super) fn press(
     touch: Touch,
 ) -> Option<ConsoleCommand> {
     let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
-    if touch == Touch::Press {
-        model.forget_notice();
-    }
     if matches!(model.dialog, Some(Dialog::Send(_))) && action != Some(KeyAction::StopRobot) {
         if matches!(chord.code, KeyCode::Enter | KeyCode::Esc) {
             return click_question::answer(model, session, chord.code, touch == Touch::Press);

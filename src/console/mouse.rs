@@ -43,6 +43,7 @@ pub(super) fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16
     if !model.focused {
         return None;
     }
+    model.forget_notice();
     let targets = click_targets(session, model);
     // What was drawn last lies above.
     let target = targets.iter().rev().find(|target| target.cells.contains(cell.into()));

@@ -29,6 +29,9 @@ use crate::kitchen::{Agent, AspectId};
 use crate::session::settings::GazeSource;
 use crate::session::{TimelineEntry, TimelineEvent};
 
+/// Display time of a notice, in seconds.
+const NOTICE_S: f64 = 4.0;
+
 /// Number of gaze samples in the trail of the gaze map.
 const TRAIL: usize = 240;
 
@@ -221,9 +224,27 @@ impl ConsoleModel {
         self.notice = Some(Notice { text: text.into(), level, at: self.clock });
     }
 
-    /// Removes the last notice, but for an alarm: the next key makes what was said of the one before old.
+    /// Shows a warning about something that came from outside, unless an alarm is shown.
+    pub fn warn(&mut self, text: impl Into<String>) {
+        if !self.is_alarmed() {
+            self.say(NoticeLevel::Refused, text);
+        }
+    }
+
+    /// Removes the last notice, unless it is an alarm: it was about the last key, and another key is pressed.
     pub(super) fn forget_notice(&mut self) {
-        self.notice = self.notice.take().filter(|notice| notice.level == NoticeLevel::Alarm);
+        if !self.is_alarmed() {
+            self.notice = None;
+        }
+    }
+
+    /// The last notice, while it is shown.
+    pub fn shown_notice(&self) -> Option<&Notice> {
+        self.notice.as_ref().filter(|notice| self.clock.secs_since(notice.at) < NOTICE_S)
+    }
+
+    fn is_alarmed(&self) -> bool {
+        self.shown_notice().is_some_and(|notice| notice.level == NoticeLevel::Alarm)
     }
 
     /// Counts rejected senders of gaze. The first one, and every doubling of their number, gives a notice: whoever sends can
@@ -232,11 +253,9 @@ impl ConsoleModel {
         let before = self.rejected_senders;
         self.rejected_senders += more;
         let has_doubled = self.rejected_senders.checked_ilog2() > before.checked_ilog2();
-        let is_alarmed = self.notice.as_ref().is_some_and(|notice| notice.level == NoticeLevel::Alarm);
-        if has_doubled && !is_alarmed {
+        if has_doubled {
             let told = count(self.rejected_senders, "sender", "senders");
-            let text = format!("gaze: {told} rejected and not read: no JSON object, or not the tracker's address");
-            self.say(NoticeLevel::Refused, text);
+            self.warn(format!("gaze: {told} rejected and not read: no JSON object, or not the tracker's address"));
         }
     }
 

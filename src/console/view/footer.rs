@@ -18,9 +18,6 @@ use crate::history::wording;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Phase, Session};
 
-/// Display time of a notice, in seconds.
-const NOTICE_S: f64 = 4.0;
-
 /// A hint: its keys with what a click on them does, and what they do.
 struct Hint<'a> {
     keys: Vec<(String, Option<ClickAction>)>,
@@ -140,8 +137,7 @@ pub fn message(brush: &mut Painter, regions: &Regions, session: &Session, model:
         brush.text(area.x + 1, area.y, area.width - 1, &text, strong);
         return;
     }
-    let notice = model.notice.as_ref().filter(|notice| model.clock.secs_since(notice.at) < NOTICE_S);
-    if let Some(notice) = notice {
+    if let Some(notice) = model.shown_notice() {
         let style = style_of(brush, notice);
         brush.text(area.x + 1, area.y, area.width - 1, &format!(" {} ", notice.text), style);
     } else if session.robot.arm.mode.has_stopped_itself() && session.robot.stopped {

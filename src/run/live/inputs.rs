@@ -72,14 +72,14 @@ impl Live {
             self.dirty = true;
         }
         if let Some(complaint) = self.gaze.complaint(&news) {
-            self.model.say(NoticeLevel::Refused, complaint);
+            self.model.warn(complaint);
             self.dirty = true;
         }
         for event in self.gaze.events(news, self.clock.now()).into_iter().flatten() {
             if let Event::Tracker(set @ TrackerEvent::ClockSet { .. }) = &event
                 && let Some(words) = wording::tracker(set)
             {
-                self.model.say(NoticeLevel::Refused, words);
+                self.model.warn(words);
             }
             self.input(event);
         }

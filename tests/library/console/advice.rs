@@ -175,3 +175,24 @@ fn the_timeline_shows_offers_from_their_opening_to_their_close() {
     stage.session.spec.console.visibility = Visibility::Belief;
     assert!(!stage.screen((200, 60)).contains(" offers "));
 }
+
+#[test]
+fn the_age_of_a_change_stands_above_what_is_thought_of_the_place() {
+    let mut stage = advised(true);
+    let hand = stage.session.kitchen.location_named("robot_hand").expect("the robot's hand");
+    stage.session.changed_at[hand.index()] = stage.model.now;
+    for size in [(120, 40), (200, 60)] {
+        let screen = stage.screen(size);
+        let rows: Vec<Vec<char>> = screen.lines().map(|line| line.chars().collect()).collect();
+        let key: Vec<char> = "[r]".chars().collect();
+        let found = rows.iter().enumerate().find_map(|(y, row)| {
+            let x = row.windows(key.len()).position(|cells| cells == key)?;
+            Some((y, x))
+        });
+        let (top, x) = found.unwrap_or_else(|| panic!("no key of the robot's hand in\n{screen}"));
+        let below: Vec<String> = rows[top + 1..top + 5].iter().map(|row| row[x..x + 14].iter().collect()).collect();
+        let row_of = |words: &str| below.iter().position(|line| line.contains(words));
+        let (age, thought) = (row_of("◂0s"), row_of("thinks:"));
+        assert!(age.is_some() && thought.is_some() && age < thought, "{below:?} in\n{screen}");
+    }
+}

@@ -16,7 +16,7 @@ use super::{SIZES, Stage, input};
 
 impl Stage {
     /// Clicks on the first cell of a text on the screen.
-    fn click(&mut self, text: &str) -> Option<ConsoleCommand> {
+    pub fn click(&mut self, text: &str) -> Option<ConsoleCommand> {
         let screen = self.screen(self.model.size);
         let found = screen.lines().enumerate().find_map(|(row, line)| Some((row, line.find(text)?, line)));
         let (row, at, line) = found.unwrap_or_else(|| panic!("no {text:?} in\n{screen}"));

@@ -135,6 +135,19 @@ fn arrows_and_clicks_go_to_an_error_of_the_list() {
 }
 
 #[test]
+fn a_click_on_the_codebook_gives_the_code() {
+    for size in SIZES {
+        for (words, code) in [("2 race", Code::Race), ("c cutting board", belief())] {
+            let mut stage = rater(Codes::default());
+            stage.model.size = size;
+            let command = stage.click(words);
+            assert_eq!(command, Some(ConsoleCommand::Code { press: 200 }), "{words} at {size:?}");
+            assert_eq!(coding(&stage).codes.0[&200], code);
+        }
+    }
+}
+
+#[test]
 fn two_raters_settle_with_both_codes_in_view() {
     let all: Vec<u64> = (0..12).map(|index| 100 * index).collect();
     let one = Codes(all.iter().map(|press| (*press, Code::Slip)).collect());

@@ -244,8 +244,8 @@ pub fn parse(line: &[u8]) -> Option<GazeNews> {
     Some(GazeNews::Sample(sample, None))
 }
 
-/// A time stamp in nanoseconds: seconds of any clock, or milliseconds, microseconds or nanoseconds since 1970, which have so many
-/// more digits that nothing else can be meant.
+/// Converts a time stamp to nanoseconds; `None` if it is none. Up to ten digits are seconds of any clock. More are milliseconds,
+/// microseconds or nanoseconds since 1970, which differ by three digits each.
 fn device_ns(t: f64) -> Option<u64> {
     let ns_per_unit = match t {
         0.0..1e10 => 1e9,

@@ -11,8 +11,8 @@ const DOUBT_S: f64 = 0.05;
 const AGREE_S: f64 = 0.01;
 /// Number of samples that have to agree before the clock is taken as set.
 const AGREEING: u32 = 5;
-/// For how long they agree, in seconds: a clock that was set back looks like samples that were delayed, ahead of their arrival is
-/// none but a clock that was set.
+/// For how long they have to agree, in seconds. A clock that was set back looks like a network that delays samples, which takes
+/// longer to tell apart; no delay makes samples look too early.
 const BACK_S: f64 = 0.4;
 const AHEAD_S: f64 = 0.1;
 

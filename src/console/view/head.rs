@@ -25,7 +25,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
     // Of a recording nothing runs: whether it plays is told beside its position.
-    let is_replayed = model.playback.as_ref().is_some_and(|playback| !playback.follows);
+    let is_replayed = is_replayed(model);
     let stage = match (model.lesson.is_some(), session.phase) {
         (true, _) => "TRAINING".to_string(),
         (false, Phase::Running) if is_replayed => "REPLAY".to_string(),
@@ -75,6 +75,11 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
+/// Whether the console shows a recording that does not grow.
+fn is_replayed(model: &ConsoleModel) -> bool {
+    model.playback.as_ref().is_some_and(|playback| !playback.follows)
+}
+
 /// Sign and style of the phase: a running trial is quiet, a pause is not.
 fn stage_mark(brush: &Painter, phase: Phase) -> (String, Style) {
     let signs = brush.theme.signs();
@@ -88,7 +93,7 @@ fn stage_mark(brush: &Painter, phase: Phase) -> (String, Style) {
 fn clock(brush: &mut Painter, x: u16, y: u16, session: &Session, model: &ConsoleModel) -> u16 {
     let clock = session.trial_clock(model.now).to_string();
     // The line of a replay has the recording's length.
-    let limit = match model.playback.as_ref().is_some_and(|playback| !playback.follows) && model.lesson.is_none() {
+    let limit = match is_replayed(model) && model.lesson.is_none() {
         true => String::new(),
         false => format!(" / {}", SessionTime::from_secs_f64(session.spec.trial.seconds)),
     };

@@ -287,22 +287,22 @@ impl<'a> Place<'a> {
         lines.len() as u16
     }
 
-    /// Draws what changed below so many lines of content, or at their end, and then what is falsely believed: the age is that of
-    /// the content.
+    /// Draws the recent change and the false belief below the content, which takes this number of lines. The change comes first, so
+    /// that its age is read as the age of the content, not of the belief.
     fn news_and_belief(&self, brush: &mut Painter, room: Rect, lines: u16) {
-        let free = room.height - lines.min(room.height);
-        let thought = self.thinks.as_ref().map_or(0, |thinks| wrap(&thinks_of(thinks), room.width).len() as u16);
-        let has_line = thought < free;
-        if has_line || (free > 0 && thought > 0) {
-            let is_drawn = self.news(brush, Rect { height: lines + u16::from(has_line), ..room }, lines);
-            self.belief(brush, room, lines + u16::from(has_line && is_drawn));
-        } else {
+        if lines >= room.height {
+            // Both share the end of the last line, and the belief is worth more.
             self.belief(brush, room, lines);
-            self.news(brush, room, room.height);
+            self.news(brush, room, lines);
+            return;
         }
+        let thought = self.thinks.as_deref().map_or(0, |thinks| wrap(&thinks_of(thinks), room.width).len() as u16);
+        let own_line = u16::from(lines + thought < room.height);
+        let has_news = self.news(brush, Rect { height: lines + own_line, ..room }, lines);
+        self.belief(brush, room, lines + if has_news { own_line } else { 0 });
     }
 
-    /// Draws what is falsely believed about the place below so many lines, or at the end of the last one.
+    /// Draws the false belief about the place below the first lines of the room, or at the end of its last line if no line is free.
     fn belief(&self, brush: &mut Painter, room: Rect, lines: u16) {
         let Some(thinks) = &self.thinks else { return };
         let style = brush.style(TextRole::FalseBelief);
@@ -367,8 +367,8 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Draws the robot's next action here and a recent change, below the content or at the end of its last line; tells whether
-    /// there was anything.
+    /// Draws the robot's next action here and a recent change, below the content or at the end of its last line; returns
+    /// whether there is either.
     fn news(&self, brush: &mut Painter, room: Rect, lines: u16) -> bool {
         let signs = brush.theme.signs();
         let mut news: Vec<(String, TextRole)> = Vec::new();

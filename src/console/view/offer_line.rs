@@ -175,16 +175,16 @@ fn silence(session: &Session, model: &ConsoleModel) -> String {
 
 /// What the best signal would save, where that is less than it costs to interrupt.
 fn too_little(session: &Session) -> String {
-    let none = "no signal is offered".to_string();
+    let assistant = &session.spec.assistant;
     let options = session.advice.iter().flat_map(|advice| &advice.options);
     let best = options.max_by(|one, other| one.net.total_cmp(&other.net));
-    match best.filter(|_| session.spec.assistant.concept == ConceptName::TomCom) {
-        Some(best) if best.net <= 0.0 && best.benefit >= NOTHING => {
-            let (words, benefit, cost) = (wording::signal(&best.signal), best.benefit, best.benefit - best.net);
-            format!("none worth a signal: {words} would save {benefit:.1} presses and costs {cost:.1}")
+    match best.filter(|best| best.net <= 0.0 && assistant.concept == ConceptName::TomCom) {
+        Some(best) if best.benefit >= NOTHING => {
+            let (words, benefit, price) = (wording::signal(&best.signal), best.benefit, assistant.price());
+            format!("none worth a signal: {words} would save {benefit:.1} presses and costs {price:.1}")
         }
-        Some(best) if best.net <= 0.0 => "and no signal would save a press".to_string(),
-        _ => none,
+        Some(_) => "and no signal would save a press".to_string(),
+        None => "no signal is offered".to_string(),
     }
 }
 

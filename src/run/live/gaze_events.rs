@@ -16,6 +16,9 @@ use crate::run::desk::GazeTracker;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{Event, Phase, Session};
 
+/// A tracker message that is no event.
+const NONE: [Option<Event>; 2] = [None, None];
+
 /// State of gaze input in a recording.
 #[derive(Debug, Default)]
 pub(super) struct GazeInput {
@@ -49,32 +52,25 @@ impl GazeInput {
 
     /// The events for a tracker message; none for messages that are only counted.
     pub fn events(&mut self, news: GazeNews, now: SessionTime) -> [Option<Event>; 2] {
-        match news {
-            GazeNews::Sample(sample, at) => self.sample(sample, at, now),
-            other => [self.event(other, now), None],
-        }
-    }
-
-    fn event(&mut self, news: GazeNews, now: SessionTime) -> Option<Event> {
         let tracker = match news {
-            GazeNews::Sample(..) => return None,
+            GazeNews::Sample(sample, at) => return self.sample(sample, at, now),
             GazeNews::Malformed(count) => {
                 self.dropped.malformed += count;
-                return None;
+                return NONE;
             }
             GazeNews::WrongTime(_) => {
                 self.dropped.malformed += 1;
-                return None;
+                return NONE;
             }
             GazeNews::Overrun(count) => {
                 self.dropped.overrun += count;
-                return None;
+                return NONE;
             }
             // The console counts senders that are no trackers; the log has nothing of them.
-            GazeNews::Rejected(_) => return None,
+            GazeNews::Rejected(_) => return NONE,
             GazeNews::Began => {
                 self.clock = DeviceClock::default();
-                return None;
+                return NONE;
             }
             GazeNews::Connected(device) => TrackerEvent::Connected { device },
             GazeNews::Lost(reason) => TrackerEvent::Lost { reason },
@@ -91,14 +87,14 @@ impl GazeInput {
                 TrackerEvent::Blink { closed: is_onset, confidence, device_ns, taken_ns }
             }
         };
-        Some(Event::Tracker(tracker))
+        [Some(Event::Tracker(tracker)), None]
     }
 
     /// The sample, and before it that the tracker's clock was set, if the sample shows that.
     fn sample(&mut self, sample: GazeSample, at: Option<Instant>, now: SessionTime) -> [Option<Event>; 2] {
         if !self.limit.admits(now) {
             self.dropped.too_frequent += 1;
-            return [None, None];
+            return NONE;
         }
         let (taken_ns, step) = match (at, sample.device_ns) {
             (Some(at), _) => (Some(ago(now, at)), None),

@@ -56,6 +56,8 @@ pub enum Dialog {
     Calibration,
     /// Input of a free text note.
     Note(TextInput),
+    /// Input of an answer to the shown item of a questionnaire: words or a number.
+    Answer(TextInput),
     /// Details of a difference between wizard and assistant, as lines of text.
     Difference(Vec<String>),
     /// Report of a training, as lines of text; closed with enter.

@@ -4,10 +4,12 @@
 use crossterm::event::KeyCode;
 
 use super::console_message::ConsoleCommand;
-use super::console_model::ConsoleModel;
+use super::console_model::{ConsoleModel, Dialog};
+use super::note::TextInput;
 use super::notice::NoticeLevel;
 use super::sending::send;
-use crate::session::plan::{PhaseSpec, Questionnaire};
+use crate::session::answer_value::AnswerValue;
+use crate::session::plan::{ItemForm, PhaseSpec, Questionnaire};
 use crate::session::protocol::{Protocol, ProtocolEvent};
 use crate::session::{Event, Session};
 
@@ -72,7 +74,11 @@ pub(super) enum SheetKey {
     Back,
     /// Take back the last tick, or show the item before.
     Undo,
+    /// Leave the item out.
+    Skip,
     Digit(u8),
+    /// Another letter, or a minus sign: it begins an answer that is typed.
+    Letter(char),
 }
 
 /// The meaning of a key on a sheet, if any; `advances` marks the key that starts and pauses trials.
@@ -83,7 +89,9 @@ pub(super) fn stroke(code: KeyCode, advances: bool) -> Option<SheetKey> {
         KeyCode::Right | KeyCode::Down => Some(SheetKey::Forward),
         KeyCode::Left | KeyCode::Up => Some(SheetKey::Back),
         KeyCode::Backspace => Some(SheetKey::Undo),
+        KeyCode::Delete => Some(SheetKey::Skip),
         KeyCode::Char(digit @ '0'..='9') => Some(SheetKey::Digit(digit as u8 - b'0')),
+        KeyCode::Char(letter) if letter.is_alphabetic() || letter == '-' => Some(SheetKey::Letter(letter)),
         _ => None,
     }
 }
@@ -132,19 +140,33 @@ fn ask(
     stroke: SheetKey,
 ) -> Option<ConsoleCommand> {
     let id = |index: usize| questionnaire.items.get(index).map(|item| item.id.clone());
-    let shown = id(protocol.item);
+    let (shown, form) = (id(protocol.item), questionnaire.form(protocol.item));
+    let is_typed = form.is_some_and(|form| is_typed(&form));
     match (stroke, shown) {
-        (SheetKey::Digit(0), Some(item)) => tell(model, session, ProtocolEvent::ItemSkipped { item }),
-        (SheetKey::Digit(answer), Some(item)) => tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
-        (SheetKey::Digit(_), None) => refuse(model, "go back to the item first"),
+        (SheetKey::Digit(digit), Some(_)) if is_typed => begin_typing(model, protocol, char::from(b'0' + digit)),
+        (SheetKey::Letter(letter), Some(_)) if is_typed => begin_typing(model, protocol, letter),
+        (SheetKey::Letter(_), _) => {
+            refuse(model, "this key has no meaning here: the last line of the sheet says what has")
+        }
+        (SheetKey::Digit(0) | SheetKey::Skip, Some(item)) => tell(model, session, ProtocolEvent::ItemSkipped { item }),
+        (SheetKey::Digit(digit), Some(item)) => {
+            let index = usize::from(digit - 1);
+            let chosen = form.and_then(|form| form.choose(index, protocol.given(protocol.item)));
+            let is_choice = matches!(form, Some(ItemForm::Choice { .. }));
+            match chosen.or((!is_choice).then(|| AnswerValue::from(digit))) {
+                Some(answer) => tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
+                None => refuse(model, "the item has no such option"),
+            }
+        }
+        (SheetKey::Digit(_) | SheetKey::Skip, None) => refuse(model, "go back to the item first"),
         (SheetKey::Back | SheetKey::Undo, _) => {
             let item = id(protocol.item.checked_sub(1)?)?;
             tell(model, session, ProtocolEvent::ItemShown { item })
         }
-        (SheetKey::Confirm | SheetKey::Forward, Some(_)) => match id(protocol.item + 1) {
-            Some(item) => tell(model, session, ProtocolEvent::ItemShown { item }),
-            None => tell(model, session, ProtocolEvent::AnswersShown),
-        },
+        (SheetKey::Confirm | SheetKey::Forward, Some(_)) => {
+            let next = session.next_item()?;
+            tell(model, session, next)
+        }
         (SheetKey::Confirm, None) => match protocol.open_item().and_then(id) {
             Some(item) => tell(model, session, ProtocolEvent::ItemShown { item }),
             None => tell(model, session, ProtocolEvent::AnswersConfirmed),
@@ -152,6 +174,52 @@ fn ask(
         (SheetKey::Forward, None) => refuse(model, "enter confirms the answers"),
         (SheetKey::Leave, _) => leave(model, session),
     }
+}
+
+/// Whether the answer is typed on a line of its own.
+fn is_typed(form: &ItemForm) -> bool {
+    matches!(form, ItemForm::Number { .. } | ItemForm::Text { .. } | ItemForm::Slider { .. })
+}
+
+/// Opens the line of the answer with its first letter. Words that were answered before stand in it, to be corrected.
+fn begin_typing(model: &mut ConsoleModel, protocol: &Protocol, letter: char) -> Option<ConsoleCommand> {
+    let mut line = match protocol.given(protocol.item) {
+        Some(AnswerValue::Text(words)) => TextInput::with_text(words),
+        _ => TextInput::default(),
+    };
+    line.key(KeyCode::Char(letter));
+    model.dialog = Some(Dialog::Answer(line));
+    None
+}
+
+/// A key on the line of an answer. What is no answer to the item stays, with the reason.
+pub(super) fn type_answer(
+    model: &mut ConsoleModel,
+    session: &Session,
+    mut line: TextInput,
+    code: KeyCode,
+) -> Option<ConsoleCommand> {
+    model.dialog = None;
+    let (questionnaire, protocol) = (session.questionnaire()?, session.protocol.as_ref()?);
+    let (item, form) = (questionnaire.items.get(protocol.item)?.id.clone(), questionnaire.form(protocol.item)?);
+    match code {
+        KeyCode::Esc => return None,
+        KeyCode::Enter => {
+            let text = line.text();
+            let answer = match (&form, text.parse()) {
+                (ItemForm::Text { .. }, _) => Ok(AnswerValue::Text(text)),
+                (_, Ok(number)) => Ok(AnswerValue::Number(number)),
+                (_, Err(_)) => Err("a whole number is asked for"),
+            };
+            match answer.and_then(|answer| form.admit(&answer).map(|()| answer)) {
+                Ok(answer) => return tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
+                Err(reason) => model.say(NoticeLevel::Refused, reason),
+            }
+        }
+        _ => line.key(code),
+    }
+    model.dialog = Some(Dialog::Answer(line));
+    None
 }
 
 /// Goes from a finished phase to the next one, or to the next recording.

@@ -60,6 +60,11 @@ pub(super) fn press(
             let counts = !chord.ctrl && (code != KeyCode::Enter || touch == Touch::Press);
             if counts { hands::write(model, session, line, code) } else { None }
         }
+        _ if let Some(Dialog::Answer(line)) = &model.dialog => {
+            let line = line.clone();
+            let counts = !chord.ctrl && (code != KeyCode::Enter || touch == Touch::Press);
+            if counts { form::type_answer(model, session, line, code) } else { None }
+        }
         Some(KeyAction::StopRobot) => stop_robot(model, session),
         Some(KeyAction::Quit) if chord.ctrl && touch == Touch::Press && may_leave_for_quit(model) => {
             act(model, session, KeyAction::Quit)

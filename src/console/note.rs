@@ -1,10 +1,10 @@
-//! A note in words, while the trial is paused: one line that can be edited. Only here the space bar types a space; the
-//! trial is paused, and the robot stands.
+//! A line that can be edited: a note in words while the trial is paused, or an answer that is typed before or after a trial. Only here
+//! the space bar types a space; no trial runs, and the robot stands.
 
 use crossterm::event::KeyCode;
 
-/// No note is longer, in characters.
-const MOST: usize = 200;
+/// No line is longer, in characters.
+const MOST: usize = 500;
 
 /// A line of text with a cursor.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -14,6 +14,12 @@ pub struct TextInput {
 }
 
 impl TextInput {
+    /// A line that holds this text, with the cursor behind it.
+    pub fn with_text(text: &str) -> TextInput {
+        let letters: Vec<char> = text.chars().take(MOST).collect();
+        TextInput { at: letters.len(), letters }
+    }
+
     /// Takes a key that edits.
     pub fn key(&mut self, code: KeyCode) {
         match code {

@@ -59,7 +59,7 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
         // Enter answers the question, esc leaves it.
         Some(Dialog::Send(_)) => !matches!(action, KeyAction::Accept | KeyAction::Look(PanelKey::All)),
         // In text input the space bar types a space.
-        Some(Dialog::Note(_) | Dialog::Report(_)) => false,
+        Some(Dialog::Note(_) | Dialog::Answer(_) | Dialog::Report(_)) => false,
         Some(Dialog::Preflight) => match action {
             KeyAction::Advance => preflight::all_ok(&preflight::checks(session, model)),
             KeyAction::ResumeRobot | KeyAction::Hand(ManualAction::HoldRobot) => true,

@@ -40,6 +40,7 @@ fn name(dialog: &Dialog) -> &'static str {
         Dialog::Preflight => "preflight",
         Dialog::Calibration => "calibration",
         Dialog::Note(_) => "note",
+        Dialog::Answer(_) => "answer",
         Dialog::Difference(_) => "difference",
         Dialog::Report(_) => "report",
         Dialog::Pick(list) => match list.question {

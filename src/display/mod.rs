@@ -8,6 +8,7 @@
 #[cfg(feature = "physics")]
 mod arm_tip;
 pub mod page_language;
+mod question;
 mod robot_hand;
 mod robot_pose;
 mod scene;

@@ -2,14 +2,12 @@
 
 use serde::Serialize;
 
-use super::page_language::DisplayWords;
+use super::question::{DisplayedItem, question};
 use crate::communication::Signal;
 use crate::kitchen::no_effect::NoEffect;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent};
 use crate::session::accuracy_check::RunningGazeCheck;
 use crate::session::plan::PhaseSpec;
-use crate::session::protocol::ItemAnswer;
-use crate::session::wall_display::Answering;
 use crate::session::{Phase, Session, TimelineEvent};
 
 /// What the participant sees of the session now; always the whole of it.
@@ -57,6 +55,8 @@ pub enum DisplayStage {
     Over,
     /// An item of a questionnaire is asked.
     Questionnaire,
+    /// The answers of a questionnaire are confirmed.
+    Answered,
     /// The debriefing, and after the session's end.
     Thanks,
 }
@@ -127,42 +127,6 @@ pub enum DisplayedSignal {
     Highlight(usize),
 }
 
-/// An item of a questionnaire that the participant answers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DisplayedItem {
-    /// The heading above the items.
-    pub title: String,
-    /// The item; nothing: all are answered, and are to be confirmed.
-    pub item: Option<String>,
-    /// The statement; once all are answered, what to do.
-    pub text: String,
-    /// Counted from 1.
-    pub number: usize,
-    /// Number of items.
-    pub of: usize,
-    /// Number of points of the scale.
-    pub points: u8,
-    /// What 1 means.
-    pub low: String,
-    /// What the highest point means.
-    pub high: String,
-    /// What was answered before.
-    pub answer: Option<u8>,
-    /// The item before, to go back to.
-    pub before: Option<String>,
-    /// When all are answered: each item and its answer, if it got one.
-    pub given: Vec<GivenAnswer>,
-}
-
-/// An item with what the participant answered.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GivenAnswer {
-    /// The statement.
-    pub text: String,
-    /// The answer, from 1; none: left out.
-    pub rated: Option<u8>,
-}
-
 /// What the participant sees of a session.
 pub fn sight(session: &Session) -> DisplayUpdate {
     let kitchen = &session.kitchen;
@@ -198,7 +162,10 @@ fn stage(session: &Session) -> DisplayStage {
         (false, _) | (true, Some(PhaseSpec::Trial | PhaseSpec::Familiarisation)) => trial,
         (true, None) => DisplayStage::Welcome,
         (true, Some(PhaseSpec::Instruction { .. })) => DisplayStage::Instruction,
-        (true, Some(PhaseSpec::Questionnaire { .. })) => DisplayStage::Questionnaire,
+        (true, Some(PhaseSpec::Questionnaire { .. })) => {
+            let is_confirmed = session.protocol.as_ref().is_some_and(|protocol| protocol.confirmed);
+            if is_confirmed { DisplayStage::Answered } else { DisplayStage::Questionnaire }
+        }
         (true, Some(PhaseSpec::Debriefing { .. })) => DisplayStage::Thanks,
     }
 }
@@ -277,37 +244,4 @@ fn told(session: &Session, signal: &Signal) -> Option<DisplayedSignal> {
             Some(DisplayedSignal::Recipe { order: location.index(), dish: dish.name.clone(), items })
         }
     }
-}
-
-/// The item that is to be answered here; nothing where the wizard reads it out.
-fn question(session: &Session) -> Option<DisplayedItem> {
-    if session.spec.display.questionnaire == Answering::Console {
-        return None;
-    }
-    let (questionnaire, protocol) = (session.questionnaire()?, session.protocol.as_ref()?);
-    if protocol.confirmed {
-        return None;
-    }
-    let words = DisplayWords::for_display(&session.spec.display);
-    let item = questionnaire.items.get(protocol.item);
-    let before = protocol.item.checked_sub(1).and_then(|before| questionnaire.items.get(before));
-    let answer = |number: usize| match protocol.answers.get(number) {
-        Some(Some(ItemAnswer::Rated(answer))) => Some(*answer),
-        _ => None,
-    };
-    let items = questionnaire.items.iter().enumerate().filter(|_| item.is_none());
-    let given = items.map(|(number, item)| GivenAnswer { text: item.text.clone(), rated: answer(number) });
-    Some(DisplayedItem {
-        title: questionnaire.title.clone(),
-        item: item.map(|item| item.id.clone()),
-        text: item.map_or_else(|| words.of_name("answers done"), |item| item.text.clone()),
-        number: (protocol.item + 1).min(questionnaire.items.len()),
-        of: questionnaire.items.len(),
-        points: questionnaire.scale.points,
-        low: questionnaire.scale.low.clone(),
-        high: questionnaire.scale.high.clone(),
-        answer: answer(protocol.item),
-        given: given.collect(),
-        before: before.map(|item| item.id.clone()),
-    })
 }

@@ -14,6 +14,7 @@ use crate::measures::cause_codes::{CauseKind, Code};
 use crate::robot::moment::ArmPhase;
 use crate::robot::safety::SafetyMode;
 use crate::session::accuracy_check::CalibrationEvent;
+use crate::session::answer_value::AnswerValue;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ProtocolEvent;
@@ -147,7 +148,9 @@ pub fn protocol(event: &ProtocolEvent) -> String {
         ProtocolEvent::Ticked { step, done: false } => format!("step {step} is not done after all"),
         ProtocolEvent::ItemShown { item } => format!("item {item} is shown"),
         ProtocolEvent::AnswersShown => "all answers are shown".to_string(),
-        ProtocolEvent::ItemAnswered { item, answer } => format!("item {item}: {answer}"),
+        // Words and choices can be personal, and viewers of the stream are not the analysis.
+        ProtocolEvent::ItemAnswered { item, answer: AnswerValue::Number(number) } => format!("item {item}: {number}"),
+        ProtocolEvent::ItemAnswered { item, .. } => format!("item {item} is answered"),
         ProtocolEvent::ItemSkipped { item } => format!("item {item}: no answer"),
         ProtocolEvent::AnswersConfirmed => "the answers are confirmed".to_string(),
         ProtocolEvent::CriterionChecked { met, orders, presses, errors } => {

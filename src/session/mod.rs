@@ -7,7 +7,7 @@
 //!   [`stream_settings`], [`tracker`] (with its events and state), and the specifications in [`plan`]; [`settings`], all of
 //!   them together. On these stand [`battery`], `session_file`, `requirements`, [`participant_code`], [`header`], [`orders`], and the
 //!   studies in [`plan`].
-//! - What happens: `gaze_check`, `protocol_event` (with the phases of a plan), `preflight_check`, [`wizard_screen`]; [`event`],
+//! - What happens: `gaze_check`, [`answer_value`], `protocol_event` (with the phases of a plan), `preflight_check`, [`wizard_screen`]; [`event`],
 //!   all of them together.
 //! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `protocol_state`; `session_state`, all of them
 //!   together.
@@ -16,6 +16,7 @@
 
 pub mod accuracy_check;
 pub mod admit;
+pub mod answer_value;
 pub mod apply;
 pub mod battery;
 mod condition;

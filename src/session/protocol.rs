@@ -24,6 +24,16 @@ impl Session {
         step.phases.get(protocol.number).map(PhaseSpec::phase)
     }
 
+    /// The event that goes on from the shown item to the next one, or to all answers; `None` where all answers are shown.
+    pub fn next_item(&self) -> Option<ProtocolEvent> {
+        let (questionnaire, protocol) = (self.questionnaire()?, self.protocol.as_ref()?);
+        questionnaire.items.get(protocol.item)?;
+        Some(match questionnaire.items.get(protocol.item + 1) {
+            Some(next) => ProtocolEvent::ItemShown { item: next.id.clone() },
+            None => ProtocolEvent::AnswersShown,
+        })
+    }
+
     /// The questionnaire of the present phase, if it has one.
     pub fn questionnaire(&self) -> Option<&Questionnaire> {
         match self.study_phase()? {
@@ -83,7 +93,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
         ProtocolEvent::AnswersShown => unless(is_open(session), "no questionnaire is being answered"),
         ProtocolEvent::ItemAnswered { item, answer } => {
             let questionnaire = shown_item(session, item)?;
-            unless((1..=questionnaire.scale.points).contains(answer), "the scale has no such point")
+            questionnaire.form(protocol.item).ok_or("the item lacks what its kind needs")?.admit(answer)
         }
         ProtocolEvent::ItemSkipped { item } => shown_item(session, item).map(drop),
         ProtocolEvent::AnswersConfirmed => {
@@ -145,6 +155,8 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
         ProtocolEvent::ItemShown { item } => place(item),
         _ => None,
     };
+    let shown = session.protocol.as_ref().and_then(|protocol| session.questionnaire()?.form(protocol.item));
+    let stays = shown.is_some_and(|form| form.stays());
     let Some(protocol) = &mut session.protocol else { return };
     match event {
         ProtocolEvent::ConsentGiven => protocol.consent = true,
@@ -162,8 +174,8 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
         }
         ProtocolEvent::ItemShown { .. } => protocol.item = item.unwrap_or(0),
         ProtocolEvent::AnswersShown => protocol.item = items,
-        ProtocolEvent::ItemAnswered { answer, .. } => protocol.answer(ItemAnswer::Rated(*answer)),
-        ProtocolEvent::ItemSkipped { .. } => protocol.answer(ItemAnswer::Skipped),
+        ProtocolEvent::ItemAnswered { answer, .. } => protocol.answer(ItemAnswer::Given(answer.clone()), stays),
+        ProtocolEvent::ItemSkipped { .. } => protocol.answer(ItemAnswer::Skipped, false),
         ProtocolEvent::AnswersConfirmed => protocol.confirmed = true,
         ProtocolEvent::CriterionChecked { met, orders, presses, errors } => {
             let (met, orders, presses, errors) = (*met, *orders, *presses, *errors);

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::answer_value::AnswerValue;
+
 /// A phase of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -63,12 +65,12 @@ pub enum ProtocolEvent {
     },
     /// All answers are shown, to be confirmed.
     AnswersShown,
-    /// Answer to the shown item, from 1 to the points of the scale; a later answer replaces it. The next item follows.
+    /// Answer to the shown item; a later answer replaces it. The next item follows, but for sliders and choices of several.
     ItemAnswered {
         /// The item's name.
         item: String,
-        /// The answer, from 1 to the number of points of the scale.
-        answer: u8,
+        /// The answer.
+        answer: AnswerValue,
     },
     /// The shown item is skipped. The next item follows.
     ItemSkipped {

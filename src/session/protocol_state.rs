@@ -1,10 +1,12 @@
 //! State of the study protocol in a recording: phase, completed steps, and answers.
 
+use super::answer_value::AnswerValue;
+
 /// An answer to an item.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ItemAnswer {
-    /// This point of the scale, counted from 1.
-    Rated(u8),
+    /// What the participant answered.
+    Given(AnswerValue),
     /// The participant gave no answer.
     Skipped,
 }
@@ -43,11 +45,30 @@ pub struct Protocol {
     pub practice: Option<Practice>,
 }
 
+impl ItemAnswer {
+    /// The answer; `None` if the participant gave none.
+    pub fn value(&self) -> Option<&AnswerValue> {
+        match self {
+            ItemAnswer::Given(value) => Some(value),
+            ItemAnswer::Skipped => None,
+        }
+    }
+}
+
 impl Protocol {
-    /// Records the answer to the shown item and shows the next one; after the last item, the first unanswered one or all answers.
-    pub(super) fn answer(&mut self, answer: ItemAnswer) {
+    /// The answer to the item with this index, if one was given.
+    pub fn given(&self, index: usize) -> Option<&AnswerValue> {
+        self.answers.get(index)?.as_ref()?.value()
+    }
+
+    /// Records the answer to the shown item and shows the next one, unless this one stays; after the last item, the first unanswered
+    /// one or all answers.
+    pub(super) fn answer(&mut self, answer: ItemAnswer, stays: bool) {
         if let Some(place) = self.answers.get_mut(self.item) {
             *place = Some(answer);
+        }
+        if stays {
+            return;
         }
         let next = self.item + 1;
         self.item = match self.open_item() {

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::trial_statistics::{Trial, mean};
+use super::trial_statistics::{QuestionnaireAnswer, Trial, mean};
+use crate::session::plan::ItemKind;
 use crate::session::settings::Condition;
 
 /// Acceptance of the assistance: each participant's mean answer to the items about acceptance after assisted trials, from 0 (none)
@@ -38,57 +39,141 @@ pub struct ItemSummary {
     pub about: Option<String>,
     /// Agreement speaks against what it is about.
     pub reversed: bool,
-    /// The condition of the trial before.
-    pub condition: Condition,
-    /// Number of points of the scale.
-    pub points: u8,
-    /// Number of answers at each scale point, from 1.
+    /// How the item is answered.
+    pub kind: ItemKind,
+    /// The condition of the trial before; `None` for items that were asked before the trials.
+    pub condition: Option<Condition>,
+    /// Number of points of the scale, if it is one.
+    pub points: Option<u8>,
+    /// Number of answers at each scale point, from 1, or with each option in their order.
     pub counts: Vec<u64>,
+    /// The texts of the options, in their order.
+    pub options: Vec<String>,
+    /// Number of answers.
+    pub answers: u64,
     /// How often the item was left without an answer.
     pub left_out: u64,
-    /// Mean of the answers as given, in points.
+    /// Mean of the answers as given, of those that are numbers.
     pub mean: Option<f64>,
+}
+
+/// Scores of one questionnaire in one condition.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ScoreSummary {
+    /// The questionnaire's name.
+    pub questionnaire: String,
+    /// The condition of the trial before; `None` if it was asked before the trials.
+    pub condition: Option<Condition>,
+    /// The score of each occasion on which every item was answered.
+    pub scores: Vec<f64>,
+    /// Mean of the scores.
+    pub mean: Option<f64>,
+    /// Standard deviation of the scores.
+    pub sd: Option<f64>,
+}
+
+/// The condition after which an answer was given; `None` before the trials.
+fn asked_after(trial: &Trial, answered: &QuestionnaireAnswer) -> Option<Condition> {
+    (!answered.before).then_some(trial.condition)
+}
+
+/// Scores of all questionnaires by condition, in order of occurrence.
+pub(super) fn scores(trials: &[&Trial]) -> Vec<ScoreSummary> {
+    let mut found: Vec<ScoreSummary> = Vec::new();
+    for trial in trials {
+        let mut occasions: Vec<(&str, bool)> = Vec::new();
+        for answered in &trial.answers {
+            // The score stands at every item of the occasion.
+            let occasion = (answered.questionnaire.as_str(), answered.before);
+            let Some(score) = answered.score.filter(|_| !occasions.contains(&occasion)) else { continue };
+            occasions.push(occasion);
+            let condition = asked_after(trial, answered);
+            let is_it =
+                |one: &ScoreSummary| (&one.questionnaire, one.condition) == (&answered.questionnaire, condition);
+            match found.iter_mut().find(|one| is_it(one)) {
+                Some(one) => one.scores.push(score),
+                None => found.push(ScoreSummary {
+                    questionnaire: answered.questionnaire.clone(),
+                    condition,
+                    scores: vec![score],
+                    mean: None,
+                    sd: None,
+                }),
+            }
+        }
+    }
+    for one in &mut found {
+        one.mean = mean(one.scores.iter().copied());
+        one.sd = sample_sd(&one.scores);
+    }
+    found
+}
+
+/// Standard deviation of a sample; `None` below two values.
+fn sample_sd(values: &[f64]) -> Option<f64> {
+    let middle = mean(values.iter().copied()).filter(|_| values.len() > 1)?;
+    let sum: f64 = values.iter().map(|value| (value - middle).powi(2)).sum();
+    Some((sum / (values.len() - 1) as f64).sqrt())
 }
 
 /// Items of all questionnaires by condition, in order of occurrence.
 pub(super) fn items(trials: &[&Trial]) -> Vec<ItemSummary> {
-    let mut items: Vec<ItemSummary> = Vec::new();
+    let mut items: Vec<(ItemSummary, Vec<f64>)> = Vec::new();
     for trial in trials {
         for answered in &trial.answers {
-            let is_it = |item: &ItemSummary| {
-                (&item.questionnaire, &item.item, item.condition, item.points)
-                    == (&answered.questionnaire, &answered.item, trial.condition, answered.points)
+            let condition = asked_after(trial, answered);
+            let is_it = |(item, _): &(ItemSummary, Vec<f64>)| {
+                (&item.questionnaire, &item.item, item.condition, item.kind, item.points)
+                    == (&answered.questionnaire, &answered.item, condition, answered.kind, answered.points)
             };
             let at = match items.iter().position(is_it) {
                 Some(at) => at,
                 None => {
-                    items.push(ItemSummary {
-                        questionnaire: answered.questionnaire.clone(),
-                        item: answered.item.clone(),
-                        text: answered.text.clone(),
-                        about: answered.about.clone(),
-                        reversed: answered.reversed,
-                        condition: trial.condition,
-                        points: answered.points,
-                        counts: vec![0; usize::from(answered.points)],
-                        left_out: 0,
-                        mean: None,
-                    });
+                    items.push((ItemSummary::without_answers(answered, condition), Vec::new()));
                     items.len() - 1
                 }
             };
-            match answered.answer.and_then(|answer| items[at].counts.get_mut(usize::from(answer).checked_sub(1)?)) {
-                Some(count) => *count += 1,
-                None => items[at].left_out += 1,
+            let (item, numbers) = &mut items[at];
+            let Some(answer) = &answered.answer else {
+                item.left_out += 1;
+                continue;
+            };
+            item.answers += 1;
+            numbers.extend(answer.number().map(|number| number as f64));
+            let point = answer.number().filter(|_| answered.points.is_some());
+            let chosen =
+                answered.options.iter().enumerate().filter(|(_, option)| answer.options().contains(&option.id));
+            let counted = chosen.map(|(index, _)| index).chain(point.and_then(|point| usize::try_from(point - 1).ok()));
+            for index in counted {
+                if let Some(count) = item.counts.get_mut(index) {
+                    *count += 1;
+                }
             }
         }
     }
-    for item in &mut items {
-        let given = item.counts.iter().enumerate();
-        let answers = given.flat_map(|(index, &count)| std::iter::repeat_n((index + 1) as f64, count as usize));
-        item.mean = mean(answers);
+    let with_mean = |(item, numbers): (ItemSummary, Vec<f64>)| ItemSummary { mean: mean(numbers.into_iter()), ..item };
+    items.into_iter().map(with_mean).collect()
+}
+
+impl ItemSummary {
+    fn without_answers(answered: &QuestionnaireAnswer, condition: Option<Condition>) -> ItemSummary {
+        let choices = answered.points.map_or(answered.options.len(), usize::from);
+        ItemSummary {
+            questionnaire: answered.questionnaire.clone(),
+            item: answered.item.clone(),
+            text: answered.text.clone(),
+            about: answered.about.clone(),
+            reversed: answered.reversed,
+            kind: answered.kind,
+            condition,
+            points: answered.points,
+            counts: vec![0; choices],
+            options: answered.options.iter().map(|option| option.text.clone()).collect(),
+            answers: 0,
+            left_out: 0,
+            mean: None,
+        }
     }
-    items
 }
 
 /// Acceptance from the answers in assisted trials; `None` without any answer.
@@ -97,9 +182,7 @@ pub(super) fn acceptance(trials: &[&Trial]) -> Option<Acceptance> {
     for trial in trials.iter().filter(|trial| trial.is_assisted()) {
         for answered in trial.answers.iter().filter(|one| one.about.as_deref() == Some("acceptance")) {
             let of_one = by_participant.entry(&trial.participant).or_default();
-            let Some(answer) = answered.answer.filter(|_| answered.points > 1) else { continue };
-            let share = f64::from(answer.saturating_sub(1)) / f64::from(answered.points - 1);
-            of_one.push(if answered.reversed { 1.0 - share } else { share });
+            of_one.extend(answered.share);
         }
     }
     if by_participant.is_empty() {

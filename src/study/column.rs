@@ -136,7 +136,7 @@ macro_rules! cell_from {
     };
 }
 
-cell_from!(bool => Flag, u8 => Count, u32 => Count, u64 => Count, i32 => Whole, f64 => Number);
+cell_from!(bool => Flag, u8 => Count, u32 => Count, u64 => Count, i32 => Whole, i64 => Whole, f64 => Number);
 
 impl<'a> From<&'a str> for TableCell<'a> {
     fn from(text: &'a str) -> Self {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::acceptance::{Acceptance, ItemSummary, acceptance, items};
+use super::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
 use super::arm_group::{ArmGroup, by_arm};
 use super::effect::{AssistanceEffect, effect, pairs};
 use super::facts::Facts;
@@ -77,6 +77,8 @@ pub struct StudySummary {
     pub acceptance: Option<Acceptance>,
     /// The answers, by item and condition.
     pub questionnaires: Vec<ItemSummary>,
+    /// The scores of questionnaires that have one, by condition.
+    pub questionnaire_scores: Vec<ScoreSummary>,
     /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<Agreement>,
     /// Trials whose causes of errors are the consensus of two raters, by the raters ("R1+R2").
@@ -242,6 +244,7 @@ impl StudySummary {
             offers: offers(&counting),
             acceptance: acceptance(&counting),
             questionnaires: items(&counting),
+            questionnaire_scores: scores(&counting),
             raters: agreement(&counting),
             consensus: consensus(&counting),
             stale_consensus: counting.iter().filter_map(|trial| stale(trial)).collect(),

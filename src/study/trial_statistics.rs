@@ -10,7 +10,9 @@ use crate::measures::cause_codes::Codes;
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::CommunicationEvent;
 use crate::measures::wizard_performance::WizardMeasures;
+use crate::session::answer_value::AnswerValue;
 use crate::session::event::EndReason;
+use crate::session::plan::{ItemKind, ItemOption};
 use crate::session::settings::{ArmKind, Condition, ParticipantKind};
 use crate::session::wall_display::DisplayedArm;
 
@@ -153,10 +155,20 @@ pub struct QuestionnaireAnswer {
     pub about: Option<String>,
     /// Agreement speaks against what it is about.
     pub reversed: bool,
-    /// Scale point; `None` if the participant skipped the item.
-    pub answer: Option<u8>,
-    /// Number of points of the scale.
-    pub points: u8,
+    /// How the item is answered.
+    pub kind: ItemKind,
+    /// The answer; `None` if the participant skipped the item.
+    pub answer: Option<AnswerValue>,
+    /// Number of points of the item's scale; `None` if it is answered in another way.
+    pub points: Option<u8>,
+    /// The options of the item: id and text.
+    pub options: Vec<ItemOption>,
+    /// The answer from 0 to 1 on a scale or slider, turned round if the item is reversed.
+    pub share: Option<f64>,
+    /// Whether it was asked before the first trial, rather than after the trial.
+    pub before: bool,
+    /// Score of the whole questionnaire at this occasion, if it has one.
+    pub score: Option<f64>,
 }
 
 impl Trial {

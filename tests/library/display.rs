@@ -275,7 +275,7 @@ fn phases_of_a_plan_are_those_of_the_display() {
     let mut asked = Vec::new();
     while let Some(item) = sight(engine.session()).question.expect("a question").item {
         asked.push(item.clone());
-        give(&mut engine, Event::Protocol(ProtocolEvent::ItemAnswered { item, answer: 3 }));
+        give(&mut engine, Event::Protocol(ProtocolEvent::ItemAnswered { item, answer: 3_u8.into() }));
     }
     let question = sight(engine.session()).question.expect("a question");
     assert!(asked.len() > 3 && question.number == question.of && asked.last() == question.before.as_ref(), "{asked:?}");

@@ -25,6 +25,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Sess
         Some(Dialog::Preflight) => hands::preflight(brush, screen, session, model),
         Some(Dialog::Calibration) => super::gaze_targets::draw(brush, screen, session, model),
         Some(Dialog::Note(line)) => hands::note(brush, screen, line),
+        Some(Dialog::Answer(line)) => hands::answer(brush, screen, session, line),
         Some(Dialog::Help) => help(brush, screen, model),
         Some(Dialog::Difference(lines)) => difference(brush, screen, lines),
         Some(Dialog::Report(lines)) => report(brush, screen, lines, model),

@@ -70,9 +70,21 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
 /// Draws the input line of a note.
 pub fn note(brush: &mut Painter, screen: Rect, text: &TextInput) {
     let says = "The trial is paused and the robot stands: only here the space bar types a space.";
+    input_line(brush, screen, text, ("A note", "the trial is paused"), says);
+}
+
+/// Draws the input line of an answer below the item that it answers.
+pub fn answer(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInput) {
+    let shown = session.protocol.as_ref().map_or(0, |protocol| protocol.item);
+    let item = session.questionnaire().and_then(|asked| asked.items.get(shown));
+    let says = item.map_or("", |item| item.text.as_str());
+    input_line(brush, screen, text, ("The answer", "no trial runs"), says);
+}
+
+fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remark): (&str, &str), says: &str) {
     let lines = wrap(says, COLUMNS - 4);
     let size = (COLUMNS, lines.len() as u16 + 7);
-    let inside = open(brush, screen, size, "A note", "the trial is paused");
+    let inside = open(brush, screen, size, title, remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     let [before, under, after] = text.parts(usize::from(columns));
     let style = brush.style(TextRole::Strong);

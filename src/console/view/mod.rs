@@ -95,6 +95,7 @@ fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
             "The check of the gaze: o offset off, u as it is, enter takes what is chosen, r repeats, esc leaves"
         }
         Some(Dialog::Note(_)) => "A note: enter keeps it, esc leaves",
+        Some(Dialog::Answer(_)) => "The answer is typed: enter keeps it, esc leaves",
         Some(Dialog::Difference(_)) => "What each knew needs more room; any key closes it",
         Some(Dialog::Report(_)) => "What came of the training needs more room; enter goes on",
         None => return,

@@ -12,7 +12,8 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::form::{SheetContent, WAIVERS, sheet};
 use crate::console::question::QuestionPage;
 use crate::session::Session;
-use crate::session::plan::Questionnaire;
+use crate::session::answer_value::AnswerValue;
+use crate::session::plan::{ItemForm, Questionnaire, SLIDER_END, Scale};
 use crate::session::protocol::{ItemAnswer, Protocol};
 
 /// Largest line width, for readability.
@@ -161,28 +162,46 @@ fn draw_questions(
     let items = questionnaire.items.len();
     let mut page = Page::new(screen);
     if let Some(item) = questionnaire.items.get(protocol.item) {
-        let given = protocol.answers.get(protocol.item).copied().flatten();
         page.text(0, &format!("{} of {items}", protocol.item + 1), TextRole::Quiet);
         page.space();
         page.text(0, &item.text, TextRole::Strong);
         page.space();
-        scale(&mut page, questionnaire, given);
-        let points = format!("1-{}", questionnaire.scale.points);
+        let given = protocol.answers.get(protocol.item).and_then(Option::as_ref);
+        let (keys, does) = match questionnaire.form(protocol.item) {
+            Some(form) => item_form(&mut page, &form, given.and_then(ItemAnswer::value)),
+            None => (String::new(), "answer"),
+        };
+        if given == Some(&ItemAnswer::Skipped) {
+            page.space();
+            page.text(0, "no answer", TextRole::Strong);
+        }
+        let skip = match questionnaire.form(protocol.item) {
+            Some(ItemForm::Scale(_) | ItemForm::Choice { .. }) => ("0", "no answer", plain(KeyCode::Char('0'))),
+            _ => ("del", "no answer", plain(KeyCode::Delete)),
+        };
         let keys = [
-            (points.as_str(), "answer", None),
-            ("0", "no answer", plain(KeyCode::Char('0'))),
+            (keys.as_str(), does, None),
+            skip,
             ("enter", "next item", plain(KeyCode::Enter)),
             ("left/right", "go between items", None),
         ];
         return page.draw(pen, screen, &questionnaire.title, where_, &keys);
     }
-    for (item, answer) in questionnaire.items.iter().zip(&protocol.answers) {
-        let answer = match answer {
-            Some(ItemAnswer::Rated(points)) => points.to_string(),
+    for (index, item) in questionnaire.items.iter().enumerate() {
+        let form = questionnaire.form(index);
+        let words = |value| form.map_or_else(String::new, |form| form.words(value));
+        let answer = match protocol.answers.get(index).and_then(Option::as_ref) {
+            Some(ItemAnswer::Given(value)) => words(value),
             Some(ItemAnswer::Skipped) => "-".to_string(),
             None => "?".to_string(),
         };
-        page.marked(&format!("{answer:>3}"), &item.text, TextRole::Text);
+        // What is longer than a number stands below its item.
+        if width(&answer) <= 3 {
+            page.marked(&format!("{answer:>3}"), &item.text, TextRole::Text);
+        } else {
+            page.marked("   ", &item.text, TextRole::Text);
+            page.text(6, &answer, TextRole::Strong);
+        }
     }
     page.focus = page.lines.len();
     let on = match (protocol.confirmed, protocol.open_item()) {
@@ -195,22 +214,59 @@ fn draw_questions(
     page.draw(pen, screen, &questionnaire.title, where_, hints);
 }
 
-/// Draws the scale with its end labels and the given answer marked.
-fn scale(page: &mut Page, questionnaire: &Questionnaire, given: Option<ItemAnswer>) {
-    let point = |point: u8| match given == Some(ItemAnswer::Rated(point)) {
+/// Draws how an item is answered, with the given answer; returns the keys that answer it, and what they do.
+fn item_form(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) -> (String, &'static str) {
+    match form {
+        ItemForm::Scale(of) => {
+            scale(page, of, given);
+            (format!("1-{}", of.points), "answer")
+        }
+        ItemForm::Choice { options, several } => {
+            let chosen = given.map_or(&[][..], AnswerValue::options);
+            for (index, option) in options.iter().enumerate() {
+                let is_chosen = chosen.contains(&option.id);
+                let mark = if is_chosen { format!("[{}]", index + 1) } else { format!(" {} ", index + 1) };
+                page.choice(index, &mark, &option.text, if is_chosen { TextRole::Strong } else { TextRole::Text });
+            }
+            (format!("1-{}", options.len()), if *several { "choose any" } else { "choose" })
+        }
+        ItemForm::Number { range: [least, most], unit } => {
+            let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+            page.text(0, &format!("{least} to {most}{unit}"), TextRole::Quiet);
+            typed(page, form, given);
+            ("0-9".to_string(), "type the number")
+        }
+        ItemForm::Text { length } => {
+            page.text(0, &format!("words, at most {length} characters"), TextRole::Quiet);
+            typed(page, form, given);
+            ("letters".to_string(), "type the answer")
+        }
+        ItemForm::Slider { low, high, step } => {
+            let by = if *step > 1 { format!(", in steps of {step}") } else { String::new() };
+            page.text(0, &format!("0 {low}   to   {SLIDER_END} {high}{by}"), TextRole::Quiet);
+            typed(page, form, given);
+            ("0-9".to_string(), "type the position")
+        }
+    }
+}
+
+/// Adds the answer that was typed, if one was.
+fn typed(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) {
+    page.space();
+    page.text(0, &given.map_or_else(|| "_".to_string(), |given| form.words(given)), TextRole::Strong);
+}
+
+/// Draws the scale with the given answer marked. Its anchors stand under the first and the last point.
+fn scale(page: &mut Page, of: &Scale, given: Option<&AnswerValue>) {
+    let point = |point: u8| match given == Some(&AnswerValue::from(point)) {
         true => format!("[{point}]"),
         false => format!(" {point} "),
     };
-    let points: Vec<String> = (1..=questionnaire.scale.points).map(point).collect();
+    let points: Vec<String> = (1..=of.points).map(point).collect();
     let line = points.join("   ");
-    let (low, high) = (&questionnaire.scale.low, &questionnaire.scale.high);
     page.lines.push((0, line.clone(), TextRole::Strong));
-    let gap = usize::from(width(&line).saturating_sub(width(low) + width(high)).max(3));
-    page.lines.push((0, format!("{low}{}{high}", " ".repeat(gap)), TextRole::Quiet));
-    if given == Some(ItemAnswer::Skipped) {
-        page.space();
-        page.text(0, "no answer", TextRole::Strong);
-    }
+    let gap = usize::from(width(&line).saturating_sub(width(&of.low) + width(&of.high)).max(3));
+    page.lines.push((0, format!("{}{}{}", of.low, " ".repeat(gap), of.high), TextRole::Quiet));
 }
 
 fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, waiver: Option<usize>) {

@@ -315,7 +315,8 @@ impl Talk {
                 let _ = self.hub.inputs.try_send(PageInput::Pointer { x, y });
                 return Some(());
             }
-            FromPage::Answer { item, rated } => PageInput::Answer { item, rated },
+            FromPage::Answer { item, answer } => PageInput::Answer { item, answer },
+            FromPage::Next => PageInput::Next,
             FromPage::Back { item } => PageInput::Back { item },
             FromPage::Confirm => PageInput::Confirm,
             FromPage::Drawn { cue, at } => PageInput::Drawn { cue, at: self.hub.moment(at) },

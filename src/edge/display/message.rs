@@ -6,11 +6,14 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::display::{DisplayScene, DisplayUpdate, RobotPose};
+use crate::session::answer_value::AnswerValue;
 
 /// Longest message of a page, in bytes.
-pub(super) const MAX_BYTES: usize = 1024;
+pub(super) const MAX_BYTES: usize = 4096;
 /// Longest text in a message.
 const MAX_TEXT: usize = 64;
+/// Longest answer in words, in characters.
+const MAX_ANSWER: usize = 500;
 /// Largest screen width or height, in pixels.
 const MAX_PIXELS: u32 = 100_000;
 
@@ -71,9 +74,11 @@ pub enum FromPage {
     Answer {
         /// The item's name.
         item: String,
-        /// The point of the scale, from 1; none: left out.
-        rated: Option<u8>,
+        /// The answer; none: left out.
+        answer: Option<AnswerValue>,
     },
+    /// Going on to the next questionnaire item, or to all answers.
+    Next,
     /// Return to a questionnaire item.
     Back {
         /// The item's name.
@@ -123,13 +128,24 @@ pub fn read(text: &str) -> Option<FromPage> {
         FromPage::Ping { t, took, .. } => is_time(t) && took.is_none_or(|took| (0.0..1e6).contains(&took)),
         FromPage::Press { button, at, .. } => is_text(button) && is_time(at),
         FromPage::Pointer { x, y } => (-1.0..=2.0).contains(x) && (-1.0..=2.0).contains(y),
-        FromPage::Answer { item, .. } | FromPage::Back { item } => is_text(item),
+        FromPage::Answer { item, answer } => is_text(item) && answer.as_ref().is_none_or(is_answer),
+        FromPage::Back { item } => is_text(item),
         FromPage::Drawn { at, .. } => is_time(at),
         FromPage::Redrawn { took } => (0.0..1e6).contains(took),
         FromPage::Size { width, height } => is_size(*width, *height),
-        FromPage::Confirm | FromPage::TakePart => true,
+        FromPage::Confirm | FromPage::Next | FromPage::TakePart => true,
     };
     is_fine.then_some(message)
+}
+
+/// Whether an answer is short enough to be looked at. Whether the item takes it, the session says.
+fn is_answer(answer: &AnswerValue) -> bool {
+    let is_short = |text: &String| text.chars().count() <= MAX_ANSWER && !text.chars().any(char::is_control);
+    match answer {
+        AnswerValue::Number(_) => true,
+        AnswerValue::Text(text) => is_short(text),
+        AnswerValue::Options(options) => options.len() <= 9 && options.iter().all(is_short),
+    }
 }
 
 /// The message with the static scene.
@@ -175,6 +191,9 @@ mod tests {
     fn what_is_no_message_is_refused() {
         assert!(read(r#"{"kind": "press", "number": 1, "button": "cut", "at": 12.5}"#).is_some());
         assert!(read(r#"{"kind": "confirm"}"#).is_some());
+        assert!(read(r#"{"kind": "answer", "item": "age", "answer": 31}"#).is_some());
+        assert!(read(r#"{"kind": "answer", "item": "remarks", "answer": "Too fast."}"#).is_some());
+        assert!(read(r#"{"kind": "answer", "item": "aids", "answer": ["glasses"]}"#).is_some());
         for wrong in [
             "",
             "nonsense",
@@ -185,6 +204,9 @@ mod tests {
             r#"{"kind": "press", "number": 1, "button": "cut", "at": 1e300}"#,
             r#"{"kind": "press", "number": 1, "button": "cut", "at": 1, "agent": "robot"}"#,
             r#"{"kind": "trial_ended", "reason": "time"}"#,
+            r#"{"kind": "answer", "item": "age", "answer": 31.5}"#,
+            r#"{"kind": "answer", "item": "remarks", "answer": "two\nlines"}"#,
+            r#"{"kind": "answer", "item": "aids", "answer": {"glasses": true}}"#,
             r#"{"kind": "pointer", "x": 1e9, "y": 0}"#,
             r#"{"kind": "hello", "page": "a", "width": 0, "height": 1, "code": null}"#,
             r#"{"kind": "size", "width": 1920, "height": 200000}"#,

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use crate::session::answer_value::AnswerValue;
+
 /// An input of the acting page.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PageInput {
@@ -32,9 +34,11 @@ pub enum PageInput {
     Answer {
         /// The item's name.
         item: String,
-        /// The point of the scale, from 1; none: left out.
-        rated: Option<u8>,
+        /// The answer; none: left out.
+        answer: Option<AnswerValue>,
     },
+    /// Go on to the next questionnaire item, or to all answers.
+    Next,
     /// Return to a questionnaire item.
     Back {
         /// The item's name.

@@ -100,10 +100,11 @@ impl PageEvent {
                 let is_gaze = session.spec.participant.gaze == GazeSource::Mouse;
                 is_gaze.then(|| Event::Gaze(GazeSample::new(x, y, 1.0)))
             }
-            PageInput::Answer { item, rated: Some(rated) } => {
-                answer(ProtocolEvent::ItemAnswered { item, answer: rated }, session)
+            PageInput::Answer { item, answer: Some(given) } => {
+                answer(ProtocolEvent::ItemAnswered { item, answer: given }, session)
             }
-            PageInput::Answer { item, rated: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
+            PageInput::Answer { item, answer: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
+            PageInput::Next => session.next_item().and_then(|next| answer(next, session)),
             PageInput::Back { item } => answer(ProtocolEvent::ItemShown { item }, session),
             PageInput::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
             PageInput::Drawn { cue, at } => {

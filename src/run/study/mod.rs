@@ -1,6 +1,7 @@
 //! `tomcom study`: replays the recordings of a study on all processors and writes tables, charts and the report.
 
 mod coded_errors;
+mod questionnaire_answers;
 pub mod reading;
 mod rows;
 mod sweep;

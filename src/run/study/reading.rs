@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::coded_errors::CodedErrors;
+use super::questionnaire_answers;
 use super::rows::{PressFacts, RowCollector};
 use super::sweep::ConceptSweep;
 use super::twin::useful_signals;
@@ -29,14 +30,13 @@ use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::run::standing::exclusion_status;
 use crate::session::apply::ApplyError;
-use crate::session::plan::PhaseSpec;
-use crate::session::protocol::{ItemAnswer, ProtocolEvent};
+use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::{Condition, ParticipantKind, Visibility};
 use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEvent};
 use crate::study::acting_arm::ActingArm;
 use crate::study::facts::Facts;
 use crate::study::robot_tally::{RobotSummary, RobotTally};
-use crate::study::trial_statistics::{BeliefBasis, BeliefErrors, QuestionnaireAnswer, Trial};
+use crate::study::trial_statistics::{BeliefBasis, BeliefErrors, Trial};
 use crate::wizard::settings::WizardKind;
 
 /// Result of analysing one recording.
@@ -182,7 +182,7 @@ pub fn read(
             rows.note(&line.stamped, &change, follower, was_running);
         }
         if matches!(line.stamped.event, Event::Protocol(ProtocolEvent::AnswersConfirmed)) {
-            answers.extend(confirmed(&follower.session));
+            answers.extend(questionnaire_answers::confirmed(&follower.session));
         }
     }
     let standing = exclusion_status(&pass.follower().session, &log)?;
@@ -265,26 +265,6 @@ fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> B
         recovery_s: all.iter().filter_map(recovery).collect(),
         episodes: (basis == BeliefBasis::Recorded).then(|| follower.episodes.harmful().count() as u64),
     }
-}
-
-/// Answers to the questionnaire that was just confirmed.
-fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {
-    let Some((step, protocol)) = session.step() else { return Vec::new() };
-    let phase = protocol.number.checked_sub(1).and_then(|index| step.phases.get(index));
-    let Some(PhaseSpec::Questionnaire { questionnaire }) = phase else { return Vec::new() };
-    let answered = |(index, item): (usize, &crate::session::plan::Item)| QuestionnaireAnswer {
-        questionnaire: questionnaire.name.clone(),
-        item: item.id.clone(),
-        text: item.text.clone(),
-        about: item.about.clone(),
-        reversed: item.reversed,
-        answer: match protocol.answers.get(index).copied().flatten() {
-            Some(ItemAnswer::Rated(answer)) => Some(answer),
-            Some(ItemAnswer::Skipped) | None => None,
-        },
-        points: questionnaire.scale.points,
-    };
-    questionnaire.items.iter().enumerate().map(answered).collect()
 }
 
 fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionStatus) -> Trial {

@@ -6,9 +6,10 @@
 //! with the state of a study. A step that is left early has no end event and can be continued like one that was cut off.
 //!
 //! The files from the ground up: `groups`, `plan_spec` (the `[plan]` of a session file), `starting_groups` (who is in which
-//! group), `questionnaire`, `step` (one recording), `planned_study` (all of them), `progress` (how far it is).
+//! group), `questionnaire` and `item_form` (its items), `step` (one recording), `planned_study` (all of them), `progress` (how far it is).
 
 mod groups;
+mod item_form;
 mod plan_spec;
 mod planned_study;
 mod progress;
@@ -17,8 +18,9 @@ mod starting_groups;
 mod step;
 
 pub use groups::{StartingGroup, groups};
+pub use item_form::{ItemForm, ItemKind, SLIDER_END};
 pub use plan_spec::{FamiliarisationSpec, Participants, PlanSpec, QuestionnaireSpec};
 pub use planned_study::{Slot, Study, WantedRecording};
 pub use progress::{NextRecording, PlanRecording, Progress, RecordingOutcome, SlotProgress};
-pub use questionnaire::{Item, Questionnaire, Scale};
+pub use questionnaire::{Item, ItemOption, Questionnaire, Scale, ScoreRule};
 pub use step::{Criterion, PhaseSpec, StepSpec};

@@ -85,6 +85,16 @@ pub struct QuestionnaireSpec {
     /// Numbers of the trials after which it is asked, from 1; by default after each.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<Vec<u32>>,
+    /// Whether it is asked once before the first trial, and after trials only if `after` says so.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub before: bool,
+}
+
+impl QuestionnaireSpec {
+    /// Whether it is asked after the trial with this number.
+    pub fn is_asked_after(&self, period: u32) -> bool {
+        self.after.as_ref().map_or(!self.before, |after| after.contains(&period))
+    }
 }
 
 impl PlanSpec {

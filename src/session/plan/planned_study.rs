@@ -124,13 +124,14 @@ impl Study {
             phases.push(PhaseSpec::Familiarisation);
             return phases;
         };
+        let asked = || self.plan.questionnaire.iter().zip(&self.questionnaires);
+        let is_first = period == 1;
+        let before = asked().filter(|(when, _)| is_first && when.before).filter_map(|(_, asked)| asked.before_trials());
+        phases.extend(before.map(|questionnaire| PhaseSpec::Questionnaire { questionnaire }));
         phases.push(PhaseSpec::Trial);
-        for (when, questionnaire) in self.plan.questionnaire.iter().zip(&self.questionnaires) {
-            let is_asked = when.after.as_ref().is_none_or(|after| after.contains(&period));
-            if let Some(questionnaire) = questionnaire.after(slot.condition).filter(|_| is_asked) {
-                phases.push(PhaseSpec::Questionnaire { questionnaire });
-            }
-        }
+        let after = asked().filter(|(when, _)| when.is_asked_after(period));
+        let after = after.filter_map(|(_, asked)| asked.after(slot.condition));
+        phases.extend(after.map(|questionnaire| PhaseSpec::Questionnaire { questionnaire }));
         if period as usize == self.plan.conditions.len() && !self.plan.debriefing.is_empty() {
             phases.push(PhaseSpec::Debriefing { steps: self.plan.debriefing.clone() });
         }

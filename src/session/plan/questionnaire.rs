@@ -1,7 +1,10 @@
-//! Questionnaires: items that are answered on a rating scale (Likert 1932).
+//! Questionnaires: items that are answered on a rating scale (Likert 1932) or in another form.
+
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::item_form::{self, ItemForm, ItemKind};
 use crate::session::condition::Condition;
 use crate::session::ranges;
 use crate::session::setting_checks::{SettingError, is_code};
@@ -16,8 +19,15 @@ pub struct Questionnaire {
     pub title: String,
     /// The language of the items, as in "en".
     pub language: String,
-    /// The scale of all items.
-    pub scale: Scale,
+    /// How the questionnaire's score follows from its answers, if it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub score: Option<ScoreRule>,
+    /// The scale of all items that name no other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<Scale>,
+    /// Further scales by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub scales: BTreeMap<String, Scale>,
     /// The items, in the order in which they are asked.
     #[serde(rename = "item")]
     pub items: Vec<Item>,
@@ -35,14 +45,68 @@ pub struct Scale {
     pub high: String,
 }
 
-/// A statement to be rated.
+/// How a questionnaire's score follows from its answers. Answers to reversed items are turned round on their scale first. There is no
+/// score where an item was left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ScoreRule {
+    /// Mean of the answers, as in the raw task load index of Hart (2006).
+    Mean,
+    /// System usability scale of Brooke (1996): ten items of five points; 2.5 times the sum of the points above the lowest, 0 to 100.
+    Sus,
+}
+
+/// An option of an item.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ItemOption {
+    /// Stands for the option in logs and tables, the same in all languages.
+    pub id: String,
+    /// The option, as the participant reads it.
+    pub text: String,
+}
+
+/// A statement to be rated, or a question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Item {
     /// Identifier of the item in logs and tables.
     pub id: String,
-    /// The statement, as the participant reads it.
+    /// The statement or question, as the participant reads it.
     pub text: String,
+    /// How it is answered; on a scale by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<ItemKind>,
+    /// Name of the item's scale; by default that of all items.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<String>,
+    /// What can be chosen.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub options: Vec<ItemOption>,
+    /// Whether several options can be chosen.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub several: bool,
+    /// The least number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<i64>,
+    /// The greatest number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<i64>,
+    /// What the number counts, as in "years".
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Most characters of an answer in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length: Option<u32>,
+    /// What 0 on the slider means.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low: Option<String>,
+    /// What 100 on the slider means.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub high: Option<String>,
+    /// The positions of the slider are multiples of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step: Option<u8>,
     /// Construct that the item measures; items with the same construct form a scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub about: Option<String>,
@@ -60,6 +124,17 @@ impl Questionnaire {
         let is_asked = |item: &&Item| item.conditions.as_ref().is_none_or(|only| only.contains(&condition));
         let items: Vec<Item> = self.items.iter().filter(is_asked).cloned().collect();
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
+    }
+
+    /// The questionnaire before the first trial; `None` if it has no items. Items about a condition are not asked.
+    pub fn before_trials(&self) -> Option<Questionnaire> {
+        let items: Vec<Item> = self.items.iter().filter(|item| item.conditions.is_none()).cloned().collect();
+        (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
+    }
+
+    /// How the item with this index is answered; `None` if there is none, or if it lacks what its kind needs.
+    pub fn form(&self, index: usize) -> Option<ItemForm<'_>> {
+        ItemForm::for_item(self, self.items.get(index)?)
     }
 
     /// Index of an item.
@@ -88,7 +163,33 @@ impl Questionnaire {
         }
         match (1..self.items.len()).find(|&nth| self.items[..nth].iter().any(|item| item.id == self.items[nth].id)) {
             Some(nth) => wrong_id(nth, format!("the id \"{}\" twice", self.items[nth].id), "each id once"),
-            None => Ok(()),
+            None => {
+                item_form::check_items(self)?;
+                self.check_score()
+            }
+        }
+    }
+
+    fn check_score(&self) -> Result<(), SettingError> {
+        let wrong = |found: String, remedy| Err(SettingError::new("score", found, remedy));
+        let forms = || (0..self.items.len()).map(|index| self.form(index));
+        let rated = forms().filter(|form| form.is_some_and(|form| form.ends().is_some())).count();
+        match self.score {
+            Some(ScoreRule::Mean) if rated < self.items.len() => {
+                let found = format!("score = \"mean\", with {} items that are no scale", self.items.len() - rated);
+                wrong(found, "items on scales or sliders alone")
+            }
+            Some(ScoreRule::Sus) => {
+                let is_five =
+                    |form: Option<ItemForm>| matches!(form, Some(ItemForm::Scale(scale)) if scale.points == 5);
+                match (self.items.len(), forms().all(is_five)) {
+                    (10, true) => Ok(()),
+                    (items, _) => {
+                        wrong(format!("score = \"sus\", with {items} items"), "ten items on a scale of 5 points")
+                    }
+                }
+            }
+            _ => Ok(()),
         }
     }
 }

@@ -21,7 +21,7 @@ pub fn of_sessions() -> Vec<NumberRange> {
 }
 
 /// Those of questionnaires.
-pub const OF_QUESTIONNAIRES: [NumberRange; 1] = [trial::POINTS];
+pub const OF_QUESTIONNAIRES: [NumberRange; 6] = trial::OF_ITEMS;
 
 /// Whether a session file may have all these numbers.
 ///

@@ -102,4 +102,11 @@ pub(super) const RANGES: [NumberRange; 36] = [
     NumberRange::whole("plan.questionnaire.after", [1.0, 2.0], "", "participants have one or two trials"),
 ];
 
-pub(super) const POINTS: NumberRange = NumberRange::whole("scale.points", [2.0, 9.0], "points", "each point is a key");
+pub(super) const OF_ITEMS: [NumberRange; 6] = [
+    NumberRange::whole("scale.points", [2.0, 9.0], "points", "each point is a key"),
+    NumberRange::whole("scales.*.points", [2.0, 9.0], "points", "each point is a key"),
+    NumberRange::whole("item.min", [-1_000_000.0, 1_000_000.0], "", "people type it"),
+    NumberRange::whole("item.max", [-1_000_000.0, 1_000_000.0], "", "people type it"),
+    NumberRange::whole("item.length", [1.0, 500.0], "characters", "the page and the console show it whole"),
+    NumberRange::whole("item.step", [1.0, 50.0], "", "a slider has at least three positions"),
+];

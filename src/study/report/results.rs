@@ -8,6 +8,8 @@ use crate::base::words;
 use crate::communication::offer::OfferEnd;
 use crate::measures::matching::MatchShares;
 use crate::measures::wizard_performance::WizardMeasures;
+use crate::session::plan::ItemKind;
+use crate::session::settings::Condition;
 use crate::study::figures::StudySummary;
 
 /// Table with this study's results beside the paper's.
@@ -173,23 +175,50 @@ pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup 
             }
             "\n"
         }
+        @if !figures.questionnaire_scores.is_empty() { (scroll(scores(captions, figures))) }
         @if !figures.questionnaires.is_empty() { (scroll(items(captions, figures))) }
     };
     section("Questionnaires", content)
 }
 
+/// What a group of answers follows: the condition of a trial, or nothing.
+fn asked_after(after: Option<Condition>) -> String {
+    after.map_or_else(|| "before the trials".to_string(), |after| condition(after).to_string())
+}
+
+/// Answers by item. Words are only counted: they can tell who wrote them, and stand in the table.
 fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = figures.questionnaires.iter().map(|item| {
-        let counts: Vec<String> = item.counts.iter().map(u64::to_string).collect();
-        cells([
-            &item.text,
-            &condition(item.condition),
-            &item.counts.iter().sum::<u64>(),
-            &item.left_out,
-            &format!("{} of {}", number(item.mean, 1), item.points),
-            &counts.join(" "),
-        ])
+        let mean = match (item.points, item.kind) {
+            (Some(points), _) => format!("{} of {points}", number(item.mean, 1)),
+            (None, ItemKind::Choice | ItemKind::Text) => String::new(),
+            (None, _) => number(item.mean, 1).to_string(),
+        };
+        let counts = item.counts.iter().map(u64::to_string);
+        let counts: Vec<String> = match item.kind {
+            ItemKind::Choice => {
+                item.options.iter().zip(counts).map(|(text, count)| format!("{text}: {count}")).collect()
+            }
+            _ => counts.collect(),
+        };
+        let between = if item.kind == ItemKind::Choice { ", " } else { " " };
+        let after = asked_after(item.condition);
+        cells([&item.text, &after, &item.answers, &item.left_out, &mean, &counts.join(between)])
     });
-    let heads = ["item", "after", "answers", "skipped", "mean", "number of answers 1, 2, \u{2026}"];
-    captions.table("Answers by item and condition.", &heads, &rows.collect::<Vec<_>>())
+    let heads = ["item", "after", "answers", "skipped", "mean", "number of answers 1, 2, \u{2026}, or by option"];
+    captions.table(
+        "Answers by item and condition. Words stand only in the table questionnaires.csv.",
+        &heads,
+        &rows.collect::<Vec<_>>(),
+    )
+}
+
+/// Scores by questionnaire and condition.
+fn scores(captions: &mut Captions, figures: &StudySummary) -> Markup {
+    let rows = figures.questionnaire_scores.iter().map(|one| {
+        let after = asked_after(one.condition);
+        cells([&one.questionnaire, &after, &one.scores.len(), &number(one.mean, 1), &number(one.sd, 1)])
+    });
+    let heads = ["questionnaire", "after", "answered in full", "mean score", "standard deviation"];
+    captions.table("Scores by questionnaire and condition.", &heads, &rows.collect::<Vec<_>>())
 }

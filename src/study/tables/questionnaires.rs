@@ -1,6 +1,7 @@
 //! Table of answers to questionnaires.
 
-use crate::study::column::{Column, Table, TableRow};
+use crate::session::answer_value::AnswerValue;
+use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::trial_statistics::{QuestionnaireAnswer, Trial};
 
 /// An answer with the trial after which it was given.
@@ -19,19 +20,38 @@ impl TableRow for AnswerRow<'_> {
     const TABLE: Table = Table::Questionnaires;
 
     fn columns() -> Vec<Column<Self>> {
-        let given = "answer from 1 to points, as given (not reversed); empty: skipped";
+        let given = "answer as given (not reversed): a point of the scale from 1, a number, a slider's position from 0 to 100, \
+                     words, or ids of options separated by spaces; empty: skipped";
+        let score = "score of the whole questionnaire at this occasion, the same at all its items; empty: it has none, or an item \
+                     was skipped";
         vec![
             Self::column("recording", "", "as in trials", |row| (&row.trial.recording).into()),
             Self::column("participant", "", "as in participants", |row| (&row.trial.participant).into()),
-            Self::column("condition", "", "condition of the preceding trial", |row| row.trial.condition.name().into()),
+            Self::column(
+                "condition",
+                "",
+                "condition of the trial before it, or of the first trial if it was asked before that",
+                |row| row.trial.condition.name().into(),
+            ),
             Self::column("questionnaire", "", "name", |row| (&row.answer.questionnaire).into()),
             Self::column("item", "", "id of the item", |row| (&row.answer.item).into()),
             Self::column("about", "", "construct that the item measures", |row| row.answer.about.as_ref().into()),
             Self::column("reversed", "", "whether agreement counts against the construct", |row| {
                 row.answer.reversed.into()
             }),
-            Self::column("answer", "points", given, |row| row.answer.answer.into()),
-            Self::column("points", "points", "number of points of the scale", |row| row.answer.points.into()),
+            Self::column("answer", "", given, |row| match &row.answer.answer {
+                Some(AnswerValue::Number(number)) => (*number).into(),
+                Some(answer) => answer.cell().into(),
+                None => TableCell::Unknown,
+            }),
+            Self::column("points", "points", "number of points of the scale; empty: no scale", |row| {
+                row.answer.points.into()
+            }),
+            Self::column("kind", "", "scale, choice, number, text or slider", |row| row.answer.kind.name().into()),
+            Self::column("asked", "", "before the first trial, or after the trial", |row| {
+                if row.answer.before { "before" } else { "after" }.into()
+            }),
+            Self::column("score", "", score, |row| row.answer.score.into()),
         ]
     }
 }

@@ -7,13 +7,15 @@ use tomcom::base::time::SessionTime;
 use tomcom::console::ConsoleCommand;
 use tomcom::console::form::{SheetContent, sheet};
 use tomcom::edge::files::read_session;
+use tomcom::edge::parse::parse;
 use tomcom::session::Session;
 use tomcom::session::event::{EndReason, Event};
-use tomcom::session::plan::WantedRecording;
+use tomcom::session::plan::{QuestionnaireSpec, WantedRecording};
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::ParticipantKind;
 
 use super::{SIZES, Stage, kitchen};
+use crate::check_snapshot;
 
 /// The console of a recording of the study's first participant.
 fn planned(slot: usize, instructed: bool) -> Stage {
@@ -29,7 +31,8 @@ impl Stage {
     fn next_phase(&mut self) {
         let (phase, number) = (self.session.next_phase(), self.session.protocol.as_ref().map(|it| it.number + 1));
         let (phase, number) = phase.zip(number).expect("one more phase");
-        self.at(0.0, Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }));
+        let now_s = self.session.time.as_secs_f64();
+        self.at(now_s, Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }));
     }
 }
 
@@ -50,7 +53,10 @@ fn the_sheets_around_a_trial_fit_every_size() {
         stage.at(9.0, Event::TrialEnded { reason: EndReason::Wizard });
         assert!(stage.screen(size).contains(". on to the questionnaire"), "{}", stage.screen(size));
         stage.at(9.0, Event::Protocol(ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 2 }));
-        stage.at(9.0, Event::Protocol(ProtocolEvent::ItemAnswered { item: "too_often".to_string(), answer: 6 }));
+        stage.at(
+            9.0,
+            Event::Protocol(ProtocolEvent::ItemAnswered { item: "too_often".to_string(), answer: 6_u8.into() }),
+        );
         stage.at(9.0, Event::Protocol(ProtocolEvent::ItemShown { item: "too_often".to_string() }));
         let screen = stage.screen(size);
         for text in [
@@ -128,4 +134,94 @@ fn only_enter_confirms_answers_and_a_reason_to_go_on() {
     assert!(stage.notice().contains("enter confirms"), "{}", stage.notice());
     stage.wait(1.0);
     assert_eq!(told(stage.key(KeyCode::Enter)), ProtocolEvent::AnswersConfirmed);
+}
+
+/// The sheet of a questionnaire about the person: an item of every kind.
+#[test]
+fn every_kind_of_item_is_answered_with_keys() {
+    let told = |command: Option<ConsoleCommand>| match command {
+        Some(ConsoleCommand::Input(Event::Protocol(event))) => event,
+        other => panic!("{other:?}"),
+    };
+    let mut stage = asked(&["demographics.toml", "nasa-tlx.toml"]);
+    let give = |stage: &mut Stage, key: KeyCode| {
+        stage.wait(1.0);
+        let event = told(stage.key(key));
+        stage.at(stage.model.now.as_secs_f64(), Event::Protocol(event.clone()));
+        event
+    };
+    let answered = |event: ProtocolEvent| match event {
+        ProtocolEvent::ItemAnswered { item, answer } => format!("{item} {}", serde_json::json!(answer)),
+        other => panic!("{other:?}"),
+    };
+    let write = |stage: &mut Stage, words: &str| {
+        for letter in words.chars() {
+            assert_eq!(stage.key(KeyCode::Char(letter)), None, "{letter}: {}", stage.notice());
+        }
+    };
+    // A number is typed, and checked before it is sent.
+    write(&mut stage, "7");
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    assert!(stage.notice().contains("out of the item's range"), "{}", stage.notice());
+    stage.key(KeyCode::Backspace);
+    write(&mut stage, "31");
+    assert_eq!(answered(give(&mut stage, KeyCode::Enter)), "age 31");
+    // Words may have spaces and full stops, which are keys of the console elsewhere.
+    write(&mut stage, "q. x y");
+    for size in SIZES {
+        stage.model.size = size;
+        check_snapshot("console", format!("item_answer_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    assert_eq!(answered(give(&mut stage, KeyCode::Enter)), r#"gender "q. x y""#);
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Char('4')), None, "the item has three options");
+    assert_eq!(answered(give(&mut stage, KeyCode::Char('2'))), r#"handedness "left""#);
+    // Of several, each key chooses one or takes it back; the item stays until enter.
+    assert_eq!(answered(give(&mut stage, KeyCode::Char('3'))), r#"vision_aids ["lenses"]"#);
+    assert_eq!(answered(give(&mut stage, KeyCode::Char('2'))), r#"vision_aids ["glasses","lenses"]"#);
+    assert_eq!(answered(give(&mut stage, KeyCode::Char('3'))), r#"vision_aids ["glasses"]"#);
+    for size in SIZES {
+        stage.model.size = size;
+        check_snapshot("console", format!("item_choice_{}x{}", size.0, size.1), stage.screen(size));
+    }
+    assert_eq!(give(&mut stage, KeyCode::Enter), ProtocolEvent::ItemShown { item: "colour_vision".to_string() });
+    assert_eq!(give(&mut stage, KeyCode::Delete), ProtocolEvent::ItemSkipped { item: "colour_vision".to_string() });
+    for _ in 0..3 {
+        give(&mut stage, KeyCode::Char('5'));
+    }
+    let screen = stage.screen((120, 40));
+    assert!(screen.contains("31 years") && screen.contains("q. x y") && screen.contains("glasses"), "{screen}");
+    assert_eq!(give(&mut stage, KeyCode::Enter), ProtocolEvent::AnswersConfirmed);
+    stage.next_phase();
+    // The position of a slider is typed, in its steps.
+    write(&mut stage, "42");
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    assert!(stage.notice().contains("steps"), "{}", stage.notice());
+    stage.key(KeyCode::Backspace);
+    write(&mut stage, "5");
+    assert_eq!(answered(give(&mut stage, KeyCode::Enter)), "mental 45");
+    for size in SIZES {
+        stage.model.size = size;
+        check_snapshot("console", format!("item_slider_{}x{}", size.0, size.1), stage.screen(size));
+    }
+}
+
+/// The console of a recording that begins with these questionnaires.
+fn asked(names: &[&str]) -> Stage {
+    let mut files = read_session(Path::new("sessions/study.toml")).expect("the study");
+    let plan = files.spec.plan.as_mut().expect("a plan");
+    (plan.questionnaire, files.questionnaires) = (Vec::new(), Vec::new());
+    for name in names {
+        let path = Path::new("sessions/questionnaires").join(name);
+        let text = std::fs::read_to_string(&path).expect("a questionnaire");
+        let file = path.display().to_string();
+        plan.questionnaire.push(QuestionnaireSpec { file, after: None, before: true });
+        files.questionnaires.push(parse(&path, &text).expect("a questionnaire"));
+    }
+    let study = files.study().expect("a plan");
+    let (spec, _) = study.settings(WantedRecording { participant: 0, slot: 1, attempt: 1, instructed: true });
+    let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
+    stage.session = Session::new(kitchen("sushi"), spec, 0);
+    stage.next_phase();
+    stage
 }

@@ -4,6 +4,7 @@
 mod assignment;
 mod progress;
 mod protocol;
+mod questionnaires;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -89,7 +89,7 @@ impl Run {
                 PhaseSpec::Trial | PhaseSpec::Familiarisation => self.trial(),
                 PhaseSpec::Questionnaire { questionnaire } => {
                     for item in questionnaire.items {
-                        self.tell(ProtocolEvent::ItemAnswered { item: item.id, answer: 5 });
+                        self.tell(ProtocolEvent::ItemAnswered { item: item.id, answer: 5_u8.into() });
                     }
                     self.tell(ProtocolEvent::AnswersConfirmed);
                 }
@@ -155,10 +155,10 @@ fn items_are_answered_back_and_forth_and_confirmed() {
     let id = |index: usize| items[index].id.clone();
     assert_eq!((id(0), id(1)), ("too_often".to_string(), "annoyed".to_string()));
     let at = |run: &Run| run.engine.session().protocol.as_ref().expect("a plan").item;
-    run.refuses(ProtocolEvent::ItemAnswered { item: id(0), answer: 0 });
-    run.refuses(ProtocolEvent::ItemAnswered { item: id(0), answer: 8 });
-    run.refuses(ProtocolEvent::ItemAnswered { item: id(1), answer: 3 });
-    run.tell(ProtocolEvent::ItemAnswered { item: id(0), answer: 7 });
+    run.refuses(ProtocolEvent::ItemAnswered { item: id(0), answer: 0_u8.into() });
+    run.refuses(ProtocolEvent::ItemAnswered { item: id(0), answer: 8_u8.into() });
+    run.refuses(ProtocolEvent::ItemAnswered { item: id(1), answer: 3_u8.into() });
+    run.tell(ProtocolEvent::ItemAnswered { item: id(0), answer: 7_u8.into() });
     assert_eq!(at(&run), 1);
     run.tell(ProtocolEvent::ItemShown { item: id(2) });
     for item in 2..items.len() {
@@ -166,10 +166,10 @@ fn items_are_answered_back_and_forth_and_confirmed() {
     }
     assert_eq!(at(&run), 1, "after the last comes the one that was left out");
     run.refuses(ProtocolEvent::AnswersConfirmed);
-    run.tell(ProtocolEvent::ItemAnswered { item: id(1), answer: 1 });
+    run.tell(ProtocolEvent::ItemAnswered { item: id(1), answer: 1_u8.into() });
     assert_eq!(at(&run), items.len(), "all answers");
     run.tell(ProtocolEvent::ItemShown { item: id(0) });
-    run.tell(ProtocolEvent::ItemAnswered { item: id(0), answer: 2 });
+    run.tell(ProtocolEvent::ItemAnswered { item: id(0), answer: 2_u8.into() });
     assert_eq!(at(&run), items.len(), "one was changed, the others stand");
     run.tell(ProtocolEvent::AnswersConfirmed);
     run.refuses(ProtocolEvent::ItemShown { item: id(0) });
@@ -194,7 +194,7 @@ fn hasty_answers_are_all_taken() {
         let Some(ConsoleCommand::Input(event)) = update(&mut model, run.engine.session(), key) else {
             panic!("item {}: {:?}", item.id, model.notice)
         };
-        assert_eq!(event, Event::Protocol(ProtocolEvent::ItemAnswered { item: item.id.clone(), answer: 5 }));
+        assert_eq!(event, Event::Protocol(ProtocolEvent::ItemAnswered { item: item.id.clone(), answer: 5_u8.into() }));
         assert_eq!(run.input(event), None);
     }
     for (gap_s, counts) in [(1.0, true), (0.3, false), (0.3, false), (0.3, true)] {

@@ -11,7 +11,7 @@ use tomcom::session::ranges;
 use super::{as_number, every_setting, extremes, folder, has, questionnaire, set};
 
 /// Settings that other rules bound beside their range: together with others, or as multiples of others.
-const RULED: [&str; 11] = [
+const RULED: [&str; 14] = [
     "human.perception.look_alike",
     "human.perception.anything",
     "participant.population.signal_after_s",
@@ -22,6 +22,9 @@ const RULED: [&str; 11] = [
     "plan.block",
     "plan.questionnaire.after",
     "plan.participants",
+    "item.min",
+    "item.max",
+    "item.step",
     "*.display.w",
 ];
 

@@ -63,9 +63,42 @@ fn kitchen() -> Kitchen {
     read_kitchen(Path::new("layouts/sushi.toml")).expect("the default kitchen").kitchen
 }
 
-/// The questionnaire that comes with the program.
+/// A questionnaire with an item of every kind.
 fn questionnaire() -> toml::Table {
-    let text = fs::read_to_string("sessions/questionnaires/acceptance.toml").expect("a questionnaire");
+    let text = r#"
+        name = "all"
+        title = "Everything"
+        language = "en"
+        [scale]
+        points = 7
+        low = "no"
+        high = "yes"
+        [scales.frequency]
+        points = 5
+        low = "never"
+        high = "always"
+        [[item]]
+        id = "difficult"
+        text = "It was difficult."
+        [[item]]
+        id = "age"
+        text = "How old are you?"
+        kind = "number"
+        min = 18
+        max = 99
+        [[item]]
+        id = "remarks"
+        text = "What else?"
+        kind = "text"
+        length = 200
+        [[item]]
+        id = "effort"
+        text = "How much effort was it?"
+        kind = "slider"
+        low = "none"
+        high = "very much"
+        step = 5
+    "#;
     text.parse().expect("a questionnaire is TOML")
 }
 

@@ -17,7 +17,9 @@ use tomcom::run::codes::CodedRecording;
 use tomcom::run::study::describe;
 use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::session::Event;
+use tomcom::session::answer_value::AnswerValue;
 use tomcom::session::event::EndReason;
+use tomcom::session::plan::ItemKind;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom::study::column::{Table, TableCell, TableRow};
 use tomcom::study::facts::Facts;
@@ -42,8 +44,13 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
             text: "The signals annoyed me.".to_string(),
             about: Some("acceptance".to_string()),
             reversed: true,
-            answer,
-            points: 7,
+            kind: ItemKind::Scale,
+            answer: answer.map(AnswerValue::from),
+            points: Some(7),
+            options: Vec::new(),
+            share: answer.map(|answer: u8| 1.0 - f64::from(answer - 1) / 6.0),
+            before: false,
+            score: None,
         });
     }
     let figures = StudySummary::from_trials(&trials, &Facts::default(), 0);

@@ -5,7 +5,7 @@ const Hands = (() => {
   // The same button within so many milliseconds is a contact that bounces.
   const BOUNCE_MS = 50, PUSHED_MS = 8;
   const down = new Set(), pads = new Map(), last = new Map();
-  let tell = () => {}, answer = () => {};
+  let tell = () => {};
 
   function press(button, at) {
     if (at - (last.get(button) ?? -Infinity) < BOUNCE_MS) return;
@@ -33,11 +33,14 @@ const Hands = (() => {
   function typed(event) {
     const scene = Stage.scene();
     if (!scene || event.target instanceof HTMLInputElement || event.ctrlKey || event.altKey || event.metaKey) return;
+    // Words are typed there; only the enter key leaves them.
+    if (event.target instanceof HTMLTextAreaElement && (event.key !== "Enter" || event.isComposing)) return;
     const isHeld = event.repeat || down.has(event.code || event.key);
     down.add(event.code || event.key);
     const question = Stage.shown() && Stage.shown().question;
     if (question) {
-      if (!isHeld) answerBy(event.key, question);
+      if (["Enter", "Home", "End", "ArrowUp", "ArrowDown"].includes(event.key)) event.preventDefault();
+      Questions.key(event.key, question, isHeld);
       return;
     }
     const button = scene.buttons.find(({ key }) => key && key.toLowerCase() === event.key.toLowerCase());
@@ -46,26 +49,13 @@ const Hands = (() => {
     if (!isHeld) press(button.name, timeOf(event.timeStamp));
   }
 
-  function answerBy(key, question) {
-    const digit = /^[0-9]$/.test(key) ? Number(key) : null;
-    if (question.item && digit === 0) answer({ kind: "answer", item: question.item, rated: null });
-    else if (question.item && digit !== null && digit <= question.points) answer({ kind: "answer", item: question.item, rated: digit });
-    else if (question.before && ["ArrowLeft", "Backspace"].includes(key)) answer({ kind: "back", item: question.before });
-    else if (question.answer && ["ArrowRight", "Enter"].includes(key)) answer({ kind: "answer", item: question.item, rated: question.answer });
-    else if (!question.item && key === "Enter") answer({ kind: "confirm" });
-  }
-
   function touched(event) {
-    const hit = event.target.closest("[data-button], [data-rate], [data-does]");
+    const hit = event.target.closest("[data-button], [data-rate], [data-option], [data-typed], [data-does]");
     if (!hit || event.button > 0) return;
     event.preventDefault();
     const question = Stage.shown() && Stage.shown().question;
     if (hit.dataset.button) press(hit.dataset.button, timeOf(event.timeStamp));
-    else if (question && hit.dataset.rate) answer({ kind: "answer", item: question.item, rated: Number(hit.dataset.rate) });
-    else if (question && hit.dataset.does === "skip") answer({ kind: "answer", item: question.item, rated: null });
-    else if (question && hit.dataset.does === "next") answer({ kind: "answer", item: question.item, rated: question.answer });
-    else if (question && hit.dataset.does === "back") answer({ kind: "back", item: question.before });
-    else if (question && hit.dataset.does === "confirm") answer({ kind: "confirm" });
+    else if (question) Questions.touch(hit.dataset, question);
   }
 
   /** Looks at gamepads and button boxes: they do not say by themselves when a button goes down. */
@@ -86,7 +76,7 @@ const Hands = (() => {
 
   function begin(toTell, toAnswer, toPoint) {
     tell = toTell;
-    answer = toAnswer;
+    Questions.begin(toAnswer);
     window.addEventListener("keydown", typed);
     window.addEventListener("keyup", (event) => down.delete(event.code || event.key));
     window.addEventListener("blur", () => down.clear());

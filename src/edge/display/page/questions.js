@@ -1,26 +1,30 @@
 "use strict";
-/** An item of a questionnaire, to be touched or answered with digits. */
-const Questions = {
-  draw(sheet, question, words, { element, text }) {
+/** An item of a questionnaire, answered by touch, keys, or words that are typed. */
+const Questions = (() => {
+  const SLIDER_END = 100;
+  // What is typed or dragged and not told yet, of this item.
+  let draft = { item: null, value: null };
+  let redraw = () => {}, tell = () => {};
+
+  const pending = (question) => (draft.item === question.item ? draft.value : null);
+  const keep = (question, value) => { draft = { item: question.item, value }; };
+  const give = (question, answer) => tell({ kind: "answer", item: question.item, answer });
+
+  function draw(sheet, question, words, kit) {
+    const { element, text } = kit;
+    // Words that are being typed stay when the item is drawn again.
+    redraw = () => draw(sheet, question, words, kit);
     const card = element("div", "card question");
     card.append(text("h2", "", question.title));
     if (question.item) {
       card.append(text("p", "count", `${question.number} / ${question.of}`), text("p", "item", question.text));
-      const scale = element("div", "scale");
-      for (let point = 1; point <= question.points; point += 1) {
-        const made = text("button", point === question.answer ? "chosen" : "", point);
-        made.dataset.rate = point;
-        scale.append(made);
-      }
-      const ends = element("div", "ends");
-      ends.append(text("span", "", question.low), text("span", "", question.high));
-      card.append(scale, ends);
+      if (question.form) card.append(...FORMS[question.form.kind](question, words, kit));
     } else {
       card.append(text("p", "item", question.text));
       const given = element("ol", question.given.length > 6 ? "given small" : "given");
-      for (const { text: asked, rated } of question.given) {
+      for (const { text: asked, answer } of question.given) {
         const line = element("li", "");
-        line.append(text("span", "", asked), text("b", "", rated ?? "–"));
+        line.append(text("span", "", asked), text("b", "", answer ?? "–"));
         given.append(line);
       }
       card.append(given);
@@ -29,9 +33,149 @@ const Questions = {
     const button = (does, label) => { const made = text("button", does, label); made.dataset.does = does; row.append(made); };
     if (question.before) button("back", words.back);
     if (question.item) button("skip", words.skip);
-    if (question.item && question.answer) button("next", words.next);
+    if (question.item && (question.answer !== null || isTyped(question))) button("next", words.next);
     if (!question.item) button("confirm", words.confirm);
     card.append(row);
     sheet.replaceChildren(card);
-  },
-};
+    const field = card.querySelector("textarea");
+    if (field) { field.focus(); field.setSelectionRange(field.value.length, field.value.length); }
+  }
+
+  const isTyped = ({ form }) => form && ["number", "text"].includes(form.kind);
+
+  /** A scale or slider with its anchors below the first and the last point. */
+  const anchored = (made, low, high, { element, text }) => {
+    const frame = element("div", "anchored");
+    frame.append(made, text("span", "anchor low", low), text("span", "anchor high", high));
+    return frame;
+  };
+
+  const FORMS = {
+    scale({ form, answer }, words, kit) {
+      const scale = kit.element("div", "scale");
+      for (let point = 1; point <= form.points; point += 1) {
+        const made = kit.text("button", point === answer ? "chosen" : "", point);
+        made.dataset.rate = point;
+        scale.append(made);
+      }
+      return [anchored(scale, form.low, form.high, kit)];
+    },
+    choice({ form, answer }, words, { element, text }) {
+      const list = element("div", form.options.length > 5 ? "options many" : "options");
+      form.options.forEach(({ id, text: label }, index) => {
+        const made = element("button", [].concat(answer ?? []).includes(id) ? "chosen" : "");
+        made.append(text("i", "", index + 1), text("span", "", label));
+        made.dataset.option = id;
+        list.append(made);
+      });
+      return form.several ? [list, text("p", "hint", words.several)] : [list];
+    },
+    number(question, words, { element, text }) {
+      const { form, answer } = question, value = pending(question) ?? String(answer ?? "");
+      const entry = element("div", "number");
+      entry.append(text("output", "", value || "\u00a0"), text("span", "", form.unit));
+      const pad = element("div", "pad");
+      for (const key of [..."123456789", form.min < 0 ? "-" : "", "0", "⌫"]) {
+        const made = text(key ? "button" : "span", "", key);
+        if (key) made.dataset.typed = key;
+        pad.append(made);
+      }
+      const isWrong = value && !isNumber(form, value) && value.length >= String(form.max).length;
+      return [entry, text("p", isWrong ? "hint wrong" : "hint", `${form.min} – ${form.max} ${form.unit}`), pad];
+    },
+    text(question, words, { element }) {
+      const field = element("textarea", "");
+      Object.assign(field, { rows: 3, maxLength: question.form.length, value: pending(question) ?? question.answer ?? "" });
+      field.setAttribute("aria-label", question.text);
+      field.addEventListener("input", () => keep(question, field.value));
+      return [field];
+    },
+    slider(question, words, kit) {
+      const { form } = question, { element } = kit, slider = element("div", "slider"), thumb = element("b", "");
+      const place = (value) => { thumb.style.left = `${value}%`; thumb.hidden = value === null; };
+      if (SLIDER_END / form.step <= 25) {
+        for (let at = 0; at <= SLIDER_END; at += form.step) slider.append(Object.assign(element("i", ""), { style: `left: ${at}%` }));
+      }
+      slider.append(thumb);
+      place(position(question));
+      const at = (event) => {
+        const box = slider.getBoundingClientRect();
+        return onStep(form, (SLIDER_END * (event.clientX - box.left)) / box.width);
+      };
+      const drag = (event) => { keep(question, at(event)); place(draft.value); };
+      slider.addEventListener("pointerdown", (event) => { slider.setPointerCapture(event.pointerId); drag(event); });
+      slider.addEventListener("pointermove", (event) => slider.hasPointerCapture(event.pointerId) && drag(event));
+      slider.addEventListener("pointerup", (event) => { drag(event); give(question, draft.value); });
+      return [anchored(slider, form.low, form.high, kit)];
+    },
+  };
+
+  const position = (question) => pending(question) ?? question.answer;
+  const onStep = ({ step }, value) => Math.min(SLIDER_END, Math.max(0, Math.round(value / step) * step));
+  const isNumber = ({ min, max }, typed) => /^-?[0-9]{1,7}$/.test(typed) && Number(typed) >= min && Number(typed) <= max;
+
+  /** Goes on: with what is typed, or with the answer that was given before. */
+  function next(question) {
+    const typed = isTyped(question) ? pending(question) : null;
+    if (typed === null) return question.answer !== null && tell({ kind: "next" });
+    const words = typed.replace(/\s+/g, " ").trim();
+    if (question.form.kind === "text" && words) give(question, words);
+    if (question.form.kind === "number" && isNumber(question.form, words)) give(question, Number(words));
+    return undefined;
+  }
+
+  const skip = (question) => { keep(question, null); give(question, null); };
+  const back = (question) => question.before && tell({ kind: "back", item: question.before });
+
+  function choose(question, id) {
+    if (!question.form.several) return give(question, id);
+    const before = question.answer ?? [];
+    const isChosen = (one) => before.includes(one) !== (one === id);
+    return give(question, question.form.options.map((option) => option.id).filter(isChosen));
+  }
+
+  /** A digit, a minus sign or the key that deletes, typed or touched. */
+  function type(question, key) {
+    const typed = pending(question) ?? String(question.answer ?? "");
+    const next = key === "⌫" ? typed.slice(0, -1) : pending(question) === null ? key : typed + key;
+    if (next.length <= 7) keep(question, next);
+    redraw();
+  }
+
+  function slide(question, value) {
+    keep(question, onStep(question.form, value));
+    give(question, draft.value);
+  }
+
+  /** A key, while an item is shown; `isHeld`: it is down since before. */
+  function key(name, question, isHeld) {
+    const { form } = question, kind = question.item && form && form.kind, digit = /^[0-9]$/.test(name) ? Number(name) : null;
+    const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[name];
+    if (kind === "slider" && steps) return slide(question, (position(question) ?? SLIDER_END / 2) + steps * form.step);
+    if (isHeld) return undefined;
+    if (kind === "slider" && digit !== null) return slide(question, 10 * digit);
+    if (kind === "slider" && ["Home", "End"].includes(name)) return slide(question, name === "End" ? SLIDER_END : 0);
+    if (kind === "number" && (digit !== null || (name === "-" && form.min < 0))) return type(question, name);
+    if (kind === "number" && name === "Backspace" && (pending(question) ?? question.answer ?? "") !== "") return type(question, "⌫");
+    if (question.item && (name === "Delete" || (digit === 0 && ["scale", "choice"].includes(kind)))) return skip(question);
+    if (kind === "scale" && digit !== null && digit <= form.points) return give(question, digit);
+    if (kind === "choice" && digit !== null && digit <= form.options.length) return choose(question, form.options[digit - 1].id);
+    if (["ArrowLeft", "Backspace"].includes(name)) return back(question);
+    if (question.item && ["ArrowRight", "Enter"].includes(name)) return next(question);
+    if (!question.item && name === "Enter") return tell({ kind: "confirm" });
+    return undefined;
+  }
+
+  /** A touch of one of the buttons. */
+  function touch({ rate, option, typed, does }, question) {
+    if (rate) give(question, Number(rate));
+    else if (option) choose(question, option);
+    else if (typed) type(question, typed);
+    else if (does === "skip") skip(question);
+    else if (does === "next") next(question);
+    else if (does === "back") back(question);
+    else if (does === "confirm") tell({ kind: "confirm" });
+  }
+
+  return { draw, key, touch, begin: (toTell) => { tell = toTell; } };
+})();

@@ -1,0 +1,60 @@
+//! The answers to a questionnaire, as the tables have them, and its score.
+
+use crate::session::plan::{Item, ItemForm, ItemKind, Questionnaire, ScoreRule};
+use crate::session::protocol::Protocol;
+use crate::session::{Phase, Session};
+use crate::study::trial_statistics::QuestionnaireAnswer;
+
+/// Answers to the questionnaire that was just confirmed.
+pub(super) fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {
+    let (Some(questionnaire), Some(protocol)) = (session.questionnaire(), &session.protocol) else { return Vec::new() };
+    let before = session.phase == Phase::Ready;
+    let score = score(questionnaire, protocol);
+    let answered = |(index, item): (usize, &Item)| {
+        let form = questionnaire.form(index);
+        QuestionnaireAnswer {
+            questionnaire: questionnaire.name.clone(),
+            item: item.id.clone(),
+            text: item.text.clone(),
+            about: item.about.clone(),
+            reversed: item.reversed,
+            kind: item.kind.unwrap_or(ItemKind::Scale),
+            answer: protocol.given(index).cloned(),
+            points: match form {
+                Some(ItemForm::Scale(scale)) => Some(scale.points),
+                _ => None,
+            },
+            options: item.options.clone(),
+            share: share(questionnaire, protocol, index),
+            before,
+            score,
+        }
+    };
+    questionnaire.items.iter().enumerate().map(answered).collect()
+}
+
+/// The answer to an item from 0 to 1 on its scale, turned round if the item is reversed.
+fn share(questionnaire: &Questionnaire, protocol: &Protocol, index: usize) -> Option<f64> {
+    let [least, most] = questionnaire.form(index)?.ends()?;
+    let share = (protocol.given(index)?.number()? - least) as f64 / (most - least).max(1) as f64;
+    Some(if questionnaire.items.get(index)?.reversed { 1.0 - share } else { share })
+}
+
+/// The questionnaire's score; `None` if it has no rule, or if an item was left out.
+fn score(questionnaire: &Questionnaire, protocol: &Protocol) -> Option<f64> {
+    let count = questionnaire.items.len();
+    let shares: Option<Vec<f64>> = (0..count).map(|index| share(questionnaire, protocol, index)).collect();
+    let shares = shares.filter(|shares| !shares.is_empty())?;
+    match questionnaire.score? {
+        ScoreRule::Mean => {
+            let on_scale = |(index, share): (usize, &f64)| {
+                let [least, most] = questionnaire.form(index)?.ends()?;
+                Some(least as f64 + share * (most - least) as f64)
+            };
+            let sum: Option<f64> = shares.iter().enumerate().map(on_scale).sum();
+            Some(sum? / count as f64)
+        }
+        // Each item adds 0 to 4 points, and the sum is taken times 2.5 (Brooke 1996).
+        ScoreRule::Sus => Some(2.5 * shares.iter().map(|share| (4.0 * share).round()).sum::<f64>()),
+    }
+}

@@ -1,0 +1,49 @@
+//! The answer to an item of a questionnaire, as logs and the participant's page have it.
+
+use serde::{Deserialize, Serialize};
+
+/// An answer to an item; in JSON a number, a text, or a list of texts.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum AnswerValue {
+    /// The point of a scale, from 1; the position of a slider, from 0 to 100; or a number.
+    Number(i64),
+    /// The participant's words, or the id of the chosen option.
+    Text(String),
+    /// The ids of the chosen options, where several can be chosen.
+    Options(Vec<String>),
+}
+
+impl AnswerValue {
+    /// The number, if it is one.
+    pub fn number(&self) -> Option<i64> {
+        match self {
+            AnswerValue::Number(number) => Some(*number),
+            AnswerValue::Text(_) | AnswerValue::Options(_) => None,
+        }
+    }
+
+    /// The ids of the chosen options; a text is one.
+    pub fn options(&self) -> &[String] {
+        match self {
+            AnswerValue::Number(_) => &[],
+            AnswerValue::Text(option) => std::slice::from_ref(option),
+            AnswerValue::Options(options) => options,
+        }
+    }
+
+    /// The answer as one cell of a table: several options are separated by spaces.
+    pub fn cell(&self) -> String {
+        match self {
+            AnswerValue::Number(number) => number.to_string(),
+            AnswerValue::Text(text) => text.clone(),
+            AnswerValue::Options(options) => options.join(" "),
+        }
+    }
+}
+
+impl From<u8> for AnswerValue {
+    fn from(point: u8) -> AnswerValue {
+        AnswerValue::Number(i64::from(point))
+    }
+}

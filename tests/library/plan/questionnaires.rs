@@ -1,0 +1,173 @@
+//! Questionnaires with items of every kind: what is an answer, what a log holds, and what the files of the program ask.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use tomcom::base::time::SessionTime;
+use tomcom::edge::log::LogWriter;
+use tomcom::edge::parse::parse;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::run::engine::Engine;
+use tomcom::run::verify::verify;
+use tomcom::session::answer_value::AnswerValue;
+use tomcom::session::plan::{ItemForm, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
+use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom::session::{Event, Header};
+
+use super::{files, folder};
+
+fn shipped(name: &str) -> Questionnaire {
+    let path = Path::new("sessions/questionnaires").join(name);
+    let questionnaire: Questionnaire =
+        parse(&path, &fs::read_to_string(&path).expect("a file")).expect("a questionnaire");
+    questionnaire.check().expect("a right one");
+    questionnaire
+}
+
+fn options(ids: &[&str]) -> AnswerValue {
+    AnswerValue::Options(ids.iter().map(|id| id.to_string()).collect())
+}
+
+fn text(words: &str) -> AnswerValue {
+    AnswerValue::Text(words.to_string())
+}
+
+#[test]
+fn each_kind_of_item_takes_its_answers_and_no_others() {
+    let asked = shipped("demographics.toml");
+    let slider = shipped("nasa-tlx.toml");
+    let form = |id: &str| asked.form(asked.position(id).expect("an item")).expect("a form");
+    let number = AnswerValue::Number;
+    for (form, right, wrong) in [
+        (form("age"), vec![number(18), number(99)], vec![number(17), number(100), text("30"), options(&[])]),
+        (
+            form("gender"),
+            vec![text("x"), text(&"é".repeat(40))],
+            vec![text(" "), text(&"e".repeat(41)), text("a\nb"), number(1)],
+        ),
+        (form("handedness"), vec![text("left")], vec![text("neither"), options(&["left"]), number(1)]),
+        (
+            form("vision_aids"),
+            vec![options(&[]), options(&["glasses"]), options(&["glasses", "lenses"])],
+            vec![options(&["glasses", "glasses"]), options(&["monocle"]), text("glasses")],
+        ),
+        (form("robots"), vec![number(1), number(5)], vec![number(0), number(6), number(i64::MIN), text("1")]),
+        (
+            slider.form(0).expect("a form"),
+            vec![number(0), number(5), number(100)],
+            vec![number(-5), number(105), number(42), text("5")],
+        ),
+    ] {
+        for answer in right {
+            assert_eq!(form.admit(&answer), Ok(()), "{answer:?} for {form:?}");
+        }
+        for answer in wrong {
+            assert!(form.admit(&answer).is_err(), "{answer:?} for {form:?}");
+        }
+    }
+}
+
+#[test]
+fn an_answer_in_the_log_is_a_number_a_text_or_a_list() {
+    for (answer, json) in [
+        (AnswerValue::Number(6), "6"),
+        (text("left"), r#""left""#),
+        (options(&["glasses", "lenses"]), r#"["glasses","lenses"]"#),
+    ] {
+        let event = ProtocolEvent::ItemAnswered { item: "one".to_string(), answer };
+        let written = serde_json::to_string(&event).expect("JSON");
+        assert_eq!(written, format!(r#"{{"what":"item_answered","item":"one","answer":{json}}}"#));
+        assert_eq!(serde_json::from_str::<ProtocolEvent>(&written).expect("the same event"), event);
+    }
+}
+
+#[test]
+fn the_questionnaires_ask_the_same_in_both_languages() {
+    for name in ["acceptance", "demographics", "nasa-tlx", "sus"] {
+        let (english, german) = (shipped(&format!("{name}.toml")), shipped(&format!("{name}.de.toml")));
+        assert_eq!((english.language.as_str(), german.language.as_str()), ("en", "de"));
+        assert_eq!(
+            (&english.name, english.score, english.items.len()),
+            (&german.name, german.score, german.items.len())
+        );
+        for (index, (one, other)) in english.items.iter().zip(&german.items).enumerate() {
+            assert_eq!(
+                (&one.id, one.kind, &one.about, one.reversed),
+                (&other.id, other.kind, &other.about, other.reversed)
+            );
+            assert_ne!(one.text, other.text, "{}", one.id);
+            let ids =
+                |item: &tomcom::session::plan::Item| item.options.iter().map(|one| one.id.clone()).collect::<Vec<_>>();
+            assert_eq!(ids(one), ids(other));
+            let shape = |form: Option<ItemForm>| match form.expect("a form") {
+                ItemForm::Scale(scale) => (1, i64::from(scale.points)),
+                ItemForm::Number { range, .. } => (range[0], range[1]),
+                ItemForm::Slider { step, .. } => (0, step),
+                ItemForm::Text { length } => (0, i64::from(length)),
+                ItemForm::Choice { several, .. } => (0, i64::from(several)),
+            };
+            assert_eq!(shape(english.form(index)), shape(german.form(index)), "{}", one.id);
+        }
+    }
+}
+
+/// A recording that begins with a questionnaire about the person: answers are events as they are given, sliders and choices of several
+/// stay until the next item is asked for, and all of it comes out the same again.
+#[test]
+fn the_person_is_asked_before_the_first_trial_and_only_then() {
+    let mut files = files();
+    let plan = files.spec.plan.as_mut().expect("a plan");
+    let spec = |file: &str| QuestionnaireSpec { file: file.to_string(), after: None, before: true };
+    plan.questionnaire.insert(0, spec("questionnaires/demographics.toml"));
+    files.questionnaires.insert(0, shipped("demographics.toml"));
+    let study = files.study().expect("a plan");
+    let settings = |slot| study.settings(WantedRecording { participant: 0, slot, attempt: 1, instructed: true });
+    let asked = |slot| {
+        let (spec, _) = settings(slot);
+        let phases = spec.step.expect("a step").phases;
+        let before = phases.iter().take_while(|phase| **phase != PhaseSpec::Trial).count();
+        (phases.len(), before)
+    };
+    assert_eq!(asked(1), (3, 1), "before the first trial, and what is asked after it");
+    assert_eq!(asked(2).1, 0, "not again before the second");
+
+    let (spec, trial) = settings(1);
+    let out = folder("person");
+    let header = Header::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
+    let mut log = LogWriter::create_live(&out, "2026-03-14", &header).expect("the folder can be written");
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    let mut engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
+    let mut now_s = 0.0;
+    let mut tell = |engine: &mut Engine, event: ProtocolEvent| {
+        now_s += 0.5;
+        let outcome = engine.input(SessionTime::from_secs_f64(now_s), Event::Protocol(event));
+        outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
+        outcome.refused
+    };
+    let item = |engine: &Engine| {
+        let (asked, protocol) = (engine.session().questionnaire(), engine.session().protocol.as_ref());
+        asked.zip(protocol).and_then(|(asked, protocol)| Some(asked.items.get(protocol.item)?.id.clone()))
+    };
+    tell(&mut engine, ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 1 });
+    let mut answer = |engine: &mut Engine, id: &str, answer: AnswerValue| {
+        assert_eq!(item(engine).as_deref(), Some(id));
+        tell(engine, ProtocolEvent::ItemAnswered { item: id.to_string(), answer })
+    };
+    assert!(answer(&mut engine, "age", AnswerValue::Number(17)).is_some());
+    assert_eq!(answer(&mut engine, "age", AnswerValue::Number(31)), None);
+    assert_eq!(answer(&mut engine, "gender", text("prefer \"not\" to")), None);
+    assert_eq!(answer(&mut engine, "handedness", text("left")), None);
+    assert_eq!(answer(&mut engine, "vision_aids", options(&["glasses"])), None);
+    assert_eq!(
+        answer(&mut engine, "vision_aids", options(&["glasses", "lenses"])),
+        None,
+        "it stays: several can be chosen"
+    );
+    let next = engine.session().next_item().expect("one more");
+    assert_eq!(tell(&mut engine, next), None);
+    assert_eq!(item(&engine).as_deref(), Some("colour_vision"));
+    let recording = log.folder().to_path_buf();
+    let found = verify(&recording).expect("readable");
+    assert!(found.verified && found.cut, "{found:?}");
+}

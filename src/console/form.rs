@@ -82,16 +82,21 @@ pub(super) enum SheetKey {
 }
 
 /// The meaning of a key on a sheet, if any; `advances` marks the key that starts and pauses trials.
-pub(super) fn stroke(code: KeyCode, advances: bool) -> Option<SheetKey> {
+pub(super) fn stroke(session: &Session, code: KeyCode, advances: bool) -> Option<SheetKey> {
+    let shown = session.protocol.as_ref().and_then(|protocol| session.questionnaire()?.form(protocol.item));
     match code {
         _ if advances => Some(SheetKey::Leave),
         KeyCode::Enter => Some(SheetKey::Confirm),
         KeyCode::Right | KeyCode::Down => Some(SheetKey::Forward),
         KeyCode::Left | KeyCode::Up => Some(SheetKey::Back),
         KeyCode::Backspace => Some(SheetKey::Undo),
-        KeyCode::Delete => Some(SheetKey::Skip),
+        KeyCode::Delete if shown.is_some() => Some(SheetKey::Skip),
         KeyCode::Char(digit @ '0'..='9') => Some(SheetKey::Digit(digit as u8 - b'0')),
-        KeyCode::Char(letter) if letter.is_alphabetic() || letter == '-' => Some(SheetKey::Letter(letter)),
+        KeyCode::Char(letter)
+            if shown.is_some_and(|form| is_typed(&form)) && (letter.is_alphabetic() || letter == '-') =>
+        {
+            Some(SheetKey::Letter(letter))
+        }
         _ => None,
     }
 }
@@ -145,9 +150,6 @@ fn ask(
     match (stroke, shown) {
         (SheetKey::Digit(digit), Some(_)) if is_typed => begin_typing(model, protocol, char::from(b'0' + digit)),
         (SheetKey::Letter(letter), Some(_)) if is_typed => begin_typing(model, protocol, letter),
-        (SheetKey::Letter(_), _) => {
-            refuse(model, "this key has no meaning here: the last line of the sheet says what has")
-        }
         (SheetKey::Digit(0) | SheetKey::Skip, Some(item)) => tell(model, session, ProtocolEvent::ItemSkipped { item }),
         (SheetKey::Digit(digit), Some(item)) => {
             let index = usize::from(digit - 1);
@@ -158,7 +160,7 @@ fn ask(
                 None => refuse(model, "the item has no such option"),
             }
         }
-        (SheetKey::Digit(_) | SheetKey::Skip, None) => refuse(model, "go back to the item first"),
+        (SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip, _) => refuse(model, "go back to the item first"),
         (SheetKey::Back | SheetKey::Undo, _) => {
             let item = id(protocol.item.checked_sub(1)?)?;
             tell(model, session, ProtocolEvent::ItemShown { item })

@@ -86,6 +86,7 @@ pub(super) fn press(
             None
         }
         action if model.dialog.is_none() && model.playback.is_none() && sheet(session).is_some() => {
+            let code = if chord.ctrl && matches!(code, KeyCode::Char(_)) { KeyCode::Null } else { code };
             on_sheet(model, session, code, action, touch)
         }
         Some(action) if touch == Touch::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
@@ -153,7 +154,7 @@ fn on_sheet(
     action: Option<KeyAction>,
     touch: Touch,
 ) -> Option<ConsoleCommand> {
-    match (form::stroke(code, action == Some(KeyAction::Advance)), action) {
+    match (form::stroke(session, code, action == Some(KeyAction::Advance)), action) {
         // Nobody reads a step so fast: the key is still down from the last one. An answer is always taken: one that is lost
         // would put those after it at the wrong items, one too many is seen.
         (Some(form::SheetKey::Confirm | form::SheetKey::Leave), _) if touch == Touch::Again => {

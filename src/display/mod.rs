@@ -7,6 +7,7 @@
 
 #[cfg(feature = "physics")]
 mod arm_tip;
+mod consent;
 pub mod page_language;
 mod question;
 mod robot_hand;
@@ -14,6 +15,7 @@ mod robot_pose;
 mod scene;
 mod sight;
 
+pub use consent::consent_sight;
 pub use robot_hand::RobotHand;
 pub use robot_pose::RobotPose;
 pub use scene::{DisplayScene, scene};

@@ -65,6 +65,11 @@ pub enum DisplayedForm {
         /// Most characters.
         length: u32,
     },
+    /// No item: consent to the text, by holding a button.
+    Consent {
+        /// For how long, in seconds.
+        hold_s: f64,
+    },
     /// A position from 0 to 100.
     Slider {
         /// What 0 means.

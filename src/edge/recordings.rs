@@ -157,7 +157,7 @@ impl Part {
             Event::TrialExcluded { reason } => self.excluded = Some(Some(reason.clone())),
             Event::TrialIncluded => self.excluded = Some(None),
             Event::SessionEnded => self.ended = true,
-            Event::Protocol(ProtocolEvent::ConsentGiven) => self.consent = true,
+            Event::Protocol(ProtocolEvent::ConsentGiven { .. }) => self.consent = true,
             Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }) => {
                 self.phase = *number;
                 self.instructed |= *phase != StudyPhase::Instruction;

@@ -19,6 +19,7 @@ use crate::session::event::{EndReason, SignalEnd};
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
+use crate::session::wall_display::Answering;
 use crate::session::{Phase, Session, TimelineEvent};
 
 /// A button in words: "cutting board", "take rice".
@@ -142,7 +143,10 @@ pub fn phase(phase: Phase) -> &'static str {
 /// An event of the study protocol in words.
 pub fn protocol(event: &ProtocolEvent) -> String {
     match event {
-        ProtocolEvent::ConsentGiven => "the participant agrees to be recorded".to_string(),
+        ProtocolEvent::ConsentGiven { on: Some(Answering::Display), .. } => {
+            "the participant agrees to be recorded, on the display".to_string()
+        }
+        ProtocolEvent::ConsentGiven { .. } => "the participant agrees to be recorded".to_string(),
         ProtocolEvent::PhaseStarted { phase, .. } => format!("phase: {}", phase.name()),
         ProtocolEvent::Ticked { step, done: true } => format!("step {step} is done"),
         ProtocolEvent::Ticked { step, done: false } => format!("step {step} is not done after all"),

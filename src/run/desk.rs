@@ -37,8 +37,8 @@ mod wall;
 #[path = "desk/without_display.rs"]
 mod wall;
 
-pub(super) use wall::PageInput;
 use wall::WallDisplay;
+pub(super) use wall::{PageInput, is_consent};
 
 /// Devices and terminal that the recordings of a series share.
 pub(super) struct OperatorDesk {

@@ -7,12 +7,13 @@ use super::leaving::{LeavingReason, LiveOutcome};
 use super::live;
 use super::options::{RemainingTrials, SessionStart};
 use super::unfinished_recording::PreparedSession;
-use super::wizard_question::ask;
+use super::wizard_question::{ask, ask_consent};
 use crate::analysis::watcher::CompareRequest;
 use crate::console::question::QuestionPage;
 use crate::edge::files::SessionFiles;
 use crate::edge::recordings;
 use crate::session::plan::{NextRecording, Progress, Study};
+use crate::session::wall_display::Answering;
 
 /// Result of a session or of a series.
 #[derive(Clone, Debug)]
@@ -136,16 +137,6 @@ impl Planned {
                 None => return Ok(Choice::Leave(None)),
             },
         };
-        if !progress.consent {
-            match ask(desk, &consent(&self.study, progress, &label)).await? {
-                Some(0) => {}
-                Some(_) => {
-                    let remark = format!("{} does not agree: nothing was recorded", progress.code);
-                    return Ok(Choice::Leave(Some(remark)));
-                }
-                None => return Ok(Choice::Leave(None)),
-            }
-        }
         let beginning = match continued {
             Some(recording) => SessionStart::Continued(self.series.out.join(recording)),
             None => {
@@ -154,7 +145,19 @@ impl Planned {
             }
         };
         let begun = PreparedSession::new(beginning)?.comparing(self.series.compare.clone());
-        Ok(Choice::Begin(Box::new(if progress.consent { begun } else { begun.with_consent() })))
+        if progress.consent {
+            return Ok(Choice::Begin(Box::new(begun)));
+        }
+        let on_display = self.study.plan.consent_on == Answering::Display
+            && desk.wall.ask_consent(begun.engine.session(), &self.study.plan.consent);
+        match ask_consent(desk, &consent(&self.study, progress, &label, on_display), on_display).await? {
+            Some((0, on)) => Ok(Choice::Begin(Box::new(begun.with_consent(Some(self.study.consent_given(on)))))),
+            Some(_) => {
+                let remark = format!("{} does not agree: nothing was recorded", progress.code);
+                Ok(Choice::Leave(Some(remark)))
+            }
+            None => Ok(Choice::Leave(None)),
+        }
     }
 }
 
@@ -173,12 +176,21 @@ fn which(progress: &Progress, recording: &str, slot: usize) -> QuestionPage {
     }
 }
 
-/// The question for consent, without which nothing is recorded.
-fn consent(study: &Study, progress: &Progress, label: &str) -> QuestionPage {
+/// The question for consent, without which nothing is recorded. Where the display asks, the wizard can still confirm it by hand.
+fn consent(study: &Study, progress: &Progress, label: &str, on_display: bool) -> QuestionPage {
+    let mut text = vec![study.plan.consent.clone()];
+    if on_display {
+        text.push("Waiting for the participant, who agrees on the display by holding a button.".to_string());
+    }
+    let yes = if on_display {
+        "the participant agrees, told to you: recorded as such"
+    } else {
+        "yes, the participant agrees"
+    };
     QuestionPage {
         title: format!("{}: {label}", progress.code),
-        text: vec![study.plan.consent.clone()],
-        answers: vec!["yes, the participant agrees".to_string(), "no: nothing is recorded".to_string()],
+        text,
+        answers: vec![yes.to_string(), "no: nothing is recorded".to_string()],
     }
 }
 

@@ -12,6 +12,7 @@ use crate::base::time::SessionTime;
 use crate::edge::log::RecordingLock;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::protocol::ProtocolEvent;
 use crate::session::{Header, SessionSpec, Stamped};
 
 /// A session that is ready to be run and recorded.
@@ -20,8 +21,8 @@ pub(super) struct PreparedSession {
     pub header: Header,
     /// Events at the beginning of the recording.
     pub first: Vec<Stamped>,
-    /// Whether the participant has just consented.
-    pub consent: bool,
+    /// The consent that the participant has just given.
+    pub consent: Option<ProtocolEvent>,
     /// Session time at which it begins.
     pub time: SessionTime,
     /// Comparison of wizard and assistants, if it is shown.
@@ -49,7 +50,7 @@ impl PreparedSession {
                 header.keys = files.keys;
                 let engine = Engine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen)).without_causes();
                 let (first, time, place) = (Vec::new(), SessionTime::ZERO, RecordingPlace::In(out));
-                Ok(PreparedSession { engine, header, first, consent: false, time, compare: None, place })
+                Ok(PreparedSession { engine, header, first, consent: None, time, compare: None, place })
             }
             SessionStart::Again { header, kitchen, out } => {
                 let engine = Engine::for_header(kitchen.clone(), &header, CostToGo::new(kitchen)).without_causes();
@@ -58,7 +59,7 @@ impl PreparedSession {
                     engine,
                     header,
                     first: Vec::new(),
-                    consent: false,
+                    consent: None,
                     time: SessionTime::ZERO,
                     compare: None,
                     place,
@@ -72,7 +73,7 @@ impl PreparedSession {
                     engine: resumed.engine.without_causes(),
                     header,
                     first,
-                    consent: false,
+                    consent: None,
                     time,
                     compare: None,
                     place,
@@ -81,9 +82,9 @@ impl PreparedSession {
         }
     }
 
-    /// Whether the participant has just consented.
-    pub fn with_consent(self) -> PreparedSession {
-        PreparedSession { consent: true, ..self }
+    /// Adds the consent that the participant has just given.
+    pub fn with_consent(self, consent: Option<ProtocolEvent>) -> PreparedSession {
+        PreparedSession { consent, ..self }
     }
 
     /// Adds a comparison of wizard and assistants.

@@ -2,12 +2,13 @@
 
 use std::time::Duration;
 
-use super::desk::OperatorDesk;
+use super::desk::{OperatorDesk, is_consent};
 use super::error::LiveError;
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use crate::console::ConsoleMessage;
 use crate::console::question::{QuestionPage, QuestionReply};
 use crate::console::view::theme::Theme;
+use crate::session::wall_display::Answering;
 
 /// Period of redrawing a question.
 const REDRAW: Duration = Duration::from_millis(100);
@@ -17,36 +18,57 @@ const REDRAW: Duration = Duration::from_millis(100);
 /// # Errors
 /// The terminal is gone.
 pub(super) async fn ask(desk: &mut OperatorDesk, question: &QuestionPage) -> Result<Option<usize>, LiveError> {
-    let mut shell = OpenQuestion { question, theme: desk.theme, dirty: true };
+    Ok(ask_consent(desk, question, false).await?.map(|(index, _)| index))
+}
+
+/// Asks a question that the participant's page may answer as well, where `on_display`: with its first answer. Returns also where it was
+/// answered.
+///
+/// # Errors
+/// The terminal is gone.
+pub(super) async fn ask_consent(
+    desk: &mut OperatorDesk,
+    question: &QuestionPage,
+    on_display: bool,
+) -> Result<Option<(usize, Answering)>, LiveError> {
+    let mut shell = OpenQuestion { question, on_display, theme: desk.theme, dirty: true };
     let reply = event_loop::run(&mut shell, desk).await?;
     Ok(match reply {
-        Some(QuestionReply::Answer(index)) => Some(index),
-        Some(QuestionReply::Leave) | None => None,
+        Some((QuestionReply::Answer(index), on)) => Some((index, on)),
+        Some((QuestionReply::Leave, _)) | None => None,
     })
 }
 
 /// A question without an answer yet.
 struct OpenQuestion<'a> {
     question: &'a QuestionPage,
+    /// The participant's page may answer.
+    on_display: bool,
     theme: Theme,
     /// Whether the screen must be redrawn.
     dirty: bool,
 }
 
 impl ConsoleShell for OpenQuestion<'_> {
-    type Outcome = QuestionReply;
+    type Outcome = (QuestionReply, Answering);
     type Error = LiveError;
 
     fn deadlines(&mut self) -> ShellDeadlines {
         ShellDeadlines { frame_after: if self.dirty { FRAME } else { REDRAW }, ..ShellDeadlines::default() }
     }
 
-    /// Gaze and page inputs are consumed during a question; otherwise they would be processed later as if they were new.
-    fn take(&mut self, event: LoopEvent) -> Result<Option<QuestionReply>, LiveError> {
-        let LoopEvent::Terminal(message) = event else { return Ok(None) };
+    /// Gaze and other page inputs are consumed during a question; otherwise they would be processed later as if they were new.
+    fn take(&mut self, event: LoopEvent) -> Result<Option<(QuestionReply, Answering)>, LiveError> {
+        let message = match event {
+            LoopEvent::Page(input) if self.on_display && is_consent(&input) => {
+                return Ok(Some((QuestionReply::Answer(0), Answering::Display)));
+            }
+            LoopEvent::Terminal(message) => message,
+            _ => return Ok(None),
+        };
         self.dirty = true;
         Ok(match message {
-            ConsoleMessage::Key(key) => self.question.reply(&key),
+            ConsoleMessage::Key(key) => self.question.reply(&key).map(|reply| (reply, Answering::Console)),
             _ => None,
         })
     }

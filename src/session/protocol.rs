@@ -77,7 +77,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
     let Some((step, protocol)) = session.step() else { return Err("the session has no plan") };
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     match event {
-        ProtocolEvent::ConsentGiven => {
+        ProtocolEvent::ConsentGiven { .. } => {
             unless(!protocol.consent && protocol.number == 0, "consent is given once, and first")
         }
         ProtocolEvent::PhaseStarted { phase, number } => {
@@ -159,7 +159,7 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
     let stays = shown.is_some_and(|form| form.stays());
     let Some(protocol) = &mut session.protocol else { return };
     match event {
-        ProtocolEvent::ConsentGiven => protocol.consent = true,
+        ProtocolEvent::ConsentGiven { .. } => protocol.consent = true,
         ProtocolEvent::PhaseStarted { number, .. } => {
             protocol.number = *number;
             protocol.ticks = vec![false; steps];

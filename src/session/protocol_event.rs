@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::answer_value::AnswerValue;
+use super::wall_display::Answering;
 
 /// A phase of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,8 +43,18 @@ impl StudyPhase {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum ProtocolEvent {
-    /// The participant consented; without consent nothing is recorded.
-    ConsentGiven,
+    /// The participant consented; without consent nothing is recorded. Older recordings say only that.
+    ConsentGiven {
+        /// Where: by holding a button on the display, or told to the wizard, who confirmed it on the console.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        on: Option<Answering>,
+        /// The text that was agreed to.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        text: Option<String>,
+        /// Digest of the text.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        digest: Option<String>,
+    },
     /// The next phase of the recording begins; `number` counts from 1.
     PhaseStarted {
         /// Which phase begins.

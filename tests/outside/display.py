@@ -11,6 +11,7 @@ import sys
 import time
 from pathlib import Path
 
+import questions
 import tags
 from console import Console, percentile
 from page import Page, browser, plain
@@ -376,6 +377,7 @@ def main():
         comes_back(tomcom, chromium, folder / "restart", seeds["sushi"])
         asks_for_a_code(tomcom, chromium, folder / "code", seeds["sushi"])
         has_phases(tomcom, chromium, folder / "phases")
+        questions.answers_every_kind(tomcom, chromium, folder / "questions", PORT)
         is_quick(tomcom, chromium, folder / "quick", seeds["sushi"], arguments.presses)
     for name in ("recipe-1920.png", "highlight-1920.png", "running-1280.png"):
         tags.check(str(folder / "signals" / name))

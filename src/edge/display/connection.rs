@@ -318,6 +318,7 @@ impl Talk {
             FromPage::Answer { item, answer } => PageInput::Answer { item, answer },
             FromPage::Next => PageInput::Next,
             FromPage::Back { item } => PageInput::Back { item },
+            FromPage::Consent => PageInput::Consent,
             FromPage::Confirm => PageInput::Confirm,
             FromPage::Drawn { cue, at } => PageInput::Drawn { cue, at: self.hub.moment(at) },
             FromPage::Redrawn { took } => {

@@ -84,6 +84,8 @@ pub enum FromPage {
         /// The item's name.
         item: String,
     },
+    /// The button of the consent was held for as long as the page asks.
+    Consent,
     /// Confirmation of all answers.
     Confirm,
     /// The screen shows the event with this sequence number.
@@ -133,7 +135,7 @@ pub fn read(text: &str) -> Option<FromPage> {
         FromPage::Drawn { at, .. } => is_time(at),
         FromPage::Redrawn { took } => (0.0..1e6).contains(took),
         FromPage::Size { width, height } => is_size(*width, *height),
-        FromPage::Confirm | FromPage::Next | FromPage::TakePart => true,
+        FromPage::Confirm | FromPage::Consent | FromPage::Next | FromPage::TakePart => true,
     };
     is_fine.then_some(message)
 }

@@ -44,6 +44,8 @@ pub enum PageInput {
         /// The item's name.
         item: String,
     },
+    /// The button of the consent was held.
+    Consent,
     /// Confirmation of all answers.
     Confirm,
     /// The event with this sequence number was drawn at this instant.

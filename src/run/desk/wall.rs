@@ -1,11 +1,12 @@
 //! The participant's display at the desk.
 
 use crate::display::page_language::DisplayWords;
+use crate::display::{consent_sight, scene};
 use crate::edge::display::Display;
 pub(in crate::run) use crate::edge::display::PageInput;
 use crate::run::error::LiveError;
-use crate::session::SessionSpec;
 use crate::session::settings::ParticipantKind;
+use crate::session::{Session, SessionSpec};
 
 /// The participant's display, if the session has one.
 #[derive(Default)]
@@ -30,6 +31,16 @@ impl WallDisplay {
         self.0.as_ref()
     }
 
+    /// Lets the participant's page ask for consent to this text; whether there is a page.
+    pub fn ask_consent(&self, session: &Session, text: &str) -> bool {
+        let screen = self.0.as_ref().map(Display::screen);
+        if let Some(screen) = &screen {
+            screen.build(&scene(session));
+            screen.show(&consent_sight(session, text));
+        }
+        screen.is_some()
+    }
+
     /// Waits for the next input of the participant's page; forever if there is none.
     pub async fn next(&mut self) -> Option<PageInput> {
         match &mut self.0 {
@@ -37,4 +48,9 @@ impl WallDisplay {
             None => std::future::pending().await,
         }
     }
+}
+
+/// Whether an input of the page is the participant's consent.
+pub(in crate::run) fn is_consent(input: &PageInput) -> bool {
+    *input == PageInput::Consent
 }

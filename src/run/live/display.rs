@@ -106,6 +106,8 @@ impl PageEvent {
             PageInput::Answer { item, answer: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
             PageInput::Next => session.next_item().and_then(|next| answer(next, session)),
             PageInput::Back { item } => answer(ProtocolEvent::ItemShown { item }, session),
+            // It is asked for before a recording begins; a late one changes nothing.
+            PageInput::Consent => None,
             PageInput::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
             PageInput::Drawn { cue, at } => {
                 Some(Event::Display(DisplayEvent::Drawn { cue, at_ns: session_time(at, now) }))

@@ -213,9 +213,9 @@ impl Live {
     }
 
     /// Begins the first phase of a plan, with the consent as first event.
-    fn begin_protocol(&mut self, consent: bool) {
-        if consent {
-            self.input(Event::Protocol(ProtocolEvent::ConsentGiven));
+    fn begin_protocol(&mut self, consent: Option<ProtocolEvent>) {
+        if let Some(consent) = consent {
+            self.input(Event::Protocol(consent));
         }
         let session = self.engine.session();
         let first = session.next_phase().filter(|_| session.protocol.as_ref().is_some_and(|it| it.number == 0));

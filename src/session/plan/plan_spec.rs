@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::groups::groups;
 use crate::session::condition::Condition;
 use crate::session::setting_checks::{SettingError, is_code};
+use crate::session::wall_display::Answering;
 
 /// Largest number of conditions: the analysis compares one assisted with one unassisted trial of a participant. With a third condition
 /// it would drop a trial of everybody and pool wizard and assistant.
@@ -26,6 +27,9 @@ pub struct PlanSpec {
     /// Consent text, shown before anything is recorded.
     #[serde(default = "default_consent")]
     pub consent: String,
+    /// Where the participant agrees: on the display by holding a button, or told to the wizard at the console.
+    #[serde(default = "on_console", skip_serializing_if = "is_console")]
+    pub consent_on: Answering,
     /// Steps of the instruction.
     #[serde(default)]
     pub instruction: Vec<String>,
@@ -42,6 +46,14 @@ pub struct PlanSpec {
 
 fn default_consent() -> String {
     "The participant was told what is recorded and for what it is used, and agrees to it.".to_string()
+}
+
+fn on_console() -> Answering {
+    Answering::Console
+}
+
+fn is_console(consent_on: &Answering) -> bool {
+    *consent_on == Answering::Console
 }
 
 /// The participants of a plan: their number (P01, P02, …), or their codes.

@@ -8,10 +8,11 @@ use super::questionnaire::Questionnaire;
 use super::step::{Criterion, PhaseSpec, StepSpec};
 use crate::base::rng::mix;
 use crate::session::condition::Condition;
+use crate::session::protocol_event::ProtocolEvent;
 use crate::session::settings::{ConsoleSpec, ParticipantSpec, SessionSpec};
 use crate::session::stream_settings::RerunSpec;
 use crate::session::tracker::TrackerSpec;
-use crate::session::wall_display::DisplaySpec;
+use crate::session::wall_display::{Answering, DisplaySpec};
 
 /// A slot in a participant's series: it needs one complete recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -65,6 +66,12 @@ impl Study {
     /// The starting group of the participant with this index in the plan.
     pub fn group(&self, participant: usize) -> StartingGroup {
         self.plan.group(self.session.seed, participant)
+    }
+
+    /// The event of a consent to what the plan asks, given there.
+    pub fn consent_given(&self, on: Answering) -> ProtocolEvent {
+        let (text, digest) = (self.plan.consent.clone(), digest(&self.plan.consent));
+        ProtocolEvent::ConsentGiven { on: Some(on), text: Some(text), digest: Some(digest) }
     }
 
     /// The series of a participant.

@@ -39,7 +39,7 @@ const Hands = (() => {
     down.add(event.code || event.key);
     const question = Stage.shown() && Stage.shown().question;
     if (question) {
-      if (["Enter", "Home", "End", "ArrowUp", "ArrowDown"].includes(event.key)) event.preventDefault();
+      if (["Enter", " ", "Home", "End", "ArrowUp", "ArrowDown"].includes(event.key)) event.preventDefault();
       Questions.key(event.key, question, isHeld);
       return;
     }
@@ -70,6 +70,8 @@ const Hands = (() => {
         const button = scene.buttons.find(({ gamepad }) => gamepad === number);
         if (button) press(button.name, timeOf(pad.timestamp));
       });
+      const wasDown = before.some(Boolean), isDown = now.some(Boolean);
+      if (wasDown !== isDown) Questions.holdBy("gamepad", isDown, Stage.shown() && Stage.shown().question);
       pads.set(pad.index, now);
     }
   }
@@ -78,8 +80,14 @@ const Hands = (() => {
     tell = toTell;
     Questions.begin(toAnswer);
     window.addEventListener("keydown", typed);
-    window.addEventListener("keyup", (event) => down.delete(event.code || event.key));
-    window.addEventListener("blur", () => down.clear());
+    window.addEventListener("keyup", (event) => {
+      down.delete(event.code || event.key);
+      Questions.holdBy("key", false);
+    });
+    window.addEventListener("blur", () => {
+      down.clear();
+      Questions.holdBy("key", false);
+    });
     window.addEventListener("pointerdown", touched);
     window.addEventListener("contextmenu", (event) => event.preventDefault());
     window.addEventListener("pointermove", (event) => event.pointerType === "mouse" && toPoint(event.clientX, event.clientY));

@@ -14,8 +14,13 @@ const Questions = (() => {
     const { element, text } = kit;
     // Words that are being typed stay when the item is drawn again.
     redraw = () => draw(sheet, question, words, kit);
-    const card = element("div", "card question");
+    const isConsent = question.form && question.form.kind === "consent";
+    const card = element("div", isConsent ? "card question consents" : "card question");
     card.append(text("h2", "", question.title));
+    if (isConsent) {
+      card.append(...FORMS.consent(question, words, kit));
+      return sheet.replaceChildren(card);
+    }
     if (question.item) {
       card.append(text("p", "count", `${question.number} / ${question.of}`), text("p", "item", question.text));
       if (question.form) card.append(...FORMS[question.form.kind](question, words, kit));
@@ -90,6 +95,21 @@ const Questions = (() => {
       field.addEventListener("input", () => keep(question, field.value));
       return [field];
     },
+    consent({ text: agreed, form }, words, { element, text }) {
+      const reading = element("div", "reading");
+      for (const paragraph of agreed.split(/\n\s*\n/)) reading.append(text("p", "", paragraph));
+      const button = element("button", "hold");
+      button.append(element("i", ""), text("span", "", words.consent));
+      button.style.setProperty("--hold", `${form.hold_s}s`);
+      button.addEventListener("pointerdown", (event) => {
+        button.setPointerCapture(event.pointerId);
+        hold("touch", true, form.hold_s);
+      });
+      for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
+        button.addEventListener(end, () => hold("touch", false));
+      }
+      return [reading, button, text("p", "hint", words["consent text"])];
+    },
     slider(question, words, kit) {
       const { form } = question, { element } = kit, slider = element("div", "slider"), thumb = element("b", "");
       const place = (value) => { thumb.style.left = `${value}%`; thumb.hidden = value === null; };
@@ -147,9 +167,29 @@ const Questions = (() => {
     give(question, draft.value);
   }
 
+  // What holds the button of the consent, and until when.
+  let holds = null, agrees = null;
+
+  /** The button of the consent goes down or up, by touch, a key or a gamepad. Only the whole time at a stretch agrees. */
+  function hold(by, isDown, seconds) {
+    if (isDown === (holds !== null) || (holds !== null && holds !== by)) return;
+    holds = isDown ? by : null;
+    clearTimeout(agrees);
+    if (isDown) agrees = setTimeout(() => tell({ kind: "consent" }), 1000 * seconds);
+    document.querySelectorAll(".hold").forEach((button) => button.classList.toggle("held", isDown));
+  }
+
+  /** A key or a button of a gamepad, while consent is asked for. */
+  const holdBy = (by, isDown, question) => {
+    if (!isDown) hold(by, false);
+    else if (question && question.form && question.form.kind === "consent") hold(by, true, question.form.hold_s);
+  };
+
   /** A key, while an item is shown; `isHeld`: it is down since before. */
   function key(name, question, isHeld) {
-    const { form } = question, kind = question.item && form && form.kind, digit = /^[0-9]$/.test(name) ? Number(name) : null;
+    const { form } = question, kind = question.item && form && form.kind;
+    if (kind === "consent") return ["Enter", " "].includes(name) ? holdBy("key", true, question) : read(name);
+    const digit = /^[0-9]$/.test(name) ? Number(name) : null;
     const steps = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[name];
     if (kind === "slider" && steps) return slide(question, (position(question) ?? SLIDER_END / 2) + steps * form.step);
     if (isHeld) return undefined;
@@ -166,6 +206,12 @@ const Questions = (() => {
     return undefined;
   }
 
+  /** Scrolls a text that is longer than its place. */
+  function read(name) {
+    const rows = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[name] || 0;
+    document.querySelectorAll(".reading").forEach((reading) => reading.scrollBy(0, rows * 40));
+  }
+
   /** A touch of one of the buttons. */
   function touch({ rate, option, typed, does }, question) {
     if (rate) give(question, Number(rate));
@@ -177,5 +223,5 @@ const Questions = (() => {
     else if (does === "confirm") tell({ kind: "confirm" });
   }
 
-  return { draw, key, touch, begin: (toTell) => { tell = toTell; } };
+  return { draw, key, touch, holdBy, begin: (toTell) => { tell = toTell; } };
 })();

@@ -1,0 +1,26 @@
+//! What the participant sees while consent is asked for on the display.
+
+use super::page_language::DisplayWords;
+use super::question::{DisplayedForm, DisplayedItem};
+use super::sight::{DisplayStage, DisplayUpdate, sight};
+use crate::session::Session;
+
+/// For how long the button of the consent is held, in seconds: longer than anybody touches it by accident.
+const HOLD_S: f64 = 3.0;
+
+/// What the participant sees while consent to this text is asked for, before anything is recorded.
+pub fn consent_sight(session: &Session, text: &str) -> DisplayUpdate {
+    let words = DisplayWords::for_display(&session.spec.display);
+    let question = DisplayedItem {
+        title: words.of_name("consent title"),
+        item: Some("consent".to_string()),
+        text: text.to_string(),
+        number: 1,
+        of: 1,
+        form: Some(DisplayedForm::Consent { hold_s: HOLD_S }),
+        answer: None,
+        before: None,
+        given: Vec::new(),
+    };
+    DisplayUpdate { stage: DisplayStage::Questionnaire, question: Some(question), ..sight(session) }
+}

@@ -1,0 +1,180 @@
+"""Questionnaires on the participant's display: every kind of item, by touch and by keys, over a reload and a kill of the program."""
+
+import json
+import signal
+import time
+from pathlib import Path
+
+from console import Console
+from page import Page
+
+CONSENT = "I have read the information sheet. " * 40
+SIZES = [(1280, 720), (1920, 1080), (1080, 1920)]
+
+
+def session_file(folder, port, language="en"):
+    questionnaires, layout = Path("sessions/questionnaires").resolve(), Path("layouts/sushi.toml").resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    session = folder / "session.toml"
+    asked = "".join(f'[[plan.questionnaire]]\nfile = "{questionnaires}/{name}.toml"\n{when}\n'
+                    for name, when in [("demographics", "before = true"), ("nasa-tlx", "after = [1]"), ("sus", "after = [1]")])
+    session.write_text(f'layout = "{layout}"\nseed = 3\n[trial]\npresses = 20\n[participant]\nkind = "display"\ngaze = "none"\n'
+                       f'[display]\nport = {port}\nlanguage = "{language}"\nquestionnaire = "display"\n'
+                       f'[plan]\nname = "asked"\nparticipants = 2\nconditions = ["none", "wizard"]\n'
+                       f'consent = "{CONSENT}"\nconsent_on = "display"\n{asked}')
+    return session
+
+
+def events(folder):
+    """The events of all recordings, in the order of their folders: a part that continues another one comes behind it."""
+    logs = sorted((folder / "recordings").glob("*/events.jsonl"), key=lambda log: log.stat().st_mtime)
+    return [json.loads(line) for log in logs for line in log.read_text().splitlines()[1:]]
+
+
+def given(folder):
+    """The last answer to each item."""
+    return {event["item"]: event["answer"] for event in events(folder) if event.get("what") == "item_answered"}
+
+
+def answers_every_kind(tomcom, browser, folder, port, language="en"):
+    session = session_file(folder, port, language)
+    arguments = [session, "--code", "P01", "--out", folder / "recordings"]
+    url = f"http://127.0.0.1:{port}"
+
+    def item(id):
+        page.wait_for(f"Stage.shown() && Stage.shown().question && Stage.shown().question.item === {json.dumps(id)}")
+
+    def answer(value):
+        written = json.dumps(json.dumps(value, separators=(",", ":")))
+        page.wait_for(f"JSON.stringify(Stage.shown().question.answer) === {written}")
+
+    def pictures(name):
+        for width, height in SIZES:
+            page.page.set_viewport_size({"width": width, "height": height})
+            time.sleep(0.3)
+            page.screenshot(folder / f"{name}-{width}.png")
+        page.page.set_viewport_size({"width": 1920, "height": 1080})
+        time.sleep(0.3)
+
+    console = Console(tomcom, arguments)
+    with console:
+        console.wait_for("Waiting for the participant")
+        page = Page(browser, url)
+        keyboard, click = page.page.keyboard, page.page.click
+        # Only who holds the button all the time agrees.
+        item("consent")
+        pictures("consent")
+        page.page.hover(".hold")
+        page.page.mouse.down()
+        time.sleep(1.5)
+        page.screenshot(folder / "consent-held-1920.png")
+        page.page.mouse.up()
+        time.sleep(2)
+        item("consent")
+        assert not (folder / "recordings").exists() or not list((folder / "recordings").iterdir()), "recorded without consent"
+        keyboard.down("Enter")
+        item("age")
+        keyboard.up("Enter")
+        # A number by touch, beyond its range first, and then by keys.
+        item("age")
+        for key in "16":
+            click(f'[data-typed="{key}"]')
+        click('[data-does="next"]')
+        item("age")
+        click('[data-typed="⌫"]')
+        click('[data-typed="9"]')
+        pictures("number")
+        click('[data-does="next"]')
+        item("gender")
+        keyboard.press("Shift+Tab")
+        page.page.focus("textarea")
+        keyboard.type("0 is a digit, a space")
+        pictures("text")
+        keyboard.press("Enter")
+        item("handedness")
+        pictures("choice")
+        click('[data-option="left"]')
+        item("vision_aids")
+        click('[data-option="lenses"]')
+        answer(["lenses"])
+        keyboard.press("2")
+        answer(["glasses", "lenses"])
+        pictures("several")
+        # A reload in the middle: what was answered is there.
+        page.page.reload()
+        item("vision_aids")
+        answer(["glasses", "lenses"])
+        click('[data-does="next"]')
+        item("colour_vision")
+        # The program is killed in the middle, and continues where it was.
+        console.process.send_signal(signal.SIGKILL)
+        console.process.wait()
+    page.close()
+    console = Console(tomcom, arguments)
+    with console:
+        console.wait_for("continue it")
+        page = Page(browser, url)
+        keyboard, click = page.page.keyboard, page.page.click
+        console.key("1")
+        page.stage("questionnaire")
+        item("colour_vision")
+        keyboard.press("0")
+        item("cooking")
+        pictures("scale")
+        keyboard.press("3")
+        item("robots")
+        click('[data-rate="2"]')
+        item("eye_tracking")
+        click('[data-does="back"]')
+        item("robots")
+        answer(2)
+        keyboard.press("Enter")
+        item("eye_tracking")
+        keyboard.press("1")
+        page.wait_for("!Stage.shown().question.item")
+        pictures("confirm")
+        keyboard.press("Enter")
+        page.stage("answered")
+        pictures("thanks")
+        time.sleep(1)
+        console.key(".")
+        page.stage("ready")
+        time.sleep(1)
+        console.key(".")
+        page.stage("running")
+        console.key("\x05")
+        console.wait_for("End the trial")
+        console.key("y")
+        page.stage("over")
+        time.sleep(1)
+        console.key(".")
+        page.stage("questionnaire")
+        # A slider by touch, and then by arrows and digits.
+        item("mental")
+        pictures("slider")
+        box = page.page.locator(".slider").bounding_box()
+        page.page.mouse.move(box["x"] + 0.2 * box["width"], box["y"] + box["height"] / 2)
+        page.page.mouse.down()
+        page.page.mouse.move(box["x"] + 0.71 * box["width"], box["y"] + box["height"] / 2, steps=5)
+        page.page.mouse.up()
+        answer(70)
+        keyboard.press("ArrowRight")
+        answer(75)
+        pictures("slider-answered")
+        click('[data-does="next"]')
+        item("physical")
+        keyboard.press("4")
+        answer(40)
+        keyboard.press("Enter")
+        item("temporal")
+        page.close()
+        time.sleep(1)
+        console.quit()
+    found = given(folder)
+    assert found == {"age": 19, "gender": "0 is a digit, a space", "handedness": "left", "vision_aids": ["glasses", "lenses"],
+                     "cooking": 3, "robots": 2, "eye_tracking": 1, "mental": 75, "physical": 40}, found
+    (consent,) = [event for event in events(folder) if event.get("what") == "consent_given"]
+    assert consent["on"] == "display" and consent["text"] == CONSENT and len(consent["digest"]) == 16, consent
+    skipped = [event["item"] for event in events(folder) if event.get("what") == "item_skipped"]
+    assert skipped == ["colour_vision"], skipped
+    print("questionnaires: every kind of item by touch and keys, over a reload and a kill", flush=True)

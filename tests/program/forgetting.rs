@@ -19,12 +19,20 @@ pub struct RecordingsFolder {
 }
 
 impl RecordingsFolder {
-    /// Four short trials of the paper's plan: two of P01 and two of P02.
-    pub fn of_two_people(name: &str) -> RecordingsFolder {
+    /// Folders without anything in them.
+    pub fn empty(name: &str) -> RecordingsFolder {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("forgetting").join(name);
         let _ = fs::remove_dir_all(&folder);
         let made = RecordingsFolder { root: folder.join("recordings"), temporary: folder.join("temporary") };
-        fs::create_dir_all(&made.temporary).expect("made");
+        for one in [&made.root, &made.temporary] {
+            fs::create_dir_all(one).expect("made");
+        }
+        made
+    }
+
+    /// Four short trials of the paper's plan: two of P01 and two of P02.
+    pub fn of_two_people(name: &str) -> RecordingsFolder {
+        let made = RecordingsFolder::empty(name);
         let mut files = read_session(Path::new("sessions/paper.toml")).expect("the paper's session");
         files.spec.trial.presses = 10;
         let simulation = SimulationRequest { files, trials: 4, shard: Shard::WHOLE, out: made.root.clone() };

@@ -8,6 +8,7 @@ mod escapes;
 mod forgetting;
 mod forgetting_damage;
 mod forgetting_others;
+mod forgotten_answers;
 mod overwriting;
 mod plan;
 mod stuck_terminal;

@@ -71,6 +71,12 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         page.page.mouse.up()
         time.sleep(2)
         item("consent")
+        # A gamepad that is unplugged while its button is down has let go.
+        page.page.evaluate("pad.buttons[0].pressed = true")
+        time.sleep(1.5)
+        page.page.evaluate("navigator.getGamepads = () => []")
+        time.sleep(2)
+        item("consent")
         assert not (folder / "recordings").exists() or not list((folder / "recordings").iterdir()), "recorded without consent"
         keyboard.down("Enter")
         item("age")

@@ -61,8 +61,13 @@ const Hands = (() => {
   /** Looks at gamepads and button boxes: they do not say by themselves when a button goes down. */
   function poll() {
     const scene = Stage.scene();
-    for (const pad of navigator.getGamepads ? navigator.getGamepads() : []) {
-      if (!pad) continue;
+    const there = [...(navigator.getGamepads ? navigator.getGamepads() : [])].filter(Boolean);
+    // One that is unplugged says no more that its button went up.
+    for (const index of [...pads.keys()].filter((known) => !there.some((pad) => pad.index === known))) {
+      pads.delete(index);
+      Questions.letGo();
+    }
+    for (const pad of there) {
       const before = pads.get(pad.index) || [];
       const now = [...pad.buttons].map((button) => (typeof button === "object" ? button.pressed : button > 0.5));
       now.forEach((isDown, number) => {
@@ -84,10 +89,10 @@ const Hands = (() => {
       down.delete(event.code || event.key);
       Questions.holdBy("key", false);
     });
-    window.addEventListener("blur", () => {
-      down.clear();
-      Questions.holdBy("key", false);
-    });
+    // Whoever leaves the page holds nothing: what goes up meanwhile may never be told.
+    const leave = () => { down.clear(); Questions.letGo(); };
+    window.addEventListener("blur", leave);
+    document.addEventListener("visibilitychange", () => document.hidden && leave());
     window.addEventListener("pointerdown", touched);
     window.addEventListener("contextmenu", (event) => event.preventDefault());
     window.addEventListener("pointermove", (event) => event.pointerType === "mouse" && toPoint(event.clientX, event.clientY));

@@ -223,5 +223,8 @@ const Questions = (() => {
     else if (does === "confirm") tell({ kind: "confirm" });
   }
 
-  return { draw, key, touch, holdBy, begin: (toTell) => { tell = toTell; } };
+  /** Whatever holds the button of the consent counts as gone up. */
+  const letGo = () => hold(holds, false);
+
+  return { draw, key, touch, holdBy, letGo, begin: (toTell) => { tell = toTell; } };
 })();

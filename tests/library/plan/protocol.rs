@@ -17,6 +17,7 @@ use tomcom::session::event::EndReason;
 use tomcom::session::plan::{NextRecording, PhaseSpec, Progress, RecordingOutcome, WantedRecording};
 use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::settings::Condition;
+use tomcom::session::wall_display::Answering;
 use tomcom::session::{Event, Header, Phase};
 
 use super::{files, folder, study};
@@ -106,6 +107,10 @@ impl Run {
     }
 }
 
+fn consent() -> ProtocolEvent {
+    study(|_| ()).consent_given(Answering::Console)
+}
+
 fn wanted(slot: usize, instructed: bool) -> WantedRecording {
     WantedRecording { participant: 0, slot, attempt: 1, instructed }
 }
@@ -115,8 +120,8 @@ fn what_happens_around_a_trial_keeps_its_order() {
     let out = folder("order");
     let mut run = Run::new(&out, wanted(0, false));
     assert!(run.input(Event::TrialStarted).is_some(), "no trial before its phase");
-    run.tell(ProtocolEvent::ConsentGiven);
-    run.refuses(ProtocolEvent::ConsentGiven);
+    run.tell(consent());
+    run.refuses(consent());
     run.next_phase();
     run.refuses(ProtocolEvent::Ticked { step: 0, done: true });
     run.refuses(ProtocolEvent::Ticked { step: 99, done: true });
@@ -222,7 +227,7 @@ fn cut(recording: &Path, out: &Path, bytes: usize) -> PathBuf {
 fn wherever_a_recording_is_cut_it_is_open_verified_and_known() {
     let study = study(|_| ());
     let mut run = Run::new(&folder("whole"), wanted(2, false));
-    run.tell(ProtocolEvent::ConsentGiven);
+    run.tell(consent());
     run.go_through();
     let whole = run.close();
     let text = fs::read(whole.join(LOG_NAME)).expect("a log");

@@ -1,7 +1,7 @@
 //! What the participant sees while consent is asked for on the display.
 
+use super::displayed_item::{DisplayedForm, DisplayedItem};
 use super::page_language::DisplayWords;
-use super::question::{DisplayedForm, DisplayedItem};
 use super::sight::{DisplayStage, DisplayUpdate, sight};
 use crate::session::Session;
 

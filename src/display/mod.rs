@@ -8,8 +8,8 @@
 #[cfg(feature = "physics")]
 mod arm_tip;
 mod consent;
+mod displayed_item;
 pub mod page_language;
-mod question;
 mod robot_hand;
 mod robot_pose;
 mod scene;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::question::{DisplayedItem, question};
+use super::displayed_item::{DisplayedItem, question};
 use crate::communication::Signal;
 use crate::kitchen::no_effect::NoEffect;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent};

@@ -6,7 +6,8 @@
 //! with the state of a study. A step that is left early has no end event and can be continued like one that was cut off.
 //!
 //! The files from the ground up: `groups`, `plan_spec` (the `[plan]` of a session file), `starting_groups` (who is in which
-//! group), `questionnaire` and `item_form` (its items), `step` (one recording), `planned_study` (all of them), `progress` (how far it is).
+//! group), `item_form` (how items are answered), `questionnaire` and `questionnaire_checks` (its file), `step` (one recording),
+//! `planned_study` (all of them), `progress` (how far it is).
 
 mod groups;
 mod item_form;
@@ -14,13 +15,14 @@ mod plan_spec;
 mod planned_study;
 mod progress;
 mod questionnaire;
+mod questionnaire_checks;
 mod starting_groups;
 mod step;
 
 pub use groups::{StartingGroup, groups};
-pub use item_form::{ItemForm, ItemKind, SLIDER_END};
+pub use item_form::{ItemForm, ItemKind, ItemOption, SLIDER_END, Scale};
 pub use plan_spec::{FamiliarisationSpec, Participants, PlanSpec, QuestionnaireSpec};
 pub use planned_study::{Slot, Study, WantedRecording};
 pub use progress::{NextRecording, PlanRecording, Progress, RecordingOutcome, SlotProgress};
-pub use questionnaire::{Item, ItemOption, Questionnaire, Scale, ScoreRule};
+pub use questionnaire::{Item, Questionnaire, ScoreRule};
 pub use step::{Criterion, PhaseSpec, StepSpec};

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::item_form::{self, ItemForm, ItemKind};
+use super::item_form::{ItemForm, ItemKind, ItemOption, Scale};
 use crate::session::condition::Condition;
-use crate::session::ranges;
-use crate::session::setting_checks::{SettingError, is_code};
+
+/// Most characters of an answer in words, unless the item says how many.
+const LENGTH: u32 = 200;
 
 /// A questionnaire file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,18 +34,6 @@ pub struct Questionnaire {
     pub items: Vec<Item>,
 }
 
-/// The scale: 1 to `points`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Scale {
-    /// Number of points.
-    pub points: u8,
-    /// What 1 means.
-    pub low: String,
-    /// What the highest point means.
-    pub high: String,
-}
-
 /// How a questionnaire's score follows from its answers. Answers to reversed items are turned round on their scale first. There is no
 /// score where an item was left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,16 +43,6 @@ pub enum ScoreRule {
     Mean,
     /// System usability scale of Brooke (1996): ten items of five points; 2.5 times the sum of the points above the lowest, 0 to 100.
     Sus,
-}
-
-/// An option of an item.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ItemOption {
-    /// Stands for the option in logs and tables, the same in all languages.
-    pub id: String,
-    /// The option, as the participant reads it.
-    pub text: String,
 }
 
 /// A statement to be rated, or a question.
@@ -134,62 +113,26 @@ impl Questionnaire {
 
     /// How the item with this index is answered; `None` if there is none, or if it lacks what its kind needs.
     pub fn form(&self, index: usize) -> Option<ItemForm<'_>> {
-        ItemForm::for_item(self, self.items.get(index)?)
+        let item = self.items.get(index)?;
+        Some(match item.kind.unwrap_or(ItemKind::Scale) {
+            ItemKind::Scale => ItemForm::Scale(match &item.scale {
+                Some(name) => self.scales.get(name)?,
+                None => self.scale.as_ref()?,
+            }),
+            ItemKind::Choice => ItemForm::Choice { options: &item.options, several: item.several },
+            ItemKind::Number => {
+                ItemForm::Number { range: [item.min?, item.max?], unit: item.unit.as_deref().unwrap_or_default() }
+            }
+            ItemKind::Text => ItemForm::Text { length: item.length.unwrap_or(LENGTH) },
+            ItemKind::Slider => {
+                let step = i64::from(item.step.unwrap_or(1).max(1));
+                ItemForm::Slider { low: item.low.as_deref()?, high: item.high.as_deref()?, step }
+            }
+        })
     }
 
     /// Index of an item.
     pub fn position(&self, id: &str) -> Option<usize> {
         self.items.iter().position(|item| item.id == id)
-    }
-
-    /// Checks ranges and consistency.
-    ///
-    /// # Errors
-    /// The first invalid setting.
-    pub fn check(&self) -> Result<(), SettingError> {
-        let wrong = |key: &str, found, remedy| Err(SettingError::new(key, found, remedy));
-        if !is_code(&self.name) {
-            let remedy = "a short name of letters, digits, - and _, such as \"acceptance\"";
-            return wrong("name", format!("name = \"{}\"", self.name), remedy);
-        }
-        ranges::check_questionnaire(self)?;
-        if self.items.is_empty() {
-            return wrong("item", "a questionnaire without items".to_string(), "at least one [[item]]");
-        }
-        let wrong_id = |nth, found, remedy| Err(SettingError { nth, ..SettingError::new("item.id", found, remedy) });
-        if let Some(nth) = self.items.iter().position(|item| !is_code(&item.id)) {
-            let remedy = "a short id of letters, digits, - and _, such as \"too_often\"";
-            return wrong_id(nth, format!("id = \"{}\"", self.items[nth].id), remedy);
-        }
-        match (1..self.items.len()).find(|&nth| self.items[..nth].iter().any(|item| item.id == self.items[nth].id)) {
-            Some(nth) => wrong_id(nth, format!("the id \"{}\" twice", self.items[nth].id), "each id once"),
-            None => {
-                item_form::check_items(self)?;
-                self.check_score()
-            }
-        }
-    }
-
-    fn check_score(&self) -> Result<(), SettingError> {
-        let wrong = |found: String, remedy| Err(SettingError::new("score", found, remedy));
-        let forms = || (0..self.items.len()).map(|index| self.form(index));
-        let rated = forms().filter(|form| form.is_some_and(|form| form.ends().is_some())).count();
-        match self.score {
-            Some(ScoreRule::Mean) if rated < self.items.len() => {
-                let found = format!("score = \"mean\", with {} items that are no scale", self.items.len() - rated);
-                wrong(found, "items on scales or sliders alone")
-            }
-            Some(ScoreRule::Sus) => {
-                let is_five =
-                    |form: Option<ItemForm>| matches!(form, Some(ItemForm::Scale(scale)) if scale.points == 5);
-                match (self.items.len(), forms().all(is_five)) {
-                    (10, true) => Ok(()),
-                    (items, _) => {
-                        wrong(format!("score = \"sus\", with {items} items"), "ten items on a scale of 5 points")
-                    }
-                }
-            }
-            _ => Ok(()),
-        }
     }
 }

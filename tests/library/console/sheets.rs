@@ -138,52 +138,36 @@ fn only_enter_confirms_answers_and_a_reason_to_go_on() {
 
 /// The sheet of a questionnaire about the person: an item of every kind.
 #[test]
-fn every_kind_of_item_is_answered_with_keys() {
-    let told = |command: Option<ConsoleCommand>| match command {
-        Some(ConsoleCommand::Input(Event::Protocol(event))) => event,
-        other => panic!("{other:?}"),
-    };
-    let mut stage = asked(&["demographics.toml", "nasa-tlx.toml"]);
-    let give = |stage: &mut Stage, key: KeyCode| {
-        stage.wait(1.0);
-        let event = told(stage.key(key));
-        stage.at(stage.model.now.as_secs_f64(), Event::Protocol(event.clone()));
-        event
-    };
-    let answered = |event: ProtocolEvent| match event {
-        ProtocolEvent::ItemAnswered { item, answer } => format!("{item} {}", serde_json::json!(answer)),
-        other => panic!("{other:?}"),
-    };
-    let write = |stage: &mut Stage, words: &str| {
-        for letter in words.chars() {
-            assert_eq!(stage.key(KeyCode::Char(letter)), None, "{letter}: {}", stage.notice());
-        }
-    };
-    // A number is typed, and checked before it is sent.
+fn numbers_and_words_are_typed() {
+    let mut stage = asked(&["demographics.toml"]);
+    // A number is checked before it is sent.
     write(&mut stage, "7");
     assert_eq!(stage.key(KeyCode::Enter), None);
     assert!(stage.notice().contains("out of the item's range"), "{}", stage.notice());
     stage.key(KeyCode::Backspace);
     write(&mut stage, "31");
-    assert_eq!(answered(give(&mut stage, KeyCode::Enter)), "age 31");
+    assert_eq!(answered(&mut stage, KeyCode::Enter), "age 31");
     // Words may have spaces and full stops, which are keys of the console elsewhere.
     write(&mut stage, "q. x y");
-    for size in SIZES {
-        stage.model.size = size;
-        check_snapshot("console", format!("item_answer_{}x{}", size.0, size.1), stage.screen(size));
-    }
-    assert_eq!(answered(give(&mut stage, KeyCode::Enter)), r#"gender "q. x y""#);
+    look_at(&mut stage, "item_answer");
+    assert_eq!(answered(&mut stage, KeyCode::Enter), r#"gender "q. x y""#);
+}
+
+#[test]
+fn options_are_chosen_with_digits() {
+    let mut stage = asked(&["demographics.toml"]);
+    write(&mut stage, "31");
+    give(&mut stage, KeyCode::Enter);
+    write(&mut stage, "q. x y");
+    give(&mut stage, KeyCode::Enter);
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('4')), None, "the item has three options");
-    assert_eq!(answered(give(&mut stage, KeyCode::Char('2'))), r#"handedness "left""#);
+    assert_eq!(answered(&mut stage, KeyCode::Char('2')), r#"handedness "left""#);
     // Of several, each key chooses one or takes it back; the item stays until enter.
-    assert_eq!(answered(give(&mut stage, KeyCode::Char('3'))), r#"vision_aids ["lenses"]"#);
-    assert_eq!(answered(give(&mut stage, KeyCode::Char('2'))), r#"vision_aids ["glasses","lenses"]"#);
-    assert_eq!(answered(give(&mut stage, KeyCode::Char('3'))), r#"vision_aids ["glasses"]"#);
-    for size in SIZES {
-        stage.model.size = size;
-        check_snapshot("console", format!("item_choice_{}x{}", size.0, size.1), stage.screen(size));
-    }
+    assert_eq!(answered(&mut stage, KeyCode::Char('3')), r#"vision_aids ["lenses"]"#);
+    assert_eq!(answered(&mut stage, KeyCode::Char('2')), r#"vision_aids ["glasses","lenses"]"#);
+    assert_eq!(answered(&mut stage, KeyCode::Char('3')), r#"vision_aids ["glasses"]"#);
+    look_at(&mut stage, "item_choice");
     assert_eq!(give(&mut stage, KeyCode::Enter), ProtocolEvent::ItemShown { item: "colour_vision".to_string() });
     assert_eq!(give(&mut stage, KeyCode::Delete), ProtocolEvent::ItemSkipped { item: "colour_vision".to_string() });
     for _ in 0..3 {
@@ -192,17 +176,49 @@ fn every_kind_of_item_is_answered_with_keys() {
     let screen = stage.screen((120, 40));
     assert!(screen.contains("31 years") && screen.contains("q. x y") && screen.contains("glasses"), "{screen}");
     assert_eq!(give(&mut stage, KeyCode::Enter), ProtocolEvent::AnswersConfirmed);
-    stage.next_phase();
-    // The position of a slider is typed, in its steps.
+}
+
+#[test]
+fn the_position_of_a_slider_is_typed_in_its_steps() {
+    let mut stage = asked(&["nasa-tlx.toml"]);
     write(&mut stage, "42");
     assert_eq!(stage.key(KeyCode::Enter), None);
     assert!(stage.notice().contains("steps"), "{}", stage.notice());
     stage.key(KeyCode::Backspace);
     write(&mut stage, "5");
-    assert_eq!(answered(give(&mut stage, KeyCode::Enter)), "mental 45");
+    assert_eq!(answered(&mut stage, KeyCode::Enter), "mental 45");
+    look_at(&mut stage, "item_slider");
+}
+
+/// The event that a key sends, which then happens.
+fn give(stage: &mut Stage, key: KeyCode) -> ProtocolEvent {
+    stage.wait(1.0);
+    let event = match stage.key(key) {
+        Some(ConsoleCommand::Input(Event::Protocol(event))) => event,
+        other => panic!("{other:?}"),
+    };
+    stage.at(stage.model.now.as_secs_f64(), Event::Protocol(event.clone()));
+    event
+}
+
+/// The item and the answer that a key gives.
+fn answered(stage: &mut Stage, key: KeyCode) -> String {
+    match give(stage, key) {
+        ProtocolEvent::ItemAnswered { item, answer } => format!("{item} {}", serde_json::json!(answer)),
+        other => panic!("{other:?}"),
+    }
+}
+
+fn write(stage: &mut Stage, words: &str) {
+    for letter in words.chars() {
+        assert_eq!(stage.key(KeyCode::Char(letter)), None, "{letter}: {}", stage.notice());
+    }
+}
+
+fn look_at(stage: &mut Stage, name: &str) {
     for size in SIZES {
         stage.model.size = size;
-        check_snapshot("console", format!("item_slider_{}x{}", size.0, size.1), stage.screen(size));
+        check_snapshot("console", format!("{name}_{}x{}", size.0, size.1), stage.screen(size));
     }
 }
 

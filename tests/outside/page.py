@@ -35,10 +35,13 @@ def browser(*more):
 class Page:
     """A page of the display, with what it says to the program."""
 
-    def __init__(self, browser, url, size=(1920, 1080), touch=False, code=None):
+    def __init__(self, browser, url, size=(1920, 1080), touch=False, code=None, files=None):
+        """`files`: a folder whose files stand in for those that the program serves."""
         self.context = browser.new_context(viewport={"width": size[0], "height": size[1]}, has_touch=touch, bypass_csp=True)
         self.context.add_init_script(GAMEPAD)
         self.page = self.context.new_page()
+        if files:
+            self.page.route(re.compile(r"\.(js|css)$"), lambda route: route.fulfill(path=files / route.request.url.rsplit("/", 1)[1]))
         self.errors, self.said, self.lock = [], [], threading.Lock()
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         # From a press until the page knows its effect, in milliseconds, for every press that had one.

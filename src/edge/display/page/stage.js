@@ -3,7 +3,7 @@
 
 const Stage = (() => {
   const root = document.getElementById("stage");
-  let scene = null, shown = null, parts = null, words = {};
+  let scene = null, room = null, shown = null, parts = null, words = {};
   let marks = { lost: false, acts: true, free: false };
 
   function element(kind, className, inside = "") {
@@ -25,59 +25,6 @@ const Stage = (() => {
   function put(made, [x, y, w, h]) {
     Object.assign(made.style, { left: percent(x), top: percent(y), width: percent(w), height: percent(h) });
     return made;
-  }
-
-  const overlaps = ([ax, ay, aw, ah], [bx, by, bw, bh]) => ax < bx + bw && bx < ax + aw && ay < by + bh && by < ay + ah;
-  const around = (rects) => {
-    const x = Math.min(...rects.map((r) => r[0])), y = Math.min(...rects.map((r) => r[1]));
-    return [x, y, Math.max(...rects.map((r) => r[0] + r[2])) - x, Math.max(...rects.map((r) => r[1] + r[3])) - y];
-  };
-  const grown = ([x, y, w, h], [left, top, right, bottom]) => {
-    const to = (low, high) => [Math.max(0.006, low), Math.min(0.994, high)];
-    const [x0, x1] = to(x - left, x + w + right), [y0, y1] = to(y - top, y + h + bottom);
-    return [x0, y0, x1 - x0, y1 - y0];
-  };
-  // Height above a place that its name takes, and the least size of an action's button, in fractions of the stage.
-  const NAME = 0.04, PILL = [0.096, 0.05];
-  const ruler = document.createElement("canvas").getContext("2d");
-
-  /** The width of bold words of this size, both in fractions of the stage's width. */
-  function widthOf(said, size) {
-    ruler.font = `700 100px ${getComputedStyle(root).fontFamily}`;
-    return (ruler.measureText(said).width / 100) * size;
-  }
-
-  /** How large an action's button is: as wide as its words and its key. */
-  function pillOf(knob) {
-    const wide = widthOf(knob.label, 0.014) + 0.024 + (scene.keys && knob.key ? 0.03 : 0);
-    return [Math.max(PILL[0], wide), PILL[1]];
-  }
-
-  const of = (kind) => scene.locations.filter((spot) => spot.kind === kind).map((spot) => spot.area);
-  /** The areas of robot and human, equally high. */
-  function sides() {
-    const both = ["robot", "human"].map((agent) => around([...of(`${agent}_hand`), ...scene.storages.filter((shelf) => shelf.agent === agent).map((shelf) => shelf.area)]));
-    const top = Math.min(...both.map(([, y]) => y)), bottom = Math.max(...both.map(([, y, , h]) => y + h));
-    return both.map(([x, , w]) => grown([x, top, w, bottom - top], [0.022, 0.085, 0.022, 0.035]));
-  }
-
-  const titles = () => sides().map(([x, y, w]) => [x, y, w, 0.065]);
-
-  /** Everything that is there already, for what still needs a place. */
-  function taken() {
-    const named = scene.locations.map(({ kind, area: [x, y, w, h] }) => (kind === "order" ? [x, y, w, h] : [x, y - NAME, w, h + NAME]));
-    return [...named, ...scene.storages.map((shelf) => shelf.area), ...titles(), ...scene.tags.map((tag) => tag.area)];
-  }
-
-  /** The nearest free place for an action's button: below its place, above it, or beside it. */
-  function freeFor(area, [pw, ph], others) {
-    const [x, y, w, h] = area, gap = 0.007;
-    const middle = Math.min(0.994 - pw, Math.max(0.006, x + w / 2 - pw / 2));
-    const tries = [[middle, y + h + gap], [middle, y - NAME - gap - ph], [x + w + gap, y + h / 2 - ph / 2], [x - gap - pw, y + h / 2 - ph / 2]];
-    for (let step = 1; step < 5; step += 1) tries.push([middle, y + h + gap + step * (ph + gap)], [x + w + gap, y + h / 2 - ph / 2 + step * (ph + gap)]);
-    const rects = tries.map(([px, py]) => [px, py, pw, ph]);
-    const fits = (rect) => rect[0] >= 0 && rect[1] >= 0 && rect[0] + pw <= 1 && rect[1] + ph <= 1 && !others.some((other) => overlaps(rect, other));
-    return rects.find(fits) || rects[0];
   }
 
   function key(knob) {
@@ -112,10 +59,11 @@ const Stage = (() => {
     const shape = spot.kind === "place" ? spot.look && spot.look.shape : spot.kind;
     if (spot.kind !== "order") {
       // A highlighted place is framed together with its name.
-      const over = Math.max(0, widthOf(spot.label, 0.0145) - w) / 2;
+      const name = text("div", "name", spot.label), size = room.nameSize(spot);
+      const over = Math.max(0, room.widthOf(spot.label, size) - w) / 2;
       made.style.setProperty("--side", `${(100 * over + 1.2).toFixed(2)}em`);
-      made.append(element("div", "furniture", Art.place(shape, wide)));
-      made.append(text("div", "name", spot.label));
+      name.style.fontSize = `${100 * size}em`;
+      made.append(element("div", "furniture", Art.place(shape, wide)), name);
     }
     const content = element("div", "content");
     made.append(content, element("div", "ring"));
@@ -128,11 +76,11 @@ const Stage = (() => {
   }
 
   function buildStorage(shelf, index) {
-    const made = put(element("div", `shelf ${shelf.agent} ${scene.names === "none" ? "bare" : ""}`), shelf.area);
+    const made = put(element("div", `shelf ${shelf.agent}`), shelf.area);
     made.append(element("div", "content", Art.item(scene, shelf.item)), element("div", "ring"));
     if (scene.names !== "none") {
       const name = text("div", "name", shelf.label);
-      name.style.setProperty("--words", Math.min(1, (0.96 * shelf.area[2]) / widthOf(shelf.label, 0.014)).toFixed(3));
+      name.style.fontSize = `${100 * room.nameSize(shelf)}em`;
       made.append(name);
     }
     if (shelf.agent === "human") {
@@ -146,36 +94,15 @@ const Stage = (() => {
   /** Buttons of actions, each beside the place that it works on; `others` is what is there, and what is added. */
   function buildPills(others) {
     const makePill = (knob) => {
-      const area = freeFor(scene.locations[knob.at].area, pillOf(knob), others);
+      const { area, words } = room.forPill(knob, others);
       others.push(area);
       const made = put(element("div", `pill ${knob.does}`), area);
+      made.style.setProperty("--words", words);
       made.append(text("span", "", knob.label), key(knob));
       makeTouch(made, knob);
       return made;
     };
     return scene.buttons.filter(({ does }) => ["process", "trash", "serve"].includes(does)).map(makePill);
-  }
-
-  /** Where a recipe, line by line, is largest without hiding anything of the kitchen: of all free rectangles. */
-  function freeForRecipe(others) {
-    // A line is a picture with words beside it.
-    const margin = 0.01, lines = 4.4, line = 2.5, ratio = scene.display_m[0] / scene.display_m[1];
-    const walls = others.map((rect) => grown(rect, [margin, margin * ratio, margin, margin * ratio]));
-    const lefts = [margin, ...walls.map(([x, , w]) => x + w)], rights = [1 - margin, ...walls.map(([x]) => x)];
-    let best = [0, 0, 0, 0], most = -1;
-    for (const left of lefts) for (const right of rights) {
-      const columns = walls.filter(([x, , w]) => x < right && x + w > left).map(([, y, , h]) => [y, y + h]);
-      let low = margin;
-      for (const [top, bottom] of [...columns, [1 - margin, 1]].sort((a, b) => a[0] - b[0])) {
-        const size = Math.min((top - low) / lines, ((right - left) * ratio) / line);
-        // Of equals the one nearer to the middle.
-        const worth = size - 0.01 * Math.abs((left + right) / 2 - 0.5);
-        if (worth > most) [best, most] = [[left, low, right - left, top - low], worth];
-        low = Math.max(low, bottom);
-      }
-    }
-    const [x, y, w, h] = best, high = Math.min(h, 0.6), wide = Math.min(w, (1.2 * line * high) / lines / ratio);
-    return [x + (w - wide) / 2, y + (h - high) / 2, wide, high];
   }
 
   function build(next) {
@@ -186,26 +113,29 @@ const Stage = (() => {
     root.replaceChildren();
     root.style.setProperty("--ratio", scene.display_m[0] / scene.display_m[1]);
     const kitchen = element("div", "kitchen");
-    const [robot, human] = sides();
+    room = Room(scene, getComputedStyle(root).fontFamily);
+    const [robot, human] = room.sides();
     kitchen.append(buildZone("robot", robot, scene.words.robot), buildZone("human", human, scene.words.human));
-    kitchen.append(put(element("section", "zone table"), grown(around(of("place")), [0.03, 0.085, 0.03, 0.03])));
+    kitchen.append(put(element("section", "zone table"), room.table()));
     const locations = scene.locations.map(buildLocation), storages = scene.storages.map(buildStorage);
-    const others = taken(), free = [];
+    const others = room.taken();
     kitchen.append(...locations.map((l) => l.made), ...storages.map((s) => s.made), ...buildPills(others));
-    free.push(...freeForRecipe(others));
+    const tally = room.forServed(others), all = [...others, tally];
+    // A recipe opens near the order that it belongs to; the instruction where there is most room.
+    const free = room.forRecipe(all), cards = scene.locations.map(({ kind, area }) => (kind === "order" ? room.forRecipe(all, area) : free));
     const recipe = put(element("div", "recipe"), free);
     const why = element("div", "why");
     why.setAttribute("role", "status");
     const hand = Robot.build(scene, element);
     kitchen.append(...hand, recipe, why);
-    const sheet = element("div", "sheet"), toast = element("div", "toast"), served = element("div", "served"), target = element("div", "target", "<i></i>");
+    const sheet = element("div", "sheet"), toast = element("div", "toast"), served = put(element("div", "served"), tally), target = element("div", "target", "<i></i>");
     root.append(kitchen, served, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
     const flash = element("div", "flash");
     if (scene.flash) {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, locations, storages, recipe, why, sheet, toast, served, flash, target, free };
+    parts = { kitchen, locations, storages, recipe, why, sheet, toast, served, flash, target, free, cards };
     mark({});
   }
 
@@ -263,7 +193,7 @@ const Stage = (() => {
     parts.why.replaceChildren(text("span", "", said));
     if (!said) return parts.why.classList.remove("says");
     const [box, stage] = [made.getBoundingClientRect(), parts.kitchen.getBoundingClientRect()];
-    const wide = widthOf(said, 0.016) + 0.03, middle = (box.left + box.width / 2 - stage.left) / stage.width;
+    const wide = room.widthOf(said, 0.016) + 0.03, middle = (box.left + box.width / 2 - stage.left) / stage.width;
     const low = (box.bottom - stage.top) / stage.height, high = (box.top - stage.top) / stage.height;
     const top = low < 0.9 ? low + 0.005 : high - 0.055;
     put(parts.why, [Math.min(0.994 - wide, Math.max(0.006, middle - wide / 2)), top, wide, 0.05]);
@@ -278,6 +208,7 @@ const Stage = (() => {
     const recipe = signal && signal.recipe;
     parts.recipe.classList.toggle("open", Boolean(recipe));
     if (!recipe) return;
+    put(parts.recipe, parts.cards[recipe.order]);
     const dish = element("figure", "of", Art.dish(scene, recipe.dish));
     dish.append(text("figcaption", "", scene.dishes[recipe.dish].label));
     const items = recipe.items.map((name) => {
@@ -294,7 +225,7 @@ const Stage = (() => {
     const fits = (said) => said.scrollWidth <= said.clientWidth && said.scrollHeight <= said.parentNode.clientHeight;
     for (let size = 1; size > 0.5; size -= 0.05) {
       made.style.setProperty("--words", size);
-      if ([...made.querySelectorAll("figcaption, .dish")].every(fits)) return;
+      if ([...made.querySelectorAll("figcaption, .dish, h1, p")].every(fits) && made.scrollHeight <= made.clientHeight) return;
     }
   }
 
@@ -316,6 +247,7 @@ const Stage = (() => {
     // The kitchen is explained meanwhile, so nothing of it is hidden.
     if (stage === "instruction") put(card, parts.free);
     parts.sheet.replaceChildren(card);
+    if (stage === "instruction") fitWords(card);
   }
 
   /** The target of a check of the gaze: it is alone on the screen, so that the eyes have nowhere else to go. */

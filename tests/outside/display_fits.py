@@ -1,0 +1,137 @@
+"""Text on the participant's page is whole and hides nothing, in every language, kitchen, state and size.
+
+    tests/outside/display_fits.py TOMCOM FOLDER [--from-disk] [--screenshots]
+
+Languages: English, German, and one whose words are 40 % longer than the English ones. What is measured are boxes of the
+rendered text, by the browser: no text is cut off, leaves its own box, or meets another text, a button, a place or a tag. Capitals
+of English and German text are at least 17 arc minutes high at 3 m, on a screen of the layout's width.
+"""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from display_states import KITCHENS, long_language, opened, show, states
+from page import browser
+
+# Height of capitals on a screen of the layout's width, seen from the distance for which the page is made.
+ARC_MINUTES, DISTANCE_M = 17, 3
+SIZES = [(1920, 1080), (1280, 800), (3840, 2160)]
+
+MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]) => {
+  Stage.show(sight);
+  const SLACK = 1, found = [], stage = document.getElementById("stage").getBoundingClientRect();
+  const isSeen = (made) => made.checkVisibility({ opacityProperty: true, visibilityProperty: true });
+  const box = (made) => made.getBoundingClientRect();
+  const meets = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > SLACK && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > SLACK;
+  const inside = (a, b) => a.left >= b.left - SLACK && a.right <= b.right + SLACK && a.top >= b.top - SLACK && a.bottom <= b.bottom + SLACK;
+  const lettered = [...document.querySelectorAll("#stage *")].filter((made) =>
+    !made.closest("svg") && isSeen(made) && [...made.childNodes].some((node) => node.nodeType === 3 && node.data.trim()));
+  const texts = lettered.map((made) => {
+    const range = document.createRange();
+    range.selectNodeContents(made);
+    // The ink of a letter is lower than its line.
+    const { left, right, top, bottom } = range.getBoundingClientRect(), size = parseFloat(getComputedStyle(made).fontSize);
+    const lines = Math.max(1, Math.round((bottom - top) / size / 1.1)), air = Math.max(0, ((bottom - top) - lines * size) / 2);
+    return { made, said: made.textContent, left, right, top: top + air, bottom: bottom - air };
+  });
+  const HOLDERS = ".pill, .spot.order, .recipe, .card, .why, .zone, .key, .toast, button, li";
+  for (const text of texts) {
+    const { made, said } = text, holder = made.closest(HOLDERS);
+    if (!inside(text, stage)) found.push(`"${said}" leaves the screen`);
+    if (holder && !inside(text, box(holder))) found.push(`"${said}" leaves its ${holder.className || holder.tagName}`);
+    if (made.scrollWidth > made.clientWidth + SLACK && made.clientWidth) found.push(`"${said}" is cut off: ${made.scrollWidth} of ${made.clientWidth} px`);
+  }
+  const sheet = document.querySelector(".sheet.open"), card = sheet && sheet.querySelector(".card");
+  // A card stands over the dimmed kitchen on purpose, except for the instruction, which explains it.
+  const over = (made) => made.closest(".why, .toast") || (card && !sheet.classList.contains("instruction") && card.contains(made));
+  for (const [i, a] of texts.entries()) for (const b of texts.slice(i + 1)) {
+    if (Boolean(over(a.made)) !== Boolean(over(b.made))) continue;
+    if (meets(a, b)) found.push(`"${a.said}" meets "${b.said}"`);
+  }
+  const solid = [...document.querySelectorAll(".pill, .spot.order, .shelf, .spot .furniture, .key, .tag, .flash, .recipe.open, .instruction .card")].filter(isSeen);
+  const related = (a, b) => a.contains(b) || b.contains(a);
+  for (const text of texts.filter(({ made }) => !over(made))) for (const made of solid) {
+    if (!related(made, text.made) && meets(text, box(made)) && !(made.matches(".furniture") && made.parentNode.contains(text.made))) {
+      found.push(`"${text.said}" meets ${made.className} ${made.textContent.slice(0, 20) || made.parentNode.className}`);
+    }
+  }
+  const boxes = solid.filter((made) => !made.matches(".key"));
+  for (const [i, a] of boxes.entries()) for (const b of boxes.slice(i + 1)) {
+    if (!related(a, b) && meets(box(a), box(b))) found.push(`${a.className} "${a.textContent}" overlaps ${b.className} "${b.textContent}"`);
+  }
+  for (const made of boxes) if (!inside(box(made), stage)) found.push(`${made.className} "${made.textContent}" leaves the screen`);
+  // A button is within a zone or outside of it, and clear of an order's frame.
+  const zones = [...document.querySelectorAll(".zone")].filter(isSeen), orders = [...document.querySelectorAll(".spot.order")].filter(isSeen);
+  for (const made of document.querySelectorAll(".pill")) {
+    if (!isSeen(made)) continue;
+    for (const zone of zones) if (meets(box(made), box(zone)) && !inside(box(made), box(zone))) found.push(`${made.textContent} hangs over the edge of ${zone.className}`);
+    for (const order of orders) {
+      const { left, right, top, bottom } = box(order), frame = 0.005 * stage.width;
+      if (meets(box(made), { left: left - frame, right: right + frame, top: top - frame, bottom: bottom + frame })) found.push(`${made.textContent} touches the frame of an order`);
+    }
+  }
+  // The frame of a highlighted place goes around texts, never through them.
+  for (const made of document.querySelectorAll(".highlight")) {
+    const style = getComputedStyle(made, "::before"), own = box(made), px = (name) => parseFloat(style[name]);
+    const frame = { left: own.left + px("left"), right: own.right - px("right"), top: own.top + px("top"), bottom: own.bottom - px("bottom") };
+    for (const text of texts) if (meets(text, frame) && !inside(text, frame)) found.push(`the frame crosses "${text.said}"`);
+  }
+  const ruler = document.createElement("canvas").getContext("2d");
+  const minutes = Object.fromEntries(texts.map(({ made, said }) => {
+    const { fontWeight, fontSize, fontFamily } = getComputedStyle(made);
+    ruler.font = `${fontWeight} 100px ${fontFamily}`;
+    const cap = (ruler.measureText("H").actualBoundingBoxAscent / 100) * parseFloat(fontSize);
+    const high_m = (cap / stage.width) * Stage.scene().display_m[0];
+    return [`"${said}" (${made.className || made.tagName} in ${made.parentNode.className || made.parentNode.tagName})`, (Math.atan(high_m / DISTANCE_M) * 180 * 60) / Math.PI];
+  }));
+  return [name, [...new Set(found)], minutes];
+})"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tomcom")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--from-disk", action="store_true", help="the page's files as they are now, not as they were built")
+    parser.add_argument("--screenshots", action="store_true", help="of states that fail")
+    arguments = parser.parse_args()
+    failed, small, looked = {}, {}, 0
+    with browser() as chromium:
+        for kitchen in KITCHENS:
+            scene = None
+            for language in ("en", "de", "longer"):
+                folder = arguments.folder / f"{kitchen}-{language}"
+                folder.mkdir(parents=True, exist_ok=True)
+                words = language if language != "longer" else long_language(folder, scene, kitchen)
+                with opened(arguments.tomcom, chromium, folder, kitchen, words, from_disk=arguments.from_disk) as page:
+                    here = page.ask("Stage.scene()")
+                    scene = scene or here
+                    for size in SIZES:
+                        page.page.set_viewport_size({"width": size[0], "height": size[1]})
+                        page.page.wait_for_timeout(150)
+                        every = states(here, kitchen)
+                        for name, found, minutes in page.page.evaluate(MEASURE, [every, DISTANCE_M]):
+                            looked += 1
+                            if language != "longer":
+                                # The list of all answers is an exception: it is for whoever stands at the screen to confirm them.
+                                small |= {text: found for text, found in minutes.items() if found < ARC_MINUTES and not text.endswith(" in LI)")}
+                            for problem in found:
+                                failed.setdefault(problem, []).append(f"{kitchen} {language} {size[0]}x{size[1]}: {name}")
+                            if found and arguments.screenshots:
+                                show(page, every[name])
+                                page.screenshot(arguments.folder / f"{kitchen}-{language}-{size[0]}-{name.split(':')[0].replace(' ', '_')}.png")
+    for text, minutes in small.items():
+        print(f"{text}: capitals of {minutes:.1f} arc minutes at {DISTANCE_M} m")
+    for problem, where in failed.items():
+        print(f"{problem}\n    {where[0]} and {len(where) - 1} more states")
+    assert not failed, f"{len(failed)} texts do not fit"
+    assert not small, f"{len(small)} texts are smaller than {ARC_MINUTES} arc minutes at {DISTANCE_M} m"
+    print(f"texts fit in {looked} states of the page: 2 kitchens, 3 languages (one with words 40 % longer), {len(SIZES)} sizes", flush=True)
+
+
+if __name__ == "__main__":
+    main()
+    sys.stdout.flush()
+    os._exit(0)

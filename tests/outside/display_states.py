@@ -1,0 +1,123 @@
+"""Every state of the participant's page, in a real browser: the real program's scene, with what a session can show put on it.
+
+Used by display_fits.py.
+"""
+
+import json
+import os
+import re
+import tomllib
+from contextlib import contextmanager
+from pathlib import Path
+
+from console import Console
+from page import Page
+
+PORT = 20341
+PAGE = Path("src/edge/display/page")
+KITCHENS = ("sushi", "burger")
+# Nothing moves while it is measured; what is shown for a moment only stays.
+STILL = "*, *::before, *::after { animation: none !important; transition: none !important; } .why.says { opacity: 1 !important; visibility: visible !important; }"
+
+
+def longer(words):
+    """The words of a language whose words are 40 % longer than the English ones."""
+    def word(found):
+        letters = found[0]
+        return (letters + letters.lower())[: max(len(letters), round(1.4 * len(letters)))]
+    return re.sub(r"[^\W\d_]+", word, words)
+
+
+def long_language(folder, scene, kitchen):
+    """A file with the page's words and the kitchen's names in that language; `scene` is the English one."""
+    recipes = tomllib.loads(Path(f"recipes/{kitchen}.toml").read_text())
+    english = tomllib.loads(Path("src/display/languages/en.toml").read_text())
+    named = {place["name"].replace("_", " "): place["label"] for place in scene["locations"]}
+    named |= {name: known["label"] for kind in ("items", "dishes") for name, known in scene[kind].items()}
+    named |= {shelf["name"]: shelf["name"] for shelf in recipes["ingredient"]}
+    named |= {button["name"].split(" ")[0]: button["label"] for button in scene["buttons"] if button["does"] in ("process", "trash", "serve")}
+    words = {name: longer(word) for name, word in (english | named).items()} | {"language": "en"}
+    path = folder / "longer.toml"
+    path.write_text("".join(f"{json.dumps(name)} = {json.dumps(word)}\n" for name, word in words.items()))
+    return str(path.resolve())
+
+
+@contextmanager
+def opened(tomcom, browser, folder, kitchen, language, size=(1920, 1080), from_disk=False, settings=""):
+    """The page of a session that has not started. `from_disk`: with the page's files as they are now, not as they were built."""
+    folder.mkdir(parents=True, exist_ok=True)
+    session = folder / "session.toml"
+    layout = Path(f"layouts/{kitchen}.toml").resolve()
+    session.write_text(f'layout = "{layout}"\n[participant]\nkind = "display"\ngaze = "none"\n[display]\nport = {PORT}\nlanguage = "{language}"\n{settings}')
+    with Console(tomcom, [session, "--code", "P01", "--out", folder / f"recordings-{os.getpid()}"]) as console:
+        console.wait_for("READY|NO DISPLAY")
+        page = Page(browser, f"http://127.0.0.1:{PORT}", size=size, files=PAGE if from_disk else None)
+        try:
+            page.stage("welcome")
+            page.page.add_style_tag(content=STILL)
+            yield page
+        finally:
+            page.close()
+
+
+def items_of(kitchen):
+    """What each dish is made of."""
+    recipes = tomllib.loads(Path(f"recipes/{kitchen}.toml").read_text())
+    return {dish["name"]: dish["items"] for dish in recipes["dish"]}
+
+
+def states(scene, kitchen):
+    """Every state, by its name: what the program would tell the page."""
+    dishes, spots = items_of(kitchen), scene["locations"]
+    names, items = list(dishes), list(scene["items"])
+    orders = [index for index, spot in enumerate(spots) if spot["kind"] == "order"]
+    at = {spot["name"]: index for index, spot in enumerate(spots)}
+
+    def contents(turn):
+        number = iter(range(100))
+        def content(spot):
+            index = next(number) + turn
+            if spot["kind"] == "order":
+                return {"dish": names[index % len(names)]}
+            return {"stack": dishes[names[index % len(names)]][:2]} if spot["name"] in ("assembly_board", "board") else {"item": items[index % len(items)]}
+        return [content(spot) for spot in spots]
+
+    def sight(stage="running", turn=0, **changed):
+        return {"stage": stage, "practice": False, "contents": contents(turn), "served": 3, "presses": [None, None], "intention": None,
+                "signal": None, "cue": None, "question": None, "target": None, "checks": False, **changed}
+
+    made = {stage: sight(stage) for stage in ("welcome", "instruction", "ready", "paused", "over", "thanks")}
+    made["practice"] = sight("ready", practice=True)
+    for turn in range(len(names)):
+        made[f"running {turn}"] = sight(turn=turn)
+        for order in orders:
+            dish = sight(turn=turn)["contents"][order]["dish"]
+            made[f"recipe of {dish} at {spots[order]['name']}"] = sight(turn=turn, signal={"recipe": {"order": order, "dish": dish, "items": dishes[dish]}})
+    served = contents(0)
+    for order in orders:
+        served[order] = "served"
+    made["served"] = sight(contents=served)
+    made["empty"] = sight(contents=["empty"] * len(spots), served=0)
+    for index, spot in enumerate(spots):
+        if spot["kind"] != "order":
+            made[f"highlight of {spot['name']}"] = sight(signal={"highlight": index})
+    longest = max((index for index, spot in enumerate(spots) if spot["kind"] == "place"), key=lambda index: len(spots[index]["label"]))
+    presses = [{"location": index} for index, spot in enumerate(spots) if spot["kind"] != "robot_hand"]
+    presses += [{"storage": index} for index, shelf in enumerate(scene["storages"]) if shelf["agent"] == "human"]
+    reasons = [key for key in scene["words"] if key.startswith("why ")]
+    # The longest line at every place, and every line at one place.
+    reasons.sort(key=lambda key: -len(scene["words"][key].replace("#", spots[longest]["label"])))
+    lines = [(place, reasons[0]) for place in presses] + [(presses[0], reason) for reason in reasons[1:]]
+    for number, (place, reason) in enumerate(lines, 1):
+        press = {"number": number, "at": place, "effective": False, "why": {"reason": reason.removeprefix("why "), "about": longest}}
+        made[f"no effect: {reason} at {json.dumps(place)}"] = sight(presses=[press, None])
+    question = {"title": longer("Acceptance of the signals"), "item": "a", "text": "The signals came at the moments at which they were needed, and told what was not known before.",
+                "number": 3, "of": 12, "points": 7, "low": "strongly disagree", "high": "strongly agree", "answer": 4, "before": "b", "given": []}
+    made["questionnaire"] = sight("questionnaire", question=question)
+    given = [{"text": f"The signals of this trial helped in part {number}.", "rated": number % 7 + 1} for number in range(1, 13)]
+    made["answers"] = sight("questionnaire", question={**question, "item": None, "given": given, "text": scene["words"].get("confirm", "")})
+    return made
+
+
+def show(page, sight):
+    page.ask(f"Stage.show({json.dumps(sight)})")

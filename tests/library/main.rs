@@ -6,6 +6,7 @@ mod connection_table;
 mod console;
 mod cost_to_go;
 mod display;
+mod display_palette;
 mod display_server;
 mod display_words;
 mod escapes;

@@ -1,6 +1,6 @@
 """Every state of the participant's page, in a real browser: the real program's scene, with what a session can show put on it.
 
-Used by display_fits.py.
+Used by display_fits.py and display_axe.py.
 """
 
 import json

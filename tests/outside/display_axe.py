@@ -1,0 +1,45 @@
+"""The participant's page has no violation of the rules of axe (WCAG among them), in any state.
+
+    tests/outside/display_axe.py TOMCOM FOLDER
+"""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from axe_playwright_python.sync_playwright import Axe
+from display_states import KITCHENS, opened, show, states
+from page import browser
+
+STATES = ("welcome", "instruction", "ready", "practice", "running 0", "served", "paused", "over", "questionnaire", "answers", "thanks")
+# What axe cannot decide, and why it is right.
+EXPLAINED = {"color-contrast": "the title of a zone stands on the zone, which other elements overlap; the two colours have a contrast above 4.5"}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tomcom")
+    parser.add_argument("folder", type=Path)
+    arguments = parser.parse_args()
+    looked = 0
+    with browser() as chromium:
+        for kitchen in KITCHENS:
+            with opened(arguments.tomcom, chromium, arguments.folder / kitchen, kitchen, "en") as page:
+                every = states(page.ask("Stage.scene()"), kitchen)
+                names = [*STATES, *[next(name for name in every if name.startswith(kind)) for kind in ("recipe", "highlight", "no effect")]]
+                for name in names:
+                    show(page, every[name])
+                    looked += 1
+                    found = Axe().run(page.page).response
+                    wrong = [(rule["id"], [node["target"] for node in rule["nodes"]]) for rule in found["violations"]]
+                    assert not wrong, f"{kitchen}, {name}: {wrong}"
+                    open_ones = {rule["id"]: [node["target"] for node in rule["nodes"]] for rule in found["incomplete"] if rule["id"] not in EXPLAINED}
+                    assert not open_ones, f"{kitchen}, {name}: axe cannot decide {open_ones}"
+    print(f"axe finds nothing in {looked} states of the page", flush=True)
+
+
+if __name__ == "__main__":
+    main()
+    sys.stdout.flush()
+    os._exit(0)

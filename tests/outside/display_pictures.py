@@ -1,0 +1,78 @@
+"""Makes the pictures of docs/display.md: each state of the participant's page, as the real program and a real browser show it.
+
+    tests/outside/display_pictures.py TOMCOM FOLDER [--from-disk] [--out tests/snapshots/display]
+"""
+
+import argparse
+import io
+import os
+import sys
+from pathlib import Path
+
+from PIL import Image
+
+from display_states import items_of, opened, show, states
+from page import browser
+
+SIZE = (960, 540)
+# Each picture is drawn twice as large, then scaled down; it has at most so many bytes.
+MAX_BYTES = 60_000
+
+
+# What lies where, as in the middle of a trial.
+CONTENTS = {
+    "sushi": {"order_1": {"dish": "salmon nigiri"}, "order_2": {"dish": "crab maki"}, "human_hand": {"item": "nori"}, "robot_hand": {"item": "tuna raw"},
+              "assembly_board": {"stack": ["rice cooked", "nori"]}, "counter": {"item": "salmon raw"}, "cooking_pot": {"item": "crab cooked"}},
+    "burger": {"order": {"dish": "garden burger"}, "human_hand": {"item": "cheese"}, "robot_hand": {"item": "lettuce"},
+               "board": {"stack": ["light bun", "soy grilled"]}, "grill_plate": {"item": "beef raw"}, "shelf": {"item": "tomato sliced"}},
+}
+
+
+def chosen(scene, kitchen):
+    """The states that the page of the manual shows, by the names of their files."""
+    every, lies = states(scene, kitchen), CONTENTS[kitchen]
+    names = [spot["name"] for spot in scene["locations"]]
+    contents = [lies.get(name, "empty") for name in names]
+    order, place = next(index for index, name in enumerate(names) if name.startswith("order")), names.index("cooking_pot" if kitchen == "sushi" else "grill_plate")
+    dish = contents[order]["dish"]
+    running = {**every["empty"], "contents": contents, "served": 3}
+    press = {"number": 1, "at": {"location": place}, "effective": False, "why": {"reason": "place_full", "about": place}}
+    made = {stage: {**every[stage], "contents": contents} for stage in ("welcome", "instruction", "ready", "paused", "over", "questionnaire", "answers", "thanks")}
+    for stage, text in (("questionnaire", "The signals came when I needed them."), ("answers", "Thank you. Are your answers as you meant them?")):
+        made[stage]["question"] = {**made[stage]["question"], "title": "How was it?", "text": text}
+    return made | {
+        "running": running,
+        "recipe": {**running, "signal": {"recipe": {"order": order, "dish": dish, "items": items_of(kitchen)[dish]}}},
+        "highlight": {**running, "signal": {"highlight": place}},
+        "no-effect": {**running, "presses": [press, None]},
+    }
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tomcom")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--from-disk", action="store_true", help="with the page's files as they are now, not as they were built")
+    parser.add_argument("--out", type=Path, default=Path("tests/snapshots/display"))
+    arguments = parser.parse_args()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    with browser() as chromium:
+        for kitchen, language, wanted in [("sushi", "en", None), ("burger", "de", ("running", "recipe"))]:
+            folder = arguments.folder / f"pictures-{kitchen}"
+            with opened(arguments.tomcom, chromium, folder, kitchen, language, from_disk=arguments.from_disk) as page:
+                for file, sight in chosen(page.ask("Stage.scene()"), kitchen).items():
+                    if wanted and file not in wanted:
+                        continue
+                    show(page, sight)
+                    page.page.wait_for_timeout(100)
+                    picture = Image.open(io.BytesIO(page.page.screenshot())).convert("RGB").resize(SIZE, Image.LANCZOS)
+                    path = arguments.out / (f"{file}.webp" if kitchen == "sushi" else f"{kitchen}-{language}-{file}.webp")
+                    picture.save(path, quality=80, method=6)
+                    assert path.stat().st_size <= MAX_BYTES, f"{path}: {path.stat().st_size} bytes"
+                    print(f"{path}: {path.stat().st_size} bytes", flush=True)
+
+
+if __name__ == "__main__":
+    main()
+    sys.stdout.flush()
+    os._exit(0)

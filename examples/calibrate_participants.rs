@@ -177,8 +177,8 @@ impl Setting {
     fn study(&self, population: &Population, seed: u64) -> Result<Rates, Box<dyn Error>> {
         let mut spec = self.spec.clone();
         (spec.seed, spec.participant.population) = (seed, Some(population.clone()));
-        let study =
-            Study::new(&spec, Vec::new(), self.texts.each_ref().map(String::as_str)).ok_or("a session with a plan")?;
+        let study = Study::new(&spec, Vec::new(), None, self.texts.each_ref().map(String::as_str))
+            .ok_or("a session with a plan")?;
         let mut rates = Rates::default();
         for participant in 0..study.plan.codes().len() {
             for period in 1..=study.plan.conditions.len() as u32 {

@@ -17,6 +17,7 @@ mod rerun_messages;
 mod review;
 mod simulation;
 mod study;
+mod tutorial_alone;
 mod wizard;
 
 use std::io::{IsTerminal, Write};
@@ -66,6 +67,7 @@ pub fn main() -> ExitCode {
     let done = match command {
         CliCommand::Operate(args) => operate::operate(&args),
         CliCommand::Compare(args) => wizard::compare(&args),
+        CliCommand::Tutorial(args) => tutorial_alone::tutorial(&args),
         CliCommand::Train(args) => wizard::train(&args),
         CliCommand::Replay(args) => replay(&args),
         CliCommand::Review(args) => review::review(&args),

@@ -12,6 +12,7 @@ use super::operate::{OperateArgs, OperateFlags};
 use super::output::OutputFormat;
 use super::review::ReviewArgs;
 use super::study::StudyArgs;
+use super::tutorial_alone::TutorialArgs;
 use super::wizard::{CompareArgs, TrainArgs};
 use crate::mind::fitting::Parameter;
 use crate::run::simulate::Shard;
@@ -34,6 +35,7 @@ pub(super) struct Cli {
 pub(super) enum CliCommand {
     Operate(OperateArgs),
     Compare(CompareArgs),
+    Tutorial(TutorialArgs),
     Train(TrainArgs),
     Replay(ReplayArgs),
     Review(ReviewArgs),

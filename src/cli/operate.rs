@@ -120,7 +120,7 @@ pub(super) fn new_session(
 }
 
 /// Parses an address of this computer. A port beside it has no meaning here.
-fn address_without_port(text: &str) -> Result<IpAddr, String> {
+pub(super) fn address_without_port(text: &str) -> Result<IpAddr, String> {
     text.parse().map_err(|_| match text.parse::<SocketAddr>() {
         Ok(with_port) => format!(
             "right would be an address without a port, as {}; the port is `port` under [display] in the session file (only --rerun-listen takes \

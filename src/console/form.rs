@@ -9,8 +9,9 @@ use super::note::TextInput;
 use super::notice::NoticeLevel;
 use super::sending::send;
 use crate::session::answer_value::AnswerValue;
-use crate::session::plan::{ItemForm, PhaseSpec, Questionnaire};
+use crate::session::plan::{ItemForm, PhaseSpec, Questionnaire, Tutorial};
 use crate::session::protocol::{Protocol, ProtocolEvent};
+use crate::session::tutorial::{TutorialEvent, TutorialReader};
 use crate::session::{Event, Session};
 
 /// Preset reasons for waiving the criterion of the practice.
@@ -27,6 +28,8 @@ pub enum SheetContent<'a> {
         /// What is to be done, in this order.
         steps: &'a [String],
     },
+    /// The tutorial, through which the participant goes on the display.
+    Tutorial(&'a Tutorial),
     /// The items of a questionnaire.
     Questions(&'a Questionnaire),
     /// The criterion was not met: repeat the practice, or waive it.
@@ -38,6 +41,7 @@ impl SheetContent<'_> {
     pub fn name(&self) -> &'static str {
         match self {
             SheetContent::Steps { .. } => "steps",
+            SheetContent::Tutorial(_) => "tutorial",
             SheetContent::Questions(_) => "questionnaire",
             SheetContent::Failed => "criterion",
         }
@@ -51,6 +55,7 @@ pub fn sheet(session: &Session) -> Option<SheetContent<'_>> {
         PhaseSpec::Instruction { steps } => {
             Some(SheetContent::Steps { title: "Instruction of the participant", steps })
         }
+        PhaseSpec::Tutorial { tutorial } => Some(SheetContent::Tutorial(tutorial)),
         PhaseSpec::Debriefing { steps } => Some(SheetContent::Steps { title: "Debriefing of the wizard", steps }),
         PhaseSpec::Questionnaire { questionnaire } => Some(SheetContent::Questions(questionnaire)),
         PhaseSpec::Familiarisation => {
@@ -106,6 +111,7 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
     let (sheet, protocol) = (sheet(session)?, session.protocol.as_ref()?);
     match (sheet, stroke) {
         (SheetContent::Failed, SheetKey::Leave) => Some(ConsoleCommand::Next),
+        (SheetContent::Tutorial(tutorial), stroke) => read(model, session, tutorial, stroke),
         (_, SheetKey::Leave) => leave(model, session),
         (SheetContent::Steps { .. }, SheetKey::Confirm) => match protocol.ticks.iter().position(|done| !done) {
             Some(open) => tell(model, session, ProtocolEvent::Ticked { step: open + 1, done: true }),
@@ -135,6 +141,29 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
             None
         }
     }
+}
+
+/// The wizard turns the participant's page, or ends the tutorial.
+fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke: SheetKey) -> Option<ConsoleCommand> {
+    let by = TutorialReader::Wizard;
+    let Some((_, state)) = session.tutorial_step() else { return leave(model, session) };
+    let to = match stroke {
+        SheetKey::Forward | SheetKey::Confirm => state.step + 1,
+        SheetKey::Back | SheetKey::Undo => match state.step.checked_sub(1) {
+            Some(before) => before,
+            None => return refuse(model, "this is the first step"),
+        },
+        SheetKey::Digit(0) => return tell(model, session, ProtocolEvent::Tutorial(TutorialEvent::Ended { by })),
+        SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip => {
+            return refuse(model, "arrows turn the participant's page, 0 skips the rest");
+        }
+        SheetKey::Leave => return leave(model, session),
+    };
+    let event = match tutorial.steps.get(to) {
+        Some(step) => TutorialEvent::Shown { step: step.id.clone(), by },
+        None => TutorialEvent::Ended { by },
+    };
+    tell(model, session, ProtocolEvent::Tutorial(event))
 }
 
 fn ask(

@@ -8,12 +8,14 @@
 #[cfg(feature = "physics")]
 mod arm_tip;
 mod consent;
+mod display_place;
 mod displayed_item;
 pub mod page_language;
 mod robot_hand;
 mod robot_pose;
 mod scene;
 mod sight;
+mod tutorial_page;
 
 pub use consent::consent_sight;
 pub use robot_hand::RobotHand;

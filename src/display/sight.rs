@@ -2,12 +2,14 @@
 
 use serde::Serialize;
 
+use super::display_place::{DisplayPlace, spot};
 use super::displayed_item::{DisplayedItem, question};
+use super::tutorial_page::{DisplayedTutorial, RecipeCard, card, tutorial};
 use crate::communication::Signal;
 use crate::kitchen::no_effect::NoEffect;
-use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent};
+use crate::kitchen::{Agent, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::session::accuracy_check::RunningGazeCheck;
-use crate::session::plan::PhaseSpec;
+use crate::session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
 use crate::session::{Phase, Session, TimelineEvent};
 
 /// What the participant sees of the session now; always the whole of it.
@@ -31,6 +33,8 @@ pub struct DisplayUpdate {
     pub cue: Option<u64>,
     /// The questionnaire item that is asked, if one is.
     pub question: Option<DisplayedItem>,
+    /// The step of the tutorial, if there is one.
+    pub tutorial: Option<DisplayedTutorial>,
     /// Where the eyes are asked to look while the gaze is checked, in fractions of the display.
     pub target: Option<[f64; 2]>,
     /// The gaze is being checked: nothing else is shown.
@@ -45,6 +49,8 @@ pub enum DisplayStage {
     Welcome,
     /// The experimenter instructs.
     Instruction,
+    /// The participant goes through a tutorial.
+    Tutorial,
     /// The kitchen before the trial starts.
     Ready,
     /// The trial runs.
@@ -75,16 +81,6 @@ pub enum ShownContent {
     Dish(String),
     /// An order that was served a moment ago.
     Served,
-}
-
-/// A place of the display: a location or a storage, by its number in the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum DisplayPlace {
-    /// The location with this index in the scene.
-    Location(usize),
-    /// The storage with this index in the scene.
-    Storage(usize),
 }
 
 /// A press and its effect.
@@ -130,7 +126,9 @@ pub enum DisplayedSignal {
 /// What the participant sees of a session.
 pub fn sight(session: &Session) -> DisplayUpdate {
     let kitchen = &session.kitchen;
-    let contents = (0..kitchen.locations.len()).map(|index| shown(session, LocationId(index as u8)));
+    let practised = session.tutorial_step();
+    let state = practised.map_or(session.state, |(_, tutorial)| tutorial.kitchen);
+    let contents = (0..kitchen.locations.len()).map(|index| shown(kitchen, state, LocationId(index as u8)));
     let is_trial = matches!(session.phase, Phase::Running | Phase::Paused);
     let intention = session.robot.intention.filter(|_| session.spec.display.intention && is_trial);
     DisplayUpdate {
@@ -138,12 +136,19 @@ pub fn sight(session: &Session) -> DisplayUpdate {
         practice: matches!(session.study_phase(), Some(PhaseSpec::Familiarisation)),
         contents: contents.collect(),
         served: session.served.len(),
-        presses: Agent::BOTH.map(|agent| pressed(session, agent)),
+        presses: Agent::BOTH.map(|agent| match practised.is_some() {
+            true => practised_press(session).filter(|_| agent == Agent::Human),
+            false => pressed(session, agent),
+        }),
         intention: intention
             .map(|(button, ..)| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action)),
-        signal: session.shown.as_ref().and_then(|shown| told(session, &shown.signal)),
+        signal: match practised {
+            Some((step, tutorial)) => explained(kitchen, tutorial.kitchen, step),
+            None => session.shown.as_ref().and_then(|shown| told(kitchen, session.state, &shown.signal)),
+        },
         cue: session.cue,
         question: question(session),
+        tutorial: tutorial(session),
         target: session.calibration.as_ref().and_then(RunningGazeCheck::target),
         checks: session.calibration.as_ref().is_some_and(|check| check.result.is_none()),
     }
@@ -162,6 +167,8 @@ fn stage(session: &Session) -> DisplayStage {
         (false, _) | (true, Some(PhaseSpec::Trial | PhaseSpec::Familiarisation)) => trial,
         (true, None) => DisplayStage::Welcome,
         (true, Some(PhaseSpec::Instruction { .. })) => DisplayStage::Instruction,
+        (true, Some(PhaseSpec::Tutorial { .. })) if session.tutorial_step().is_none() => DisplayStage::Ready,
+        (true, Some(PhaseSpec::Tutorial { .. })) => DisplayStage::Tutorial,
         (true, Some(PhaseSpec::Questionnaire { .. })) => {
             let is_confirmed = session.protocol.as_ref().is_some_and(|protocol| protocol.confirmed);
             if is_confirmed { DisplayStage::Answered } else { DisplayStage::Questionnaire }
@@ -170,8 +177,7 @@ fn stage(session: &Session) -> DisplayStage {
     }
 }
 
-fn shown(session: &Session, location: LocationId) -> ShownContent {
-    let (kitchen, state) = (&session.kitchen, session.state);
+fn shown(kitchen: &Kitchen, state: State, location: LocationId) -> ShownContent {
     if kitchen.location(location).kind == LocationKind::Order {
         return match state.order(location) {
             OrderContent::None => ShownContent::Empty,
@@ -206,6 +212,27 @@ fn pressed(session: &Session, agent: Agent) -> Option<DisplayedPress> {
     Some(DisplayedPress { number: session.presses[agent.index()], at, effective, why })
 }
 
+/// The last press of the tutorial's step.
+fn practised_press(session: &Session) -> Option<DisplayedPress> {
+    let (_, tutorial) = session.tutorial_step()?;
+    let press = tutorial.last?;
+    let at = spot(&session.kitchen, Agent::Human, session.kitchen.button(Agent::Human, press.button).action);
+    let is_told = session.spec.display.reasons == Some(true);
+    let why = press.no_effect.filter(|_| is_told);
+    let why = why.map(|(reason, about)| DisplayedReason { reason, about: about.index() });
+    Some(DisplayedPress { number: press.number, at, effective: press.is_right, why })
+}
+
+/// The signal that a step of the tutorial explains.
+fn explained(kitchen: &Kitchen, state: State, step: &TutorialStep) -> Option<DisplayedSignal> {
+    if step.kind != TutorialStepKind::Signal {
+        return None;
+    }
+    let order = || Some(Signal::ShowRecipe(kitchen.location(*kitchen.orders.first()?).name.clone()));
+    let signal = step.highlight.clone().map(Signal::Highlight).or_else(order)?;
+    told(kitchen, state, &signal)
+}
+
 /// The middle of the place at which the robot presses a button, in fractions of the display.
 pub(super) fn button_place(session: &Session, button: ButtonId) -> [f64; 2] {
     let kitchen = &session.kitchen;
@@ -215,33 +242,14 @@ pub(super) fn button_place(session: &Session, button: ButtonId) -> [f64; 2] {
     }
 }
 
-/// Where a press of an agent happens.
-fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> DisplayPlace {
-    let hand = kitchen.hands[agent.index()];
-    let location = match action {
-        ButtonAction::Take(item) => {
-            let is_it = |storage: &crate::kitchen::Storage| storage.agent == agent && storage.item == item;
-            return DisplayPlace::Storage(kitchen.storages.iter().position(is_it).unwrap_or_default());
-        }
-        ButtonAction::Use(location) => location,
-        ButtonAction::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),
-        ButtonAction::Trash => hand,
-        ButtonAction::Serve(order) => order,
-    };
-    DisplayPlace::Location(location.index())
-}
-
-fn told(session: &Session, signal: &Signal) -> Option<DisplayedSignal> {
-    let kitchen = &session.kitchen;
+fn told(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<DisplayedSignal> {
     let location = kitchen.location_named(signal.target())?;
     match signal {
         Signal::Highlight(_) => Some(DisplayedSignal::Highlight(location.index())),
         Signal::ShowRecipe(_) => {
-            let OrderContent::Dish(dish) = session.state.order(location) else { return None };
-            let dish = kitchen.dish(dish);
-            let items = kitchen.content(dish.stack()).items.iter();
-            let items = items.map(|item| kitchen.content(*item).name.clone()).collect();
-            Some(DisplayedSignal::Recipe { order: location.index(), dish: dish.name.clone(), items })
+            let OrderContent::Dish(dish) = state.order(location) else { return None };
+            let RecipeCard { dish, items } = card(kitchen, dish);
+            Some(DisplayedSignal::Recipe { order: location.index(), dish, items })
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::kitchen::{Kitchen, layout_ranges};
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::header::FileText;
-use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study};
+use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tutorial};
 use crate::session::ranges;
 use crate::session::settings::SettingError;
 use crate::session::wall_display::DisplayedArm;
@@ -33,20 +33,30 @@ pub struct SessionFiles {
     pub keys: Option<FileText>,
     /// The questionnaires that the plan names, in its order.
     pub questionnaires: Vec<Questionnaire>,
+    /// The tutorial that the plan names, if it names one.
+    pub tutorial: Option<Tutorial>,
 }
 
 impl SessionFiles {
     /// The study that it plans.
     pub fn study(&self) -> Option<Study> {
         let kitchen = [&*self.kitchen.layout.text, &*self.kitchen.recipes.text];
-        Study::new(&self.spec, self.questionnaires.clone(), kitchen)
+        Study::new(&self.spec, self.questionnaires.clone(), self.tutorial.clone(), kitchen)
     }
 }
 
 /// Reads a session file, the layout and the key file that it names, and the recipes that the layout names.
 pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
+    read_session_in(path, None)
+}
+
+/// Reads a session file as [`read_session`] does, with the display in this language instead of the file's.
+pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<SessionFiles> {
     let text = read_text(path)?;
     let mut spec: SessionSpec = parse(path, &text)?;
+    if let Some(language) = language {
+        spec.display.language = language.to_string();
+    }
     let folder = path.parent().unwrap_or(Path::new("."));
     if let Some(file) = &mut spec.tracker.file {
         *file = path.parent().unwrap_or(Path::new(".")).join(&*file).display().to_string();
@@ -95,7 +105,8 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     };
     let mut kitchen = read_kitchen_with(&layout_path, keys.as_ref())?;
     kitchen.layout.path.clone_from(&spec.layout);
-    Ok(SessionFiles { spec, kitchen, keys, questionnaires })
+    let tutorial = read_tutorial(path, &text, &spec, &kitchen.kitchen)?;
+    Ok(SessionFiles { spec, kitchen, keys, questionnaires, tutorial })
 }
 
 /// Reads the questionnaires of a plan, in its order and in the session's language.
@@ -120,7 +131,22 @@ fn read_questionnaires(
     plan.questionnaire.iter().enumerate().map(read).collect()
 }
 
-/// A questionnaire in this language, where it stands beside the one that was named: `acceptance.de.toml` beside
+/// Reads the tutorial of a plan, in the session's language, and checks that it fits the kitchen.
+fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitchen) -> FileResult<Option<Tutorial>> {
+    let Some(file) = spec.plan.as_ref().and_then(|plan| plan.tutorial.as_ref()) else { return Ok(None) };
+    let path = in_language(session.parent().unwrap_or(Path::new(".")).join(file), spec.display.code());
+    if let Err(reason) = std::fs::metadata(&path) {
+        let remedy = "the path of a tutorial, relative to the session file";
+        return Err(missing(session, text, ("plan.tutorial", 0, file), reason, remedy));
+    }
+    let text = read_text(&path)?;
+    let tutorial: Tutorial = parse(&path, &text)?;
+    let checked = tutorial.check().and_then(|()| tutorial.check_kitchen(kitchen));
+    checked.map_err(|error| wrong_setting(&path, &text, error))?;
+    Ok(Some(tutorial))
+}
+
+/// A file of texts in this language, where it stands beside the one that was named: `acceptance.de.toml` beside
 /// `acceptance.toml`.
 fn in_language(path: PathBuf, code: &str) -> PathBuf {
     // A file with words that names no language stands here with its path.
@@ -182,7 +208,7 @@ pub fn built_in_session() -> FileResult<SessionFiles> {
     let layout = (Path::new(&spec.layout), include_str!("../../layouts/sushi.toml").to_string());
     let recipes = (Path::new("../recipes/sushi.toml"), include_str!("../../recipes/sushi.toml").to_string());
     let kitchen = compile_kitchen(layout, recipes)?;
-    Ok(SessionFiles { spec, kitchen, keys: None, questionnaires: Vec::new() })
+    Ok(SessionFiles { spec, kitchen, keys: None, questionnaires: Vec::new(), tutorial: None })
 }
 
 /// A kitchen with the texts it was made from, which go into the header of every recording.

@@ -11,7 +11,7 @@ use crate::kitchen::recipe::RecipesSpec;
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
 use crate::session::battery::BatterySpec;
-use crate::session::plan::Questionnaire;
+use crate::session::plan::{Questionnaire, Tutorial};
 
 /// The kinds of files that people write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +28,8 @@ pub enum FileKind {
     Keys,
     /// A questionnaire.
     Questionnaire,
+    /// A tutorial.
+    Tutorial,
     /// Words of the participant's display in a language.
     Language,
     /// A battery of cohorts.
@@ -45,6 +47,7 @@ impl FileKind {
             () if has(&["ingredient", "slot", "dish"]) => Some(FileKind::Recipes),
             () if has(&["scale", "item"]) => Some(FileKind::Questionnaire),
             () if has(&["layout"]) => Some(FileKind::Session),
+            () if has(&["step"]) => Some(FileKind::Tutorial),
             () if has(&["language"]) => Some(FileKind::Language),
             () if has(&["prior", "perception", "transition", "decision"]) => Some(FileKind::HumanModel),
             () if has(&["console", "replay", "signals", "buttons"]) => Some(FileKind::Keys),
@@ -60,6 +63,7 @@ impl FileKind {
             FileKind::HumanModel => "a file with parameters of the human model",
             FileKind::Keys => "a key file",
             FileKind::Questionnaire => "a questionnaire",
+            FileKind::Tutorial => "a tutorial",
             FileKind::Language => "words of the participant's display",
             FileKind::Battery => "a battery of cohorts",
         }
@@ -71,6 +75,7 @@ impl FileKind {
             FileKind::Layout => "a layout file, like layouts/sushi.toml",
             FileKind::Recipes => "a recipe file, like recipes/sushi.toml",
             FileKind::Questionnaire => "a questionnaire, like sessions/questionnaires/acceptance.toml",
+            FileKind::Tutorial => "a tutorial, like sessions/tutorials/sushi.toml",
             FileKind::Language => "words of the participant's display, lines like \"rice\" = \"riz\"",
             FileKind::HumanModel => "parameters of the human model, like those that tomcom fit writes",
             FileKind::Keys => "a key file, as tomcom keys prints it",
@@ -99,6 +104,10 @@ impl ParsedFile for RecipesSpec {
 
 impl ParsedFile for Questionnaire {
     const KIND: FileKind = FileKind::Questionnaire;
+}
+
+impl ParsedFile for Tutorial {
+    const KIND: FileKind = FileKind::Tutorial;
 }
 
 impl ParsedFile for BatterySpec {

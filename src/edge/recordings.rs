@@ -160,7 +160,7 @@ impl Part {
             Event::Protocol(ProtocolEvent::ConsentGiven { .. }) => self.consent = true,
             Event::Protocol(ProtocolEvent::PhaseStarted { phase, number }) => {
                 self.phase = *number;
-                self.instructed |= *phase != StudyPhase::Instruction;
+                self.instructed |= !matches!(phase, StudyPhase::Instruction | StudyPhase::Tutorial);
             }
             Event::Protocol(ProtocolEvent::CriterionChecked { met, .. }) => self.criterion_failed = !met,
             Event::Protocol(ProtocolEvent::CriterionWaived { .. }) => self.criterion_waived = true,

@@ -19,6 +19,7 @@ use crate::session::event::{EndReason, SignalEnd};
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
+use crate::session::tutorial::TutorialEvent;
 use crate::session::wall_display::Answering;
 use crate::session::{Phase, Session, TimelineEvent};
 
@@ -150,6 +151,7 @@ pub fn protocol(event: &ProtocolEvent) -> String {
         ProtocolEvent::PhaseStarted { phase, .. } => format!("phase: {}", phase.name()),
         ProtocolEvent::Ticked { step, done: true } => format!("step {step} is done"),
         ProtocolEvent::Ticked { step, done: false } => format!("step {step} is not done after all"),
+        ProtocolEvent::Tutorial(event) => tutorial(event),
         ProtocolEvent::ItemShown { item } => format!("item {item} is shown"),
         ProtocolEvent::AnswersShown => "all answers are shown".to_string(),
         // Words and choices can be personal, and viewers of the stream are not the analysis.
@@ -164,6 +166,16 @@ pub fn protocol(event: &ProtocolEvent) -> String {
             format!("criterion {met}: {orders} served, {errors} in {}", count(*presses, "press", "presses"))
         }
         ProtocolEvent::CriterionWaived { reason } => format!("criterion waived: {reason}"),
+    }
+}
+
+fn tutorial(event: &TutorialEvent) -> String {
+    match event {
+        TutorialEvent::Shown { step, by } => format!("tutorial: the {} turns to step {step}", by.name()),
+        TutorialEvent::Pressed { button } => format!("tutorial: pressed {button}"),
+        TutorialEvent::CardsHidden { .. } => "tutorial: the recipe cards are hidden".to_string(),
+        TutorialEvent::Answered { step, choice } => format!("tutorial: question {step}, choice {choice}"),
+        TutorialEvent::Ended { by } => format!("tutorial: ended by the {}", by.name()),
     }
 }
 

@@ -7,11 +7,11 @@
 //!   [`stream_settings`], [`tracker`] (with its events and state), and the specifications in [`plan`]; [`settings`], all of
 //!   them together. On these stand [`battery`], `session_file`, `requirements`, [`participant_code`], [`header`], [`orders`], and the
 //!   studies in [`plan`].
-//! - What happens: `gaze_check`, [`answer_value`], `protocol_event` (with the phases of a plan), `preflight_check`, [`wizard_screen`]; [`event`],
+//! - What happens: `gaze_check`, [`answer_value`], `protocol_event` (with the phases of a plan), `tutorial_event`, `preflight_check`, [`wizard_screen`]; [`event`],
 //!   all of them together.
-//! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `protocol_state`; `session_state`, all of them
+//! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `tutorial_state`, `protocol_state`; `session_state`, all of them
 //!   together.
-//! - What can happen when, and what it changes: `robot_changes`, [`accuracy_check`], [`gaze_samples`], [`protocol`],
+//! - What can happen when, and what it changes: `robot_changes`, [`accuracy_check`], [`gaze_samples`], [`tutorial`], [`protocol`],
 //!   `interventions`; [`admit`] and [`mod@apply`], all of them together. On these stand the rules of [`offers`]. Beside them [`preflight_checks`], and the [`timers`] that [`apply()`] sets.
 
 pub mod accuracy_check;
@@ -51,6 +51,9 @@ pub mod stream_settings;
 mod timeline_entry;
 pub mod timers;
 pub mod tracker;
+pub mod tutorial;
+mod tutorial_event;
+mod tutorial_state;
 pub mod wall_display;
 pub mod wizard_screen;
 

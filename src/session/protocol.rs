@@ -5,6 +5,7 @@ use super::plan::{PhaseSpec, Questionnaire, StepSpec};
 pub use super::protocol_event::{ProtocolEvent, StudyPhase};
 pub use super::protocol_state::{ItemAnswer, Practice, Protocol};
 use super::session_state::Session;
+use super::tutorial;
 
 impl Session {
     /// The plan step and the protocol state, if the recording belongs to a plan.
@@ -52,6 +53,10 @@ impl Session {
             PhaseSpec::Instruction { .. } | PhaseSpec::Debriefing { .. } => {
                 protocol.ticks.contains(&false).then_some("not every step is done")
             }
+            PhaseSpec::Tutorial { .. } => {
+                let is_over = protocol.tutorial.as_ref().is_some_and(|tutorial| tutorial.is_over);
+                (!is_over).then_some("the participant is not through the tutorial")
+            }
             PhaseSpec::Trial | PhaseSpec::Familiarisation => {
                 (!matches!(self.phase, Phase::Over(_))).then_some("the trial is not over")
             }
@@ -89,6 +94,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
             let is_done = step.checked_sub(1).and_then(|index| protocol.ticks.get(index));
             unless(is_done.is_some_and(|is_done| is_done != done), "there is no such step to be ticked")
         }
+        ProtocolEvent::Tutorial(event) => tutorial::admit(session, event),
         ProtocolEvent::ItemShown { item } => open_item(session, item).map(drop),
         ProtocolEvent::AnswersShown => unless(is_open(session), "no questionnaire is being answered"),
         ProtocolEvent::ItemAnswered { item, answer } => {
@@ -155,10 +161,14 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
         ProtocolEvent::ItemShown { item } => place(item),
         _ => None,
     };
+    if let ProtocolEvent::Tutorial(event) = event {
+        return tutorial::apply(session, event);
+    }
     let shown = session.protocol.as_ref().and_then(|protocol| session.questionnaire()?.form(protocol.item));
     let stays = shown.is_some_and(|form| form.stays());
     let Some(protocol) = &mut session.protocol else { return };
     match event {
+        ProtocolEvent::Tutorial(_) => {}
         ProtocolEvent::ConsentGiven { .. } => protocol.consent = true,
         ProtocolEvent::PhaseStarted { number, .. } => {
             protocol.number = *number;
@@ -166,6 +176,7 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
             protocol.answers = vec![None; items];
             protocol.item = 0;
             protocol.confirmed = false;
+            tutorial::begin(session);
         }
         ProtocolEvent::Ticked { step, done } => {
             if let Some(tick) = step.checked_sub(1).and_then(|index| protocol.ticks.get_mut(index)) {

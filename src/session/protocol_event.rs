@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::answer_value::AnswerValue;
+use super::tutorial_event::TutorialEvent;
 use super::wall_display::Answering;
 
 /// A phase of a study.
@@ -11,6 +12,8 @@ use super::wall_display::Answering;
 pub enum StudyPhase {
     /// The wizard instructs the participant.
     Instruction,
+    /// The participant goes through the tutorial.
+    Tutorial,
     /// Practice.
     Familiarisation,
     /// A trial that counts.
@@ -26,6 +29,7 @@ impl StudyPhase {
     pub fn name(self) -> &'static str {
         match self {
             StudyPhase::Instruction => "instruction",
+            StudyPhase::Tutorial => "tutorial",
             StudyPhase::Familiarisation => "familiarisation",
             StudyPhase::Trial => "trial",
             StudyPhase::Questionnaire => "questionnaire",
@@ -69,6 +73,8 @@ pub enum ProtocolEvent {
         /// Whether it is done now.
         done: bool,
     },
+    /// Something happens in the tutorial.
+    Tutorial(TutorialEvent),
     /// An item of a questionnaire is shown.
     ItemShown {
         /// The item's name.

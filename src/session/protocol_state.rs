@@ -1,6 +1,7 @@
 //! State of the study protocol in a recording: phase, completed steps, and answers.
 
 use super::answer_value::AnswerValue;
+use super::tutorial_state::TutorialState;
 
 /// An answer to an item.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -43,6 +44,8 @@ pub struct Protocol {
     pub confirmed: bool,
     /// How the practice went, once it is over.
     pub practice: Option<Practice>,
+    /// The tutorial, in its phase.
+    pub tutorial: Option<TutorialState>,
 }
 
 impl ItemAnswer {

@@ -14,6 +14,8 @@ pub enum Table {
     Trials,
     /// A row for each answer.
     Questionnaires,
+    /// A row for each question of a tutorial.
+    Tutorial,
     /// A row for each unassisted trial, concept and value of its parameter.
     Concepts,
     /// A row for each press.
@@ -32,10 +34,11 @@ pub enum Table {
 
 impl Table {
     /// Every table.
-    pub const ALL: [Table; 10] = [
+    pub const ALL: [Table; 11] = [
         Table::Participants,
         Table::Trials,
         Table::Questionnaires,
+        Table::Tutorial,
         Table::Concepts,
         Table::Actions,
         Table::Communications,
@@ -54,6 +57,7 @@ impl Table {
             Table::Participants => "participants",
             Table::Trials => "trials",
             Table::Questionnaires => "questionnaires",
+            Table::Tutorial => "tutorial",
             Table::Concepts => "concepts",
             Table::Actions => "actions",
             Table::Communications => "communications",

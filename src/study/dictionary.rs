@@ -11,6 +11,7 @@ use super::tables::gaze_runs::GazeRow;
 use super::tables::offer_table::OfferRow;
 use super::tables::participants::ParticipantRow;
 use super::tables::questionnaires::AnswerRow;
+use super::tables::tutorial_answers::TutorialAnswer;
 use super::trial_statistics::Trial;
 
 /// Dictionary entry of one table column.
@@ -45,6 +46,7 @@ pub fn columns(table: Table) -> Vec<DictionaryRow> {
         Table::Participants => declared::<ParticipantRow>(),
         Table::Trials => declared::<Trial>(),
         Table::Questionnaires => declared::<AnswerRow>(),
+        Table::Tutorial => declared::<TutorialAnswer>(),
         Table::Concepts => declared::<ConceptRow>(),
         Table::Actions => declared::<ActionRow>(),
         Table::Communications => declared::<CommunicationRow>(),

@@ -12,7 +12,9 @@ use super::live_arms::{LiveArm, live_arms};
 use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
 use super::statistics::{Correlation, FTest, Interval, share_interval};
 use super::tables::trials::measures;
+use super::tables::tutorial_answers::TutorialAnswer;
 use super::trial_statistics::{BeliefBasis, BeliefErrors, Trial, mean, mean_length};
+use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::measures::cause_codes::{Agreement, AgreementTable, Codes};
 use crate::measures::cause_kinds::CauseKindCounts;
@@ -79,6 +81,9 @@ pub struct StudySummary {
     pub questionnaires: Vec<ItemSummary>,
     /// The scores of questionnaires that have one, by condition.
     pub questionnaire_scores: Vec<ScoreSummary>,
+    /// Answers to the questions of tutorials; absent if none was answered.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tutorial: Option<TutorialSummary>,
     /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<Agreement>,
     /// Trials whose causes of errors are the consensus of two raters, by the raters ("R1+R2").
@@ -245,12 +250,18 @@ impl StudySummary {
             acceptance: acceptance(&counting),
             questionnaires: items(&counting),
             questionnaire_scores: scores(&counting),
+            tutorial: None,
             raters: agreement(&counting),
             consensus: consensus(&counting),
             stale_consensus: counting.iter().filter_map(|trial| stale(trial)).collect(),
             left_out: left_out.collect(),
             practice,
         }
+    }
+
+    /// Adds the answers to the questions of tutorials, which must be ordered by participant.
+    pub fn with_tutorials(self, answers: &[TutorialAnswer]) -> StudySummary {
+        StudySummary { tutorial: TutorialSummary::from_answers(answers), ..self }
     }
 }
 

@@ -33,3 +33,4 @@ pub mod statistics;
 pub mod svg;
 pub mod tables;
 pub mod trial_statistics;
+pub mod tutorial_summary;

@@ -30,9 +30,9 @@ def prepare(files):
 
 
 class Console:
-    """Runs `tomcom operate` with these arguments until it is left by `with`."""
+    """Runs `tomcom operate`, or another command, with these arguments until it is left by `with`."""
 
-    def __init__(self, tomcom, arguments, size=(120, 40), files=None):
+    def __init__(self, tomcom, arguments, size=(120, 40), files=None, command="operate"):
         """`files`: at most so many open files."""
         self.screen = pyte.Screen(*size)
         self.stream = pyte.ByteStream(self.screen)
@@ -44,7 +44,7 @@ class Console:
         environment = {**os.environ, "TERM": "xterm-256color", "LC_ALL": "C.UTF-8"}
         environment.pop("NO_COLOR", None)
         self.process = subprocess.Popen(
-            [tomcom, "operate", *map(str, arguments)],
+            [tomcom, command, *map(str, arguments)],
             stdin=slave, stdout=slave, stderr=slave, env=environment, start_new_session=True,
             preexec_fn=lambda: prepare(files),
         )

@@ -13,7 +13,7 @@ use crate::console::form::{SheetContent, WAIVERS, sheet};
 use crate::console::question::QuestionPage;
 use crate::session::Session;
 use crate::session::answer_value::AnswerValue;
-use crate::session::plan::{ItemForm, Questionnaire, SLIDER_END, Scale};
+use crate::session::plan::{ItemForm, Questionnaire, SLIDER_END, Scale, Tutorial, TutorialStepKind};
 use crate::session::protocol::{ItemAnswer, Protocol};
 
 /// Largest line width, for readability.
@@ -97,6 +97,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     let pen = &mut Pen { brush, with_keys: model.playback.is_none() };
     match sheet {
         SheetContent::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
+        SheetContent::Tutorial(tutorial) => draw_tutorial(pen, screen, &where_, tutorial, session),
         SheetContent::Questions(questionnaire) => {
             draw_questions(pen, screen, &where_, questionnaire, protocol, session)
         }
@@ -108,6 +109,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
 fn onward(session: &Session) -> String {
     match session.next_phase() {
         Some(phase) => format!("on to the {}", phase.name()),
+        None if session.step().is_some_and(|(step, _)| step.is_tutorial_alone()) => "leaves the tutorial".to_string(),
         None => "on to the next recording".to_string(),
     }
 }
@@ -144,6 +146,40 @@ fn draw_steps(
     let hints = [("enter", on.as_str(), plain(KeyCode::Enter)), undo];
     let has_ticks = protocol.ticks.contains(&true);
     page.draw(pen, screen, heads.0, heads.1, if has_ticks { &hints } else { &hints[..1] });
+}
+
+fn draw_tutorial(pen: &mut Pen, screen: Rect, where_: &str, tutorial: &Tutorial, session: &Session) {
+    let mut page = Page::new(screen);
+    let Some((_, state)) = session.tutorial() else { return };
+    for (index, step) in tutorial.steps.iter().enumerate() {
+        let is_shown = index == state.step && !state.is_over;
+        let role = match (is_shown, state.done.get(index)) {
+            (true, _) => TextRole::Strong,
+            (false, Some(true)) => TextRole::Quiet,
+            (false, _) => TextRole::Text,
+        };
+        if is_shown {
+            page.focus = page.lines.len();
+        }
+        let mark = if state.done.get(index) == Some(&true) { "[x]" } else { "[ ]" };
+        let wrong = state.wrong_answers.get(index).copied().unwrap_or(0);
+        let more = match step.kind {
+            TutorialStepKind::Press | TutorialStepKind::Order if is_shown => {
+                format!(" ({} of {} presses)", state.presses, step.presses.len())
+            }
+            TutorialStepKind::Question if wrong > 0 => format!(" (wrong answers: {wrong})"),
+            _ => String::new(),
+        };
+        page.marked(mark, &format!("{}{more}", step.title), role);
+    }
+    let on = onward(session);
+    let over = [("enter", on.as_str(), plain(KeyCode::Enter))];
+    let skip = ("0", "skips the rest", Some(KeyChord::char('0')));
+    let (back, next) =
+        (("\u{2190}", "back", plain(KeyCode::Left)), ("\u{2192}", "turns the page", plain(KeyCode::Right)));
+    let title = "Tutorial of the participant";
+    let open = [next, back, skip];
+    page.draw(pen, screen, title, where_, if state.is_over { &over } else { &open });
 }
 
 /// The key of a hint that can be clicked.

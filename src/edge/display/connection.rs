@@ -320,6 +320,9 @@ impl Talk {
             FromPage::Back { item } => PageInput::Back { item },
             FromPage::Consent => PageInput::Consent,
             FromPage::Confirm => PageInput::Confirm,
+            FromPage::Turn { step, forward } => PageInput::Turn { step, forward },
+            FromPage::Choose { step, choice } => PageInput::Choose { step, choice },
+            FromPage::CardsShown { step } => PageInput::CardsShown { step },
             FromPage::Drawn { cue, at } => PageInput::Drawn { cue, at: self.hub.moment(at) },
             FromPage::Redrawn { took } => {
                 let change = |page: &mut ActivePage| page.redraw_ms = Some(took);

@@ -88,6 +88,25 @@ pub enum FromPage {
     Consent,
     /// Confirmation of all answers.
     Confirm,
+    /// Turning the page of the tutorial from this step.
+    Turn {
+        /// The id of the step that is shown.
+        step: String,
+        /// To the next step; else to the one before.
+        forward: bool,
+    },
+    /// Answer to the question of a tutorial's step.
+    Choose {
+        /// The step's id.
+        step: String,
+        /// The choice, counted from 1.
+        choice: u8,
+    },
+    /// The recipe cards of a tutorial's step were shown for their time.
+    CardsShown {
+        /// The step's id.
+        step: String,
+    },
     /// The screen shows the event with this sequence number.
     Drawn {
         /// Sequence number of the event.
@@ -132,6 +151,7 @@ pub fn read(text: &str) -> Option<FromPage> {
         FromPage::Pointer { x, y } => (-1.0..=2.0).contains(x) && (-1.0..=2.0).contains(y),
         FromPage::Answer { item, answer } => is_text(item) && answer.as_ref().is_none_or(is_answer),
         FromPage::Back { item } => is_text(item),
+        FromPage::Turn { step, .. } | FromPage::Choose { step, .. } | FromPage::CardsShown { step } => is_text(step),
         FromPage::Drawn { at, .. } => is_time(at),
         FromPage::Redrawn { took } => (0.0..1e6).contains(took),
         FromPage::Size { width, height } => is_size(*width, *height),

@@ -48,6 +48,25 @@ pub enum PageInput {
     Consent,
     /// Confirmation of all answers.
     Confirm,
+    /// Turning the page of the tutorial from this step.
+    Turn {
+        /// The id of the step that is shown.
+        step: String,
+        /// To the next step; else to the one before.
+        forward: bool,
+    },
+    /// Answer to the question of a tutorial's step.
+    Choose {
+        /// The step's id.
+        step: String,
+        /// The choice, counted from 1.
+        choice: u8,
+    },
+    /// The recipe cards of a tutorial's step were shown for their time.
+    CardsShown {
+        /// The step's id.
+        step: String,
+    },
     /// The event with this sequence number was drawn at this instant.
     Drawn {
         /// Sequence number of the event.

@@ -41,13 +41,14 @@ const AGAIN: Duration = Duration::from_millis(100);
 const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
 /// Files of the page: path, content type, text.
-const FILES: [(&str, &str, &str); 9] = [
+const FILES: [(&str, &str, &str); 10] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
     ("/display.js", "text/javascript; charset=utf-8", include_str!("page/display.js")),
     ("/robot.js", "text/javascript; charset=utf-8", include_str!("page/robot.js")),
     ("/room.js", "text/javascript; charset=utf-8", include_str!("page/room.js")),
     ("/stage.js", "text/javascript; charset=utf-8", include_str!("page/stage.js")),
+    ("/tutorial.js", "text/javascript; charset=utf-8", include_str!("page/tutorial.js")),
     ("/questions.js", "text/javascript; charset=utf-8", include_str!("page/questions.js")),
     ("/hands.js", "text/javascript; charset=utf-8", include_str!("page/hands.js")),
     ("/art.js", "text/javascript; charset=utf-8", include_str!("page/art.js")),

@@ -10,8 +10,10 @@ use crate::edge::display::{Display, PageConnection};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::run::desk::{OperatorDesk, PageInput};
+use crate::session::admit::admit;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
+use crate::session::tutorial::{TutorialEvent, TutorialReader};
 use crate::session::wall_display::{Answering, DisplayEvent};
 use crate::session::{Event, Session};
 
@@ -109,6 +111,9 @@ impl PageEvent {
             // It is asked for before a recording begins; a late one changes nothing.
             PageInput::Consent => None,
             PageInput::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
+            PageInput::Turn { step, forward } => turn(session, &step, forward),
+            PageInput::Choose { step, choice } => practise(session, TutorialEvent::Answered { step, choice }),
+            PageInput::CardsShown { step } => practise(session, TutorialEvent::CardsHidden { step }),
             PageInput::Drawn { cue, at } => {
                 Some(Event::Display(DisplayEvent::Drawn { cue, at_ns: session_time(at, now) }))
             }
@@ -124,8 +129,33 @@ fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> Pa
         let text = "the display told a button that the kitchen does not have".to_string();
         return PageEvent { event: None, notice: Some((NoticeLevel::Refused, text)) };
     }
+    if session.tutorial_step().is_some() {
+        return PageEvent { event: practise(session, TutorialEvent::Pressed { button }), notice: None };
+    }
     let at_ns = Some(session_time(at, now));
     PageEvent { event: Some(Event::Press { agent: Agent::Human, button, at_ns }), notice: None }
+}
+
+/// The page of the tutorial that the participant turns to from this step.
+fn turn(session: &Session, step: &str, forward: bool) -> Option<Event> {
+    let (tutorial, state) = session.tutorial()?;
+    let by = TutorialReader::Participant;
+    // A page that was turned twice at once is turned once.
+    let from = tutorial.position(step).filter(|&from| from == state.step)?;
+    let to = if forward { from + 1 } else { from.checked_sub(1)? };
+    practise(
+        session,
+        match tutorial.steps.get(to) {
+            Some(step) => TutorialEvent::Shown { step: step.id.clone(), by },
+            None => TutorialEvent::Ended { by },
+        },
+    )
+}
+
+/// An event of the tutorial. What the page cannot do now is no news for the wizard: it was late, or pressed in a step without presses.
+fn practise(session: &Session, event: TutorialEvent) -> Option<Event> {
+    let event = Event::Protocol(ProtocolEvent::Tutorial(event));
+    admit(session, &event).is_ok().then_some(event)
 }
 
 /// An answer to a questionnaire, if the session lets the participant answer on the display.

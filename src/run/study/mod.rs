@@ -6,6 +6,7 @@ pub mod reading;
 mod rows;
 mod sweep;
 mod tell;
+mod tutorials;
 mod twin;
 
 use std::path::{Path, PathBuf};
@@ -27,6 +28,7 @@ use crate::study::report;
 use crate::study::tables::concept_table::{ConceptRow, concepts};
 use crate::study::tables::participants::{ParticipantRow, participants};
 use crate::study::tables::questionnaires::{AnswerRow, answers};
+use crate::study::tables::tutorial_answers::TutorialAnswer;
 use crate::study::trial_statistics::{Trial, arrange};
 
 /// Reasons why a study could not be analysed.
@@ -135,7 +137,8 @@ pub fn study(
     }
     arrange(&mut trials);
     let practice = (recordings.number() - trials.len()) as u64;
-    let figures = StudySummary::from_trials(&trials, &facts, practice);
+    let tutorials = tutorial_answers(recordings)?;
+    let figures = StudySummary::from_trials(&trials, &facts, practice).with_tutorials(&tutorials);
     if !analysis.extent.events {
         kept.clear();
     }
@@ -143,11 +146,23 @@ pub fn study(
     filled.extend(export.table::<ParticipantRow>(participants(&trials))?);
     filled.extend(export.table::<Trial>(&trials)?);
     filled.extend(export.table::<AnswerRow>(trials.iter().flat_map(answers))?);
+    filled.extend(export.table::<TutorialAnswer>(&tutorials)?);
     filled.extend(export.table::<ConceptRow>(trials.iter().filter(|trial| trial.counts()).flat_map(concepts))?);
     filled.extend(export.table::<DictionaryRow>(dictionary())?);
     filled.sort_unstable();
     let path = export.report(&report::page(&figures, &trials, &facts, &filled))?;
     Ok((figures, path))
+}
+
+/// The answers to the questions of tutorials, by participant and recording.
+fn tutorial_answers(recordings: &NamedRecordings) -> Result<Vec<TutorialAnswer>, FileError> {
+    let mut all = Vec::new();
+    for (path, name) in &recordings.found {
+        all.extend(tutorials::read(path, name)?);
+    }
+    // The order of a tutorial's questions stays.
+    all.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
+    Ok(all)
 }
 
 fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) -> Result<(), FileError> {

@@ -6,7 +6,7 @@
 //! with the state of a study. A step that is left early has no end event and can be continued like one that was cut off.
 //!
 //! The files from the ground up: `groups`, `plan_spec` (the `[plan]` of a session file), `starting_groups` (who is in which
-//! group), `item_form` (how items are answered), `questionnaire` and `questionnaire_checks` (its file), `step` (one recording),
+//! group), `item_form` (how items are answered), `questionnaire` and `questionnaire_checks` (its file), `tutorial`, `step` (one recording),
 //! `planned_study` (all of them), `progress` (how far it is).
 
 mod groups;
@@ -18,6 +18,7 @@ mod questionnaire;
 mod questionnaire_checks;
 mod starting_groups;
 mod step;
+mod tutorial;
 
 pub use groups::{StartingGroup, groups};
 pub use item_form::{ItemForm, ItemKind, ItemOption, SLIDER_END, Scale};
@@ -26,3 +27,4 @@ pub use planned_study::{Slot, Study, WantedRecording};
 pub use progress::{NextRecording, PlanRecording, Progress, RecordingOutcome, SlotProgress};
 pub use questionnaire::{Item, Questionnaire, ScoreRule};
 pub use step::{Criterion, PhaseSpec, StepSpec};
+pub use tutorial::{Tutorial, TutorialStep, TutorialStepKind, TutorialTarget};

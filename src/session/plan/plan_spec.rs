@@ -33,6 +33,9 @@ pub struct PlanSpec {
     /// Steps of the instruction.
     #[serde(default)]
     pub instruction: Vec<String>,
+    /// The participant's tutorial on the display after the instruction, a file relative to the session file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tutorial: Option<String>,
     /// Practice before the first trial, if the plan has any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub familiarisation: Option<FamiliarisationSpec>,

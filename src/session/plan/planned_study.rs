@@ -6,10 +6,11 @@ use super::groups::StartingGroup;
 use super::plan_spec::PlanSpec;
 use super::questionnaire::Questionnaire;
 use super::step::{Criterion, PhaseSpec, StepSpec};
+use super::tutorial::Tutorial;
 use crate::base::rng::mix;
 use crate::session::condition::Condition;
 use crate::session::protocol_event::ProtocolEvent;
-use crate::session::settings::{ConsoleSpec, ParticipantSpec, SessionSpec};
+use crate::session::settings::{ConsoleSpec, ParticipantKind, ParticipantSpec, SessionSpec};
 use crate::session::stream_settings::RerunSpec;
 use crate::session::tracker::TrackerSpec;
 use crate::session::wall_display::{Answering, DisplaySpec};
@@ -30,6 +31,8 @@ pub struct Study {
     pub plan: PlanSpec,
     /// Questionnaires in the order of the plan.
     pub questionnaires: Vec<Questionnaire>,
+    /// The participant's tutorial, if the plan has one.
+    pub tutorial: Option<Tutorial>,
     /// Session settings that all trials share.
     pub session: SessionSpec,
     /// A checksum of the plan, its questionnaires, kitchen, and all settings that can change a trial: recordings with another one belong
@@ -51,16 +54,25 @@ pub struct WantedRecording {
 }
 
 impl Study {
-    /// The study of a session file, with the questionnaires of its plan in order, and the texts of the files of its kitchen; `None`
+    /// The study of a session file, with the questionnaires of its plan in order, its tutorial, and the texts of the files of its kitchen; `None`
     /// without a plan.
-    pub fn new(session: &SessionSpec, questionnaires: Vec<Questionnaire>, kitchen: [&str; 2]) -> Option<Study> {
+    pub fn new(
+        session: &SessionSpec,
+        questionnaires: Vec<Questionnaire>,
+        tutorial: Option<Tutorial>,
+        kitchen: [&str; 2],
+    ) -> Option<Study> {
         let plan = session.plan.clone()?;
         let session = SessionSpec { plan: None, ..session.clone() };
         // All serialised maps have string keys.
         let all = (&plan, &questionnaires, kitchen, what_can_change_a_trial(&session));
-        let text = serde_json::to_string(&all).unwrap_or_default();
+        let mut text = serde_json::to_string(&all).unwrap_or_default();
+        // A plan without a tutorial keeps the digest that it had before there were tutorials.
+        if let Some(tutorial) = &tutorial {
+            text += &serde_json::to_string(tutorial).unwrap_or_default();
+        }
         let digest = digest(&text);
-        Some(Study { plan, questionnaires, session, digest })
+        Some(Study { plan, questionnaires, tutorial, session, digest })
     }
 
     /// The starting group of the participant with this index in the plan.
@@ -122,10 +134,34 @@ impl Study {
         (spec, trial)
     }
 
+    /// The settings of a recording of the tutorial alone; `None` without a tutorial.
+    pub fn tutorial_alone(&self, code: &str) -> Option<SessionSpec> {
+        let phases = vec![PhaseSpec::Tutorial { tutorial: self.tutorial.clone()? }];
+        let mut spec = self.session.clone();
+        spec.participant.code = code.to_string();
+        spec.step = Some(StepSpec {
+            plan: format!("{}-tutorial", self.plan.name),
+            digest: self.digest.clone(),
+            participant: 0,
+            group: String::new(),
+            period: None,
+            periods: 0,
+            attempt: 1,
+            criterion: None,
+            phases,
+        });
+        Some(spec)
+    }
+
     fn phases(&self, slot: Slot, wanted: WantedRecording) -> Vec<PhaseSpec> {
         let mut phases = Vec::new();
         if !wanted.instructed && !self.plan.instruction.is_empty() {
             phases.push(PhaseSpec::Instruction { steps: self.plan.instruction.clone() });
+        }
+        // The tutorial happens on the display: at the keyboard of the console there is nothing to show it.
+        let is_there = !wanted.instructed && self.session.participant.kind == ParticipantKind::Display;
+        if let Some(tutorial) = self.tutorial.as_ref().filter(|_| is_there) {
+            phases.push(PhaseSpec::Tutorial { tutorial: tutorial.clone() });
         }
         let Some(period) = slot.period else {
             phases.push(PhaseSpec::Familiarisation);

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::questionnaire::Questionnaire;
+use super::tutorial::Tutorial;
 use crate::session::protocol_event::StudyPhase;
 
 /// Position of a recording in its plan, and its phases; part of the settings of every recording of a plan.
@@ -60,6 +61,11 @@ pub enum PhaseSpec {
         /// What is told or shown, step by step.
         steps: Vec<String>,
     },
+    /// The participant goes through a tutorial on the display.
+    Tutorial {
+        /// The tutorial, with all its texts.
+        tutorial: Tutorial,
+    },
     /// A trial for practice.
     Familiarisation,
     /// A trial that counts.
@@ -81,6 +87,7 @@ impl PhaseSpec {
     pub fn phase(&self) -> StudyPhase {
         match self {
             PhaseSpec::Instruction { .. } => StudyPhase::Instruction,
+            PhaseSpec::Tutorial { .. } => StudyPhase::Tutorial,
             PhaseSpec::Familiarisation => StudyPhase::Familiarisation,
             PhaseSpec::Trial => StudyPhase::Trial,
             PhaseSpec::Questionnaire { .. } => StudyPhase::Questionnaire,
@@ -98,11 +105,17 @@ impl PhaseSpec {
 }
 
 impl StepSpec {
+    /// Whether the recording has the participant's tutorial and nothing else.
+    pub fn is_tutorial_alone(&self) -> bool {
+        matches!(self.phases[..], [PhaseSpec::Tutorial { .. }])
+    }
+
     /// Position in the participant's series: "trial 1/2", "familiarisation".
     pub fn label(&self) -> String {
         let again = if self.attempt > 1 { format!(", attempt {}", self.attempt) } else { String::new() };
         match self.period {
             Some(period) => format!("trial {period}/{}{again}", self.periods),
+            None if self.is_tutorial_alone() => "tutorial".to_string(),
             None => format!("familiarisation{again}"),
         }
     }

@@ -177,6 +177,13 @@ pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup 
         }
         @if !figures.questionnaire_scores.is_empty() { (scroll(scores(captions, figures))) }
         @if !figures.questionnaires.is_empty() { (scroll(items(captions, figures))) }
+        @if let Some(found) = &figures.tutorial {
+            p {
+                "Check of understanding in the tutorial: " (found.right_at_once) " of " (found.questions)
+                " questions answered rightly at once, by " (words::count(found.participants, "participant", "participants")) "."
+            }
+            "\n"
+        }
     };
     section("Questionnaires", content)
 }

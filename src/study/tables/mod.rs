@@ -9,3 +9,4 @@ pub mod offer_table;
 pub mod participants;
 pub mod questionnaires;
 pub mod trials;
+pub mod tutorial_answers;

@@ -22,6 +22,7 @@ fn a_session_asks_in_its_own_language() {
     let root = env!("CARGO_MANIFEST_DIR");
     let text = fs::read_to_string("sessions/study.toml").expect("the study of the project");
     let text = text.replace("\"questionnaires/", &format!("\"{root}/sessions/questionnaires/"));
+    let text = text.replace("\"tutorials/", &format!("\"{root}/sessions/tutorials/"));
     let text = text.replace("\"../", &format!("\"{root}/"));
     fs::write(folder.join("dutch.toml"), "language = \"nl\"\n").expect("written");
     let in_language = |language: &str| {

@@ -5,6 +5,7 @@ mod assignment;
 mod progress;
 mod protocol;
 mod questionnaires;
+mod tutorial;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -87,6 +87,7 @@ impl Run {
                 PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps } => {
                     (1..=steps.len()).for_each(|step| self.tell(ProtocolEvent::Ticked { step, done: true }));
                 }
+                PhaseSpec::Tutorial { .. } => panic!("no display takes part"),
                 PhaseSpec::Trial | PhaseSpec::Familiarisation => self.trial(),
                 PhaseSpec::Questionnaire { questionnaire } => {
                     for item in questionnaire.items {

@@ -5,6 +5,7 @@ mod live_arms;
 mod prevention;
 mod report;
 mod tables;
+mod tutorials;
 
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;

@@ -14,7 +14,7 @@ use tomcom::study::tables::trials::{HEADLINE, measures};
 use tomcom::study::trial_statistics::Trial;
 
 /// The columns that other people's scripts may name. Columns are appended; none is renamed, moved or taken away.
-const PUBLISHED: [(Table, &str); 9] = [
+const PUBLISHED: [(Table, &str); 10] = [
     (
         Table::Participants,
         "participant kind group trials trials_counted assisted_second error_rate_human_1 error_rate_human_2 error_rate_1 \
@@ -34,6 +34,7 @@ const PUBLISHED: [(Table, &str); 9] = [
          errors_about_recipes errors_about_order_or_recipe errors_about_places",
     ),
     (Table::Questionnaires, "recording participant condition questionnaire item about reversed answer points"),
+    (Table::Tutorial, "recording participant tutorial step question first_answer right tries seconds"),
     (
         Table::Concepts,
         "recording participant concept parameter presses signals related prevented outside false_presses false_inside harmless \

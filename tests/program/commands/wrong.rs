@@ -104,6 +104,7 @@ fn told_about(name: &str, bad: &Bad) -> String {
         ("sessions/parameters.toml", String::new()),
         ("sessions/study.toml", read("sessions/study.toml")),
         ("sessions/questionnaires/acceptance.toml", read("sessions/questionnaires/acceptance.toml")),
+        ("sessions/tutorials/sushi.toml", read("sessions/tutorials/sushi.toml")),
         ("sessions/people/robustness.toml", read("sessions/people/robustness.toml")),
         ("recording/events.jsonl", read("tests/golden/format-1-hand.jsonl")),
     ];

@@ -39,7 +39,7 @@ fn scratch(page: &Page) -> PathBuf {
     let name = page.path.with_extension("").to_string_lossy().replace('/', "-");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("docs").join(name);
     let _ = fs::remove_dir_all(&folder);
-    for from in ["layouts", "recipes", "sessions", "sessions/questionnaires", "sessions/people"] {
+    for from in ["layouts", "recipes", "sessions", "sessions/questionnaires", "sessions/tutorials", "sessions/people"] {
         fs::create_dir_all(folder.join(from)).expect("a folder");
         for entry in fs::read_dir(from).expect("the project's settings") {
             let path = entry.expect("an entry").path();

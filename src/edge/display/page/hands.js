@@ -43,6 +43,8 @@ const Hands = (() => {
       Questions.key(event.key, question, isHeld);
       return;
     }
+    const lesson = Stage.shown() && Stage.shown().tutorial;
+    if (lesson && Tutorial.key(event.key, lesson, isHeld)) return event.preventDefault();
     const button = scene.buttons.find(({ key }) => key && key.toLowerCase() === event.key.toLowerCase());
     if (!button) return;
     event.preventDefault();
@@ -50,11 +52,13 @@ const Hands = (() => {
   }
 
   function touched(event) {
-    const hit = event.target.closest("[data-button], [data-rate], [data-option], [data-typed], [data-does]");
+    const hit = event.target.closest("[data-button], [data-rate], [data-option], [data-typed], [data-does], [data-turn], [data-choose]");
     if (!hit || event.button > 0) return;
     event.preventDefault();
     const question = Stage.shown() && Stage.shown().question;
-    if (hit.dataset.button) press(hit.dataset.button, timeOf(event.timeStamp));
+    const lesson = Stage.shown() && Stage.shown().tutorial;
+    if (lesson && (hit.dataset.turn || hit.dataset.choose)) Tutorial.touch(hit.dataset, lesson);
+    else if (hit.dataset.button) press(hit.dataset.button, timeOf(event.timeStamp));
     else if (question) Questions.touch(hit.dataset, question);
   }
 
@@ -84,6 +88,7 @@ const Hands = (() => {
   function begin(toTell, toAnswer, toPoint) {
     tell = toTell;
     Questions.begin(toAnswer);
+    Tutorial.begin(toAnswer);
     window.addEventListener("keydown", typed);
     window.addEventListener("keyup", (event) => {
       down.delete(event.code || event.key);

@@ -135,7 +135,7 @@ const Stage = (() => {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, locations, storages, recipe, why, sheet, toast, served, flash, target, free, cards };
+    parts = { kitchen, locations, storages, recipe, why, sheet, toast, served, flash, target, free, cards, all };
     mark({});
   }
 
@@ -242,6 +242,11 @@ const Stage = (() => {
     const title = scene.words[name], more = scene.words[`${name} text`];
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
+    // A page of the tutorial stands beside the recipe that it explains.
+    const recipe = sight.signal && sight.signal.recipe;
+    const free = recipe ? room.forRecipe([...parts.all, parts.cards[recipe.order]]) : parts.free;
+    if (sight.tutorial) return Tutorial.draw(parts.sheet, sight.tutorial, { scene, free, element, text, put, partOf });
+    Tutorial.end();
     const card = element("div", "card");
     card.append(text("h1", "", title || ""), text("p", "", more || ""));
     // The kitchen is explained meanwhile, so nothing of it is hidden.
@@ -269,7 +274,7 @@ const Stage = (() => {
     drawIntention(sight.intention);
     Robot.hold(sight.contents, contentOf);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal);
-    if (!shown || JSON.stringify([shown.stage, shown.practice, shown.question]) !== JSON.stringify([sight.stage, sight.practice, sight.question])) drawSheet(sight);
+    if (!shown || JSON.stringify([shown.stage, shown.practice, shown.question, shown.tutorial]) !== JSON.stringify([sight.stage, sight.practice, sight.question, sight.tutorial])) drawSheet(sight);
     drawTarget(sight);
     parts.served.textContent = sight.served ? `✓ ${sight.served}` : "";
     shown = sight;

@@ -75,7 +75,7 @@ fn recipes(bytes: &[u8]) {
 fn session(bytes: &[u8]) {
     shown(parse::<SessionSpec>(Path::new("session"), &text(bytes)).map(|spec| {
         // A plan that is accepted has a series for its participants.
-        let study = spec.check().ok().and_then(|()| Study::new(&spec, Vec::new(), ["", ""]));
+        let study = spec.check().ok().and_then(|()| Study::new(&spec, Vec::new(), None, ["", ""]));
         study.is_none_or(|study| !study.slots(0).is_empty())
     }));
 }

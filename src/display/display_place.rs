@@ -1,0 +1,31 @@
+//! Places of the display, where contents are shown and presses happen.
+
+use serde::Serialize;
+
+use crate::kitchen::{Agent, ButtonAction, Kitchen};
+
+/// A place of the display: a location or a storage, by its number in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DisplayPlace {
+    /// The location with this index in the scene.
+    Location(usize),
+    /// The storage with this index in the scene.
+    Storage(usize),
+}
+
+/// Where a press of an agent happens.
+pub(super) fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> DisplayPlace {
+    let hand = kitchen.hands[agent.index()];
+    let location = match action {
+        ButtonAction::Take(item) => {
+            let is_it = |storage: &crate::kitchen::Storage| storage.agent == agent && storage.item == item;
+            return DisplayPlace::Storage(kitchen.storages.iter().position(is_it).unwrap_or_default());
+        }
+        ButtonAction::Use(location) => location,
+        ButtonAction::Process(process) => kitchen.processes[usize::from(process)].place.unwrap_or(hand),
+        ButtonAction::Trash => hand,
+        ButtonAction::Serve(order) => order,
+    };
+    DisplayPlace::Location(location.index())
+}

@@ -1,0 +1,145 @@
+"use strict";
+/** The tutorial: a card a step, frames around what it is about, and the button that is to be pressed. */
+const Tutorial = (() => {
+  let timer = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [];
+
+  function clearMarks() {
+    for (const made of marked) made.classList.remove("framed", "hinted");
+    marked = [];
+  }
+
+  function mark(made, className) {
+    if (!made) return;
+    made.classList.add(className);
+    marked.push(made);
+  }
+
+  const buttonOf = (name) => document.querySelector(`[data-button="${CSS.escape(name)}"]`);
+
+  /** Frames what the step is about; marks the next button, at once or after a while. */
+  function point(page, partOf) {
+    clearMarks();
+    clearTimeout(hinter);
+    for (const frame of page.frames) {
+      if (frame.area) mark(document.querySelector(`.zone.${frame.area}`), "framed");
+      else if (frame.place) mark(partOf(frame.place).made, "framed");
+      else mark(buttonOf(frame.button), "framed");
+    }
+    if (!page.hint) return;
+    const { button, after_s } = page.hint;
+    if (after_s === 0) mark(buttonOf(button), "hinted");
+    else hinter = setTimeout(() => mark(buttonOf(button), "hinted"), 1000 * after_s);
+  }
+
+  /** The time that the cards still have, in a bar; at its end the program is told. */
+  function count(page, bar) {
+    clearTimeout(timer);
+    if (page.seconds === null) return;
+    if (shownStep !== page.step) endsAt = performance.now() + 1000 * page.seconds;
+    const left = Math.max(0, endsAt - performance.now());
+    bar.animate([{ width: `${left / page.seconds / 10}%` }, { width: "0%" }], { duration: left, fill: "forwards" });
+    timer = setTimeout(() => told({ kind: "cards_shown", step: page.step }), left);
+  }
+
+  function cardsOf(page, scene, element, text) {
+    const all = element("div", "dishes");
+    for (const { dish, items } of page.cards) {
+      const made = element("div", "dish-card"), head = element("figure", "of", Art.dish(scene, dish)), row = element("div", "parts");
+      head.append(text("figcaption", "", scene.dishes[dish].label));
+      for (const name of items) {
+        const part = element("figure", "", Art.item(scene, name));
+        part.append(text("figcaption", "", scene.items[name].label));
+        row.append(part);
+      }
+      made.append(head, row);
+      all.append(made);
+    }
+    return all;
+  }
+
+  function questionOf({ choices, wrong, right, explanation }, words, element, text) {
+    const all = element("div", "choices");
+    choices.forEach((choice, index) => {
+      const state = right === index + 1 ? "right" : wrong === index + 1 ? "wrong" : "";
+      const made = element("button", state);
+      made.append(text("b", "", index + 1), text("span", "", choice));
+      made.dataset.choose = index + 1;
+      all.append(made);
+    });
+    const made = element("div", "", all);
+    if (right !== null) made.append(text("p", "verdict right", words["tutorial right"]));
+    else if (wrong !== null) made.append(text("p", "verdict wrong", `${words["tutorial wrong"]} ${explanation || ""}`));
+    return made;
+  }
+
+  /** Draws the card of the step: in the free place of the kitchen, or large where the kitchen does not matter. */
+  function draw(sheet, page, { scene, free, element, text, put, partOf }) {
+    const words = scene.words, isLarge = page.kind === "recipes" || page.kind === "question";
+    const card = element("div", `card lesson ${isLarge ? "large" : ""}`), bar = element("div", "left");
+    card.append(text("p", "count", `${page.number} / ${page.of}`), text("h2", "", page.title), text("p", "says", page.text));
+    if (page.cards.length) card.append(cardsOf(page, scene, element, text));
+    if (page.seconds !== null) card.append(bar);
+    if (page.question) card.append(questionOf(page.question, words, element, text));
+    if (page.presses) {
+      const dots = element("div", "dots");
+      for (let press = 0; press < page.presses[1]; press += 1) dots.append(element("i", press < page.presses[0] ? "done" : ""));
+      card.append(dots);
+      if (page.missed) card.append(text("p", "verdict wrong", words["tutorial missed"]));
+      else if (page.done) card.append(text("p", "verdict right", words["tutorial right"]));
+    }
+    const row = element("div", "row");
+    const button = (turn, label, isOpen) => {
+      const made = text("button", turn, label);
+      if (isOpen) made.dataset.turn = turn;
+      else made.disabled = true;
+      row.append(made);
+    };
+    if (page.number > 1) button("back", words.back, true);
+    button("next", words.next, page.done);
+    card.append(row);
+    sheet.classList.toggle("shaded", isLarge);
+    if (!isLarge) put(card, free);
+    sheet.replaceChildren(card);
+    if (!isLarge) fit(card);
+    count(page, bar);
+    point(page, partOf);
+    shownStep = page.step;
+  }
+
+  /** Makes the card's words smaller until they fit its place. */
+  function fit(card) {
+    for (let size = 1; size > 0.5; size -= 0.04) {
+      card.style.fontSize = `${size}em`;
+      if (card.scrollHeight <= card.clientHeight + 1 && card.scrollWidth <= card.clientWidth + 1) return;
+    }
+  }
+
+  function end() {
+    clearMarks();
+    clearTimeout(timer);
+    clearTimeout(hinter);
+    shownStep = "";
+  }
+
+  /** What a key means here: the page's message, if it means anything. */
+  function meant(key, page) {
+    const choice = page.question && /^[1-9]$/.test(key) ? Number(key) : 0;
+    if (choice && choice <= page.question.choices.length && page.question.right === null) return { kind: "choose", step: page.step, choice };
+    if (["ArrowRight", "Enter"].includes(key) && page.done) return { kind: "turn", step: page.step, forward: true };
+    if (["ArrowLeft", "Backspace"].includes(key) && page.number > 1) return { kind: "turn", step: page.step, forward: false };
+    return null;
+  }
+
+  /** Whether a key means something here; it is told once, however long it is held. */
+  function key(pressed, page, isHeld) {
+    const message = meant(pressed, page);
+    if (message && !isHeld) told(message);
+    return Boolean(message);
+  }
+
+  function touch({ choose, turn }, page) {
+    told(choose ? { kind: "choose", step: page.step, choice: Number(choose) } : { kind: "turn", step: page.step, forward: turn === "next" });
+  }
+
+  return { draw, end, key, touch, begin: (tell) => { told = tell; } };
+})();

@@ -1,0 +1,97 @@
+//! The participant's tutorial, a phase of a plan: which of its events a session accepts, and what they change.
+
+use super::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
+use super::session_state::Session;
+pub use super::tutorial_event::{TutorialEvent, TutorialReader};
+pub use super::tutorial_state::{TutorialPress, TutorialState};
+use crate::kitchen::Agent;
+
+impl Session {
+    /// The tutorial of the present phase and its state, if it has one.
+    pub fn tutorial(&self) -> Option<(&Tutorial, &TutorialState)> {
+        let (_, protocol) = self.step()?;
+        match self.study_phase()? {
+            PhaseSpec::Tutorial { tutorial } => Some((tutorial, protocol.tutorial.as_ref()?)),
+            _ => None,
+        }
+    }
+
+    /// The step of a tutorial that is not over.
+    pub fn tutorial_step(&self) -> Option<(&TutorialStep, &TutorialState)> {
+        let (tutorial, state) = self.tutorial().filter(|(_, state)| !state.is_over)?;
+        Some((tutorial.steps.get(state.step)?, state))
+    }
+}
+
+/// Whether the session accepts the event now.
+///
+/// # Errors
+/// The reason for the refusal, in words for the wizard.
+pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'static str> {
+    let (tutorial, _) = session.tutorial().ok_or("there is no tutorial now")?;
+    let (step, state) = session.tutorial_step().ok_or("the tutorial is over")?;
+    let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
+    let may_leave = |by: TutorialReader| by == TutorialReader::Wizard || state.is_done();
+    let is_shown = |id: &str| unless(step.id == id, "another step of the tutorial is shown");
+    match event {
+        TutorialEvent::Shown { step, by } => {
+            let to = tutorial.position(step).ok_or("the tutorial has no such step")?;
+            unless(to + 1 == state.step || to == state.step + 1, "the step before or the next one can be shown")?;
+            unless(to < state.step || may_leave(*by), "the participant has not done this step yet")
+        }
+        TutorialEvent::Pressed { button } => {
+            unless(session.kitchen.button_named(Agent::Human, button).is_some(), "the kitchen has no such button")?;
+            unless(step.has_presses(), "nothing is pressed in this step")
+        }
+        TutorialEvent::CardsHidden { step: id } => {
+            is_shown(id)?;
+            unless(step.is_timed() && !state.are_cards_hidden, "there are no cards to be hidden")
+        }
+        TutorialEvent::Answered { step: id, choice } => {
+            is_shown(id)?;
+            let is_choice = *choice > 0 && usize::from(*choice) <= step.choices.len();
+            unless(step.kind == TutorialStepKind::Question && is_choice, "the step has no such choice")?;
+            unless(!state.is_done(), "the question is answered")
+        }
+        TutorialEvent::Ended { by } => {
+            let is_last = state.step + 1 == tutorial.steps.len();
+            unless(*by == TutorialReader::Wizard || (is_last && state.is_done()), "the tutorial is not at its end")
+        }
+    }
+}
+
+/// Begins the tutorial of the phase that has just begun, if it has one.
+pub(super) fn begin(session: &mut Session) {
+    let begun = match session.study_phase() {
+        Some(PhaseSpec::Tutorial { tutorial }) => Some(TutorialState::new(tutorial, &session.kitchen)),
+        _ => None,
+    };
+    if let Some(protocol) = &mut session.protocol {
+        protocol.tutorial = begun;
+    }
+}
+
+/// Applies an admitted event.
+pub(super) fn apply(session: &mut Session, event: &TutorialEvent) {
+    let Some((tutorial, state)) = session.tutorial() else { return };
+    let Some(step) = tutorial.steps.get(state.step) else { return };
+    let (mut state, kitchen) = (state.clone(), &session.kitchen);
+    match event {
+        TutorialEvent::Shown { step, .. } => {
+            if let Some(to) = tutorial.position(step) {
+                state.show(tutorial, kitchen, to);
+            }
+        }
+        TutorialEvent::Pressed { button } => {
+            if let Some(button) = kitchen.button_named(Agent::Human, button) {
+                state.press(step, kitchen, button);
+            }
+        }
+        TutorialEvent::CardsHidden { .. } => state.hide_cards(),
+        TutorialEvent::Answered { choice, .. } => state.answer(step, *choice),
+        TutorialEvent::Ended { .. } => state.is_over = true,
+    }
+    if let Some(protocol) = &mut session.protocol {
+        protocol.tutorial = Some(state);
+    }
+}

@@ -1,0 +1,125 @@
+//! State of a tutorial: its step, its kitchen, and the answers so far.
+
+use super::plan::{Tutorial, TutorialStep, TutorialStepKind};
+use crate::kitchen::no_effect::NoEffect;
+use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
+
+/// A press in a tutorial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TutorialPress {
+    /// Number of the press, from 1.
+    pub number: u32,
+    /// The button.
+    pub button: ButtonId,
+    /// It was the one that the step asks for.
+    pub is_right: bool,
+    /// Why it has no effect, and on which location, if the rules of the kitchen say so.
+    pub no_effect: Option<(NoEffect, LocationId)>,
+}
+
+/// State of a tutorial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TutorialState {
+    /// Index of the shown step.
+    pub step: usize,
+    /// The tutorial's kitchen.
+    pub kitchen: State,
+    /// Number of the step's presses that are done.
+    pub presses: usize,
+    /// The last press of the step.
+    pub last: Option<TutorialPress>,
+    /// Presses in the tutorial so far.
+    pub pressed: u32,
+    /// The cards of the step were shown for their time.
+    pub are_cards_hidden: bool,
+    /// Wrong choice of the step's question, counted from 1, until another is made.
+    pub wrong: Option<u8>,
+    /// Whether each step was done.
+    pub done: Vec<bool>,
+    /// Wrong answers to each step's question.
+    pub wrong_answers: Vec<u32>,
+    /// The tutorial is over.
+    pub is_over: bool,
+}
+
+impl TutorialState {
+    /// A tutorial at its first step.
+    pub fn new(tutorial: &Tutorial, kitchen: &Kitchen) -> TutorialState {
+        let steps = tutorial.steps.len();
+        let mut state = TutorialState {
+            step: 0,
+            kitchen: kitchen.empty_state(),
+            presses: 0,
+            last: None,
+            pressed: 0,
+            are_cards_hidden: false,
+            wrong: None,
+            done: vec![false; steps],
+            wrong_answers: vec![0; steps],
+            is_over: false,
+        };
+        state.show(tutorial, kitchen, 0);
+        state
+    }
+
+    /// Shows a step from its beginning.
+    pub(super) fn show(&mut self, tutorial: &Tutorial, kitchen: &Kitchen, step: usize) {
+        self.step = step;
+        self.kitchen = tutorial.state_at(kitchen, step);
+        (self.presses, self.last, self.wrong) = (0, None, None);
+        // Cards that were shown for their time are not shown again after a look back: they have to be remembered.
+        self.are_cards_hidden = tutorial.steps.get(step).is_some_and(TutorialStep::is_timed) && self.is_done();
+        let needs_nothing = tutorial.steps.get(step).is_some_and(|step| match step.kind {
+            TutorialStepKind::Text | TutorialStepKind::Signal => true,
+            TutorialStepKind::Recipes => !step.is_timed(),
+            TutorialStepKind::Press | TutorialStepKind::Order | TutorialStepKind::Question => false,
+        });
+        self.finish(needs_nothing);
+    }
+
+    /// Whether the participant may go on from the shown step.
+    pub fn is_done(&self) -> bool {
+        self.done.get(self.step) == Some(&true)
+    }
+
+    /// The button that the step asks for now.
+    pub fn wanted<'a>(&self, step: &'a TutorialStep) -> Option<&'a String> {
+        step.presses.get(self.presses)
+    }
+
+    /// A press of the participant. Only the button that the step asks for moves the kitchen on, so that hints stay true.
+    pub(super) fn press(&mut self, step: &TutorialStep, kitchen: &Kitchen, button: ButtonId) {
+        self.pressed += 1;
+        let is_right =
+            self.wanted(step).is_some_and(|wanted| kitchen.button_named(Agent::Human, wanted) == Some(button));
+        let no_effect = kitchen.no_effect(self.kitchen, Agent::Human, button);
+        self.last = Some(TutorialPress { number: self.pressed, button, is_right, no_effect });
+        if is_right {
+            self.kitchen = kitchen.try_press(self.kitchen, Agent::Human, button).after;
+            self.presses += 1;
+            self.finish(self.presses == step.presses.len());
+        }
+    }
+
+    /// An answer to the step's question.
+    pub(super) fn answer(&mut self, step: &TutorialStep, choice: u8) {
+        let is_right = step.right == Some(choice);
+        self.wrong = (!is_right).then_some(choice);
+        if let Some(count) = self.wrong_answers.get_mut(self.step) {
+            *count += u32::from(!is_right);
+        }
+        self.finish(is_right);
+    }
+
+    /// The cards of the step were shown for their time.
+    pub(super) fn hide_cards(&mut self) {
+        self.are_cards_hidden = true;
+        self.finish(true);
+    }
+
+    fn finish(&mut self, is_done: bool) {
+        if let Some(done) = self.done.get_mut(self.step) {
+            *done |= is_done;
+        }
+    }
+}

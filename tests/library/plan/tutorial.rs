@@ -1,0 +1,283 @@
+//! The participant's tutorial: what its steps ask for, what the page is told meanwhile, and that it is no part of the trial.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use tomcom::base::time::SessionTime;
+use tomcom::display::{DisplayStage, sight};
+use tomcom::edge::files::{read_kitchen, read_session};
+use tomcom::edge::log::{LOG_NAME, LogWriter};
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::run::engine::Engine;
+use tomcom::run::verify::verify;
+use tomcom::session::plan::{PhaseSpec, Tutorial, TutorialStepKind, WantedRecording};
+use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
+use tomcom::session::settings::ParticipantKind;
+use tomcom::session::tutorial::{TutorialEvent, TutorialReader};
+use tomcom::session::{Event, Header, Session};
+
+use super::{files, folder, study};
+
+const BY_PARTICIPANT: TutorialReader = TutorialReader::Participant;
+
+/// A recording of the tutorial alone.
+struct Lesson {
+    engine: Engine,
+    log: LogWriter,
+    now_s: f64,
+}
+
+impl Lesson {
+    fn new(out: &Path) -> Lesson {
+        let files = files();
+        let spec = files.study().and_then(|study| study.tutorial_alone("P07")).expect("a tutorial");
+        let mut header = Header::new(spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+        header.started = Some("2026-03-14T09:00:00.000Z".to_string());
+        let log = LogWriter::create_live(out, "2026-03-14", &header).expect("the folder can be written");
+        let kitchen = Arc::new(files.kitchen.kitchen);
+        let engine = Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
+        let mut lesson = Lesson { engine, log, now_s: 0.0 };
+        let begun = ProtocolEvent::PhaseStarted { phase: StudyPhase::Tutorial, number: 1 };
+        assert_eq!(lesson.input(Event::Protocol(begun)), None);
+        lesson
+    }
+
+    fn session(&self) -> &Session {
+        self.engine.session()
+    }
+
+    fn input(&mut self, event: Event) -> Option<String> {
+        self.now_s += 0.5;
+        let outcome = self.engine.input(SessionTime::from_secs_f64(self.now_s), event);
+        outcome.events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
+        outcome.refused
+    }
+
+    fn tell(&mut self, event: TutorialEvent) -> Option<String> {
+        self.input(Event::Protocol(ProtocolEvent::Tutorial(event)))
+    }
+
+    fn press(&mut self, button: &str) -> Option<String> {
+        self.tell(TutorialEvent::Pressed { button: button.to_string() })
+    }
+
+    fn turn(&mut self, by: TutorialReader) -> Option<String> {
+        let (tutorial, state) = self.session().tutorial().expect("a tutorial");
+        let event = match tutorial.steps.get(state.step + 1) {
+            Some(step) => TutorialEvent::Shown { step: step.id.clone(), by },
+            None => TutorialEvent::Ended { by },
+        };
+        self.tell(event)
+    }
+
+    /// The wizard turns pages until this step.
+    fn turn_to(&mut self, id: &str) {
+        while self.session().tutorial_step().expect("a step").0.id != id {
+            assert_eq!(self.turn(TutorialReader::Wizard), None);
+        }
+    }
+}
+
+#[test]
+fn a_participant_goes_through_the_whole_tutorial() {
+    let out = folder("tutorial_whole");
+    let mut lesson = Lesson::new(&out);
+    while let Some((step, _)) = lesson.session().tutorial_step() {
+        let step = step.clone();
+        match step.kind {
+            TutorialStepKind::Press | TutorialStepKind::Order => {
+                assert!(lesson.turn(BY_PARTICIPANT).is_some(), "{}: left before it is done", step.id);
+                for button in &step.presses {
+                    assert_eq!(lesson.press(button), None);
+                    assert_eq!(sight(lesson.session()).presses[0].map(|press| press.effective), Some(true));
+                }
+            }
+            TutorialStepKind::Question => {
+                let right = step.right.expect("a right choice");
+                let wrong = if right == 1 { 2 } else { 1 };
+                for (choice, is_done) in [(wrong, false), (right, true)] {
+                    assert_eq!(lesson.tell(TutorialEvent::Answered { step: step.id.clone(), choice }), None);
+                    let page = sight(lesson.session()).tutorial.expect("a page");
+                    assert_eq!(page.done, is_done);
+                    let asked = page.question.expect("a question");
+                    assert_eq!((asked.explanation.is_some(), asked.right.is_some()), (!is_done, is_done));
+                }
+            }
+            TutorialStepKind::Recipes => {
+                assert!(lesson.turn(BY_PARTICIPANT).is_some(), "the cards are left before their time");
+                assert_eq!(lesson.tell(TutorialEvent::CardsHidden { step: step.id.clone() }), None);
+            }
+            TutorialStepKind::Text | TutorialStepKind::Signal => {}
+        }
+        assert_eq!(lesson.turn(BY_PARTICIPANT), None, "{}", step.id);
+    }
+    let session = lesson.session();
+    assert_eq!(session.phase_lacks(), None);
+    assert_eq!((session.presses, session.state), ([0, 0], session.kitchen.empty_state()), "a trial has nothing of it");
+    assert!(session.timeline.is_empty() && session.served.is_empty());
+    let wrong = session.tutorial().expect("a tutorial").1.wrong_answers.iter().sum::<u32>();
+    assert_eq!(wrong, 3, "each question was answered wrongly once");
+    assert_eq!(lesson.input(Event::SessionEnded), None);
+    let log = lesson.log.folder().join(LOG_NAME);
+    lesson.log.flush().expect("the log can be written");
+    let found = verify(&log).expect("a recording");
+    assert!(found.verified, "{found:?}");
+}
+
+#[test]
+fn only_the_button_that_is_asked_for_moves_the_kitchen_on() {
+    let mut lesson = Lesson::new(&folder("tutorial_presses"));
+    assert!(lesson.press("take rice").is_some(), "a text has no presses");
+    lesson.turn_to("take");
+    let empty = sight(lesson.session()).contents;
+    assert_eq!(lesson.press("take nori"), None);
+    let page = sight(lesson.session());
+    assert_eq!(page.contents, empty);
+    assert!(page.tutorial.as_ref().is_some_and(|page| page.missed && page.presses == Some([0, 2])));
+    assert_eq!(page.presses[0].map(|press| press.effective), Some(false));
+    assert_eq!(lesson.press("take rice"), None);
+    assert_ne!(sight(lesson.session()).contents, empty);
+    // The page before and back again: the step begins anew.
+    let back = TutorialEvent::Shown { step: "places".to_string(), by: BY_PARTICIPANT };
+    assert_eq!(lesson.tell(back), None);
+    assert_eq!(sight(lesson.session()).contents, empty);
+}
+
+#[test]
+fn hints_of_the_guided_order_fade() {
+    let mut lesson = Lesson::new(&folder("tutorial_hints"));
+    lesson.turn_to("order");
+    let after_s =
+        |lesson: &Lesson| sight(lesson.session()).tutorial.and_then(|page| page.hint).map(|hint| hint.after_s);
+    let step = lesson.session().tutorial_step().expect("a step").0.clone();
+    let (hints, wait_s) = (step.hints.expect("hints"), step.hint_after_s.expect("a time"));
+    for (nth, button) in step.presses.iter().enumerate() {
+        assert_eq!(after_s(&lesson), Some(if nth < hints { 0.0 } else { wait_s }), "press {nth}");
+        assert_eq!(lesson.press(button), None);
+    }
+    assert_eq!(after_s(&lesson), None);
+}
+
+#[test]
+fn the_page_is_told_recipes_only_while_they_are_shown() {
+    let mut lesson = Lesson::new(&folder("tutorial_recipes"));
+    let dishes = lesson.session().kitchen.dishes.len();
+    while let Some((step, _)) = lesson.session().tutorial_step() {
+        let (id, kind, has_dish) = (step.id.clone(), step.kind, step.dish.is_some());
+        let page = sight(lesson.session());
+        assert_eq!(page.stage, DisplayStage::Tutorial);
+        let told = serde_json::to_value(&page).expect("a message");
+        let cards = told["tutorial"]["cards"].as_array().expect("cards").len();
+        assert_eq!(cards, if kind == TutorialStepKind::Recipes { dishes } else { 0 }, "{id}");
+        let shows_recipe = told["signal"].get("recipe").is_some();
+        assert_eq!(shows_recipe, kind == TutorialStepKind::Signal && has_dish, "{id}");
+        assert!(told["tutorial"]["question"]["right"].is_null(), "{id}: the right answer is told before it was given");
+        assert!(told["tutorial"]["question"]["explanation"].is_null(), "{id}");
+        if kind == TutorialStepKind::Recipes {
+            assert_eq!(lesson.tell(TutorialEvent::CardsHidden { step: id }), None);
+            assert!(sight(lesson.session()).tutorial.expect("a page").cards.is_empty());
+        }
+        assert_eq!(lesson.turn(TutorialReader::Wizard), None);
+    }
+    assert_eq!(sight(lesson.session()).tutorial, None);
+}
+
+#[test]
+fn the_wizard_can_skip_the_rest() {
+    let mut lesson = Lesson::new(&folder("tutorial_skipped"));
+    assert!(lesson.session().phase_lacks().is_some());
+    assert!(lesson.tell(TutorialEvent::Ended { by: BY_PARTICIPANT }).is_some());
+    assert_eq!(lesson.tell(TutorialEvent::Ended { by: TutorialReader::Wizard }), None);
+    assert_eq!(lesson.session().phase_lacks(), None);
+    assert!(lesson.press("take rice").is_some(), "the tutorial is over");
+}
+
+#[test]
+fn a_plan_has_the_tutorial_once_and_on_the_display_only() {
+    let wanted = |instructed| WantedRecording { participant: 0, slot: 0, attempt: 1, instructed };
+    let has_tutorial = |kind: ParticipantKind, instructed: bool| {
+        let study = study(|files| files.spec.participant.kind = kind);
+        let (spec, _) = study.settings(wanted(instructed));
+        let phases = spec.step.expect("a step").phases;
+        phases.iter().any(|phase| matches!(phase, PhaseSpec::Tutorial { .. }))
+    };
+    assert!(has_tutorial(ParticipantKind::Display, false));
+    assert!(!has_tutorial(ParticipantKind::Display, true));
+    assert!(!has_tutorial(ParticipantKind::Keyboard, false) && !has_tutorial(ParticipantKind::Simulated, false));
+    let other = study(|files| files.tutorial.as_mut().expect("a tutorial").steps[0].text.push('!'));
+    assert_ne!(study(|_| ()).digest, other.digest, "the digest covers the texts");
+}
+
+#[test]
+fn german_and_english_ask_for_the_same() {
+    let english = files().tutorial.expect("a tutorial");
+    let text = fs::read_to_string("sessions/tutorials/sushi.de.toml").expect("the file of the project");
+    let german: tomcom::session::plan::Tutorial = toml::from_str(&text).expect("a tutorial");
+    assert_eq!((english.language.as_str(), german.language.as_str()), ("en", "de"));
+    german.check().and_then(|()| german.check_kitchen(&files().kitchen.kitchen)).expect("it fits the kitchen");
+    assert_eq!(english.steps.len(), german.steps.len());
+    for (one, other) in english.steps.iter().zip(&german.steps) {
+        assert_ne!(one.text, other.text, "{}", one.id);
+        assert_eq!((&one.id, one.kind, &one.presses, one.right), (&other.id, other.kind, &other.presses, other.right));
+        assert_eq!((&one.point_at, &one.dish, one.seconds), (&other.point_at, &other.dish, other.seconds));
+    }
+}
+
+#[test]
+fn a_wrong_tutorial_names_file_line_and_what_would_be_right() {
+    let at = folder("tutorial_files");
+    let root = fs::canonicalize(".").expect("the project");
+    let session = fs::read_to_string("sessions/study.toml").expect("the file of the project");
+    let session = session.replace("../layouts", &root.join("layouts").display().to_string());
+    let session = session.replace("questionnaires/", &format!("{}/", root.join("sessions/questionnaires").display()));
+    let session = session.replace("tutorials/sushi.toml", "tutorial.toml");
+    fs::write(at.join("study.toml"), session).expect("a file");
+    let right = fs::read_to_string("sessions/tutorials/sushi.toml").expect("the file of the project");
+    let found = |text: &str| {
+        fs::write(at.join("tutorial.toml"), text).expect("a file");
+        let error = read_session(&at.join("study.toml")).expect_err("an error");
+        format!("{:?}", miette::Report::new(error))
+    };
+    for (from, to, wanted) in [
+        ("kind = \"press\"", "kind = \"push\"", "push"),
+        ("presses = [\"take rice\", \"cooking_pot\"]", "presses = [\"take rice\", \"oven\"]", "oven"),
+        ("presses = [\"cook\", \"cooking_pot\"]", "presses = [\"cut\"]", "does nothing"),
+        ("dish = \"salmon maki\"", "dish = \"pizza\"", "pizza"),
+        ("point_at = [\"order_1\", ", "point_at = [\"order_9\", ", "order_9"),
+        ("right = 3", "right = 4", "right = 4"),
+        ("id = \"ask_crab\"", "id = \"ask_shape\"", "twice"),
+        ("seconds = 60.0", "seconds = -1.0", "seconds = -1"),
+        ("plate\", \"serve 1\"", "plate\"", "do not serve"),
+    ] {
+        let report = found(&right.replacen(from, to, 1));
+        assert!(report.contains("tutorial.toml:") && report.contains(wanted), "{from} -> {to}:\n{report}");
+    }
+}
+
+#[test]
+fn cards_that_were_shown_for_their_time_do_not_come_back() {
+    let mut lesson = Lesson::new(&folder("tutorial_cards"));
+    lesson.turn_to("recipes");
+    assert!(!sight(lesson.session()).tutorial.expect("a page").cards.is_empty());
+    assert_eq!(lesson.tell(TutorialEvent::CardsHidden { step: "recipes".to_string() }), None);
+    assert_eq!(lesson.turn(BY_PARTICIPANT), None);
+    assert_eq!(lesson.tell(TutorialEvent::Shown { step: "recipes".to_string(), by: BY_PARTICIPANT }), None);
+    let page = sight(lesson.session()).tutorial.expect("a page");
+    assert!(page.done && page.cards.is_empty() && page.seconds.is_none(), "{page:?}");
+}
+
+#[test]
+fn the_tutorials_of_the_other_kitchen_fit_it() {
+    let kitchen = read_kitchen(Path::new("layouts/burger.toml")).expect("a kitchen").kitchen;
+    let [english, german] = ["burger.toml", "burger.de.toml"].map(|name| {
+        let text = fs::read_to_string(Path::new("sessions/tutorials").join(name)).expect("the file of the project");
+        let tutorial: Tutorial = toml::from_str(&text).expect("a tutorial");
+        tutorial.check().and_then(|()| tutorial.check_kitchen(&kitchen)).expect("it fits the kitchen");
+        tutorial
+    });
+    assert_eq!(english.steps.len(), german.steps.len());
+    for (one, other) in english.steps.iter().zip(&german.steps) {
+        assert_eq!((&one.id, one.kind, &one.presses, one.right), (&other.id, other.kind, &other.presses, other.right));
+    }
+}

@@ -45,6 +45,9 @@ pub struct TagSummary {
     pub id: u16,
     /// x, y, w and h with its white border, in fractions of the display.
     pub area: [f64; 4],
+    /// Corners of its black square, which trackers ask for: top left, top right, bottom right, bottom left, in fractions of the
+    /// display. They are at 1 and 9 of the tag's 10 cells.
+    pub corners: [[f64; 2]; 4],
     /// Rows of cells, from the top: `#` for black, another sign for white.
     pub cells: Vec<String>,
 }
@@ -54,7 +57,7 @@ impl TagsSummary {
         let row = |row: &[bool; CELLS]| row.iter().map(|black| if *black { '#' } else { '.' }).collect();
         let tag = |tag: &DisplayTag| {
             let area = [tag.area.x, tag.area.y, tag.area.w, tag.area.h];
-            TagSummary { id: tag.id, area, cells: tag.cells().iter().map(row).collect() }
+            TagSummary { id: tag.id, area, corners: tag.black_corners(), cells: tag.cells().iter().map(row).collect() }
         };
         let tags_drawn = tags.corners.iter().map(tag).collect();
         TagsSummary { family: "tag36h11", edge_m: tags.edge_m, tags: tags_drawn, surface: tags.hull() }

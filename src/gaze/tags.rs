@@ -114,6 +114,12 @@ impl DisplayTags {
 }
 
 impl DisplayTag {
+    /// The corners of the black square, in fractions of the display: top left, top right, bottom right, bottom left.
+    pub fn black_corners(&self) -> [[f64; 2]; 4] {
+        let DisplayArea { x, y, w, h } = self.black;
+        [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]
+    }
+
     /// The cells of a tag: rows from the top, cells from the left; true is black.
     pub fn cells(&self) -> [[bool; CELLS]; CELLS] {
         let data = IDS.iter().position(|id| *id == self.id).map_or(0, |index| DATA[index]);

@@ -25,6 +25,14 @@ fn tags_fit_the_corners_of_every_layout() {
             let sides_m = [tag.black.w * kitchen.display_m[0], tag.black.h * kitchen.display_m[1]];
             assert!(sides_m.iter().all(|side_m| (side_m - tags.edge_m).abs() < 1e-12));
             assert!((tag.black.x - tag.area.x - tag.area.w / CELLS as f64).abs() < 1e-12);
+            // A tracker asks for the corners of the black square, clockwise from the top left.
+            let cell = |at: f64| [tag.area.x + tag.area.w * at / 10.0, tag.area.y + tag.area.h * at / 10.0];
+            let ([left, top], [right, bottom]) = (cell(1.0), cell(9.0));
+            for (corner, expected) in
+                tag.black_corners().into_iter().zip([[left, top], [right, top], [right, bottom], [left, bottom]])
+            {
+                assert!(corner.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{layout}: {corner:?}");
+            }
             let edges = [tag.area.x, tag.area.y, 1.0 - tag.area.x - tag.area.w, 1.0 - tag.area.y - tag.area.h];
             assert_eq!(
                 edges.iter().filter(|gap| gap.abs() < 1e-12).count(),

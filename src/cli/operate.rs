@@ -26,7 +26,7 @@ pub(super) struct OperateArgs {
     /// The session file; by default sessions/default.toml, or the built-in one.
     pub(super) session: Option<PathBuf>,
     /// Continue a recording that was cut off, in a new part beside it; a running trial is paused.
-    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "arm", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
+    #[arg(long = "continue", value_name = "RECORDING", conflicts_with_all = ["session", "code", "participant", "gaze", "gaze_file", "gaze_start", "arm", "listen", "condition", "concept", "seed", "rerun_listen", "out"])]
     pub(super) recording: Option<PathBuf>,
     #[command(flatten)]
     pub(super) flags: OperateFlags,
@@ -43,9 +43,13 @@ pub(super) struct OperateFlags {
     /// Gaze source, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) gaze: Option<GazeArg>,
-    /// Replay gaze from this file: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording.
+    /// Replay gaze from this file: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of Pupil Cloud's
+    /// Marker Mapper, or the folder of a recording.
     #[arg(long, value_name = "PATH")]
     pub(super) gaze_file: Option<PathBuf>,
+    /// Time in the gaze file at which the trial starts, in seconds after its first sample; negative: the trial starts before it.
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub(super) gaze_start: Option<f64>,
     /// Kind of the robot's arm, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,
@@ -94,6 +98,7 @@ pub(super) fn new_session(
         arm: flags.arm.map(ArmKind::from),
         gaze: flags.gaze.map(GazeSource::from),
         gaze_file: flags.gaze_file.clone(),
+        gaze_start_s: flags.gaze_start,
         condition: flags.condition.map(Condition::from),
         concept: flags.concept.map(ConceptName::from),
         seed: flags.seed,

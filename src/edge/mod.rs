@@ -16,6 +16,7 @@ mod frames;
 pub mod gaze_file;
 pub mod gaze_input;
 pub mod gaze_json;
+mod gaze_table;
 #[cfg(any(feature = "display", feature = "rerun"))]
 mod host_name;
 pub mod key_file;

@@ -143,7 +143,7 @@ impl GazeTracker {
             }
             GazeSource::File => {
                 let path = tracker.file.as_deref().unwrap_or_default();
-                let file = Arc::new(gaze_file::read(Path::new(path), &surface()?)?);
+                let file = Arc::new(gaze_file::read(Path::new(path), &surface()?, tracker.file_start_s)?);
                 Ok(GazeTracker { file: Some(file), ..GazeTracker::default() })
             }
             GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => Ok(GazeTracker::default()),

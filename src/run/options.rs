@@ -52,7 +52,7 @@ pub struct RemainingTrials {
 }
 
 /// Session settings that the command line overrides.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SettingOverrides {
     /// Who plays the human's part.
     pub participant: Option<ParticipantKind>,
@@ -64,6 +64,8 @@ pub struct SettingOverrides {
     pub listen: Option<IpAddr>,
     /// File from which gaze is replayed.
     pub gaze_file: Option<PathBuf>,
+    /// Time in that file at which the trial starts, in seconds.
+    pub gaze_start_s: Option<f64>,
     /// Who may send signals.
     pub condition: Option<Condition>,
     /// The assistant's communication concept.
@@ -102,6 +104,7 @@ impl SettingOverrides {
         if let Some(file) = &self.gaze_file {
             spec.tracker.file = Some(file.display().to_string());
         }
+        spec.tracker.file_start_s = self.gaze_start_s.unwrap_or(spec.tracker.file_start_s);
         let participant = &mut spec.participant;
         participant.code = self.code.unwrap_or(std::mem::take(&mut participant.code));
         participant.kind = self.participant.unwrap_or(participant.kind);

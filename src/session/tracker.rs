@@ -27,6 +27,9 @@ pub struct TrackerSpec {
     /// Path of the file from which gaze is replayed, relative to the session file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// Time in that file at which the trial starts, in seconds after its first sample; negative: the trial starts before it.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub file_start_s: f64,
     /// Distance from the participant's eyes to the wall display, in metres.
     pub distance_m: f64,
     /// Drop-outs of the simulated tracker; none by default.
@@ -56,10 +59,15 @@ impl Default for TrackerSpec {
             corners: None,
             record: true,
             file: None,
+            file_start_s: 0.0,
             distance_m: 2.0,
             gaps: None,
         }
     }
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }
 
 impl TrackerSpec {

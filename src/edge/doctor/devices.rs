@@ -34,7 +34,7 @@ pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
     match spec.participant.gaze {
         GazeSource::Pupil => eye_tracker(&spec.tracker, true),
         GazeSource::Json => lines(spec.participant.gaze_port),
-        GazeSource::File => file(spec.tracker.file.as_deref().unwrap_or_default()),
+        GazeSource::File => file(&spec.tracker),
         GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => eye_tracker(&spec.tracker, false),
     }
 }
@@ -76,10 +76,11 @@ fn lines(port: u16) -> PreflightCheck {
 }
 
 /// Checks whether a gaze file can be replayed.
-fn file(path: &str) -> PreflightCheck {
+fn file(tracker: &TrackerSpec) -> PreflightCheck {
+    let path = tracker.file.as_deref().unwrap_or_default();
     let remedy =
-        "file under [tracker]: Pupil Player's gaze_positions_on_surface_NAME.csv, or the folder of a recording";
-    let found = SurfaceMap::new(WHOLE).map(|map| gaze_file::read(Path::new(path), &map));
+        "file under [tracker]: a table of gaze on the display, or the folder of a recording (docs/eye-trackers.md)";
+    let found = SurfaceMap::new(WHOLE).map(|map| gaze_file::read(Path::new(path), &map, tracker.file_start_s));
     match found {
         Some(Ok(found)) if !found.samples.is_empty() => {
             PreflightCheck::ok("gaze", format!("{path}: {}", count(found.samples.len() as u64, "sample", "samples")))

@@ -1,14 +1,17 @@
 //! Messages of Pupil, frames of ZeroMQ, and files of gaze: read in full, or counted as broken.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rand::RngExt;
 use rmpv::Value;
 use tomcom::base::rng::stream;
+use tomcom::edge::files::read_session;
 use tomcom::edge::gaze_file;
 use tomcom::edge::pupil::message::{self, PupilMessage};
 use tomcom::edge::pupil::zmtp::FrameAssembler;
 use tomcom::gaze::surface::SurfaceMap;
+use tomcom::run::options::SettingOverrides;
+use tomcom::session::settings::GazeSource;
 
 const DATUM: &[u8] = include_bytes!("../../pupil/surfaces_wall.msgpack");
 
@@ -105,20 +108,111 @@ fn frames_are_put_together_from_any_pieces_and_claims_are_not_believed() {
     assert!(refused(&[1, 0].repeat(17)), "a message of very many frames");
 }
 
+fn map() -> SurfaceMap {
+    SurfaceMap::new([[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [0.1, 0.9]]).expect("a surface")
+}
+
 #[test]
 fn exports_of_pupil_player_and_own_recordings_are_replayed() {
-    let hull = [[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [0.1, 0.9]];
-    let map = SurfaceMap::new(hull).expect("a surface");
-    let found = gaze_file::read(Path::new("tests/pupil/gaze_positions_on_surface_wall.csv"), &map).expect("an export");
+    let path = Path::new("tests/pupil/gaze_positions_on_surface_wall.csv");
+    let found = gaze_file::read(path, &map(), 0.0).expect("an export");
     assert_eq!((found.samples.len(), found.malformed), (3, 2));
     let (at_s, sample) = found.samples[1];
-    assert!((at_s - 0.004_124_045).abs() < 1e-9, "{at_s}");
+    assert!((at_s - 0.004_124_045).abs() < 1e-8, "{at_s}");
     assert!((sample.x - 0.3).abs() < 1e-9 && (sample.y - 0.1).abs() < 1e-9, "{sample:?}");
     assert_eq!((sample.device_ns, sample.confidence), (Some(5_117_922_610), 0.91));
-    let error = gaze_file::read(Path::new("layouts/sushi.toml"), &map).expect_err("no export");
+    let error = gaze_file::read(Path::new("layouts/sushi.toml"), &map(), 0.0).expect_err("no export");
     assert!(error.to_string().contains("no column gaze_timestamp"), "{error}");
     let recording = std::fs::read_dir("tests/golden").expect("recordings").map(|entry| entry.expect("an entry").path());
     let recording = recording.filter(|path| path.extension().is_some_and(|extension| extension == "jsonl"));
-    let counts: Vec<usize> = recording.map(|path| gaze_file::read(&path, &map).expect("gaze").samples.len()).collect();
+    let read = |path: PathBuf| gaze_file::read(&path, &map(), 0.0).expect("gaze").samples.len();
+    let counts: Vec<usize> = recording.map(read).collect();
     assert!(counts.iter().any(|count| *count > 1000), "{counts:?}");
+}
+
+#[test]
+fn a_trial_starts_anywhere_in_a_gaze_file() {
+    let path = Path::new("tests/pupil/gaze_positions_on_surface_wall.csv");
+    let starting = |start_s: f64| gaze_file::read(path, &map(), start_s).expect("an export").samples;
+    let whole = starting(0.0);
+    let (later, earlier) = (starting(0.005), starting(-2.0));
+    assert_eq!((later.len(), earlier.len()), (1, 3));
+    assert!((later[0].0 - (whole[2].0 - 0.005)).abs() < 1e-12 && later[0].1 == whole[2].1);
+    assert!((earlier[0].0 - 2.0).abs() < 1e-12);
+    let error = gaze_file::read(path, &map(), 60.0).expect_err("nothing is left").to_string();
+    assert!(error.contains("its last sample at 0.0 s, before the start at 60.0 s"), "{error}");
+}
+
+#[test]
+fn the_command_line_names_file_and_start() {
+    let mut files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    let path = PathBuf::from("gaze.csv");
+    let overrides = SettingOverrides { gaze_file: Some(path), gaze_start_s: Some(12.5), ..SettingOverrides::default() };
+    overrides.apply(&mut files).expect("settings");
+    let tracker = &files.spec.tracker;
+    assert_eq!((tracker.file.as_deref(), tracker.file_start_s), (Some("gaze.csv"), 12.5));
+    assert_eq!(files.spec.participant.gaze, GazeSource::File);
+    let beyond = SettingOverrides { gaze_start_s: Some(1e6), ..SettingOverrides::default() };
+    assert!(beyond.apply(&mut files).is_err(), "no trial is longer than a day");
+}
+
+/// Reads a table with this text.
+fn read_table(text: &str) -> Result<gaze_file::GazeFile, String> {
+    let path = folder("table").join("table.csv");
+    std::fs::write(&path, text).expect("written");
+    gaze_file::read(&path, &map(), 0.0).map_err(|error| error.to_string())
+}
+
+/// A folder of this test.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("gaze-files-{name}"));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+#[test]
+fn tables_of_marker_mapper_and_neon_player_are_replayed() {
+    let surface =
+        "gaze detected on surface,gaze position on surface x [normalized],gaze position on surface y [normalized]";
+    // With the mark that some programs put before a text, and the line ends of another system.
+    let cloud = format!(
+        "\u{feff}section id,recording id,timestamp [ns],{surface},fixation id,blink id\r\n\
+         s1,r1,1764057600000000001,True,0.25,0.0,1,\r\n\
+         s1,r1,1764057600005000001,False,1.25,0.5,,\r\n\
+         s1,r1,1764057600010000001,False,,,,\r\n\
+         s1,r1,1764057600015000001,True,0.5,0.5,,3\r\n\
+         s1,r1,soon,True,0.5,0.5,,\r\n"
+    );
+    let found = read_table(&cloud).expect("a table");
+    assert_eq!((found.samples.len(), found.malformed), (3, 1), "where the surface is not found there is no sample");
+    let (at_s, sample) = found.samples[0];
+    assert_eq!((at_s, sample.confidence, sample.device_ns), (0.0, 1.0, Some(1_764_057_600_000_000_001)));
+    // The origin is the top left corner of the surface.
+    assert!((sample.x - 0.3).abs() < 1e-9 && (sample.y - 0.1).abs() < 1e-9, "{sample:?}");
+    assert!((found.samples[1].0 - 0.005).abs() < 1e-12);
+    assert_eq!(found.samples[2].1.confidence, 0.0, "a blink");
+    let player = format!("timestamp [ns],{surface}\n1764057600000000001,True,0.25,0.0\n");
+    assert_eq!(read_table(&player).expect("a table").samples, found.samples[..1]);
+
+    let several = cloud.replacen("s1,r1,1764057600005", "s1,r2,1764057600005", 1);
+    let error = read_table(&several).expect_err("two participants");
+    assert!(error.contains("gaze of several recordings (r2)"), "{error}");
+    for head in
+        ["section id,recording id,timestamp [ns],gaze x [px],gaze y [px],worn", "gaze_timestamp,norm_pos_x,norm_pos_y"]
+    {
+        let error = read_table(&format!("{head}\n")).expect_err("not on the display");
+        assert!(error.contains("gaze in the scene camera's picture"), "{error}");
+    }
+    let error = read_table(&format!("timestamp,{surface}\n")).expect_err("no time");
+    assert!(error.contains("no column timestamp [ns]"), "{error}");
+}
+
+#[test]
+fn recordings_of_the_trackers_themselves_are_told_from_ours() {
+    for name in ["gaze ps1.raw", "gaze.pldata"] {
+        let folder = folder(name);
+        std::fs::write(folder.join(name), b"").expect("written");
+        let error = gaze_file::read(&folder, &map(), 0.0).expect_err("no gaze on the display").to_string();
+        assert!(error.contains(name) && error.contains("in the scene camera's picture"), "{error}");
+    }
 }

@@ -22,6 +22,7 @@ fn every_setting() -> toml::Table {
         pace_s = 2.0
         [tracker]
         corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+        file_start_s = 1.5
         [tracker.gaps]
         every_s = 10.0
         shortest_s = 1.0

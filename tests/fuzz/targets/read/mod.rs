@@ -150,7 +150,7 @@ fn table(bytes: &[u8]) {
 
 fn gaze_export(bytes: &[u8]) {
     let map = SurfaceMap::new([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]).expect("the corners of a square");
-    shown(gaze_file::read(&file("gaze.csv", bytes), &map).map(drop));
+    shown(gaze_file::read(&file("gaze.csv", bytes), &map, 0.0).map(drop));
 }
 
 fn rerun_head(bytes: &[u8]) {

@@ -25,7 +25,7 @@ pub(super) enum GazeArg {
     Pupil,
     /// Recorded gaze: see --gaze-file.
     File,
-    /// Lines of JSON over TCP or UDP on localhost.
+    /// Lines of JSON over TCP or UDP.
     Json,
     /// No gaze at all.
     None,

@@ -32,6 +32,8 @@ use crate::session::{TimelineEntry, TimelineEvent};
 /// Display time of a notice, in seconds.
 const NOTICE_S: f64 = 4.0;
 
+/// Largest number of senders of gaze that give a notice.
+const UNLISTED: usize = 16;
 /// Number of gaze samples in the trail of the gaze map.
 const TRAIL: usize = 240;
 
@@ -148,6 +150,8 @@ pub struct ConsoleModel {
     pub trail: VecDeque<(SessionTime, GazeSample)>,
     /// Number of rejected senders of gaze: connections and datagrams that are not a tracker's.
     pub rejected_senders: u64,
+    /// Addresses of senders that were told of because the session does not list them.
+    unlisted: Vec<String>,
     /// State of the participant's display, if there is one.
     pub display: Option<DisplayHealth>,
     /// Times of the human's errors, in order.
@@ -203,6 +207,7 @@ impl ConsoleModel {
             pointer: None,
             trail: VecDeque::with_capacity(TRAIL),
             rejected_senders: 0,
+            unlisted: Vec::new(),
             display: None,
             errors: Vec::new(),
             signals: SignalJudge::default(),
@@ -258,6 +263,15 @@ impl ConsoleModel {
         if has_doubled {
             let told = count(self.rejected_senders, "sender", "senders");
             self.warn(format!("gaze: {told} rejected and not read: no JSON object, or not the tracker's address"));
+        }
+    }
+
+    /// Counts a sender of gaze at an address that the session does not list. Each address gives one notice, and no more than a few do.
+    pub fn reject_unlisted(&mut self, address: String) {
+        self.rejected_senders += 1;
+        if self.unlisted.len() < UNLISTED && !self.unlisted.contains(&address) {
+            self.warn(format!("gaze from {address} is rejected: gaze_from does not list it"));
+            self.unlisted.push(address);
         }
     }
 

@@ -1,5 +1,6 @@
 //! Messages of eye trackers of all kinds on their way into the session.
 
+use std::net::IpAddr;
 use std::time::Instant;
 
 use crate::gaze::GazeSample;
@@ -18,6 +19,8 @@ pub enum GazeNews {
     WrongTime(f64),
     /// Number of rejected senders: connections and datagrams that are not a tracker's.
     Rejected(u64),
+    /// A sender at this address, which the session does not list, was rejected.
+    Unlisted(IpAddr),
     /// Number of messages dropped because the queue was full.
     Overrun(u64),
     /// A tracker's program started to send; its clock may differ from before.

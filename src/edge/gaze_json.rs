@@ -1,10 +1,10 @@
-//! Gaze from any other program: lines {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1} over TCP or UDP on
-//! localhost. Coordinates are fractions of the wall display, the origin at the top left; t is the tracker's own clock.
+//! Gaze from any other program: lines {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1} over TCP or UDP. Coordinates are fractions of the wall display, the origin at the top left; t is the tracker's own clock.
 //! Lines that are no samples are counted. A connection or datagram that does not begin with a JSON object is rejected and
-//! counted, and none of its lines is read: websites can make a browser send requests to this port.
+//! counted, and none of its lines is read: websites can make a browser send requests to this port. From other computers only
+//! listed addresses are read.
 
 use std::io;
-use std::net::{Ipv4Addr, SocketAddr};
+use std::net::{IpAddr, SocketAddr};
 use std::time::{Duration, Instant};
 
 use serde::Deserialize;
@@ -25,7 +25,9 @@ const MAX_LINE: usize = 4096;
 const MAX_DATAGRAM: usize = 1 << 16;
 /// Time limit for the first line of a connection.
 const FIRST_LINE: Duration = Duration::from_secs(10);
-/// All connections come from this machine. A tracker that has sent a sample may be silent as long as there is room.
+/// Least time between two notices about senders that are not listed: datagrams can come in thousands.
+const NOTICE: Duration = Duration::from_millis(100);
+/// All connections come from this machine or from listed ones. A tracker that has sent a sample may be silent as long as there is room.
 const LIMITS: ConnectionLimits = ConnectionLimits {
     most: 32,
     per_address: 32,
@@ -52,22 +54,50 @@ pub struct GazeListener {
     pub news: Receiver<GazeNews>,
 }
 
-/// Listens on this port of localhost for connections and datagrams; trackers may come and go. Port 0 stands for a free port.
+/// Listens at this address for connections and datagrams of this computer and of the listed addresses; trackers may come and go. Port 0
+/// stands for a free port.
 ///
 /// # Errors
-/// The port cannot be listened on.
-pub async fn listen(port: u16, senders: GazeSenders) -> io::Result<GazeListener> {
-    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).await?;
+/// The address cannot be listened on.
+pub async fn listen(at: SocketAddr, senders: GazeSenders, listed: Vec<IpAddr>) -> io::Result<GazeListener> {
+    let listener = TcpListener::bind(at).await?;
     let address = listener.local_addr()?;
     let socket = UdpSocket::bind(address).await?;
     let (sender, news) = channel(WAITING);
-    tokio::spawn(take_datagrams(socket, DatagramHolder::new(senders), sender.clone()));
-    tokio::spawn(take_connections(listener, sender));
+    let gate = Gate { listed, news: sender.clone(), told: None };
+    tokio::spawn(take_datagrams(socket, DatagramHolder::new(senders), gate.clone(), sender.clone()));
+    tokio::spawn(take_connections(listener, gate, sender));
     Ok(GazeListener { address, news })
 }
 
+/// Rejects addresses that are not listed.
+#[derive(Clone)]
+struct Gate {
+    listed: Vec<IpAddr>,
+    news: Sender<GazeNews>,
+    /// When a sender was told of last.
+    told: Option<Instant>,
+}
+
+impl Gate {
+    /// Whether what comes from this address is read; tells of it if not.
+    fn admits(&mut self, from: IpAddr, now: Instant) -> bool {
+        // Where both kinds of addresses are listened on, those of version 4 come in the clothes of version 6.
+        let from = from.to_canonical();
+        if from.is_loopback() || self.listed.iter().any(|listed| listed.to_canonical() == from) {
+            return true;
+        }
+        if self.told.is_none_or(|told| now.saturating_duration_since(told) >= NOTICE) {
+            self.told = Some(now);
+            // A closed or full channel has more serious consequences than a missing notice.
+            let _ = self.news.try_send(GazeNews::Unlisted(from));
+        }
+        false
+    }
+}
+
 /// Accepts connections without end.
-async fn take_connections(listener: TcpListener, news: Sender<GazeNews>) {
+async fn take_connections(listener: TcpListener, mut gate: Gate, news: Sender<GazeNews>) {
     let table = ConnectionTable::new(LIMITS);
     while !news.is_closed() {
         let Ok((stream, from)) = listener.accept().await else {
@@ -75,6 +105,9 @@ async fn take_connections(listener: TcpListener, news: Sender<GazeNews>) {
             sleep(Duration::from_millis(100)).await;
             continue;
         };
+        if !gate.admits(from.ip(), Instant::now()) {
+            continue;
+        }
         match table.arrive(from.ip(), Instant::now()) {
             Some(arrival) => drop(tokio::spawn(attend(stream, arrival.place, news.clone()))),
             None => reject(&news),
@@ -101,7 +134,7 @@ fn reject(news: &Sender<GazeNews>) {
 }
 
 /// Reads datagrams without end; samples that are not processed in time are counted.
-async fn take_datagrams(socket: UdpSocket, mut holder: DatagramHolder, news: Sender<GazeNews>) {
+async fn take_datagrams(socket: UdpSocket, mut holder: DatagramHolder, mut gate: Gate, news: Sender<GazeNews>) {
     let mut buffer = vec![0; MAX_DATAGRAM];
     let (mut lost, mut tracker) = (0, None);
     while !news.is_closed() {
@@ -111,6 +144,9 @@ async fn take_datagrams(socket: UdpSocket, mut holder: DatagramHolder, news: Sen
             continue;
         };
         let (now, datagram) = (Instant::now(), &buffer[..count]);
+        if !gate.admits(from.ip(), now) {
+            continue;
+        }
         if begins_object(datagram) == Some(false) || !holder.admits(from.ip(), now) {
             reject(&news);
             continue;
@@ -259,6 +295,8 @@ fn device_ns(t: f64) -> Option<u64> {
 
 #[cfg(test)]
 mod tests {
+    use std::net::Ipv4Addr;
+
     use super::*;
     use tokio::io::AsyncWriteExt;
 

@@ -2,6 +2,7 @@
 //! recordings of a series.
 
 use std::io;
+use std::net::SocketAddr;
 use std::path::Path;
 use std::pin::Pin;
 use std::sync::Arc;
@@ -129,9 +130,9 @@ impl GazeTracker {
         };
         match participant.gaze {
             GazeSource::Json => {
-                let port = participant.gaze_port;
-                let listener = gaze_json::listen(port, participant.gaze_senders).await;
-                let listener = listener.map_err(|reason| LiveError::Gaze { port, reason })?;
+                let at = SocketAddr::new(participant.gaze_listen, participant.gaze_port);
+                let listener = gaze_json::listen(at, participant.gaze_senders, participant.gaze_from.clone()).await;
+                let listener = listener.map_err(|reason| LiveError::Gaze { at, reason })?;
                 Ok(GazeTracker { news: Some(listener.news), ..GazeTracker::default() })
             }
             GazeSource::Pupil => {

@@ -1,7 +1,7 @@
 //! Errors of commands on recordings, and of running a console.
 
 use std::io;
-use std::net::IpAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 
 use super::resume::ResumeError;
@@ -50,11 +50,11 @@ pub enum LiveError {
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
     /// Nothing can listen for gaze.
-    #[error("nothing can listen on port {port} of localhost for gaze: {reason}")]
-    #[diagnostic(help("another port as gaze_port in the session file"))]
+    #[error("nothing can listen at {at} for gaze: {reason}")]
+    #[diagnostic(help("another gaze_port in the session file, or as gaze_listen an address of this computer"))]
     Gaze {
-        /// The port on localhost.
-        port: u16,
+        /// The address and the port.
+        at: SocketAddr,
         /// Why not.
         reason: io::Error,
     },

@@ -1,8 +1,13 @@
 //! Settings of the participant and of the gaze source in a session file.
 
+use core::net::{IpAddr, Ipv4Addr};
+
 use serde::{Deserialize, Serialize};
 
+use super::setting_checks::SettingError;
 use crate::participant::population::Population;
+
+const LOCALHOST: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
 /// The participant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -14,8 +19,14 @@ pub struct ParticipantSpec {
     pub kind: ParticipantKind,
     /// Where gaze samples come from.
     pub gaze: GazeSource,
-    /// Port of the JSON gaze input on localhost.
+    /// Port of the JSON gaze input.
     pub gaze_port: u16,
+    /// Address at which the JSON gaze input listens; this computer's own (localhost) by default.
+    #[serde(skip_serializing_if = "is_localhost")]
+    pub gaze_listen: IpAddr,
+    /// Addresses from which gaze is read, besides this computer's own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gaze_from: Vec<IpAddr>,
     /// Addresses from which the JSON gaze input reads datagrams.
     #[serde(skip_serializing_if = "GazeSenders::is_first")]
     pub gaze_senders: GazeSenders,
@@ -32,13 +43,29 @@ impl Default for ParticipantSpec {
             kind: ParticipantKind::Simulated,
             gaze: GazeSource::Simulated,
             gaze_port: 50021,
+            gaze_listen: LOCALHOST,
+            gaze_from: Vec::new(),
             gaze_senders: GazeSenders::First,
             population: None,
         }
     }
 }
 
+fn is_localhost(address: &IpAddr) -> bool {
+    *address == LOCALHOST
+}
+
 impl ParticipantSpec {
+    /// Whether other computers can send gaze only if they are listed.
+    pub(super) fn check(&self) -> Result<(), SettingError> {
+        if self.gaze_listen.is_loopback() || !self.gaze_from.is_empty() {
+            return Ok(());
+        }
+        let found = format!("gaze_listen = \"{}\", and no gaze_from", self.gaze_listen);
+        let remedy = "the addresses that may send gaze: gaze_from = [\"192.168.1.20\"] under [participant]";
+        Err(SettingError::new("participant.gaze_listen", found, remedy))
+    }
+
     /// Whether gaze samples come from the simulated participant.
     pub fn simulates_gaze(&self) -> bool {
         self.kind == ParticipantKind::Simulated && self.gaze == GazeSource::Simulated
@@ -69,7 +96,7 @@ pub enum GazeSource {
     Pupil,
     /// A recorded file: Pupil Player's export, or a recording of this program.
     File,
-    /// Newline separated JSON over TCP and UDP on localhost.
+    /// Newline separated JSON over TCP and UDP.
     Json,
     /// No gaze at all.
     None,

@@ -25,7 +25,7 @@ const SAMPLE: &[u8] = b"{\"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n";
 const PATIENCE: Duration = Duration::from_secs(30);
 
 async fn open(senders: GazeSenders) -> GazeListener {
-    listen(0, senders).await.expect("a free port")
+    listen((Ipv4Addr::LOCALHOST, 0).into(), senders, Vec::new()).await.expect("a free port")
 }
 
 /// What comes next.
@@ -154,6 +154,41 @@ async fn datagrams_of_all_addresses_are_taken_where_the_session_says_so() {
     }
 }
 
+/// An address of this machine by which other computers reach it, if it has one.
+fn outer_address() -> Option<IpAddr> {
+    let socket = std::net::UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
+    // Nothing is sent: the system only chooses the address from which it would be.
+    socket.connect((Ipv4Addr::new(192, 0, 2, 1), 9)).ok()?;
+    socket.local_addr().ok().map(|address| address.ip()).filter(|address| !address.is_loopback())
+}
+
+#[tokio::test]
+async fn from_other_addresses_only_listed_ones_are_read_and_the_others_are_told() {
+    let Some(outer) = outer_address() else { return };
+    let anywhere = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
+    let elsewhere = IpAddr::V4(Ipv4Addr::new(192, 0, 2, 7));
+    let mut listener = listen(anywhere, GazeSenders::Any, vec![elsewhere]).await.expect("a free port");
+    let to = SocketAddr::new(outer, listener.address.port());
+    send_until_closed(to, &[SAMPLE]).await;
+    assert_eq!(next(&mut listener).await, GazeNews::Unlisted(outer));
+    tokio::time::sleep(Duration::from_millis(200)).await;
+    let sender = UdpSocket::bind((outer, 0)).await.expect("the address of this machine");
+    sender.send_to(SAMPLE, to).await.expect("sent");
+    assert_eq!(next(&mut listener).await, GazeNews::Unlisted(outer));
+    // This computer itself needs no entry.
+    let here = SocketAddr::from((Ipv4Addr::LOCALHOST, to.port()));
+    socket(1).await.send_to(SAMPLE, here).await.expect("sent");
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+
+    let mut listener = listen(anywhere, GazeSenders::Any, vec![outer]).await.expect("a free port");
+    let to = SocketAddr::new(outer, listener.address.port());
+    sender.send_to(SAMPLE, to).await.expect("sent");
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    let mut tracker = TcpStream::connect(to).await.expect("connected");
+    tracker.write_all(SAMPLE).await.expect("sent");
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+}
+
 #[test]
 fn an_address_that_is_silent_for_five_seconds_is_the_trackers_no_more() {
     let [one, other] = [1, 2].map(|last| IpAddr::V4(Ipv4Addr::new(127, 0, 0, last)));
@@ -182,6 +217,13 @@ fn the_setting_is_read_and_only_kept_where_it_says_something() {
     let any = read("gaze_senders = \"any\"").expect("settings");
     assert!(serde_json::to_string(&any).expect("JSON").contains(r#""gaze_senders":"any""#));
     assert!(read("gaze_senders = \"all\"").is_err());
+    assert!(!serde_json::to_string(&first).expect("JSON").contains("gaze_listen"));
+    let open = read("gaze_listen = \"0.0.0.0\"\ngaze_from = [\"192.168.1.20\", \"fd00::7\"]").expect("settings");
+    assert!(open.check().is_ok());
+    let kept = serde_json::to_string(&open).expect("JSON");
+    assert!(kept.contains(r#""gaze_listen":"0.0.0.0","gaze_from":["192.168.1.20","fd00::7"]"#), "{kept}");
+    assert!(read("gaze_listen = \"0.0.0.0\"").expect("settings").check().is_err(), "open to everybody");
+    assert!(read("gaze_from = [\"the tracker\"]").is_err());
 }
 
 #[test]
@@ -206,4 +248,14 @@ fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
     model.count_rejected(100);
     assert_eq!(model.rejected_senders, 109);
     assert_eq!(model.notice.map(|notice| notice.level), Some(NoticeLevel::Alarm));
+    model.notice = None;
+    for address in ["192.168.1.7", "192.168.1.7", "192.168.1.8"] {
+        model.reject_unlisted(address.to_string());
+    }
+    assert_eq!(model.rejected_senders, 112);
+    let text = model.notice.as_ref().map(|notice| notice.text.as_str()).unwrap_or_default();
+    assert!(text.contains("gaze from 192.168.1.8 is rejected"), "{text}");
+    model.notice = None;
+    model.reject_unlisted("192.168.1.7".to_string());
+    assert_eq!(model.notice.as_ref().map(|notice| &notice.text), None, "each is told once");
 }

@@ -1,7 +1,7 @@
 //! Checks of the participant's page and of the gaze sources. Sources that the session does not use are checked at their default
 //! places and never fail.
 
-use std::net::{Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
+use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 
 use crate::base::words::count;
@@ -10,7 +10,7 @@ use crate::edge::{gaze_file, pupil};
 use crate::gaze::surface::SurfaceMap;
 use crate::session::SessionSpec;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
-use crate::session::settings::{GazeSource, ParticipantKind};
+use crate::session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use crate::session::tracker::TrackerSpec;
 
 /// Corners of a surface that covers the whole display: reading a file does not depend on the tags.
@@ -33,7 +33,7 @@ pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
 pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
     match spec.participant.gaze {
         GazeSource::Pupil => eye_tracker(&spec.tracker, true),
-        GazeSource::Json => lines(spec.participant.gaze_port),
+        GazeSource::Json => lines(&spec.participant),
         GazeSource::File => file(&spec.tracker),
         GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => eye_tracker(&spec.tracker, false),
     }
@@ -64,13 +64,13 @@ fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
 }
 
 /// Checks whether the port of the JSON gaze input is free.
-fn lines(port: u16) -> PreflightCheck {
-    let address = (Ipv4Addr::LOCALHOST, port);
+fn lines(spec: &ParticipantSpec) -> PreflightCheck {
+    let address = SocketAddr::new(spec.gaze_listen, spec.gaze_port);
     match TcpListener::bind(address).and_then(|_| UdpSocket::bind(address)) {
-        Ok(_) => PreflightCheck::ok("gaze", format!("port {port} of localhost is free for lines of JSON")),
+        Ok(_) => PreflightCheck::ok("gaze", format!("{address} is free for lines of JSON")),
         Err(reason) => {
-            let remedy = "end what uses the port, or set another gaze_port under [participant]";
-            PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("port {port} of localhost: {reason}"), remedy)
+            let remedy = "end what uses the port, or set another gaze_port or gaze_listen under [participant]";
+            PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("{address}: {reason}"), remedy)
         }
     }
 }

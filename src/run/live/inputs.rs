@@ -71,6 +71,10 @@ impl Live {
             self.model.count_rejected(count);
             self.dirty = true;
         }
+        if let GazeNews::Unlisted(address) = news {
+            self.model.reject_unlisted(address.to_string());
+            self.dirty = true;
+        }
         if let Some(complaint) = self.gaze.complaint(&news) {
             self.model.warn(complaint);
             self.dirty = true;

@@ -4,6 +4,7 @@ use std::net::IpAddr;
 use std::time::Instant;
 
 use crate::gaze::GazeSample;
+use crate::session::tracker::TrackerRecording;
 
 /// Capacity of the queue of tracker messages.
 pub const WAITING: usize = 4096;
@@ -31,6 +32,17 @@ pub enum GazeNews {
     Lost(String),
     /// The tracker sees the display by its tags, or not any more.
     SeesDisplay(bool),
+    /// The tracker sees surfaces with these names, and not the display's.
+    OtherSurfaces(Vec<String>),
+    /// The tracker's clock was set.
+    ClockSet {
+        /// By how much it went ahead, in seconds; negative: back.
+        by_s: f64,
+        /// When it was last found as it was before.
+        known_at: Instant,
+    },
+    /// What became of the recording that the tracker's program makes of the trial.
+    Recording(TrackerRecording),
     /// A finished fixation.
     Fixation(TrackerFixation),
     /// Onset or offset of a blink.
@@ -56,8 +68,6 @@ pub struct SampleTime {
 /// A fixation detected by a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerFixation {
-    /// The tracker's number for it: news about the same fixation have the same one.
-    pub id: u64,
     /// Position on the display, if it was there.
     pub at: Option<[f64; 2]>,
     /// How long it was, in milliseconds.

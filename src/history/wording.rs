@@ -18,7 +18,7 @@ use crate::session::answer_value::AnswerValue;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ProtocolEvent;
-use crate::session::tracker::TrackerEvent;
+use crate::session::tracker::{TrackerEvent, TrackerRecording};
 use crate::session::tutorial::TutorialEvent;
 use crate::session::wall_display::Answering;
 use crate::session::{Phase, Session, TimelineEvent};
@@ -273,6 +273,16 @@ pub fn tracker(event: &TrackerEvent) -> Option<String> {
         TrackerEvent::Lost { reason } => format!("eye tracker lost: {reason}"),
         TrackerEvent::DisplayFound => "eye tracker sees the display".to_string(),
         TrackerEvent::DisplayLost => "eye tracker does not see the display".to_string(),
+        TrackerEvent::OtherSurfaces { names } => format!("eye tracker sees other surfaces: {}", quoted(names)),
+        TrackerEvent::Recording { state } => match state {
+            TrackerRecording::Begun => "Pupil Capture records the trial",
+            TrackerRecording::NotBegun => "Pupil Capture began no recording: it records already, or cannot",
+            TrackerRecording::Ended => "Pupil Capture's recording ended before the trial",
+            TrackerRecording::NotAnnotated => {
+                "Pupil Capture takes no annotations: its Annotation plugin does not start"
+            }
+        }
+        .to_string(),
         TrackerEvent::Dropped(counts) => format!("gaze not recorded so far: {}", drops(counts)),
         TrackerEvent::ClockSet { by_s, .. } => {
             format!(
@@ -283,6 +293,11 @@ pub fn tracker(event: &TrackerEvent) -> Option<String> {
         }
         TrackerEvent::Fixation { .. } | TrackerEvent::Blink { .. } => return None,
     })
+}
+
+/// Names in quotation marks.
+pub fn quoted(names: &[String]) -> String {
+    names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
 }
 
 /// Input that could not be recorded, by kind.

@@ -30,7 +30,7 @@ use crate::session::settings::{ConsoleSpec, GazeSource};
 /// Largest number of tracker messages that are processed together, so that keys are not delayed.
 const PACKET: usize = 32;
 /// Longest wait for Pupil Capture to finish its last request.
-const SETTLE: Duration = Duration::from_secs(1);
+const SETTLE: Duration = Duration::from_secs(2);
 
 #[cfg(feature = "display")]
 mod wall;
@@ -67,6 +67,7 @@ pub(super) struct GazeTracker {
     /// Latest state of the tracker, for recordings that begin later.
     link: Option<GazeNews>,
     sees_display: Option<GazeNews>,
+    other_surfaces: Option<GazeNews>,
     /// Last accepted gaze accuracy check.
     calibrated: Option<AcceptedGazeCheck>,
 }
@@ -164,15 +165,19 @@ impl GazeTracker {
     fn know(&mut self, news: &GazeNews) {
         match news {
             GazeNews::Connected(_) => self.link = Some(news.clone()),
-            GazeNews::Lost(_) => (self.link, self.sees_display) = (Some(news.clone()), None),
-            GazeNews::SeesDisplay(_) => self.sees_display = Some(news.clone()),
+            GazeNews::Lost(_) => {
+                (self.link, self.sees_display, self.other_surfaces) = (Some(news.clone()), None, None);
+            }
+            GazeNews::SeesDisplay(_) => (self.sees_display, self.other_surfaces) = (Some(news.clone()), None),
+            GazeNews::OtherSurfaces(_) => self.other_surfaces = Some(news.clone()),
             _ => {}
         }
     }
 
     /// Messages with the present tracker state, for a recording that begins now.
     pub fn known(&self) -> impl Iterator<Item = GazeNews> {
-        self.link.iter().chain(&self.sees_display).cloned().collect::<Vec<_>>().into_iter()
+        let known = self.link.iter().chain(&self.sees_display).chain(&self.other_surfaces);
+        known.cloned().collect::<Vec<_>>().into_iter()
     }
 
     /// The file that gaze is replayed from, if it is.

@@ -111,12 +111,12 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
         let verdict = if wrong * 20 > samples { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
         let kinds: Vec<String> = faults.iter().map(|(count, kind)| format!("{count} {kind}")).collect();
         let found = format!("{samples} samples; {}", kinds.join(", "));
-        checks.push(PreflightCheck::new(
-            "gaze stream",
-            verdict,
-            found,
-            "less load on the tracker's computer, a better network",
-        ));
+        // Only a slow computer or network delays samples; it makes no number of them wrong.
+        let remedy = match session.tracker.dropped.malformed * 2 > wrong {
+            true => "look at what the tracker sends: values are missing, or are no numbers",
+            false => "less load on the tracker's computer, a better network",
+        };
+        checks.push(PreflightCheck::new("gaze stream", verdict, found, remedy));
     }
     checks
 }
@@ -130,8 +130,22 @@ fn tracker(session: &Session) -> PreflightCheck {
             PreflightCheck::ok(name, format!("{device}, sees the display"))
         }
         (TrackerConnection::Connected { device }, _) => {
-            let found = format!("{device}, does not see \"{}\"", spec.surface);
-            let remedy = format!("tags in view and lit; Capture's Surface Tracker with a surface \"{}\"", spec.surface);
+            let others: Vec<String> =
+                session.tracker.other_surfaces.iter().map(|other| format!("\"{other}\"")).collect();
+            let (found, remedy) = match others.first() {
+                None => (
+                    format!("{device}, does not see \"{}\"", spec.surface),
+                    format!("tags in view and lit; Capture's Surface Tracker with a surface \"{}\"", spec.surface),
+                ),
+                Some(first) => (
+                    format!("{device}, sees {first}, not \"{}\"", spec.surface),
+                    format!(
+                        "surface = {} under [tracker], or name it \"{}\" in Capture",
+                        others.join(" or "),
+                        spec.surface
+                    ),
+                ),
+            };
             PreflightCheck::new(name, PreflightVerdict::Failed, found, remedy)
         }
         _ => {

@@ -22,7 +22,7 @@ pub struct TrackerSpec {
     /// that Capture creates by itself, the hull of the tags' black squares.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corners: Option<[[f64; 2]; 4]>,
-    /// Whether Pupil Capture records every trial.
+    /// Whether Pupil Capture records every trial. What it records is annotated in any case.
     pub record: bool,
     /// Path of the file from which gaze is replayed, relative to the session file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -82,16 +82,16 @@ impl TrackerSpec {
             let found = format!("shortest_s = {shortest_s}, longest_s = {longest_s}");
             return Err(SettingError::new("tracker.gaps", found, "a longest drop-out of at least the shortest one"));
         }
-        let is_name =
-            |text: &str| (1..=100).contains(&text.len()) && !text.chars().any(|c| c.is_control() || c.is_whitespace());
-        for (key, text) in [("address", &self.address), ("surface", &self.surface)] {
-            if !is_name(text) {
-                return Err(SettingError::new(
-                    format!("tracker.{key}"),
-                    format!("{key} = {text:?}"),
-                    "1 to 100 signs without spaces",
-                ));
-            }
+        let is_short = |text: &str| (1..=100).contains(&text.len()) && !text.chars().any(char::is_control);
+        if !is_short(&self.address) || self.address.contains(char::is_whitespace) {
+            let found = format!("address = {:?}", self.address);
+            return Err(SettingError::new("tracker.address", found, "1 to 100 signs without spaces"));
+        }
+        // Capture's own names have spaces: its first surface is "Surface 1".
+        if !is_short(&self.surface) || self.surface.trim() != self.surface {
+            let found = format!("surface = {:?}", self.surface);
+            let remedy = "the surface's name in Capture: 1 to 100 signs, no space before and after it";
+            return Err(SettingError::new("tracker.surface", found, remedy));
         }
         if let Some(corners) = self.corners
             && SurfaceMap::new(corners).is_none()
@@ -125,6 +125,16 @@ pub enum TrackerEvent {
     DisplayFound,
     /// The tracker does not detect the display, so there is no gaze on it.
     DisplayLost,
+    /// The tracker sees surfaces, and none of them is the display's.
+    OtherSurfaces {
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// What became of the recording that the tracker's program makes of the trial.
+    Recording {
+        /// What it did.
+        state: TrackerRecording,
+    },
     /// Counts of input that could not be recorded since the session began; at most once per second.
     Dropped(DropCounts),
     /// A finished fixation, as detected by the tracker; its position in fractions of the display.
@@ -163,6 +173,20 @@ pub enum TrackerEvent {
     },
 }
 
+/// What became of the recording that the tracker's program makes of the trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TrackerRecording {
+    /// It began at our request.
+    Begun,
+    /// It did not begin: the tracker's program records already, or cannot.
+    NotBegun,
+    /// It ended before the trial.
+    Ended,
+    /// The tracker's program takes no annotations.
+    NotAnnotated,
+}
+
 /// State of the connection to the tracker's program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum TrackerConnection {
@@ -190,6 +214,8 @@ pub struct TrackerStatus {
     pub link: TrackerConnection,
     /// Whether it detects the display; `None` if it has not reported that.
     pub sees_display: Option<bool>,
+    /// Names of the surfaces that it sees instead.
+    pub other_surfaces: Vec<String>,
     /// Number of connection losses.
     pub losses: u64,
     /// What came and could not be recorded, by kind.
@@ -211,9 +237,15 @@ impl TrackerStatus {
                 self.losses += 1;
                 self.link = TrackerConnection::Lost { since: now, reason: reason.clone() };
                 self.sees_display = None;
+                self.other_surfaces.clear();
             }
-            TrackerEvent::DisplayFound => self.sees_display = Some(true),
+            TrackerEvent::DisplayFound => {
+                self.sees_display = Some(true);
+                self.other_surfaces.clear();
+            }
             TrackerEvent::DisplayLost => self.sees_display = Some(false),
+            TrackerEvent::OtherSurfaces { names } => self.other_surfaces.clone_from(names),
+            TrackerEvent::Recording { .. } => {}
             TrackerEvent::Dropped(counts) => self.dropped = *counts,
             TrackerEvent::ClockSet { .. } => self.clock_steps += 1,
             TrackerEvent::Fixation { .. } => self.fixations += 1,

@@ -4,8 +4,17 @@ use std::time::{Duration, Instant};
 
 /// Number of clock replies averaged for the offset (as Pupil Labs does).
 pub(super) const ANSWERS: usize = 10;
-/// A change of the offset by more than this means that the clock was set, in seconds.
-const SET_S: f64 = 0.25;
+/// A change of the offset by more than this, beyond what slow replies explain, means that the clock was set, in seconds.
+const SET_S: f64 = 0.01;
+
+/// Capture's clock was set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct PupilClockStep {
+    /// By how much it went ahead, in seconds; negative: back.
+    pub by_s: f64,
+    /// When the clock was last found as it was before.
+    pub known_at: Instant,
+}
 
 /// The offset of Capture's clock: mean over the latest replies without slow ones. A delay in one direction shifts a reply's offset by
 /// half of the delay.
@@ -14,30 +23,43 @@ pub(super) struct PupilClock {
     anchor: Instant,
     /// Pupil time minus seconds since the anchor, and round trip time in seconds, the newest last.
     answers: Vec<(f64, f64)>,
+    /// When the latest reply arrived.
+    known_at: Instant,
 }
 
 impl PupilClock {
     /// A clock that was not compared with Pupil's yet.
     pub fn new() -> PupilClock {
-        PupilClock { anchor: Instant::now(), answers: Vec::new() }
+        let now = Instant::now();
+        PupilClock { anchor: now, answers: Vec::new(), known_at: now }
     }
 
-    /// Adds a reply to a time request.
-    pub fn take(&mut self, asked: Instant, answered: Instant, pupil_s: f64) {
+    /// Adds a reply to a time request; the step, if it shows that the clock was set.
+    pub fn take(&mut self, asked: Instant, answered: Instant, pupil_s: f64) -> Option<PupilClockStep> {
         let since = |at: Instant| at.saturating_duration_since(self.anchor).as_secs_f64();
         let (offset, took_s) = (pupil_s - (since(asked) + since(answered)) / 2.0, since(answered) - since(asked));
-        // A clock that was set starts anew.
-        if self.offset().is_some_and(|before| (before - offset).abs() > SET_S + took_s) {
+        // The true offset is off by up to half of the delay; the mean before by no more than the least delay.
+        let unsure_s = took_s / 2.0 + self.least_s().unwrap_or(0.0);
+        let before = self.offset().filter(|before| (before - offset).abs() > SET_S + unsure_s);
+        let step = before.map(|before| PupilClockStep { by_s: offset - before, known_at: self.known_at });
+        if step.is_some() {
             self.answers.clear();
         }
         if self.answers.len() == ANSWERS {
             self.answers.remove(0);
         }
         self.answers.push((offset, took_s));
+        self.known_at = answered;
+        step
+    }
+
+    /// The shortest round trip, in seconds.
+    fn least_s(&self) -> Option<f64> {
+        self.answers.iter().map(|(_, took_s)| *took_s).min_by(f64::total_cmp)
     }
 
     fn offset(&self) -> Option<f64> {
-        let least_s = self.answers.iter().map(|(_, took_s)| *took_s).fold(f64::INFINITY, f64::min);
+        let least_s = self.least_s()?;
         let quick = self.answers.iter().filter(|(_, took_s)| *took_s <= 2.0 * least_s).map(|(offset, _)| *offset);
         let (sum, count) = quick.fold((0.0, 0u32), |(sum, count), offset| (sum + offset, count + 1));
         (count > 0).then(|| sum / f64::from(count))
@@ -78,14 +100,23 @@ mod tests {
         for second in 0..30u64 {
             let asked = 1000 * second;
             let late = if second % 3 == 1 { 40 } else { 0 };
-            clock.take(after(asked), after(asked + 2 + late), 100.0 + asked as f64 / 1000.0 + 0.001);
+            let step = clock.take(after(asked), after(asked + 2 + late), 100.0 + asked as f64 / 1000.0 + 0.001);
+            assert_eq!(step, None, "at {second} s");
         }
         let found = clock.instant(105.0).expect("a moment");
         let off = found.max(later) - found.min(later);
         assert!(off < Duration::from_micros(10), "{off:?}");
         assert!((clock.pupil_s(later).expect("a time") - 105.0).abs() < 1e-5);
         assert!((clock.pupil_s(anchor).expect("a time") - 100.0).abs() < 1e-5);
-        clock.take(after(31_000), after(31_002), 7.0);
+        assert_eq!(clock.take(after(29_500), after(29_502), 129.501), None);
+        // It is set by 0.2 s, and by 20 ms; a slow reply of 60 ms is no step.
+        let step = clock.take(after(30_000), after(30_002), 130.201).expect("a step");
+        assert!((step.by_s - 0.2).abs() < 0.002 && step.known_at == after(29_502), "{step:?}");
+        assert!((clock.pupil_s(after(30_001)).expect("a time") - 130.201).abs() < 1e-9);
+        assert_eq!(clock.take(after(30_250), after(30_310), 130.451), None);
+        let step = clock.take(after(30_500), after(30_502), 130.681).expect("a step");
+        assert!((step.by_s + 0.02).abs() < 0.002, "{step:?}");
+        assert!(clock.take(after(31_000), after(31_002), 7.0).is_some());
         assert!((clock.pupil_s(after(31_001)).expect("a time") - 7.0).abs() < 1e-9);
         assert_eq!(clock.instant(1e300), None);
     }

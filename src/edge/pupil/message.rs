@@ -1,5 +1,5 @@
-//! Parser of Pupil Capture's messages: gaze and fixations on a surface, blinks. Payloads are msgpack maps. Memory is bounded by a
-//! multiple of their length; valid parts of a partly invalid message are used.
+//! Parser of Pupil Capture's messages: gaze and fixations on a surface, blinks, what its recorder does. Payloads are msgpack maps. Memory
+//! is bounded by a multiple of their length; valid parts of a partly invalid message are used.
 
 use rmpv::Value;
 use rmpv::decode::read_value_with_max_depth;
@@ -8,6 +8,17 @@ use rmpv::decode::read_value_with_max_depth;
 const MAX_DEPTH: usize = 16;
 /// Largest number of items of a datum.
 const MAX_ITEMS: usize = 4096;
+/// Longest name of a surface that is told, in bytes.
+const MAX_NAME: usize = 100;
+
+/// Begin of the topics of surfaces; the surface's name follows.
+pub const SURFACES: &str = "surfaces.";
+/// The topic of annotations, to which Capture's annotation plugin subscribes.
+pub const ANNOTATION: &str = "annotation";
+/// Other topics of interest.
+pub const TOPICS: [&str; 4] = ["fixations", "blinks", STARTED, STOPPED];
+const STARTED: &str = "notify.recording.started";
+const STOPPED: &str = "notify.recording.stopped";
 
 /// Gaze on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +59,15 @@ pub struct PupilBlink {
     pub timestamp: f64,
 }
 
+/// What Capture's recorder did.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RecorderNews {
+    /// It began a recording under this session name.
+    Started(String),
+    /// It ended its recording.
+    Stopped,
+}
+
 /// Content of a message.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PupilMessage {
@@ -59,32 +79,42 @@ pub struct PupilMessage {
     pub fixations: Vec<PupilFixation>,
     /// A blink that began or ended, if the message tells one.
     pub blink: Option<PupilBlink>,
+    /// The name of another surface that the tracker sees.
+    pub other_surface: Option<String>,
+    /// What the recorder did, if the message tells that.
+    pub recorder: Option<RecorderNews>,
     /// Number of malformed items; 1 for a malformed message.
     pub malformed: u64,
 }
 
 /// Parses a message with this topic; topics without a subscription are ignored.
 pub fn read(topic: &[u8], payload: &[u8], surface: &str) -> PupilMessage {
-    let is_surface = topic.strip_prefix(b"surfaces.") == Some(surface.as_bytes());
-    if !is_surface && topic != b"fixations" && topic != b"blinks" {
+    let Ok(topic) = std::str::from_utf8(topic) else { return PupilMessage::default() };
+    let surface_seen = topic.strip_prefix(SURFACES);
+    if let Some(name) = surface_seen.filter(|name| *name != surface) {
+        let other_surface = (1..=MAX_NAME).contains(&name.len()).then(|| name.to_string());
+        return PupilMessage { other_surface, ..PupilMessage::default() };
+    }
+    if surface_seen.is_none() && !TOPICS.contains(&topic) {
         return PupilMessage::default();
     }
+    let malformed = || PupilMessage { malformed: 1, ..PupilMessage::default() };
     let mut rest = payload;
     let found = match read_value_with_max_depth(&mut rest, MAX_DEPTH) {
         Ok(found @ Value::Map(_)) if rest.is_empty() => found,
-        _ => return PupilMessage { malformed: 1, ..PupilMessage::default() },
+        _ => return malformed(),
     };
-    match topic {
-        _ if is_surface => of_surface(&found),
-        b"fixations" => match fixation(&found, false) {
-            Some(fixation) => PupilMessage { fixations: vec![fixation], ..PupilMessage::default() },
-            None => PupilMessage { malformed: 1, ..PupilMessage::default() },
-        },
-        _ => match blink(&found) {
-            Some(blink) => PupilMessage { blink: Some(blink), ..PupilMessage::default() },
-            None => PupilMessage { malformed: 1, ..PupilMessage::default() },
-        },
-    }
+    let read = match topic {
+        "fixations" => fixation(&found, false)
+            .map(|fixation| PupilMessage { fixations: vec![fixation], ..PupilMessage::default() }),
+        "blinks" if is_undecided(&found) => Some(PupilMessage::default()),
+        "blinks" => blink(&found).map(|blink| PupilMessage { blink: Some(blink), ..PupilMessage::default() }),
+        STARTED | STOPPED => {
+            recorder(topic, &found).map(|news| PupilMessage { recorder: Some(news), ..PupilMessage::default() })
+        }
+        _ => Some(of_surface(&found)),
+    };
+    read.unwrap_or_else(malformed)
 }
 
 fn of_surface(datum: &Value) -> PupilMessage {
@@ -146,6 +176,18 @@ fn blink(item: &Value) -> Option<PupilBlink> {
     Some(PupilBlink { is_onset, confidence: confidence(item)?, timestamp: time(item)? })
 }
 
+/// Whether the blink detector sent no number as its confidence: it does while a confidence of the pupil is none, whatever the lids do.
+fn is_undecided(item: &Value) -> bool {
+    field(item, "confidence").and_then(Value::as_f64).is_some_and(f64::is_nan)
+}
+
+fn recorder(topic: &str, item: &Value) -> Option<RecorderNews> {
+    match topic {
+        STARTED => Some(RecorderNews::Started(field(item, "session_name")?.as_str()?.to_string())),
+        _ => Some(RecorderNews::Stopped),
+    }
+}
+
 fn field<'a>(item: &'a Value, name: &str) -> Option<&'a Value> {
     item.as_map()?.iter().find(|(key, _)| key.as_str() == Some(name)).map(|(_, value)| value)
 }
@@ -181,15 +223,16 @@ pub fn start_plugin(name: &str) -> Vec<u8> {
     ])
 }
 
-/// The payload of an annotation, at this Pupil time.
-pub fn annotation(label: &str, timestamp: f64) -> Vec<u8> {
+/// The payload of an annotation at this Pupil time, which is `late_s` seconds later than what it tells of.
+pub fn annotation(label: &str, timestamp: f64, late_s: f64) -> Vec<u8> {
     let text = |text: &str| Value::from(text);
     encode(vec![
-        (text("topic"), text("annotation")),
+        (text("topic"), text(ANNOTATION)),
         (text("label"), text(label)),
         (text("timestamp"), Value::from(timestamp)),
         (text("duration"), Value::from(0.0)),
         (text("source"), text("tomcom")),
+        (text("late_s"), Value::from(late_s)),
     ])
 }
 

@@ -1,14 +1,11 @@
-//! Messages of the eye tracker as events of the session, and requests to Pupil Capture about the trial.
+//! Messages of the eye tracker as events of the session.
 
 use std::sync::Arc;
 use std::time::Instant;
 
-use tokio::sync::mpsc::Sender;
-
 use crate::base::time::SessionTime;
 use crate::edge::gaze_file::GazeFile;
 use crate::edge::gaze_input::{GazeNews, SampleTime};
-use crate::edge::pupil::CaptureRequest;
 use crate::gaze::GazeSample;
 use crate::gaze::device_clock::{ClockStep, DeviceClock};
 use crate::gaze::quality::{DropCounts, RateLimit};
@@ -76,6 +73,11 @@ impl GazeInput {
             GazeNews::Lost(reason) => TrackerEvent::Lost { reason },
             GazeNews::SeesDisplay(true) => TrackerEvent::DisplayFound,
             GazeNews::SeesDisplay(false) => TrackerEvent::DisplayLost,
+            GazeNews::OtherSurfaces(names) => TrackerEvent::OtherSurfaces { names },
+            GazeNews::ClockSet { by_s, known_at } => {
+                TrackerEvent::ClockSet { by_s, uncertain_since_ns: ago(now, known_at) }
+            }
+            GazeNews::Recording(state) => TrackerEvent::Recording { state },
             GazeNews::Fixation(found) => {
                 let (duration_ms, dispersion_deg) = (found.duration_ms, found.dispersion_deg);
                 let (device_ns, began_ns) = (found.began.device_ns, session_time(found.began, now));
@@ -143,65 +145,4 @@ fn session_time(taken: SampleTime, now: SessionTime) -> SessionTime {
 /// Session time of an earlier instant.
 fn ago(now: SessionTime, at: Instant) -> SessionTime {
     now - SessionTime(at.elapsed().as_nanos().min(u128::from(u64::MAX)) as u64)
-}
-
-/// Requests to Pupil Capture about a recording.
-#[derive(Debug, Default)]
-pub(super) struct CaptureOrders {
-    /// Channel to Pupil Capture, if it is in use.
-    orders: Option<Sender<CaptureRequest>>,
-    /// The name of the recording.
-    name: String,
-    is_recording: bool,
-}
-
-impl CaptureOrders {
-    /// Prepares Pupil Capture for a recording with this name; the trial of a continued recording is recorded from now on.
-    pub fn begin(tracker: &GazeTracker, name: String, session: &Session) -> CaptureOrders {
-        let mut capture = CaptureOrders { orders: tracker.orders(), name, is_recording: false };
-        if matches!(session.phase, Phase::Running | Phase::Paused) {
-            capture.record();
-        }
-        capture
-    }
-
-    /// Reports an event of the trial, which happened at `at`.
-    pub fn tell(&mut self, event: &Event, at: Instant) {
-        if self.orders.is_none() {
-            return;
-        }
-        let label = match event {
-            Event::TrialStarted => {
-                self.record();
-                "trial started".to_string()
-            }
-            Event::TrialPaused => "trial paused".to_string(),
-            Event::TrialResumed => "trial resumed".to_string(),
-            Event::TrialEnded { .. } => "trial ended".to_string(),
-            Event::TrialAborted { .. } => "trial aborted".to_string(),
-            Event::SignalShown { signal, .. } => format!("signal shown: {}", signal.target()),
-            Event::SignalEnded { .. } => "signal ended".to_string(),
-            Event::SessionEnded => String::new(),
-            _ => return,
-        };
-        if !label.is_empty() {
-            self.order(CaptureRequest::Annotate(label, at));
-        }
-        let ends = matches!(event, Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded);
-        if ends && std::mem::take(&mut self.is_recording) {
-            self.order(CaptureRequest::StopRecording);
-        }
-    }
-
-    fn record(&mut self) {
-        self.is_recording = true;
-        self.order(CaptureRequest::Record(self.name.clone()));
-    }
-
-    /// Sends a request if Pupil Capture is connected; the health line shows a lost connection.
-    fn order(&self, order: CaptureRequest) {
-        if let Some(orders) = &self.orders {
-            let _ = orders.try_send(order);
-        }
-    }
 }

@@ -9,7 +9,7 @@ use crate::gaze::GazeSample;
 use crate::history::wording;
 use crate::run::desk::PageInput;
 use crate::run::leaving::LeavingReason;
-use crate::session::tracker::TrackerEvent;
+use crate::session::tracker::{TrackerEvent, TrackerRecording};
 use crate::session::{Event, Phase};
 
 impl Live {
@@ -80,8 +80,9 @@ impl Live {
             self.dirty = true;
         }
         for event in self.gaze.events(news, self.clock.now()).into_iter().flatten() {
-            if let Event::Tracker(set @ TrackerEvent::ClockSet { .. }) = &event
-                && let Some(words) = wording::tracker(set)
+            if let Event::Tracker(told) = &event
+                && is_warning(told)
+                && let Some(words) = wording::tracker(told)
             {
                 self.model.warn(words);
             }
@@ -101,5 +102,14 @@ impl Live {
         if let Some([x, y]) = self.model.pointer {
             self.input(Event::Gaze(GazeSample::new(x, y, 1.0)));
         }
+    }
+}
+
+/// Whether the wizard is told what the tracker did, also where it is not looked for.
+fn is_warning(event: &TrackerEvent) -> bool {
+    match event {
+        TrackerEvent::ClockSet { .. } | TrackerEvent::OtherSurfaces { .. } => true,
+        TrackerEvent::Recording { state } => *state != TrackerRecording::Begun,
+        _ => false,
     }
 }

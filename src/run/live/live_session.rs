@@ -1,9 +1,10 @@
 //! A live session: its parts, its beginning and its end.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use super::capture_orders::CaptureOrders;
 use super::display::ParticipantDisplay;
-use super::gaze_events::{CaptureOrders, GazeInput};
+use super::gaze_events::GazeInput;
 use super::viewing::StreamedSession;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
@@ -209,7 +210,7 @@ impl Live {
     fn greet(&mut self, tracker: &GazeTracker) {
         self.gaze = GazeInput::at(tracker, self.engine.session());
         tracker.known().for_each(|news| self.take_gaze(news));
-        self.capture = CaptureOrders::begin(tracker, self.name(), self.engine.session());
+        self.capture = CaptureOrders::begin(tracker, self.name(), self.engine.session(), Instant::now());
     }
 
     /// Begins the first phase of a plan, with the consent as first event.
@@ -245,6 +246,7 @@ impl Live {
             self.flush_log();
             self.check_log();
         }
+        self.capture.leave(Instant::now());
         if let Some(viewing) = self.viewing.take() {
             viewing.close(&self.log);
         }

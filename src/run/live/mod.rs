@@ -4,6 +4,7 @@
 //! no press. Before a frame is drawn, its visible content is recorded if it changed. The log is flushed with every event, gaze within
 //! 50 ms. The loop checks four times a second whether the log is still in place, and saves a log whose folder vanished.
 
+mod capture_orders;
 #[cfg(feature = "display")]
 mod display;
 #[cfg(not(feature = "display"))]

@@ -7,7 +7,7 @@ use rmpv::Value;
 use tomcom::base::rng::stream;
 use tomcom::edge::files::read_session;
 use tomcom::edge::gaze_file;
-use tomcom::edge::pupil::message::{self, PupilMessage};
+use tomcom::edge::pupil::message::{self, PupilMessage, RecorderNews};
 use tomcom::edge::pupil::zmtp::FrameAssembler;
 use tomcom::gaze::surface::SurfaceMap;
 use tomcom::run::options::SettingOverrides;
@@ -24,10 +24,46 @@ fn a_real_datum_of_pupil_is_read_in_full() {
     assert_eq!(first.norm_pos, [0.515_122_294_425_964_4, 0.587_292_253_971_099_9]);
     assert_eq!((first.confidence, first.timestamp), (0.97, 5.113_798_565_000_025));
     assert!(told.gaze.windows(2).all(|pair| pair[0].timestamp <= pair[1].timestamp));
-    // Other surfaces and topics are not ours, also where their names begin alike.
-    for topic in [b"surfaces.wall2".as_slice(), b"surfaces.wal", b"gaze.3d.01.", b"", b"notify.x"] {
+    // Other topics and surfaces are not ours, also where their names begin alike.
+    for topic in [b"gaze.3d.01.".as_slice(), b"", b"notify.x", b"surfaces.", b"surfaces.\xff", b"surface"] {
         assert_eq!(message::read(topic, DATUM, "wall"), PupilMessage::default());
     }
+    for name in ["wall2", "wal", "Surface 1"] {
+        let told = message::read(format!("surfaces.{name}").as_bytes(), DATUM, "wall");
+        let other_surface = Some(name.to_string());
+        assert_eq!(told, PupilMessage { other_surface, ..PupilMessage::default() }, "its name and nothing else");
+    }
+    assert_eq!(message::read(b"surfaces.Surface 1", DATUM, "Surface 1").gaze.len(), 8);
+    assert_eq!(
+        message::read(&[b"surfaces.".as_slice(), &[b'x'; 200]].concat(), DATUM, "wall"),
+        PupilMessage::default()
+    );
+}
+
+fn packed(fields: &[(&str, Value)]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let fields = fields.iter().map(|(name, value)| (Value::from(*name), value.clone()));
+    rmpv::encode::write_value(&mut bytes, &Value::Map(fields.collect())).expect("written");
+    bytes
+}
+
+#[test]
+fn an_undecided_blink_detector_is_no_fault_and_the_recorder_is_heard() {
+    let blink =
+        |confidence: Value| packed(&[("type", "offset".into()), ("confidence", confidence), ("timestamp", 5.into())]);
+    assert_eq!(message::read(b"blinks", &blink(f64::NAN.into()), "wall"), PupilMessage::default());
+    assert!(message::read(b"blinks", &blink(0.7.into()), "wall").blink.is_some());
+    for wrong in [f64::INFINITY.into(), 1.5.into(), Value::Nil, "high".into()] {
+        let told = message::read(b"blinks", &blink(wrong.clone()), "wall");
+        assert_eq!((told.malformed, told.blink), (1, None), "{wrong}");
+    }
+    let started = packed(&[("subject", "recording.started".into()), ("session_name", "2025-P07".into())]);
+    let told = message::read(b"notify.recording.started", &started, "wall");
+    assert_eq!(told.recorder, Some(RecorderNews::Started("2025-P07".to_string())));
+    let stopped = packed(&[("subject", "recording.stopped".into())]);
+    assert_eq!(message::read(b"notify.recording.stopped", &stopped, "wall").recorder, Some(RecorderNews::Stopped));
+    assert_eq!(message::read(b"notify.recording.started", &stopped, "wall").malformed, 1);
+    assert_eq!(message::read(b"notify.recording.started2", &started, "wall"), PupilMessage::default());
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Gaze: the tags on the wall display, the mapping from a tracker's surface, and what comes of samples.
 
 mod calibration;
+mod capture;
 mod formats;
 mod quality;
 mod rate;

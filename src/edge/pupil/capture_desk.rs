@@ -1,0 +1,152 @@
+//! Asks Capture for its time, and carries out what [`CaptureRecorder`] decides.
+
+use std::future::pending;
+use std::io;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use tokio::sync::mpsc::{Receiver, Sender};
+use tokio::time::{interval, sleep_until, timeout_at};
+
+use super::clock::{ANSWERS, PupilClock, PupilClockStep};
+use super::message::{self, ANNOTATION, RecorderNews};
+use super::recorder::{CaptureAction, CaptureRecorder, CaptureRequest};
+use super::zmtp::{ZmtpConnection, ZmtpMessage};
+use crate::edge::gaze_input::GazeNews;
+
+/// Period of time requests to Capture: a clock that was set is noticed within this time.
+const ASK_TIME: Duration = Duration::from_millis(250);
+/// How long Capture's subscriptions are waited for. They arrive with the connection.
+const SUBSCRIPTIONS: Duration = Duration::from_millis(200);
+
+/// The connections for requests and annotations.
+pub(super) struct CaptureDesk {
+    pub remote: ZmtpConnection,
+    pub annotations: ZmtpConnection,
+    pub news: Sender<GazeNews>,
+}
+
+/// What the desk waits for.
+enum DeskEvent {
+    Time,
+    Order(Option<CaptureRequest>),
+    Recorder(Option<RecorderNews>),
+    Subscription(io::Result<ZmtpMessage>),
+    Due,
+}
+
+impl CaptureDesk {
+    /// Averages the first answers to time requests.
+    pub async fn set_clock(remote: &mut ZmtpConnection, clock: &Mutex<PupilClock>) -> io::Result<()> {
+        for _ in 0..ANSWERS {
+            ask_time(remote, clock).await?;
+        }
+        Ok(())
+    }
+
+    /// Starts Capture's annotation plugin unless it runs: a second start replaces it, and the annotations that the lab defined in it.
+    /// Returns whether it listens already.
+    pub async fn start_plugin(&mut self) -> io::Result<bool> {
+        let until = tokio::time::Instant::now() + SUBSCRIPTIONS;
+        while let Ok(found) = timeout_at(until, self.annotations.receive()).await {
+            if is_annotated(&found?) {
+                return Ok(true);
+            }
+        }
+        let payload = message::start_plugin("Annotation_Capture");
+        self.remote.ask(&[b"notify.start_plugin", &payload]).await?;
+        Ok(false)
+    }
+
+    /// Serves requests until one fails.
+    pub async fn attend(
+        &mut self,
+        orders: &mut Receiver<CaptureRequest>,
+        mut told: Receiver<RecorderNews>,
+        recorder: &mut CaptureRecorder,
+        clock: &Mutex<PupilClock>,
+        mut actions: Vec<CaptureAction>,
+    ) -> io::Error {
+        let mut asking = interval(ASK_TIME);
+        loop {
+            for action in actions {
+                if let Err(reason) = self.act(action, clock).await {
+                    return reason;
+                }
+            }
+            let due = recorder.due();
+            let is_due = async {
+                match due {
+                    Some(at) => sleep_until(at.into()).await,
+                    None => pending().await,
+                }
+            };
+            let event = tokio::select! {
+                _ = asking.tick() => DeskEvent::Time,
+                order = orders.recv() => DeskEvent::Order(order),
+                news = told.recv() => DeskEvent::Recorder(news),
+                found = self.annotations.receive() => DeskEvent::Subscription(found),
+                () = is_due => DeskEvent::Due,
+            };
+            let now = Instant::now();
+            actions = match event {
+                DeskEvent::Time => match self.check_time(clock).await {
+                    Ok(()) => Vec::new(),
+                    Err(reason) => return reason,
+                },
+                DeskEvent::Order(Some(order)) => recorder.order(order, now),
+                DeskEvent::Recorder(Some(news)) => recorder.heard(news, now),
+                DeskEvent::Order(None) | DeskEvent::Recorder(None) => return io::ErrorKind::BrokenPipe.into(),
+                DeskEvent::Subscription(Ok(found)) if is_annotated(&found) => recorder.listens(now),
+                DeskEvent::Subscription(Ok(_)) => Vec::new(),
+                DeskEvent::Subscription(Err(reason)) => return reason,
+                DeskEvent::Due => recorder.pass(now),
+            };
+        }
+    }
+
+    /// Asks for the time; if the clock was set, tells so and asks until the mean is as good as before.
+    async fn check_time(&mut self, clock: &Mutex<PupilClock>) -> io::Result<()> {
+        let Some(PupilClockStep { by_s, known_at }) = ask_time(&mut self.remote, clock).await? else { return Ok(()) };
+        // The receiver may be gone; the listener notices.
+        let _ = self.news.send(GazeNews::ClockSet { by_s, known_at }).await;
+        CaptureDesk::set_clock(&mut self.remote, clock).await
+    }
+
+    async fn act(&mut self, action: CaptureAction, clock: &Mutex<PupilClock>) -> io::Result<()> {
+        match action {
+            CaptureAction::Start(name) => self.remote.ask(&[format!("R {name}").as_bytes()]).await.map(drop),
+            CaptureAction::Stop => self.remote.ask(&[b"r"]).await.map(drop),
+            CaptureAction::Annotate { label, at, not_before } => {
+                let stands = not_before.map_or(at, |begun| begun.max(at));
+                let late_s = stands.saturating_duration_since(at).as_secs_f64();
+                let pupil_s = clock.lock().ok().and_then(|clock| clock.pupil_s(stands));
+                let payload = message::annotation(&label, pupil_s.unwrap_or(0.0), late_s);
+                self.annotations.send(&[ANNOTATION.as_bytes(), &payload]).await
+            }
+            CaptureAction::Tell(state) => {
+                let _ = self.news.send(GazeNews::Recording(state)).await;
+                Ok(())
+            }
+            CaptureAction::Report(to) => {
+                // Who asked may be gone by now.
+                let _ = to.send(());
+                Ok(())
+            }
+        }
+    }
+}
+
+/// Whether this is the subscription of Capture's annotation plugin.
+fn is_annotated(message: &ZmtpMessage) -> bool {
+    message.first().and_then(|frame| frame.strip_prefix(&[1])) == Some(ANNOTATION.as_bytes())
+}
+
+async fn ask_time(remote: &mut ZmtpConnection, clock: &Mutex<PupilClock>) -> io::Result<Option<PupilClockStep>> {
+    let asked = Instant::now();
+    let answer = remote.ask(&[b"t"]).await?;
+    let answered = Instant::now();
+    let pupil_s = answer.trim().parse::<f64>().ok().filter(|time| time.is_finite());
+    let pupil_s = pupil_s.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidData, "a time that is no number"))?;
+    Ok(clock.lock().ok().and_then(|mut clock| clock.take(asked, answered, pupil_s)))
+}

@@ -1,0 +1,147 @@
+//! Whole fixations and blinks from the messages of Capture's online detectors.
+//!
+//! The fixation detector sends a fixation anew with every frame, under one id, over a window of the latest gaze (300 ms by default): the
+//! windows overlap, and together they are the fixation. The blink detector repeats onset and offset with every frame in which the
+//! confidence falls or rises; as in Pupil Player, a blink lasts from its first onset to its last offset.
+
+use std::time::{Duration, Instant};
+
+use super::message::PupilBlink;
+
+/// A fixation or the end of a blink is over after this long without a further message: several frames of a slow camera.
+const SILENCE: Duration = Duration::from_millis(500);
+/// An onset after this long without a message begins another blink: the lids must have opened for the confidence to fall again.
+const REOPENED: Duration = Duration::from_secs(1);
+/// Windows with one id belong together if they are no further apart than this, in seconds. Ids begin anew when the detector is restarted.
+const APART_S: f64 = 1.0;
+
+/// A window of a fixation as Capture sends it, or several windows merged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FixationWindow {
+    /// Capture's number for the fixation.
+    pub id: u64,
+    /// Position on the display, in fractions, if it is known.
+    pub at: Option<[f64; 2]>,
+    /// Beginning and end in Pupil time, in seconds.
+    pub span_s: [f64; 2],
+    /// How far its samples are spread, in degrees. The largest one of merged windows: less than the spread of the whole fixation may be.
+    pub dispersion_deg: f64,
+    /// Capture's confidence, 0 to 1; of merged windows their mean.
+    pub confidence: f64,
+}
+
+/// Merges the windows of a fixation.
+#[derive(Debug, Default)]
+pub struct FixationMerger {
+    current: Option<MergedWindows>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct MergedWindows {
+    merged: FixationWindow,
+    /// Number of windows, and of those with a position.
+    windows: f64,
+    places: f64,
+    heard: Instant,
+}
+
+impl FixationMerger {
+    /// Takes a window that arrived at `now`; the fixation before it, if that one is over.
+    pub fn take(&mut self, window: FixationWindow, now: Instant) -> Option<FixationWindow> {
+        let belongs = |merged: &FixationWindow| {
+            let [begin, end] = merged.span_s;
+            merged.id == window.id && window.span_s[0] <= end + APART_S && window.span_s[1] >= begin - APART_S
+        };
+        if let Some(current) = self.current.as_mut().filter(|current| belongs(&current.merged)) {
+            current.add(&window, now);
+            return None;
+        }
+        let places = f64::from(u8::from(window.at.is_some()));
+        self.current.replace(MergedWindows { merged: window, windows: 1.0, places, heard: now }).map(|over| over.merged)
+    }
+
+    /// The fixation, if nothing was heard of it for a while.
+    pub fn expire(&mut self, now: Instant) -> Option<FixationWindow> {
+        let is_over = |current: &MergedWindows| now.saturating_duration_since(current.heard) >= SILENCE;
+        self.current.take_if(|current| is_over(current)).map(|over| over.merged)
+    }
+
+    /// The fixation that was not over yet when the messages ended.
+    pub fn end(&mut self) -> Option<FixationWindow> {
+        self.current.take().map(|over| over.merged)
+    }
+}
+
+impl MergedWindows {
+    fn add(&mut self, window: &FixationWindow, now: Instant) {
+        let merged = &mut self.merged;
+        merged.span_s = [merged.span_s[0].min(window.span_s[0]), merged.span_s[1].max(window.span_s[1])];
+        merged.dispersion_deg = merged.dispersion_deg.max(window.dispersion_deg);
+        self.windows += 1.0;
+        merged.confidence += (window.confidence - merged.confidence) / self.windows;
+        if let Some(at) = window.at {
+            self.places += 1.0;
+            let before = merged.at.unwrap_or(at);
+            merged.at = Some([0, 1].map(|axis| before[axis] + (at[axis] - before[axis]) / self.places));
+        }
+        self.heard = now;
+    }
+}
+
+/// Merges repeated onsets and offsets of blinks.
+#[derive(Debug, Default)]
+pub struct BlinkMerger {
+    lids: Lids,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+enum Lids {
+    #[default]
+    Open,
+    /// After an onset; the latest one was heard then.
+    Closed(Instant),
+    /// After an offset: the latest one, and when it was heard.
+    Opening(PupilBlink, Instant),
+}
+
+impl BlinkMerger {
+    /// Takes a message that arrived at `now`; the onset of a blink, and before it the offset of the one before, if it is that.
+    pub fn take(&mut self, blink: PupilBlink, now: Instant) -> [Option<PupilBlink>; 2] {
+        let (lids, told) = match (self.lids, blink.is_onset) {
+            // An offset without an onset is the rest of a blink that began before anybody listened.
+            (Lids::Open, false) => (Lids::Open, [None, None]),
+            (Lids::Closed(heard), true) if now.saturating_duration_since(heard) < REOPENED => {
+                (Lids::Closed(now), [None, None])
+            }
+            (Lids::Open | Lids::Closed(_), true) => (Lids::Closed(now), [None, Some(blink)]),
+            (Lids::Closed(_), false) => (Lids::Opening(blink, now), [None, None]),
+            (Lids::Opening(before, _), false) => {
+                let confidence = before.confidence.max(blink.confidence);
+                let last = PupilBlink { confidence, timestamp: before.timestamp.max(blink.timestamp), ..blink };
+                (Lids::Opening(last, now), [None, None])
+            }
+            (Lids::Opening(before, _), true) => (Lids::Closed(now), [Some(before), Some(blink)]),
+        };
+        self.lids = lids;
+        told
+    }
+
+    /// The last offset of a blink, if nothing was heard for a while.
+    pub fn expire(&mut self, now: Instant) -> Option<PupilBlink> {
+        match self.lids {
+            Lids::Opening(last, heard) if now.saturating_duration_since(heard) >= SILENCE => {
+                self.lids = Lids::Open;
+                Some(last)
+            }
+            _ => None,
+        }
+    }
+
+    /// The last offset of a blink that was about to end when the messages ended.
+    pub fn end(&mut self) -> Option<PupilBlink> {
+        match std::mem::take(&mut self.lids) {
+            Lids::Opening(last, _) => Some(last),
+            Lids::Open | Lids::Closed(_) => None,
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Passes on what Capture publishes.
+
+use std::collections::BTreeSet;
+use std::io;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use tokio::sync::mpsc::Sender;
+use tokio::time::timeout;
+
+use super::clock::PupilClock;
+use super::eye_events::{BlinkMerger, FixationMerger, FixationWindow};
+use super::message::{self, PupilBlink, PupilFixation, PupilMessage, RecorderNews};
+use super::zmtp::{ZmtpConnection, ZmtpMessage};
+use crate::edge::gaze_input::{GazeNews, SampleTime, TrackerFixation};
+use crate::gaze::GazeSample;
+use crate::gaze::surface::SurfaceMap;
+
+/// The surface counts as lost after this long without a datum.
+const UNSEEN: Duration = Duration::from_secs(1);
+/// Longest wait for a message before what is over is told.
+const WAKE: Duration = Duration::from_millis(250);
+/// Largest number of other surfaces that are told.
+const MAX_OTHERS: usize = 8;
+
+/// What is told of messages.
+pub(super) struct Listener<'a> {
+    news: Sender<GazeNews>,
+    recorder: Sender<RecorderNews>,
+    surface: &'a str,
+    map: SurfaceMap,
+    clock: &'a Mutex<PupilClock>,
+    /// Number of dropped messages that have not been reported yet.
+    lost: &'a mut u64,
+    fixations: FixationMerger,
+    blinks: BlinkMerger,
+    /// Whether the display has been reported as detected.
+    sees: Option<bool>,
+    /// Names of surfaces that are seen instead.
+    others: BTreeSet<String>,
+    has_new_others: bool,
+}
+
+impl<'a> Listener<'a> {
+    /// A listener that has heard nothing yet.
+    pub fn new(
+        news: Sender<GazeNews>,
+        recorder: Sender<RecorderNews>,
+        (surface, map): (&'a str, SurfaceMap),
+        clock: &'a Mutex<PupilClock>,
+        lost: &'a mut u64,
+    ) -> Listener<'a> {
+        let (fixations, blinks) = (FixationMerger::default(), BlinkMerger::default());
+        let others = BTreeSet::new();
+        Listener {
+            news,
+            recorder,
+            surface,
+            map,
+            clock,
+            lost,
+            fixations,
+            blinks,
+            sees: None,
+            others,
+            has_new_others: false,
+        }
+    }
+
+    /// Listens until the connection fails.
+    pub async fn listen(&mut self, backbone: &mut ZmtpConnection) -> io::Error {
+        let connected = Instant::now();
+        let mut seen: Option<Instant> = None;
+        loop {
+            match timeout(WAKE, backbone.receive()).await {
+                Ok(Ok(message)) => {
+                    let told = read(&message, self.surface);
+                    if told.sees_surface {
+                        seen = Some(Instant::now());
+                    }
+                    self.pass(told);
+                }
+                Ok(Err(reason)) => return reason,
+                Err(_) => {}
+            }
+            let sees = seen.is_some_and(|seen| seen.elapsed() < UNSEEN);
+            // Nothing is known before the first datum, or until it is overdue.
+            if sees || connected.elapsed() >= UNSEEN {
+                self.tell_surfaces(sees).await;
+            }
+            self.expire(Instant::now());
+            if self.news.is_closed() {
+                return io::ErrorKind::BrokenPipe.into();
+            }
+        }
+    }
+
+    /// Tells the fixation and the blink that were going on.
+    pub fn end(&mut self) {
+        let (fixation, blink) = (self.fixations.end(), self.blinks.end());
+        self.tell_over(fixation, blink);
+    }
+
+    fn expire(&mut self, now: Instant) {
+        let (fixation, blink) = (self.fixations.expire(now), self.blinks.expire(now));
+        self.tell_over(fixation, blink);
+    }
+
+    fn tell_over(&mut self, fixation: Option<FixationWindow>, blink: Option<PupilBlink>) {
+        if let Some(over) = fixation {
+            self.tell_fixation(over);
+        }
+        if let Some(over) = blink {
+            self.tell_blink(over);
+        }
+    }
+
+    /// Tells whether the surface is seen, and which others are if it is not.
+    async fn tell_surfaces(&mut self, sees: bool) {
+        if sees {
+            self.others.clear();
+            self.has_new_others = false;
+        }
+        if self.sees != Some(sees) {
+            self.sees = Some(sees);
+            let _ = self.news.send(GazeNews::SeesDisplay(sees)).await;
+        }
+        if !sees && std::mem::take(&mut self.has_new_others) {
+            let _ = self.news.send(GazeNews::OtherSurfaces(self.others.iter().cloned().collect())).await;
+        }
+    }
+
+    /// Passes on a parsed message. If the queue is full, messages are counted and dropped, so that Capture is never blocked.
+    fn pass(&mut self, told: PupilMessage) {
+        let (now, mut malformed) = (Instant::now(), told.malformed);
+        for gaze in told.gaze {
+            let Some([x, y]) = self.map.to_display(gaze.norm_pos) else {
+                malformed += 1;
+                continue;
+            };
+            let taken = self.taken(gaze.timestamp);
+            let sample = GazeSample { device_ns: Some(taken.device_ns), ..GazeSample::new(x, y, gaze.confidence) };
+            self.offer(GazeNews::Sample(sample, taken.at));
+        }
+        for found in told.fixations {
+            let window = self.window(&found);
+            if let Some(over) = self.fixations.take(window, now) {
+                self.tell_fixation(over);
+            }
+        }
+        if let Some(blink) = told.blink {
+            for found in self.blinks.take(blink, now).into_iter().flatten() {
+                self.tell_blink(found);
+            }
+        }
+        if let Some(name) = told.other_surface
+            && self.others.len() < MAX_OTHERS
+        {
+            self.has_new_others |= self.others.insert(name);
+        }
+        if let Some(news) = told.recorder {
+            // The desk reads at once, unless it is about to end.
+            let _ = self.recorder.try_send(news);
+        }
+        if malformed > 0 {
+            self.offer(GazeNews::Malformed(malformed));
+        }
+        if *self.lost > 0 && self.news.try_send(GazeNews::Overrun(*self.lost)).is_ok() {
+            *self.lost = 0;
+        }
+    }
+
+    fn window(&self, found: &PupilFixation) -> FixationWindow {
+        FixationWindow {
+            id: found.id,
+            at: found.on_surface.and_then(|place| self.map.to_display(place)),
+            span_s: [found.timestamp, found.timestamp + found.duration_ms / 1000.0],
+            dispersion_deg: found.dispersion_deg,
+            confidence: found.confidence,
+        }
+    }
+
+    fn tell_fixation(&mut self, found: FixationWindow) {
+        let [begin, end] = found.span_s;
+        self.offer(GazeNews::Fixation(TrackerFixation {
+            at: found.at,
+            duration_ms: (end - begin) * 1000.0,
+            dispersion_deg: found.dispersion_deg,
+            confidence: found.confidence,
+            began: self.taken(begin),
+        }));
+    }
+
+    fn tell_blink(&mut self, found: PupilBlink) {
+        let taken = self.taken(found.timestamp);
+        self.offer(GazeNews::Blink { is_onset: found.is_onset, confidence: found.confidence, taken });
+    }
+
+    fn taken(&self, pupil_s: f64) -> SampleTime {
+        let at = self.clock.lock().ok().and_then(|clock| clock.instant(pupil_s));
+        SampleTime { device_ns: (pupil_s * 1e9) as u64, at }
+    }
+
+    fn offer(&mut self, news: GazeNews) {
+        if self.news.try_send(news).is_err() {
+            *self.lost += 1;
+        }
+    }
+}
+
+fn read(message: &ZmtpMessage, surface: &str) -> PupilMessage {
+    match message.as_slice() {
+        [topic, payload, ..] => message::read(topic, payload, surface),
+        _ => PupilMessage { malformed: 1, ..PupilMessage::default() },
+    }
+}

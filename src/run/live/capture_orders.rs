@@ -1,0 +1,115 @@
+//! Requests to Pupil Capture about the trial.
+
+use std::time::Instant;
+
+use tokio::sync::mpsc::Sender;
+
+use crate::edge::pupil::CaptureRequest;
+use crate::run::desk::GazeTracker;
+use crate::session::{Event, Phase, Session};
+
+const RUNNING: &str = "trial running";
+const PAUSED: &str = "trial paused";
+
+/// Requests to Pupil Capture about a recording.
+#[derive(Debug, Default)]
+pub(super) struct CaptureOrders {
+    /// Channel to Pupil Capture, if it is in use.
+    orders: Option<Sender<CaptureRequest>>,
+    /// The name of the recording.
+    name: String,
+    /// Whether the trial was begun and is not over.
+    is_on: bool,
+    /// Labels of the trial's state: whether it runs, and the signal that is shown.
+    phase: Option<&'static str>,
+    signal: Option<String>,
+}
+
+impl CaptureOrders {
+    /// Prepares Pupil Capture for a recording with this name; the trial of a continued recording is recorded from now on.
+    pub fn begin(tracker: &GazeTracker, name: String, session: &Session, now: Instant) -> CaptureOrders {
+        let mut capture = CaptureOrders { orders: tracker.orders(), name, ..CaptureOrders::default() };
+        capture.phase = match session.phase {
+            Phase::Running => Some(RUNNING),
+            Phase::Paused => Some(PAUSED),
+            _ => None,
+        };
+        if let Some(phase) = capture.phase {
+            capture.record();
+            capture.annotate(phase.to_string(), now);
+        }
+        capture
+    }
+
+    /// Reports an event of the trial, which happened at `at`.
+    pub fn tell(&mut self, event: &Event, at: Instant) {
+        if self.orders.is_none() {
+            return;
+        }
+        let ends = matches!(event, Event::TrialEnded { .. } | Event::TrialAborted { .. } | Event::SessionEnded);
+        let label = match event {
+            Event::TrialStarted => {
+                self.record();
+                self.phase = Some(RUNNING);
+                "trial started".to_string()
+            }
+            Event::TrialPaused => {
+                self.phase = Some(PAUSED);
+                PAUSED.to_string()
+            }
+            Event::TrialResumed => {
+                self.phase = Some(RUNNING);
+                "trial resumed".to_string()
+            }
+            Event::TrialEnded { .. } => "trial ended".to_string(),
+            Event::TrialAborted { .. } => "trial aborted".to_string(),
+            Event::SignalShown { signal, .. } => {
+                let shown = format!("signal shown: {}", signal.target());
+                self.signal = Some(shown.clone());
+                shown
+            }
+            Event::SignalEnded { .. } => {
+                self.signal = None;
+                "signal ended".to_string()
+            }
+            Event::SessionEnded => String::new(),
+            _ => return,
+        };
+        if ends {
+            (self.phase, self.signal) = (None, None);
+        }
+        if !label.is_empty() {
+            self.annotate(label, at);
+        }
+        if ends && std::mem::take(&mut self.is_on) {
+            self.order(CaptureRequest::StopRecording);
+        }
+    }
+
+    /// Ends Capture's recording of a trial that is left before its end.
+    pub fn leave(&mut self, at: Instant) {
+        if std::mem::take(&mut self.is_on) {
+            (self.phase, self.signal) = (None, None);
+            self.annotate("session left".to_string(), at);
+            self.order(CaptureRequest::StopRecording);
+        }
+    }
+
+    fn record(&mut self) {
+        self.is_on = true;
+        self.order(CaptureRequest::Record(self.name.clone()));
+    }
+
+    fn annotate(&self, label: String, at: Instant) {
+        let phase = self.phase.map(str::to_string);
+        let state = phase.into_iter().flat_map(|phase| [Some(phase), self.signal.clone()]).flatten().collect();
+        self.order(CaptureRequest::Annotate { label, at, state });
+    }
+
+    /// Sends a request if Pupil Capture is connected; the health line shows a lost connection.
+    fn order(&self, order: CaptureRequest) {
+        if let Some(orders) = &self.orders {
+            let _ = orders.try_send(order);
+        }
+    }
+}

@@ -44,12 +44,12 @@ class Capture:
         self.publisher = context.socket(zmq.PUB)
         self.publisher.setsockopt(zmq.SNDHWM, 0)
         self.publisher.connect(f"tcp://127.0.0.1:{self.pub_port}")
-        # The backbone is subscribed to annotations, as the plugin that records them is.
-        self.xsub.send(b"\x01annotation")
         self.poller = zmq.Poller()
         for socket in (self.remote, self.xsub, self.xpub):
             self.poller.register(socket, zmq.POLLIN)
         self.subscribed_at = None
+        # What is due later: time, and what to do then.
+        self.later = []
         self.chance = random.Random(7)
 
     def note(self, what, **fields):
@@ -64,12 +64,27 @@ class Capture:
             "SUB_PORT": str(self.sub_port), "PUB_PORT": str(self.pub_port), "t": repr(pupil_time()), "v": "3.5.1",
         }
         known = request[:1] in "RrCc" or request.startswith("notify.")
+        # Capture answers first, and does it with one of its next frames; its annotation plugin then subscribes to the backbone.
+        if request == "notify.start_plugin":
+            self.soon(lambda: self.xsub.send(b"\x01annotation"))
+        elif request[:1] == "R":
+            self.soon(lambda: self.notify("recording.started", session_name=request[2:]))
+        elif request[:1] == "r":
+            self.soon(lambda: self.notify("recording.stopped"))
         self.remote.send_string(answers.get(request, "OK" if known else "Unknown command."))
+
+    def soon(self, work):
+        self.later.append((time.monotonic() + 0.05, work))
+
+    def notify(self, subject, **fields):
+        self.publish(f"notify.{subject}", msgpack.packb({"subject": subject, "topic": f"notify.{subject}", **fields}))
 
     def forward(self, seconds):
         """The proxy between publishers and subscribers, and the answers of Pupil Remote."""
         until = time.monotonic() + seconds
         while (left := until - time.monotonic()) > 0:
+            while self.later and self.later[0][0] <= time.monotonic():
+                self.later.pop(0)[1]()
             ready = dict(self.poller.poll(max(1, int(1000 * left))))
             if self.remote in ready:
                 self.answer()

@@ -383,6 +383,7 @@ def main():
         is_quick(tomcom, chromium, folder / "quick", seeds["sushi"], arguments.presses)
     for name in ("recipe-1920.png", "highlight-1920.png", "running-1280.png"):
         tags.check(str(folder / "signals" / name))
+        tags.check_corners(tomcom, "layouts/sushi.toml", str(folder / "signals" / name))
 
 
 if __name__ == "__main__":

@@ -1,9 +1,11 @@
 """The tags of a screenshot, as the scene camera of an eye tracker sees them, read by another program: pupil-apriltags.
 
-    tests/outside/tags.py SCREENSHOT...
+    tests/outside/tags.py TOMCOM LAYOUT SCREENSHOT...
 """
 
 import functools
+import json
+import subprocess
 import sys
 
 import numpy as np
@@ -61,6 +63,27 @@ def check(path):
         print(f"tags of {path.rsplit('/', 1)[-1]} at 2 m and {turn} degrees: {sorted(found)}, margin {least:.0f}")
 
 
+def check_corners(tomcom, layout, path):
+    """The corners of the tags are where the program says that they are."""
+    done = subprocess.run([tomcom, "kitchen", layout, "--format", "json"], capture_output=True, check=True)
+    told = {tag["id"]: np.array(tag["corners"]) for tag in json.loads(done.stdout)["tags"]["tags"]}
+    screen = np.asarray(Image.open(path).convert("L"))
+    found = {tag.tag_id: tag for tag in detector().detect(screen)}
+    assert sorted(found) == sorted(told) == IDS, (sorted(found), sorted(told))
+    worst = 0
+    for number, corners in told.items():
+        # The edge of a pixel is where its neighbour begins; the detector counts from the middle of the first.
+        corners = corners * [screen.shape[1], screen.shape[0]]
+        near = [min(np.linalg.norm(found[number].corners - corner, axis=1)) for corner in corners]
+        worst = max(worst, *near)
+        top, right = corners[1] - corners[0], corners[2] - corners[1]
+        assert top[0] > 0 and abs(top[1]) < 1e-6 and right[1] > 0 and abs(right[0]) < 1e-6, "clockwise from the top left"
+    assert worst < 1.5, f"a corner is {worst:.2f} pixels off"
+    print(f"corners of the tags as `tomcom kitchen` prints them: at most {worst:.2f} pixels off in {path.rsplit('/', 1)[-1]}")
+
+
 if __name__ == "__main__":
-    for path in sys.argv[1:]:
-        check(path)
+    program, layout_file, *screenshots = sys.argv[1:]
+    for picture in screenshots:
+        check(picture)
+        check_corners(program, layout_file, picture)

@@ -1,0 +1,268 @@
+"""Drives sessions with Pupil Capture's own modules (see pupil_modules.py), and looks into Capture's recordings.
+
+    tests/outside/pupil_capture.py TOMCOM FOLDER PUPIL [--trials 20]
+
+PUPIL is a clone of github.com/pupil-labs/pupil.
+"""
+
+import argparse
+import atexit
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import msgpack
+import zmq
+
+from console import Console, percentile
+from pupil import recorded, start_trial, verify
+
+HERE = Path(__file__).parent
+PORT = 20630
+
+
+class Modules:
+    """Capture's modules in a process of their own."""
+
+    def __init__(self, pupil, folder, port, *options):
+        self.folder = folder
+        command = [sys.executable, HERE / "pupil_modules.py", pupil, port, folder, *options]
+        folder.mkdir(parents=True, exist_ok=True)
+        self.errors = open(folder / "errors.txt", "a")
+        self.process = subprocess.Popen([str(part) for part in command], stderr=self.errors)
+        atexit.register(self.process.kill)
+        self.wait_for("began")
+
+    def notes(self, what):
+        journal = self.folder / "journal.jsonl"
+        lines = journal.read_text().splitlines() if journal.exists() else []
+        return [note for note in map(json.loads, lines) if note["what"] == what]
+
+    def subjects(self):
+        return [note["subject"] for note in self.notes("notice")]
+
+    def wait_for(self, what, seconds=30):
+        until = time.monotonic() + seconds
+        while not self.notes(what):
+            assert self.process.poll() is None and time.monotonic() < until, (self.folder / "errors.txt").read_text()[-2000:]
+            time.sleep(0.1)
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+
+    def annotations(self):
+        """The labels in each of Capture's recordings, by its session's name and number."""
+        found = {}
+        for recording in sorted((self.folder / "recordings").glob("*/*")):
+            path = recording / "annotation.pldata"
+            labels = []
+            if path.exists():
+                for _, payload in msgpack.Unpacker(open(path, "rb"), use_list=False, strict_map_key=False):
+                    labels.append(msgpack.unpackb(payload, strict_map_key=False))
+            found[f"{recording.parent.name}/{recording.name}"] = labels
+        return found
+
+    def labels(self):
+        return {name: [one["label"] for one in found] for name, found in self.annotations().items()}
+
+
+def session(folder, port, surface="Surface 1", more=""):
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "session.toml"
+    layout = Path("layouts/sushi.toml").resolve()
+    path.write_text(
+        f'layout = "{layout}"\n[trial]\npresses = 4000\nseconds = 86400.0\n[participant]\ngaze = "pupil"\n'
+        f'[tracker]\nport = {port}\nsurface = "{surface}"\n{more}'
+    )
+    return path
+
+
+def end_trial(console):
+    console.key("\x05")
+    console.wait_for("End the trial")
+    console.key("y")
+    console.wait_for("OVER|over")
+
+
+def trackers(recording, what):
+    return [event for event in recorded(recording, "tracker") if event["what"] == what]
+
+
+def check_trials(tomcom, folder, pupil, trials):
+    """Each trial is in a recording of Capture's, from its start to its end."""
+    capture = Modules(pupil, folder / "capture", PORT)
+    path = session(folder, PORT)
+    for number in range(trials):
+        with Console(tomcom, [path, "--out", folder / "recordings"]) as console:
+            console.wait_for(r"gaze +\d\d+ Hz")
+            start_trial(console)
+            time.sleep(1.0)
+            end_trial(console)
+            console.quit()
+    found = capture.annotations()
+    capture.kill()
+    names = sorted(recording.name for recording in (folder / "recordings").iterdir())
+    assert sorted(name.split("/")[0] for name in found) == names, (list(found), names)
+    labels = {name: [one["label"] for one in annotations] for name, annotations in found.items()}
+    whole = [name for name, found in labels.items() if found[0] == "trial started" and found[-1] == "trial ended"]
+    assert len(whole) == trials, labels
+    late = [annotations[0]["late_s"] for annotations in found.values()]
+    plugins = [note for note in capture.notes("notice") if note["subject"] == "start_plugin"]
+    assert len(plugins) == 1, "the annotation plugin is started once, and kept by all sessions after that"
+    print(
+        f"Capture's own recorder: {len(whole)} of {trials} trials have their start and their end in its recording; "
+        f"the start is annotated {1000 * percentile(late, 0.5):.0f} ms late (p50), at most {1000 * max(late):.0f} ms", flush=True)
+
+
+def check_restart(tomcom, folder, pupil):
+    """Capture is killed in a trial; its next recording says that the trial runs."""
+    capture = Modules(pupil, folder / "capture", PORT + 1)
+    with Console(tomcom, [session(folder, PORT + 1), "--out", folder / "recordings"]) as console:
+        console.wait_for(r"gaze +\d\d+ Hz")
+        start_trial(console)
+        time.sleep(1)
+        capture.kill()
+        console.wait_for("NO TRACKER")
+        capture = Modules(pupil, folder / "capture", PORT + 1)
+        console.wait_for(r"gaze +\d\d+ Hz")
+        time.sleep(2)
+        end_trial(console)
+        console.quit()
+    time.sleep(0.5)
+    labels = list(capture.labels().values())
+    capture.kill()
+    assert labels[-1][0] == "trial running" and labels[-1][-1] == "trial ended", labels
+    print(f"Capture restarted in a trial: its new recording begins with {labels[-1][0]!r}", flush=True)
+
+
+def check_lab(tomcom, folder, pupil):
+    """A recording that the lab began is annotated, and runs on after the trial; with `record = false`, too."""
+    capture = Modules(pupil, folder / "capture", PORT + 2, "--lab-records")
+    for more in ("record = true\n", "record = false\n"):
+        with Console(tomcom, [session(folder, PORT + 2, more=more), "--out", folder / "recordings"]) as console:
+            console.wait_for(r"gaze +\d\d+ Hz")
+            start_trial(console)
+            if "true" in more:
+                console.wait_for("began no recording", 10)
+            time.sleep(0.5)
+            end_trial(console)
+            console.quit()
+    time.sleep(1)
+    subjects = capture.subjects()
+    assert "recording.stopped" not in subjects and "recording.should_stop" not in subjects, subjects
+    assert subjects.count("recording.started") == 1, subjects
+    annotated = [note["label"] for note in capture.notes("annotation")]
+    assert annotated.count("trial started") == annotated.count("trial ended") == 2, annotated
+    capture.kill()
+    print("a recording that the lab began: annotated with two trials, and never ended", flush=True)
+
+
+def check_clock(tomcom, folder, pupil):
+    """Capture's clock is set ahead and back by 0.2 s."""
+    capture = Modules(pupil, folder / "capture", PORT + 3)
+    remote = zmq.Context.instance().socket(zmq.REQ)
+    remote.connect(f"tcp://127.0.0.1:{PORT + 3}")
+
+    def ask(request):
+        remote.send_string(request)
+        return remote.recv_string()
+
+    def offset():
+        """Capture's time less that of this computer, from the quickest of many answers."""
+        answers = []
+        for _ in range(30):
+            asked = time.monotonic()
+            found = float(ask("t"))
+            answers.append((time.monotonic() - asked, found - (asked + time.monotonic()) / 2))
+        return min(answers)[1]
+
+    with Console(tomcom, [session(folder, PORT + 3), "--out", folder / "recordings"]) as console:
+        console.wait_for(r"gaze +\d\d+ Hz")
+        start_trial(console)
+        time.sleep(4)
+        offsets = [offset()]
+        for by, word in ((0.2, "ahead"), (-0.2, "back")):
+            assert ask(f"T {float(ask('t')) + by}") == "Timesync successful."
+            console.wait_for(f"clock was set {word} by 0[.](19|20)")
+            time.sleep(4)
+            offsets.append(offset())
+        end_trial(console)
+        console.quit()
+    capture.kill()
+    (recording,) = (folder / "recordings").iterdir()
+    verify(tomcom, recording)
+    steps = trackers(recording, "clock_set")
+    assert [round(step["by_s"], 2) for step in steps] == [0.2, -0.2], steps
+    # Session time less Capture's: between the steps it changes by as much as Capture's clock was set.
+    gaze = recorded(recording, "gaze")
+    times = [0, *(step["t_ns"] for step in steps), 1e18]
+    stamped = []
+    for since, until in zip(times, times[1:]):
+        ahead = [event["taken_ns"] - event["device_ns"] for event in gaze if since + 0.3e9 < event["t_ns"] < until - 0.3e9]
+        stamped.append((min(ahead) / 1e9, max(ahead) / 1e9))
+    wrong = [abs(low + offsets[n] - stamped[0][0] - offsets[0]) for n, edges in enumerate(stamped) for low in edges]
+    uncertain = [(step["t_ns"] - step["uncertain_since_ns"]) / 1e9 for step in steps]
+    assert max(wrong) < 0.005, (stamped, offsets)
+    assert max(uncertain) < 1, uncertain
+    shown = json.loads(subprocess.run([tomcom, "replay", recording, "--format", "json"], capture_output=True, check=True).stdout)["gaze"]
+    unread = shown["out_of_order"] + shown["too_old"]
+    rate = len(gaze) / ((gaze[-1]["t_ns"] - gaze[0]["t_ns"]) / 1e9)
+    assert unread < rate, (unread, rate)
+    print(
+        f"Capture's clock set by 0.2 s ahead and back: told after {max(uncertain):.2f} s at most, stamps then right to "
+        f"{1000 * max(wrong):.2f} ms, {unread} samples of {rate:.0f} Hz unread", flush=True)
+
+
+def check_eyes(tomcom, folder, pupil):
+    """Fixations and blinks of Capture's online detectors are what the eyes did."""
+    capture = Modules(pupil, folder / "capture", PORT + 4)
+    with Console(tomcom, [session(folder, PORT + 4), "--out", folder / "recordings"]) as console:
+        console.wait_for(r"gaze +\d\d+ Hz")
+        # Sixteen blinks, one in 1.6 s, the first one after 9.6 s.
+        time.sleep(38)
+        console.quit()
+    capture.kill()
+    (recording,) = (folder / "recordings").iterdir()
+    fixations = [event["duration_ms"] / 1000 for event in trackers(recording, "fixation")]
+    blinks = [event["closed"] for event in trackers(recording, "blink")]
+    heard = len(capture.notes("blink"))
+    # The session may have begun in the middle of the first one. The detector looks once in a frame, and so finds each up to a frame late.
+    longest = [seconds for seconds in fixations[1:] if seconds > 1.5]
+    assert len(longest) >= 5 and all(-1 / 30 - 0.02 < seconds - 1.94 < 0.02 for seconds in longest), fixations
+    assert blinks == [True, False] * 16, (blinks, heard)
+    print(
+        f"the eyes: fixations of 1.94 s are {min(longest):.2f} to {max(longest):.2f} s; {sum(blinks)} blinks of 16, "
+        f"of {heard} messages", flush=True)
+
+
+def check_surface(tomcom, folder, pupil):
+    """Another surface than the session's is seen: its name is told."""
+    capture = Modules(pupil, folder / "capture", PORT + 5)
+    with Console(tomcom, [session(folder, PORT + 5, surface="wall"), "--out", folder / "recordings"]) as console:
+        console.wait_for("TAGS NOT SEEN")
+        console.wait_for('other surfaces: "Surface 1"')
+        console.key(".")
+        console.wait_for('sees "Surface 1", not "wall"')
+        console.key("\x1b")
+        console.quit()
+    capture.kill()
+    print('a session for the surface "wall": told that Capture sees "Surface 1"', flush=True)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tomcom")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("pupil")
+    parser.add_argument("--trials", type=int, default=20)
+    parser.add_argument("--only", choices=["trials", "restart", "lab", "clock", "eyes", "surface"])
+    options = parser.parse_args()
+    checks = {"restart": check_restart, "lab": check_lab, "clock": check_clock, "eyes": check_eyes, "surface": check_surface}
+    if options.only in (None, "trials"):
+        check_trials(options.tomcom, options.folder / "trials", options.pupil, options.trials)
+    for name, check in checks.items():
+        if options.only in (None, name):
+            check(options.tomcom, options.folder / name, options.pupil)

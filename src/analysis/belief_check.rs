@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::likelihood::LogLikelihood;
+use super::looks::Looks;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::gaze::MIN_CONFIDENCE;
@@ -21,9 +22,6 @@ use crate::session::{Event, Session, Stamped};
 
 /// The seed of the bootstrap: the same recordings give the same interval.
 const SEED: u64 = 1;
-
-/// The baseline counts a location as seen after a look of this length, in seconds.
-const LOOK_S: f64 = 0.1;
 
 /// The output of `tomcom replay --check-beliefs`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -91,8 +89,7 @@ impl PressViews {
 struct Before {
     /// For each location, whether somebody other than the human changed it since the human last looked at it or changed it.
     unseen_change: [bool; MAX_LOCATIONS],
-    /// For each location, the time since which the gaze has been in its area without a change there.
-    looks_since: [Option<SessionTime>; MAX_LOCATIONS],
+    looks: Looks,
     /// For each location, the time of the last change, if it was made by somebody other than the human.
     others_changed: [Option<SessionTime>; MAX_LOCATIONS],
 }
@@ -106,14 +103,11 @@ impl Before {
             let location = LocationId(index as u8);
             if change.states().is_some_and(|(before, after)| before.code(location) != after.code(location)) {
                 self.unseen_change[index] = !is_own;
-                self.looks_since[index] = None;
+                self.looks.changed(location);
                 self.others_changed[index] = (!is_own).then_some(session.time);
             }
             if is_look {
-                let is_there = session.gaze.looked_at[index] == Some(session.time);
-                self.looks_since[index] = is_there.then(|| self.looks_since[index].unwrap_or(session.time));
-                let is_seen = |since: SessionTime| session.time.secs_since(since) >= LOOK_S;
-                self.unseen_change[index] &= !self.looks_since[index].is_some_and(is_seen);
+                self.unseen_change[index] &= !self.looks.sampled(session, location);
             }
         }
     }

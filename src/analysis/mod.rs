@@ -19,6 +19,8 @@ pub mod kitchen_summary;
 pub mod lesson_report;
 #[cfg(feature = "cli")]
 pub mod likelihood;
+#[cfg(feature = "cli")]
+pub mod looks;
 pub mod offer_steadiness;
 pub mod offer_summary;
 pub mod order_work;

@@ -7,6 +7,7 @@ use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::recommendation::aspects_told;
+use crate::measures::sequences::Episode;
 use crate::measures::wizard_performance::{FalseBeliefPeriod, WizardMeasures, WizardSignal};
 use crate::session::event::SignalEnd;
 use crate::session::settings::ParticipantKind;
@@ -75,6 +76,15 @@ impl WizardLog {
         }
     }
 
+    /// The wizard's performance by the false belief episodes that raters' codes give. Whether further beliefs were false is not known, so
+    /// signals about harmless ones, wrong targets and needless signals are not told apart.
+    pub fn measures_by_raters(&self, follower: &Follower, episodes: &[Episode]) -> WizardMeasures {
+        let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
+        let periods = periods(follower, episodes.iter());
+        let measures = WizardMeasures::from_signals(&sent, Some(&periods));
+        WizardMeasures { wrong_targets: None, needless: None, harmless: None, ..measures }
+    }
+
     /// Summary of a session that has been followed to its end.
     pub fn figures(&self, follower: &Follower) -> WizardSummary {
         let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
@@ -85,10 +95,15 @@ impl WizardLog {
 
 /// Periods of false belief on the trial's clock; `None` where the participant's beliefs are not known.
 pub fn spells(follower: &Follower) -> Option<Vec<FalseBeliefPeriod>> {
-    let session = &follower.session;
-    let known = session.spec.participant.kind == ParticipantKind::Simulated
+    let known = follower.session.spec.participant.kind == ParticipantKind::Simulated
         && follower.judged.iter().all(|press| press.belief_known);
-    let spell = |episode: &crate::measures::sequences::Episode| {
+    known.then(|| periods(follower, follower.episodes.all()))
+}
+
+/// Episodes as periods on the trial's clock.
+fn periods<'a>(follower: &Follower, episodes: impl Iterator<Item = &'a Episode>) -> Vec<FalseBeliefPeriod> {
+    let session = &follower.session;
+    let period = |episode: &Episode| {
         let presses = |time: SessionTime| follower.judged.partition_point(|press| press.time < time) as u32;
         FalseBeliefPeriod {
             aspect: episode.aspect,
@@ -97,7 +112,7 @@ pub fn spells(follower: &Follower) -> Option<Vec<FalseBeliefPeriod>> {
             errors: episode.errors,
         }
     };
-    known.then(|| follower.episodes.all().map(spell).collect())
+    episodes.map(period).collect()
 }
 
 /// The trial's clock at an earlier time of a session.

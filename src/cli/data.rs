@@ -58,30 +58,43 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
 
 /// Codes the errors of a recording at the console.
 pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
-    check_raters(&[rater])?;
+    check_rater(rater)?;
+    check_terminal()?;
     Ok(review_console::rate(recording, rater)?)
 }
 
 /// Settles at the console what two raters coded differently.
 pub(super) fn settle(recording: &Path, raters: &[String]) -> Result<(), Failure> {
-    let [one, other] = raters else {
-        let help = "the codes of two raters: --settle R1 R2";
-        return Err(Failure::Wrong(miette::miette!(help = help, "found {} raters to settle with", raters.len())));
-    };
-    check_raters(&[one, other])?;
-    if one == other {
-        let help = "two raters, each of whom coded the errors alone: --settle R1 R2";
-        return Err(Failure::Wrong(miette::miette!(help = help, "found the rater \"{one}\" twice")));
-    }
-    Ok(review_console::settle(recording, [one, other])?)
+    let [one, other] = two_raters(raters, "--settle")?;
+    check_terminal()?;
+    Ok(review_console::settle(recording, [&one, &other])?)
 }
 
-/// Checks that raters have codes, and that there is a terminal to code errors at.
-fn check_raters(raters: &[&str]) -> Result<(), Failure> {
-    if let Some(rater) = raters.iter().find(|rater| !is_code(rater)) {
+/// Two different raters, as the values of an option.
+pub(super) fn two_raters(raters: &[String], option: &str) -> Result<[String; 2], Failure> {
+    raters.iter().try_for_each(|rater| check_rater(rater))?;
+    let wrong = |found: String| {
+        let help = format!("two raters, each of whom coded the errors alone: {option} R1 R2");
+        Failure::Wrong(miette::miette!(help = help, "{found}"))
+    };
+    match raters {
+        [one, other] if one == other => Err(wrong(format!("found the rater \"{one}\" twice"))),
+        [one, other] => Ok([one.clone(), other.clone()]),
+        _ => Err(wrong(format!("found {} raters", raters.len()))),
+    }
+}
+
+/// Checks that a rater has a code.
+fn check_rater(rater: &str) -> Result<(), Failure> {
+    if !is_code(rater) {
         let help = "a code of 1 to 32 letters, digits, - and _, such as R1; never a name";
         return Err(Failure::Wrong(miette::miette!(help = help, "found the rater \"{rater}\"")));
     }
+    Ok(())
+}
+
+/// Checks that there is a terminal to code errors at.
+fn check_terminal() -> Result<(), Failure> {
     if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
         let help = "a terminal; tomcom codes takes codes from a table";
         return Err(Failure::Wrong(miette::miette!(help = help, "found no terminal to code errors at")));

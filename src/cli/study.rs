@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::data::two_raters;
 use super::failure::Failure;
 use super::list::exists;
 use super::output::{OutputFormat, print, progress};
@@ -25,6 +26,9 @@ pub(super) struct StudyArgs {
     /// Folder for report.html and the tables; by default the folder "study" in the first DIR.
     #[arg(long)]
     out: Option<PathBuf>,
+    /// The two raters whose codes of errors are taken; by default the two with the most complete codes of a recording.
+    #[arg(long, value_names = ["A", "B"], num_args = 2)]
+    raters: Option<Vec<String>>,
     /// Parts to skip, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',')]
     skip: Vec<Skip>,
@@ -57,9 +61,10 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
     let extent =
         AnalysisScope { concepts: !args.skip.contains(&Skip::Concepts), events: !args.skip.contains(&Skip::Events) };
     let out = args.out.clone().unwrap_or_else(|| args.paths[0].join("study"));
+    let raters = args.raters.as_ref().map(|raters| two_raters(raters, "--raters")).transpose()?;
     let bar = progress(recordings.number() as u64, "recordings");
-    let (figures, report) =
-        study::study(&AnalysisRequest { paths: args.paths.clone(), out, extent }, &recordings, || bar.inc(1))?;
+    let request = AnalysisRequest { paths: args.paths.clone(), out, extent, raters };
+    let (figures, report) = study::study(&request, &recordings, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &figures, || format!("{}report: {}\n", study::describe(&figures), report.display()))
 }

@@ -204,15 +204,6 @@ impl Codes {
     }
 }
 
-/// The codes of the two raters who coded most errors; `None` with fewer than two raters. Where several coded equally many, the first of
-/// them are taken.
-pub fn most_complete(mut raters: Vec<Codes>) -> Option<[Codes; 2]> {
-    // The sort is stable.
-    raters.sort_by_key(|codes| std::cmp::Reverse(codes.0.len()));
-    let mut all = raters.into_iter();
-    all.next().zip(all.next()).map(|(one, other)| [one, other])
-}
-
 /// Contingency table of two raters' codes over the errors that both coded; recordings are added to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AgreementTable {

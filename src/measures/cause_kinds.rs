@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::attribution::{Cause, Target};
 use super::judged_press::JudgedPress;
-use super::sequences::Episodes;
+use super::sequences::Episode;
 use crate::kitchen::{AspectId, Kitchen};
 
 /// Numbers of belief related errors by kind of aspect.
@@ -22,13 +22,13 @@ pub struct CauseKindCounts {
 
 impl CauseKindCounts {
     /// Counts of these presses. `episodes` tells which of an order and its recipe was believed wrong at the time of an error.
-    pub fn from_presses(kitchen: &Kitchen, presses: &[JudgedPress], episodes: &Episodes) -> CauseKindCounts {
+    pub fn from_presses(kitchen: &Kitchen, presses: &[JudgedPress], episodes: &[Episode]) -> CauseKindCounts {
         let mut counts = CauseKindCounts::default();
         for press in presses {
             let Some(Cause::Belief { target, .. }) = press.cause else { continue };
             let is_false = |aspect: AspectId| {
                 let is_open = |end| press.time <= end;
-                episodes.all().any(|episode| {
+                episodes.iter().any(|episode| {
                     episode.aspect == aspect && episode.began <= press.time && episode.corrected.is_none_or(is_open)
                 })
             };

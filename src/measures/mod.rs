@@ -7,7 +7,7 @@
 //! - An estimate of beliefs: [`detection`], `press_view` (what was known before a press), [`flags`],
 //!   [`belief_detection`] (all of these).
 //! - Communication: `median`, [`matching`] of two lanes, [`wizard_performance`]. [`cause_codes`] by people has its
-//!   agreement from `matching`; [`consensus`] of two raters.
+//!   agreement from `matching`; [`consensus`] of two raters; [`rater_choice`], which two count.
 
 pub mod attribution;
 pub mod belief_detection;
@@ -21,6 +21,7 @@ mod judged_press;
 pub mod matching;
 mod median;
 mod press_view;
+pub mod rater_choice;
 pub mod sequences;
 pub mod wizard_performance;
 

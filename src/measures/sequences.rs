@@ -40,8 +40,8 @@ impl Sequence {
     }
 }
 
-/// What a false belief is about: related errors have the same subject. An error that two false beliefs explain together belongs to
-/// the first of them.
+/// What a false belief is about: related errors have the same subject. An error that two false beliefs explain together, or
+/// for which two raters name different ones, belongs to the first of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ErrorSubject {
     /// The order of a dish or its recipe.

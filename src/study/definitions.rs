@@ -1,5 +1,7 @@
 //! Definitions of the terms that the report uses.
 
+use super::rater_episodes::RULE;
+
 /// Terms of the report with their definitions.
 pub const DEFINITIONS: &[(&str, &str)] = &[
     (
@@ -28,6 +30,7 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
         "False belief episode",
         "From the time at which the belief about an aspect became false (P(truth) < 0.5) to its correction, if it caused an error.",
     ),
+    ("False belief episode, of people", RULE),
     (
         "Similarity of wizard and assistant",
         "One-to-one matching in time within 3 human presses, at three levels: same signal and target, same kind of signal, any \
@@ -41,7 +44,7 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
     ),
     (
         "Errors prevented, useless signals",
-        "Over unassisted trials; the unit is the human press. Useful: an episode's first signal about its target, if at least one \
+        "Over unassisted trials in which false beliefs are known; the unit is the human press. Useful: an episode's first signal about its target, if at least one \
          belief related error of that target follows in the same episode. All other signals are useless: about what is believed \
          right, about a false but harmless belief, repeated, or after the last error, inside of episodes, too. True positive rate: \
          belief related errors prevented, of all; a signal prevents the later errors of its own aspect in the same episode, no \

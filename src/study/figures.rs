@@ -6,14 +6,16 @@ use serde::Serialize;
 
 use super::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
 use super::arm_group::{ArmGroup, by_arm};
+use super::belief_basis::BeliefBasis;
 use super::effect::{AssistanceEffect, effect, pairs};
 use super::facts::Facts;
+use super::known_beliefs::SharedBeliefs;
 use super::live_arms::{LiveArm, live_arms};
 use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
 use super::statistics::{Correlation, FTest, Interval, share_interval};
 use super::tables::trials::measures;
 use super::tables::tutorial_answers::TutorialAnswer;
-use super::trial_statistics::{BeliefBasis, BeliefErrors, Trial, mean, mean_length};
+use super::trial_statistics::{BeliefErrors, Trial, mean, mean_length};
 use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::measures::cause_codes::{Agreement, AgreementTable, Codes};
@@ -58,6 +60,8 @@ pub struct StudySummary {
     pub roc: Vec<Roc>,
     /// Concepts that acted by themselves on the same simulated trials; empty unless several arms share trials.
     pub live: Vec<LiveArm>,
+    /// How it is known what participants believed in the trials that the comparison of concepts rests on; the least reliable source.
+    pub roc_beliefs_from: Option<BeliefBasis>,
     /// Number of participants that the comparison of concepts rests on.
     pub roc_participants: u64,
     /// Number of their unassisted trials.
@@ -73,6 +77,8 @@ pub struct StudySummary {
     pub similarity_by_trial: Vec<TrialSimilarity>,
     /// How well wizards did, over all trials with a wizard.
     pub wizard: Option<WizardMeasures>,
+    /// How it is known what participants believed in these trials; the least reliable source. Null where `wizard` has no hits.
+    pub wizard_beliefs_from: Option<BeliefBasis>,
     /// Offers that wizards could see in trials in which they could send signals; null without such offers.
     pub offers: Option<OfferSummary>,
     /// How participants take the assistance.
@@ -86,6 +92,8 @@ pub struct StudySummary {
     pub tutorial: Option<TutorialSummary>,
     /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<Agreement>,
+    /// How far these raters agree on the false beliefs from which episodes follow.
+    pub shared_beliefs: Option<SharedBeliefs>,
     /// Trials whose causes of errors are the consensus of two raters, by the raters ("R1+R2").
     pub consensus: BTreeMap<String, u64>,
     /// Consensus codes that are not used, since a rater's code changed afterwards.
@@ -217,6 +225,7 @@ impl StudySummary {
         let blind: Vec<&Trial> = counting.iter().copied().filter(|trial| !trial.wizard_saw_advice).collect();
         let advised: Vec<&Trial> = counting.iter().copied().filter(|trial| trial.wizard_saw_advice).collect();
         let wizards: Vec<&WizardMeasures> = counting.iter().filter_map(|trial| trial.wizard.as_ref()).collect();
+        let wizard = (!wizards.is_empty()).then(|| WizardMeasures::sum(wizards));
         let left_out = trials.iter().filter_map(|trial| {
             let (recording, participant) = (trial.recording.clone(), trial.participant.clone());
             Some(ExcludedTrial { recording, participant, reason: trial.left_out.clone()? })
@@ -239,19 +248,24 @@ impl StudySummary {
             effects,
             live: live_arms(&counting, &comparison.concepts),
             roc: comparison.concepts,
+            roc_beliefs_from: least_reliable(counting.iter().filter(|trial| !trial.swept.is_empty())),
             roc_participants: comparison.participants,
             roc_trials: comparison.trials,
             roc_common_fpr: comparison.common_fpr,
             similarity: similarity(&blind),
             similarity_with_advice: similarity(&advised),
             similarity_by_trial: counting.iter().filter_map(|trial| similarity_of_trial(trial)).collect(),
-            wizard: (!wizards.is_empty()).then(|| WizardMeasures::sum(wizards)),
+            wizard_beliefs_from: wizard.as_ref().and_then(|wizard| wizard.hits).and_then(|_| {
+                least_reliable(counting.iter().filter(|trial| trial.wizard.is_some()))
+            }),
+            wizard,
             offers: offers(&counting),
             acceptance: acceptance(&counting),
             questionnaires: items(&counting),
             questionnaire_scores: scores(&counting),
             tutorial: None,
             raters: agreement(&counting),
+            shared_beliefs: counting.iter().filter_map(|trial| trial.shared_beliefs).reduce(|sum, one| sum.plus(one)),
             consensus: consensus(&counting),
             stale_consensus: counting.iter().filter_map(|trial| stale(trial)).collect(),
             left_out: left_out.collect(),
@@ -263,6 +277,11 @@ impl StudySummary {
     pub fn with_tutorials(self, answers: &[TutorialAnswer]) -> StudySummary {
         StudySummary { tutorial: TutorialSummary::from_answers(answers), ..self }
     }
+}
+
+/// The least reliable source of beliefs among these trials.
+fn least_reliable<'a>(trials: impl Iterator<Item = &'a &'a Trial>) -> Option<BeliefBasis> {
+    trials.filter_map(|trial| trial.beliefs.as_ref()).map(|beliefs| beliefs.basis).max()
 }
 
 /// Summary of the offers in wizard trials; `None` if there was none.

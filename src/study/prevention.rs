@@ -10,8 +10,12 @@
 
 use serde::Serialize;
 
+use super::belief_basis::BeliefBasis;
+use super::known_beliefs::KnownBeliefs;
 use crate::base::time::SessionTime;
-use crate::kitchen::AspectId;
+use crate::kitchen::{AspectId, Kitchen};
+use crate::measures::JudgedPress;
+use crate::measures::sequences::Episode;
 
 /// True errors and false beliefs of a trial.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,6 +24,8 @@ pub struct TrialTruth {
     pub presses: Vec<PressTruth>,
     /// The times in which an aspect was believed wrong.
     pub spells: Vec<FalseBeliefTruth>,
+    /// Whether the false beliefs that led to no error are among them.
+    pub knows_harmless: bool,
 }
 
 /// Truth about one human press.
@@ -59,7 +65,7 @@ pub struct ConceptSignal {
 }
 
 /// Counts of prevented errors and useless signals of a concept, in one or several trials.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PreventionCounts {
     /// Number of human presses.
     pub presses: u64,
@@ -79,8 +85,25 @@ pub struct PreventionCounts {
     pub false_presses: u64,
     /// Number of useless signals during an episode.
     pub false_inside: u64,
-    /// Number of signals about a false but harmless belief; they are useless, too.
-    pub harmless: u64,
+    /// Number of signals about a false but harmless belief; they are useless, too. Null where such beliefs are not known.
+    pub harmless: Option<u64>,
+}
+
+impl Default for PreventionCounts {
+    fn default() -> PreventionCounts {
+        PreventionCounts {
+            presses: 0,
+            signals: 0,
+            contents: 0,
+            related: 0,
+            prevented: 0,
+            useless: 0,
+            outside: 0,
+            false_presses: 0,
+            false_inside: 0,
+            harmless: Some(0),
+        }
+    }
 }
 
 /// A concept's rates at one parameter value.
@@ -107,7 +130,7 @@ impl PreventionCounts {
             outside: self.outside + other.outside,
             false_presses: self.false_presses + other.false_presses,
             false_inside: self.false_inside + other.false_inside,
-            harmless: self.harmless + other.harmless,
+            harmless: self.harmless.zip(other.harmless).map(|(one, other)| one + other),
         }
     }
 
@@ -140,6 +163,26 @@ impl FalseBeliefTruth {
 }
 
 impl TrialTruth {
+    /// The truth about these presses, which are all of a trial, by what is known of the participant's beliefs.
+    pub fn new(kitchen: &Kitchen, judged: &[JudgedPress], known: &KnownBeliefs) -> TrialTruth {
+        let press = |press: &JudgedPress| PressTruth {
+            time: press.time,
+            error: press.verdict.error,
+            aspects: known.targets.get(&press.seq).map_or(Vec::new(), |target| target.aspects(kitchen).collect()),
+        };
+        let false_belief = |episode: &Episode| FalseBeliefTruth {
+            aspect: episode.aspect,
+            began: episode.began,
+            ended: episode.corrected,
+            harmful: episode.errors > 0,
+        };
+        TrialTruth {
+            presses: judged.iter().map(press).collect(),
+            spells: known.episodes.iter().map(false_belief).collect(),
+            knows_harmless: known.basis == BeliefBasis::Recorded,
+        }
+    }
+
     fn is_in_episode(&self, time: SessionTime) -> bool {
         self.spells.iter().any(|false_belief| false_belief.harmful && false_belief.is_open(time))
     }
@@ -151,6 +194,7 @@ impl TrialTruth {
             contents: signals,
             related: self.presses.iter().filter(|press| !press.aspects.is_empty()).count() as u64,
             outside: self.presses.iter().filter(|press| !self.is_in_episode(press.time)).count() as u64,
+            harmless: self.knows_harmless.then_some(0),
             ..PreventionCounts::default()
         }
     }
@@ -177,7 +221,8 @@ impl TrialTruth {
                     }
                 }
             }
-            count.harmless += u64::from(!about.is_empty() && about.iter().all(|one| !one.harmful));
+            let is_harmless = !about.is_empty() && about.iter().all(|one| !one.harmful);
+            count.harmless = count.harmless.map(|harmless| harmless + u64::from(is_harmless));
             if !is_useful {
                 self.count_useless(&mut count, signal.time);
                 // A signal after the last press precedes no press.

@@ -3,6 +3,8 @@
 use serde::Serialize;
 
 use super::acting_arm::ActingArm;
+use super::belief_basis::BeliefBasis;
+use super::known_beliefs::SharedBeliefs;
 use super::robot_tally::RobotSummary;
 use super::roc::SweptTrial;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
@@ -85,40 +87,16 @@ pub struct Trial {
     pub wizard_saw_advice: bool,
     /// In wizard trials: sent communications, and hypothetical ones of the assistant.
     pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
-    /// In unassisted trials: prevention counts of the concepts.
+    /// In unassisted trials with known beliefs: prevention counts of the concepts.
     pub swept: Vec<SweptTrial>,
     /// Codes of two raters, if they or their consensus define the causes of errors.
     pub raters: Option<[Codes; 2]>,
+    /// How far these two agree on false beliefs.
+    pub shared_beliefs: Option<SharedBeliefs>,
     /// The two raters whose consensus defines the causes of errors.
     pub settled_by: Option<[String; 2]>,
     /// Why a consensus is not used: a rater's code that changed after it was settled.
     pub stale_consensus: Option<String>,
-}
-
-/// Source of the causes of errors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum BeliefBasis {
-    /// Recorded beliefs of a simulated participant.
-    Recorded,
-    /// Consensus of two raters for every error.
-    Consensus,
-    /// Codes of two raters for every error; an error is belief related if both coded a false belief.
-    Raters,
-    /// The assistant's estimate; insufficient for headline results.
-    Estimate,
-}
-
-impl BeliefBasis {
-    /// Name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            BeliefBasis::Recorded => "recorded",
-            BeliefBasis::Consensus => "consensus",
-            BeliefBasis::Raters => "raters",
-            BeliefBasis::Estimate => "estimate",
-        }
-    }
 }
 
 /// Errors that false beliefs caused in a trial.
@@ -138,7 +116,7 @@ pub struct BeliefErrors {
     pub lengths_any_aspect: Vec<u32>,
     /// Seconds from the first error of each sequence to the first correct press after its last error, where there is one.
     pub recovery_s: Vec<f64>,
-    /// Number of false belief episodes with at least one error; `None` if beliefs were not recorded.
+    /// Number of false belief episodes with at least one error; `None` if beliefs are known by the estimate alone.
     pub episodes: Option<u64>,
 }
 

@@ -1,6 +1,6 @@
 //! `codes-RATER.csv`, beside a log: what one rater says about its errors. The log stays as it is.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
@@ -58,21 +58,28 @@ pub fn read(folder: &Path, rater: &str, codable: &Codable) -> FileResult<Codes> 
     Ok(codes)
 }
 
-/// What all raters say about the recording in this folder, by rater.
+/// The raters with codes of the recording in this folder.
 ///
 /// # Errors
-/// Those of [`read`], or the folder cannot be read.
-pub fn read_all(folder: &Path, codable: &Codable) -> FileResult<BTreeMap<String, Codes>> {
+/// The folder cannot be read.
+pub fn raters(folder: &Path) -> FileResult<BTreeSet<String>> {
     let unreadable = |reason| FileError::unreadable(folder, reason, "the folder of a recording");
-    let mut all = BTreeMap::new();
+    let mut all = BTreeSet::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let name = entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned();
         let rater = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv"));
-        if let Some(rater) = rater.filter(|rater| is_code(rater)) {
-            all.insert(rater.to_string(), read(folder, rater, codable)?);
-        }
+        all.extend(rater.filter(|rater| is_code(rater)).map(str::to_string));
     }
     Ok(all)
+}
+
+/// What all raters say about the recording in this folder, by rater.
+///
+/// # Errors
+/// Those of [`read`] and [`raters`].
+pub fn read_all(folder: &Path, codable: &Codable) -> FileResult<BTreeMap<String, Codes>> {
+    let codes = |rater: String| read(folder, &rater, codable).map(|codes| (rater, codes));
+    raters(folder)?.into_iter().map(codes).collect()
 }
 
 /// Writes what a rater says, to the disk; whoever reads meanwhile finds the old file or the new one.

@@ -1,18 +1,21 @@
 //! The causes of a person's errors: by the consensus of two raters, by both raters' codes, or by the estimate.
 
 use crate::analysis::follower::Follower;
-use crate::edge::file_error::FileResult;
+use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogReader, consensus_file, rater_codes};
 use crate::kitchen::Kitchen;
 use crate::measures::JudgedPress;
-use crate::measures::attribution::Cause;
-use crate::measures::cause_codes::{CauseKind, Codable, Code, Codes, most_complete};
-use crate::study::trial_statistics::BeliefBasis;
+use crate::measures::attribution::{Cause, Target};
+use crate::measures::cause_codes::{CauseKind, Codable, Code, Codes};
+use crate::measures::rater_choice::{RaterChoice, RaterPair};
+use crate::session::settings::ParticipantKind;
+use crate::study::belief_basis::BeliefBasis;
 
 /// What raters say about the errors of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CodedErrors {
-    /// Codes of two raters: of those who settled a consensus, else of the two who coded most errors; `None` with fewer than two.
+    /// Codes of two raters: of those who were named or settled a consensus, else of the two who coded most errors; `None` with fewer
+    /// than two, or if more than two could be these.
     pub raters: Option<[Codes; 2]>,
     /// The consensus, if it holds and covers every error.
     pub consensus: Option<Codes>,
@@ -23,17 +26,30 @@ pub struct CodedErrors {
 }
 
 impl CodedErrors {
-    /// Reads the codes beside a log.
+    /// Reads the codes beside a log. `named` are the two raters whose codes are asked for, if any.
     ///
     /// # Errors
-    /// A file with codes is damaged.
-    pub fn read(log: &LogReader, follower: &Follower) -> FileResult<CodedErrors> {
+    /// A file with codes is damaged; or more than two raters have coded every error of a person, and nobody said which two count.
+    pub fn read(log: &LogReader, follower: &Follower, named: Option<&[String; 2]>) -> FileResult<CodedErrors> {
         let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
         let all = rater_codes::read_all(log.folder(), &codable)?;
-        let Some(consensus) = consensus_file::read(log.folder(), &codable)? else {
-            return Ok(CodedErrors { raters: most_complete(all.into_values().collect()), ..CodedErrors::default() });
+        let own_codes = || -> FileResult<Option<[Codes; 2]>> {
+            let choice = named.map_or_else(
+                || RaterChoice::most_complete(&all),
+                |raters| RaterChoice::Pair(RaterPair::named(&all, raters)),
+            );
+            match choice {
+                RaterChoice::Pair(pair) => Ok(Some(pair.codes)),
+                RaterChoice::Tied { raters, coded } if is_needed(follower, &codable, coded) => Err(tied(log, &raters)),
+                RaterChoice::TooFew | RaterChoice::Tied { .. } => Ok(None),
+            }
         };
-        let own = consensus.raters.each_ref().map(|rater| all.get(rater).cloned().unwrap_or_default());
+        let consensus = consensus_file::read(log.folder(), &codable)?;
+        let is_asked = |raters: &[String; 2]| named.is_none_or(|named| named.iter().all(|one| raters.contains(one)));
+        let Some(consensus) = consensus.filter(|consensus| is_asked(&consensus.raters)) else {
+            return Ok(CodedErrors { raters: own_codes()?, ..CodedErrors::default() });
+        };
+        let own = RaterPair::named(&all, &consensus.raters).codes;
         if let Some(changed) = consensus.changed(own.each_ref()).first() {
             let error = codable.errors.partition_point(|&press| press < changed.press) + 1;
             let [one, other] = &consensus.raters;
@@ -41,8 +57,7 @@ impl CodedErrors {
                 "{} changed the code of error {error} (press {}) after {one} and {other} settled it",
                 changed.rater, changed.press
             );
-            let raters = most_complete(all.into_values().collect());
-            return Ok(CodedErrors { raters, stale: Some(stale), ..CodedErrors::default() });
+            return Ok(CodedErrors { raters: own_codes()?, stale: Some(stale), ..CodedErrors::default() });
         }
         let shared = consensus.current(own.each_ref());
         match codable.errors.iter().all(|press| shared.0.contains_key(press)) {
@@ -52,10 +67,7 @@ impl CodedErrors {
                 settled_by: Some(consensus.raters),
                 stale: None,
             }),
-            false => {
-                let raters = most_complete(all.into_values().collect());
-                Ok(CodedErrors { raters, ..CodedErrors::default() })
-            }
+            false => Ok(CodedErrors { raters: own_codes()?, ..CodedErrors::default() }),
         }
     }
 
@@ -72,8 +84,7 @@ impl CodedErrors {
             let is_known = judged.iter().all(|press| press.belief_known);
             return (judged, is_known.then_some(BeliefBasis::Recorded));
         };
-        let coded = |codes: &Codes| judged.iter().all(|press| !press.verdict.error || codes.0.contains_key(&press.seq));
-        let raters = self.raters.as_ref().filter(|raters| raters.iter().all(coded));
+        let raters = self.complete_raters(&judged);
         let kitchen = &follower.session.kitchen;
         for press in judged.iter_mut().filter(|press| press.verdict.error) {
             press.cause = match (&self.consensus, raters) {
@@ -89,6 +100,33 @@ impl CodedErrors {
         };
         (judged, Some(basis))
     }
+
+    /// The codes that both raters share: their consensus, else what both coded alike, if both coded every error.
+    pub fn shared(&self, judged: &[JudgedPress]) -> Option<Codes> {
+        let alike = || self.complete_raters(judged).map(|[one, other]| one.agreed(other));
+        self.consensus.clone().or_else(alike)
+    }
+
+    /// The codes of the two raters, if both coded every error.
+    fn complete_raters(&self, judged: &[JudgedPress]) -> Option<&[Codes; 2]> {
+        let coded = |codes: &Codes| judged.iter().all(|press| !press.verdict.error || codes.0.contains_key(&press.seq));
+        self.raters.as_ref().filter(|raters| raters.iter().all(coded))
+    }
+}
+
+/// Whether the analysis of a person's errors would rest on codes of raters who each coded so many errors.
+fn is_needed(follower: &Follower, codable: &Codable, coded: usize) -> bool {
+    let is_person = follower.session.spec.participant.kind != ParticipantKind::Simulated;
+    is_person && !codable.errors.is_empty() && coded == codable.errors.len()
+}
+
+fn tied(log: &LogReader, raters: &[String]) -> FileError {
+    let found = format!("complete codes of {} raters: {}", raters.len(), raters.join(", "));
+    let remedy = format!(
+        "--raters with two of them, such as --raters {} {}; or a consensus of two of them (tomcom replay RECORDING --settle)",
+        raters[0], raters[1]
+    );
+    FileError::from_finding(log.folder(), found, remedy)
 }
 
 /// The cause that a code names.
@@ -99,12 +137,15 @@ fn cause(kitchen: &Kitchen, press: &JudgedPress, code: &Code) -> Option<Cause> {
     Some(Cause::Belief { gain_nats: f64::NAN, target: code.target(kitchen, press.before)?, with: None })
 }
 
-/// The cause of an error by two raters. If both coded a false belief, the target is the first rater's; otherwise the error counts
-/// as not belief related.
+/// The cause of an error by two raters, which does not depend on who is the first. If both coded a false belief, it is belief related;
+/// where they name two, the first in the layout's order comes first. Otherwise the error counts as not belief related.
 fn agreed(kitchen: &Kitchen, press: &JudgedPress, [one, other]: &[Codes; 2]) -> Option<Cause> {
-    let (a, b) = (one.0.get(&press.seq)?, other.0.get(&press.seq)?);
-    if b.kind() != CauseKind::Belief {
+    let codes = [one.0.get(&press.seq)?, other.0.get(&press.seq)?];
+    if codes.iter().any(|code| code.kind() != CauseKind::Belief) {
         return Some(Cause::Slip);
     }
-    cause(kitchen, press, a)
+    let mut targets: Vec<Target> = codes.iter().filter_map(|code| code.target(kitchen, press.before)).collect();
+    targets.sort_by_key(|target| target.aspects(kitchen).next());
+    targets.dedup();
+    Some(Cause::Belief { gain_nats: f64::NAN, target: *targets.first()?, with: targets.get(1).copied() })
 }

@@ -59,6 +59,8 @@ pub struct AnalysisRequest {
     pub out: PathBuf,
     /// How much is computed.
     pub extent: AnalysisScope,
+    /// The two raters whose codes are taken; `None`: those with the most complete codes of each recording.
+    pub raters: Option<[String; 2]>,
 }
 
 /// Recordings of an analysis, each with the name that identifies it in tables.
@@ -118,7 +120,7 @@ pub fn study(
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
     let work = |&(index, (path, name)): &(usize, &(PathBuf, String))| -> Result<Option<(Trial, Facts)>, StudyError> {
-        let Some((own, RecordingAnalysis { trial, facts, rows })) = reading::read(path, name, analysis.extent)? else {
+        let Some((own, RecordingAnalysis { trial, facts, rows })) = reading::read(path, name, analysis.extent, analysis.raters.as_ref())? else {
             return Ok(None);
         };
         same_kitchen((first, &kitchen), (path, &own))?;

@@ -17,14 +17,14 @@ use crate::analysis::wizard_log::{WizardLog, clock_at};
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileResult;
-use crate::edge::log::{LogReader, at_line};
+use crate::edge::log::{LogReader, at_line, rater_codes};
 use crate::history::comparison::CommunicationContent;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Change, Kitchen};
 use crate::measures::attribution::{Attributor, Cause};
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::{CommunicationEvent, WINDOW};
-use crate::measures::sequences::{Sequence, sequences, sequences_any_aspect};
+use crate::measures::sequences::{Episode, Sequence, sequences, sequences_any_aspect};
 use crate::measures::{JudgedPress, median};
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
@@ -34,9 +34,13 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::{Condition, ParticipantKind, Visibility};
 use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEvent};
 use crate::study::acting_arm::ActingArm;
+use crate::study::belief_basis::BeliefBasis;
+use crate::study::belief_trace::BeliefTrace;
 use crate::study::facts::Facts;
+use crate::study::known_beliefs::{KnownBeliefs, SharedBeliefs};
+use crate::study::prevention::TrialTruth;
 use crate::study::robot_tally::{RobotSummary, RobotTally};
-use crate::study::trial_statistics::{BeliefBasis, BeliefErrors, Trial};
+use crate::study::trial_statistics::{BeliefErrors, Trial};
 use crate::wizard::settings::WizardKind;
 
 /// Result of analysing one recording.
@@ -69,20 +73,18 @@ enum Pass {
 }
 
 impl Pass {
-    fn new(session: Session, extent: AnalysisScope) -> Pass {
+    /// `is_known`: what the participant believed is recorded, or may follow from raters' codes.
+    fn new(session: Session, extent: AnalysisScope, is_known: bool) -> Pass {
         let (spec, mut session) = (&session.spec.clone(), session);
         let cost = CostToGo::new(session.kitchen.clone());
-        let is_simulated = spec.participant.kind == ParticipantKind::Simulated;
         match spec.trial.condition {
             Condition::Wizard if extent.concepts => {
                 let request = CompareRequest { with: Vec::new(), window: WINDOW };
                 session.spec.assistant.concept = ConceptName::TomCom;
                 Pass::Beside(Box::new(ComparisonFollower::new(session, &request)))
             }
-            // Prevented errors can be counted only where the participant's beliefs were recorded.
-            Condition::None if extent.concepts && is_simulated => {
-                Pass::Swept(Box::new(ConceptSweep::new(session, cost)))
-            }
+            // Prevented errors can be counted only where false beliefs are known.
+            Condition::None if extent.concepts && is_known => Pass::Swept(Box::new(ConceptSweep::new(session, cost))),
             _ => Pass::Plain(Box::new(Follower::new(session, cost))),
         }
     }
@@ -137,14 +139,16 @@ fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &Dirichle
     belief
 }
 
-/// Analyses the recording with this name in tables; `None` for a practice recording.
+/// Analyses the recording with this name in tables; `None` for a practice recording. `raters` are the two whose codes are taken, if
+/// they were named.
 ///
 /// # Errors
-/// The recording cannot be read or replayed.
+/// The recording cannot be read or replayed, or it is not clear which two raters' codes are to be taken.
 pub fn read(
     recording: &Path,
     name: &str,
     extent: AnalysisScope,
+    raters: Option<&[String; 2]>,
 ) -> FileResult<Option<(Arc<Kitchen>, RecordingAnalysis)>> {
     let mut log = LogReader::open(recording)?;
     let header = log.header.clone();
@@ -152,13 +156,15 @@ pub fn read(
         return Ok(None);
     }
     let kitchen = log.kitchen.clone();
-    let mut pass = Pass::new(log.session(), extent);
     let mut rows = RowCollector::new(name);
     let mut hands = WizardLog::default();
     let mut robot = RobotTally::new(header.session.robot.arm);
     let mut regret = RegretSum::new(CostToGo::new(kitchen.clone()));
     let mut answers = Vec::new();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
+    let is_coded = rater_codes::raters(log.folder())?.len() >= 2;
+    let mut pass = Pass::new(log.session(), extent, is_simulated || is_coded);
+    let mut trace = BeliefTrace::default();
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
         attributor: Attributor::new(header.session.human.decision.clone(), log.session().seed()),
         cost: CostToGo::new(kitchen.clone()),
@@ -177,6 +183,7 @@ pub fn read(
         robot.note(&line.stamped.event, follower.session.trial_clock(line.stamped.time), was_on);
         if let Some(by_estimate) = &mut by_estimate {
             by_estimate.note(&line.stamped, &change, follower);
+            trace.note(&line.stamped, &change, &follower.session);
         }
         if extent.events {
             rows.note(&line.stamped, &change, follower, was_running);
@@ -186,7 +193,7 @@ pub fn read(
         }
     }
     let standing = exclusion_status(&pass.follower().session, &log)?;
-    let coded = CodedErrors::read(&log, pass.follower())?;
+    let coded = CodedErrors::read(&log, pass.follower(), raters)?;
     let lanes = lanes(&mut pass);
     let follower = pass.follower();
     let by_estimate = by_estimate.map(|found| found.causes);
@@ -194,26 +201,36 @@ pub fn read(
     let mut trial = trial(name, &header, follower, standing);
     trial.ended = robot.ended;
     trial.robot = robot.into_figures();
-    trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis));
+    let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace));
+    trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis, known.as_ref()));
     trial.answers = answers;
     if extent.concepts && basis == Some(BeliefBasis::Recorded) && trial.signals > 0 {
         trial.useful_signals = useful_signals(recording)?;
     }
     trial.additional_presses_per_order = regret.per_order(trial.orders);
-    trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| hands.figures(follower).measures);
-    if let Pass::Swept(sweeper) = &pass {
-        let is_known = basis == Some(BeliefBasis::Recorded);
-        trial.swept = if is_known { sweeper.swept() } else { Vec::new() };
+    trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| match &known {
+        Some(known) if known.basis != BeliefBasis::Recorded => hands.measures_by_raters(follower, &known.episodes),
+        _ => hands.figures(follower).measures,
+    });
+    if let (Pass::Swept(sweeper), Some(known)) = (&pass, &known) {
+        trial.swept = sweeper.swept(&TrialTruth::new(&kitchen, &judged, known));
     }
     if let [(_, of), (_, with)] = &lanes[..] {
         trial.lanes = Some([of.clone(), with.clone()]);
     }
     let follower = pass.follower();
     let sequences = sequences(&judged);
-    let known =
-        PressFacts { judged: &judged, sequences: &sequences, by_estimate: by_estimate.as_deref(), coded: &coded };
-    let rows = rows.finish(&follower.session, &known, &lanes, WINDOW);
+    let presses =
+        PressFacts {
+            judged: &judged,
+            sequences: &sequences,
+            by_estimate: by_estimate.as_deref(),
+            coded: &coded,
+            known: known.as_ref(),
+        };
+    let rows = rows.finish(&follower.session, &presses, &lanes, WINDOW);
     if matches!(basis, Some(BeliefBasis::Consensus | BeliefBasis::Raters)) {
+        trial.shared_beliefs = coded.raters.as_ref().map(SharedBeliefs::count);
         trial.raters = coded.raters;
     }
     trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefBasis::Consensus));
@@ -250,7 +267,32 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
     sent
 }
 
-fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> BeliefErrors {
+/// The participant's false beliefs, recorded or by what raters share; `None` if there is only the estimate.
+fn known_beliefs(
+    follower: &Follower,
+    judged: &[JudgedPress],
+    basis: BeliefBasis,
+    coded: &CodedErrors,
+    trace: &BeliefTrace,
+) -> Option<KnownBeliefs> {
+    let kitchen = &follower.session.kitchen;
+    match basis {
+        BeliefBasis::Recorded => Some(KnownBeliefs::recorded(judged, follower.episodes.all().cloned().collect())),
+        BeliefBasis::Consensus | BeliefBasis::Raters => {
+            let (codes, mut cost) = (coded.shared(judged)?, CostToGo::new(kitchen.clone()));
+            Some(KnownBeliefs::coded(basis, kitchen, &mut cost, trace, judged, &codes))
+        }
+        BeliefBasis::Estimate => None,
+    }
+}
+
+fn beliefs(
+    follower: &Follower,
+    judged: &[JudgedPress],
+    basis: BeliefBasis,
+    known: Option<&KnownBeliefs>,
+) -> BeliefErrors {
+    let episodes: &[Episode] = known.map_or(&[], |known| &known.episodes);
     let count = |is: fn(Cause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count() as u64;
     let lengths = |sequences: &[Sequence]| sequences.iter().map(Sequence::length).collect();
     let all = sequences(judged);
@@ -260,10 +302,10 @@ fn beliefs(follower: &Follower, judged: &[JudgedPress], basis: BeliefBasis) -> B
         errors: count(|cause| matches!(cause, Cause::Belief { .. })),
         of_two: count(|cause| matches!(cause, Cause::Belief { with: Some(_), .. })),
         lengths: lengths(&all),
-        causes: CauseKindCounts::from_presses(&follower.session.kitchen, judged, &follower.episodes),
+        causes: CauseKindCounts::from_presses(&follower.session.kitchen, judged, episodes),
         lengths_any_aspect: lengths(&sequences_any_aspect(judged)),
         recovery_s: all.iter().filter_map(recovery).collect(),
-        episodes: (basis == BeliefBasis::Recorded).then(|| follower.episodes.harmful().count() as u64),
+        episodes: known.map(|known| known.episodes.iter().filter(|episode| episode.errors > 0).count() as u64),
     }
 }
 
@@ -318,6 +360,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         lanes: None,
         swept: Vec::new(),
         raters: None,
+        shared_beliefs: None,
         settled_by: None,
         stale_consensus: None,
     }

@@ -16,6 +16,7 @@ use crate::mind::BeliefWitness;
 use crate::mind::recorded_estimate::EstimateWitness;
 use crate::session::{Event, Session, Stamped};
 use crate::study::column::{Table, TableRow};
+use crate::study::known_beliefs::KnownBeliefs;
 use crate::study::tables::actions::{ActionRow, PressAnalysis, RecordedPress};
 use crate::study::tables::aspect_beliefs::BeliefRow;
 use crate::study::tables::communications::CommunicationRow;
@@ -58,12 +59,16 @@ pub struct PressFacts<'a> {
     pub by_estimate: Option<&'a [(u64, Cause)]>,
     /// The codes of raters, if they coded the trial.
     pub coded: &'a CodedErrors,
+    /// The periods of false belief, if they are known.
+    pub known: Option<&'a KnownBeliefs>,
 }
 
 impl<'a> PressFacts<'a> {
     /// Analysis of the press with this log number; `None` for presses of the robot.
-    fn analysis(&self, seq: u64) -> Option<PressAnalysis<'a>> {
+    fn analysis(&self, seq: u64, session: &Session) -> Option<PressAnalysis<'a>> {
         let index = self.judged.binary_search_by_key(&seq, |press| press.seq).ok()?;
+        let episode = self.known.and_then(|known| known.episode(&session.kitchen, &self.judged[index]));
+        let clock_s = |time: SessionTime| clock_at(session, time).as_secs_f64();
         let sequence = self.sequences.iter().position(|one| one.errors.contains(&index));
         let estimated = self.by_estimate.and_then(|causes| causes.iter().find(|(press, _)| *press == seq));
         Some(PressAnalysis {
@@ -75,6 +80,8 @@ impl<'a> PressFacts<'a> {
                 None => [None, None],
             },
             shared: self.coded.consensus.as_ref().and_then(|codes| codes.0.get(&seq)),
+            false_since_s: episode.map(|episode| clock_s(episode.began)),
+            false_until_s: episode.and_then(|episode| episode.corrected).map(clock_s),
         })
     }
 }
@@ -189,7 +196,7 @@ impl RowCollector {
         self.end_look(session);
         let (recording, kitchen) = (&*self.recording, &*session.kitchen);
         for recorded in &self.presses {
-            self.rows.add(&ActionRow { recording, kitchen, recorded, analysis: known.analysis(recorded.seq) });
+            self.rows.add(&ActionRow { recording, kitchen, recorded, analysis: known.analysis(recorded.seq, session) });
         }
         let pairs = match lanes {
             [(_, of), (_, with)] => Some(matched(of, with, window, MatchCriterion::Signal)),

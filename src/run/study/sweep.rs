@@ -14,11 +14,9 @@ use crate::communication::settings::AssistantSpec;
 use crate::communication::tom::TomConcept;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change};
-use crate::measures::attribution::Cause;
-use crate::measures::sequences::Episode;
 use crate::session::apply::ApplyError;
 use crate::session::{Applied, Event, Session, Stamped};
-use crate::study::prevention::{ConceptSignal, FalseBeliefTruth, PressTruth, TrialTruth};
+use crate::study::prevention::{ConceptSignal, TrialTruth};
 use crate::study::roc::{CONCEPTS, LEAST_COST, SweptTrial, parameters};
 
 /// A concept with one parameter value, and its hypothetical signals.
@@ -118,9 +116,8 @@ impl ConceptSweep {
         }
     }
 
-    /// Prevention counts of every concept and parameter value; to be called after the last event.
-    pub fn swept(&self) -> Vec<SweptTrial> {
-        let truth = truth(&self.follower);
+    /// Prevention counts of every concept and parameter value by the truth about the trial; to be called after the last event.
+    pub fn swept(&self, truth: &TrialTruth) -> Vec<SweptTrial> {
         let signalled = self.swept_concepts.iter().map(|swept| SweptTrial {
             concept: swept.concept,
             parameter: swept.parameter,
@@ -132,28 +129,5 @@ impl ConceptSweep {
             count: truth.count_proposals(parameter as usize),
         });
         signalled.chain(proposed).collect()
-    }
-}
-
-/// True errors and false beliefs of a replayed session with recorded beliefs.
-fn truth(follower: &Follower) -> TrialTruth {
-    let kitchen = &follower.session.kitchen;
-    let press = |press: &crate::measures::JudgedPress| PressTruth {
-        time: press.time,
-        error: press.verdict.error,
-        aspects: match press.cause {
-            Some(Cause::Belief { target, .. }) => target.aspects(kitchen).collect(),
-            _ => Vec::new(),
-        },
-    };
-    let false_belief = |episode: &Episode| FalseBeliefTruth {
-        aspect: episode.aspect,
-        began: episode.began,
-        ended: episode.corrected,
-        harmful: episode.errors > 0,
-    };
-    TrialTruth {
-        presses: follower.judged.iter().map(press).collect(),
-        spells: follower.episodes.all().map(false_belief).collect(),
     }
 }

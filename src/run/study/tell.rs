@@ -3,11 +3,11 @@
 use crate::base::words::count;
 use crate::measures::matching::{MatchShares, Similarity};
 use crate::session::event::EndReason;
+use crate::study::belief_basis::BeliefBasis;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
 use crate::study::live_arms::LiveArm;
 use crate::study::roc::{BootstrapInterval, EQUAL_SIGNALS};
-use crate::study::trial_statistics::BeliefBasis;
 
 /// Summary of a study as lines of text.
 pub fn describe(figures: &StudySummary) -> String {
@@ -51,6 +51,15 @@ pub fn describe(figures: &StudySummary) -> String {
             number(found.kappa_aspect)
         );
     }
+    if let (Some(shared), Some(episodes)) = (&figures.shared_beliefs, totals.false_belief_episodes) {
+        text += &format!(
+            "false belief episodes: {episodes}; both raters name the same false belief for {}, each another for {}, one of them alone \
+             names one for {}\n",
+            count(shared.same, "error", "errors"),
+            count(shared.differing, "error", "errors"),
+            count(shared.of_one, "error", "errors"),
+        );
+    }
     for (raters, trials) in &figures.consensus {
         let raters = raters.replace('+', " and ");
         text += &format!("codes: consensus of {raters} in {}\n", count(*trials, "trial", "trials"));
@@ -81,8 +90,9 @@ pub fn describe(figures: &StudySummary) -> String {
     if figures.roc.iter().any(|roc| !roc.points.is_empty()) {
         let heads: Vec<String> = EQUAL_SIGNALS.iter().map(|signals| format!("{signals:>6}")).collect();
         text += &format!(
-            "concepts, {}: belief related errors prevented, by signals per 100 presses of the human\n{:<12}{}{:>8}\n",
+            "concepts, {}, false beliefs by {}: belief related errors prevented, by signals per 100 presses of the human\n{:<12}{}{:>8}\n",
             count(figures.roc_trials, "unassisted trial", "unassisted trials"),
+            figures.roc_beliefs_from.map_or("unknown sources", BeliefBasis::words),
             "",
             heads.join(""),
             "area"

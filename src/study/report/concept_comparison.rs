@@ -2,8 +2,9 @@
 
 use maud::{Markup, Render, html};
 
-use super::elements::{Captions, keys, nothing, number, scroll, section, with_interval};
+use super::elements::{Captions, UNKNOWN, keys, nothing, number, scroll, section, with_interval};
 use crate::base::words::count;
+use crate::study::belief_basis::BeliefBasis;
 use crate::study::charts::{self, MOST_SIGNALS};
 use crate::study::figures::StudySummary;
 use crate::study::live_arms::LiveArm;
@@ -14,7 +15,8 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
     let key = keys(&[("tom-com", "ToM-Com"), ("tom", "ToM"), ("dev", "DEV")]);
     let pictures = html! {
         (captions.figure(charts::roc(figures), html! {
-            "Receiver operating characteristics over unassisted trials" (bands(figures)) "." (key)
+            "Receiver operating characteristics over unassisted trials" (bands(figures)) ". False beliefs are known by "
+            (figures.roc_beliefs_from.map_or(UNKNOWN, BeliefBasis::words)) "." (key)
         }))
         (captions.figure(charts::equal_signals(figures), html! {
             "Errors prevented against number of signals. Each point is one parameter value. A curve may fall, because a value that \

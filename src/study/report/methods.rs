@@ -6,9 +6,9 @@ use super::elements::{arm, section};
 use crate::base::words;
 use crate::session::event::EndReason;
 use crate::study::arm_group::ArmGroup;
+use crate::study::belief_basis::BeliefBasis;
 use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
-use crate::study::trial_statistics::BeliefBasis;
 
 /// Section on methods: conduct and analysis of the trials.
 pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> Markup {

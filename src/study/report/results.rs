@@ -10,6 +10,7 @@ use crate::measures::matching::MatchShares;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::plan::ItemKind;
 use crate::session::settings::Condition;
+use crate::study::belief_basis::BeliefBasis;
 use crate::study::figures::StudySummary;
 
 /// Table with this study's results beside the paper's.
@@ -62,11 +63,21 @@ pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Mar
         (matches(captions, figures))
         @if let Some(wizard) = &figures.wizard {
             h3 { "The wizard" } "\n"
-            (captions.table("Performance of the wizard.", &["", "over all trials"], &wizard_rows(wizard)))
+            (captions.table(performance(figures), &["", "over all trials"], &wizard_rows(wizard)))
         }
         @if let Some(found) = &figures.offers { (offers(found)) }
     };
     section("Wizard and assistant", content)
+}
+
+/// Caption of the wizard's performance, with the source of the false beliefs.
+fn performance(figures: &StudySummary) -> String {
+    let unknown = "; false beliefs that led to no error are not known";
+    match figures.wizard_beliefs_from {
+        None => "Performance of the wizard.".to_string(),
+        Some(BeliefBasis::Recorded) => format!("Performance of the wizard, by {}.", BeliefBasis::Recorded.words()),
+        Some(basis) => format!("Performance of the wizard, by {}{unknown}.", basis.words()),
+    }
 }
 
 /// What the wizard was offered, and what was made of it, as a sentence for each.

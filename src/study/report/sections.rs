@@ -6,10 +6,11 @@ use super::elements::{Captions, PageColumn, UNKNOWN, cells, condition, count, nu
 use crate::base::words;
 use crate::measures::cause_codes::Agreement;
 use crate::session::event::EndReason;
+use crate::study::belief_basis::BeliefBasis;
 use crate::study::column::Table;
 use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;
-use crate::study::trial_statistics::{BeliefBasis, Trial};
+use crate::study::trial_statistics::Trial;
 
 /// Least number of participants with both trials for which r and p stand among the main results.
 const FEWEST_PARTICIPANTS: usize = 8;
@@ -75,6 +76,11 @@ fn raters(found: &Agreement, figures: &StudySummary) -> Markup {
             " errors (Cohen\u{2019}s kappa " (number(found.kappa_cause, 2)) "). Of " (found.beliefs) " errors that both \
             attribute to a false belief, they agree on its location for " (found.same_aspect) " (kappa "
             (number(found.kappa_aspect, 2)) "). Without a consensus an error counts as belief related if both coded a false belief."
+            @if let Some(shared) = &figures.shared_beliefs {
+                " False belief episodes, and with them errors prevented, hits and omissions, follow from the errors for which both name \
+                 the same false belief (" (shared.same) "), or from the consensus; for " (shared.differing) " errors they name different \
+                 ones, for " (shared.of_one) " one of them alone names one."
+            }
             @for (pair, trials) in &figures.consensus {
                 " Codes of " (words::count(*trials, "trial", "trials")) ": consensus of " (pair.replace('+', " and "))
                 ", settled together after each had coded alone; agreement is that of their own codes."

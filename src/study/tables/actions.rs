@@ -37,6 +37,10 @@ pub struct PressAnalysis<'a> {
     pub codes: [Option<&'a Code>; 2],
     /// The consensus of these two, where it defines the causes of errors.
     pub shared: Option<&'a Code>,
+    /// Beginning of the false belief behind a belief related error, on the trial's clock in seconds, where it is known.
+    pub false_since_s: Option<f64>,
+    /// Its end; `None` if there is none until the trial's end.
+    pub false_until_s: Option<f64>,
 }
 
 /// A press with its analysis.
@@ -85,8 +89,8 @@ impl ActionRow<'_> {
 }
 
 /// Meanings of columns that take more than a line.
-const SECOND_ASPECT: &str = "second aspect, if only two false beliefs together explain the error";
-const RATER: &str = "code of one of the two raters, who settled a consensus or else coded most errors: belief (with location), slip, race, \
+const SECOND_ASPECT: &str = "second aspect, if only two false beliefs together explain the error, or if the two raters name different ones";
+const RATER: &str = "code of one of the two raters, who were named, settled a consensus or else coded most errors: belief (with location), slip, race, \
                      other or buttons";
 
 fn cause_name(cause: Cause) -> &'static str {
@@ -168,6 +172,15 @@ impl TableRow for ActionRow<'_> {
             }),
             Self::column("consensus", "", "code that the two raters share, where it defines the cause", |row| {
                 row.code(|press| press.shared.cloned())
+            }),
+            Self::column(
+                "false_since_s",
+                "s",
+                "beginning of the false belief behind a belief related error, on the trial's clock; empty: not known",
+                |row| row.analysis.and_then(|press| press.false_since_s).map(rounded).into(),
+            ),
+            Self::column("false_until_s", "s", "end of that false belief; empty: not known, or none in the trial", |row| {
+                row.analysis.and_then(|press| press.false_until_s).map(rounded).into()
             }),
         ]
     }

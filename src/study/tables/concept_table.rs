@@ -45,7 +45,12 @@ impl TableRow for ConceptRow<'_> {
             count("false_inside", "signals", "useless signals during a false belief episode", |count| {
                 count.false_inside
             }),
-            count("harmless", "signals", "signals about a false belief that led to no error", |count| count.harmless),
+            Self::column(
+                "harmless",
+                "signals",
+                "signals about a false belief that led to no error; empty where such beliefs are not known, as with people",
+                |row| row.swept.count.harmless.into(),
+            ),
             count("contents", "contents", "as signals; for dev, proposed presses", |count| count.contents),
             count(
                 "useless",
@@ -53,6 +58,9 @@ impl TableRow for ConceptRow<'_> {
                 "signals that are not the first about a false belief with errors to follow",
                 |count| count.useless,
             ),
+            Self::column("beliefs_from", "", "as in trials: recorded, consensus or raters", |row| {
+                row.trial.beliefs.as_ref().map(|beliefs| beliefs.basis.name()).into()
+            }),
         ]
     }
 }

@@ -2,11 +2,13 @@
 
 use crate::analysis::offer_summary::OfferSummary;
 use crate::measures::cause_kinds::CauseKindCounts;
+use crate::measures::wizard_performance::WizardMeasures;
 use crate::robot::AbortReason;
 use crate::session::event::EndReason;
 use crate::session::wall_display::DisplayedArm;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::effect::StudyMeasure;
+use crate::study::known_beliefs::SharedBeliefs;
 use crate::study::robot_tally::ArmSummary;
 use crate::study::trial_statistics::{BeliefErrors, Trial, mean_length};
 
@@ -84,6 +86,7 @@ fn declared() -> impl Iterator<Item = TrialColumn> {
         .chain(work())
         .chain(offered())
         .chain(shown())
+        .chain(false_beliefs())
 }
 
 fn plain(
@@ -359,4 +362,38 @@ fn shown() -> Vec<TrialColumn> {
     let arm =
         "how the participant's display showed the robot: none, hand or arm; empty: no display, or none could be shown";
     vec![plain("display_arm", "", arm, |t| t.display_arm.map(DisplayedArm::name).into())]
+}
+
+/// False belief episodes, how far raters agree on them, and a wizard's hits.
+fn false_beliefs() -> Vec<TrialColumn> {
+    fn shared(name: &'static str, meaning: &'static str, count: fn(SharedBeliefs) -> u64) -> TrialColumn {
+        TrialColumn::Plain(Trial::column(name, "errors", meaning, move |trial| {
+            trial.shared_beliefs.map(count).into()
+        }))
+    }
+    fn wizard(name: &'static str, unit: &'static str, meaning: &'static str, count: Counted) -> TrialColumn {
+        TrialColumn::Plain(Trial::column(name, unit, meaning, move |trial| {
+            trial.wizard.as_ref().and_then(count).into()
+        }))
+    }
+    type Counted = fn(&WizardMeasures) -> Option<u64>;
+    vec![
+        plain(
+            "false_belief_episodes",
+            "episodes",
+            "periods of false belief with at least one error; source in beliefs_from; empty: known by the estimate alone",
+            |t| t.beliefs.as_ref().and_then(|beliefs| beliefs.episodes).into(),
+        ),
+        shared(
+            "raters_same_belief",
+            "errors that both raters put down to the same false belief; this and the next two columns are empty without two raters",
+            |shared| shared.same,
+        ),
+        shared("raters_other_belief", "errors that both put down to a false belief, each to another one", |shared| {
+            shared.differing
+        }),
+        shared("one_rater_belief", "errors that one of them alone puts down to a false belief", |shared| shared.of_one),
+        wizard("wizard_hits", "episodes", "episodes with a signal of the wizard in time", |wizard| wizard.hits),
+        wizard("wizard_omissions", "episodes", "episodes without one", |wizard| wizard.omissions),
+    ]
 }

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 use tomcom::edge::log::rater_codes::{read_all, write};
 use tomcom::edge::log::{LOG_NAME, consensus_file};
-use tomcom::measures::cause_codes::{AgreementTable, CauseKind, Code, Codes, most_complete};
+use tomcom::measures::cause_codes::{AgreementTable, CauseKind, Code, Codes};
 use tomcom::measures::consensus::{Consensus, unsettled};
+use tomcom::measures::rater_choice::RaterChoice;
 use tomcom::run::code_exchange::{export, import};
 use tomcom::run::codes::{CodedRecording, CodesSummary, describe};
 use tomcom::run::simulate::Shard;
@@ -77,14 +78,21 @@ fn kappa_is_that_of_known_tables() {
 }
 
 #[test]
-fn the_two_raters_who_coded_most_errors_are_taken() {
+fn the_two_raters_who_coded_most_errors_are_taken_and_none_by_name() {
     let rater = |errors: u64| Codes((0..errors).map(|press| (press, Code::Slip)).collect());
-    let lengths = |raters: &[u64]| {
-        most_complete(raters.iter().copied().map(rater).collect()).map(|two| two.map(|codes| codes.0.len()))
+    let choice = |raters: &[u64]| {
+        let named = raters.iter().enumerate().map(|(index, errors)| (format!("R{}", index + 1), rater(*errors)));
+        match RaterChoice::most_complete(&named.collect()) {
+            RaterChoice::Pair(pair) => pair.raters.join(" "),
+            RaterChoice::TooFew => "too few".to_string(),
+            RaterChoice::Tied { raters, coded } => format!("{} with {coded}", raters.join(" or ")),
+        }
     };
-    assert_eq!(lengths(&[2, 9, 9]), Some([9, 9]), "the first by name is not complete");
-    assert_eq!(lengths(&[9, 2, 8]), Some([9, 8]));
-    assert_eq!(lengths(&[9]), None);
+    assert_eq!(choice(&[2, 9, 9]), "R2 R3", "the first by name is not complete");
+    assert_eq!(choice(&[9, 2, 8]), "R1 R3");
+    assert_eq!(choice(&[9]), "too few");
+    assert_eq!(choice(&[9, 9, 9]), "R1 or R2 or R3 with 9", "nobody is left out by name");
+    assert_eq!(choice(&[9, 5, 5]), "R1 or R2 or R3 with 5");
 }
 
 /// A row of a table that is wrong is named with what would be right, and nothing of the table is taken over.
@@ -234,7 +242,7 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
         let told = CodedRecording::open(&recording).expect_err(&row).to_string();
         assert!(told.contains("codes-R3.csv:2:") && told.contains(found), "{told}");
         let extent = AnalysisScope { concepts: false, events: false };
-        let told = reading::read(&recording, "one", extent).err().map(|error| error.to_string());
+        let told = reading::read(&recording, "one", extent, None).err().map(|error| error.to_string());
         assert!(told.as_ref().is_some_and(|told| told.contains("codes-R3.csv:2:")), "{told:?}");
     }
 }

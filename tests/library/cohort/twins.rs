@@ -15,7 +15,7 @@ use super::{folder, run};
 
 fn analysed(recording: &Path) -> Trial {
     let scope = AnalysisScope { concepts: true, events: false };
-    let (_, analysis) = reading::read(recording, "one", scope).expect("readable").expect("no practice");
+    let (_, analysis) = reading::read(recording, "one", scope, None).expect("readable").expect("no practice");
     analysis.trial
 }
 

@@ -3,6 +3,7 @@
 mod effect;
 mod live_arms;
 mod prevention;
+mod rater_episodes;
 mod report;
 mod tables;
 mod tutorials;
@@ -13,8 +14,9 @@ use tomcom::measures::cause_kinds::CauseKindCounts;
 use tomcom::session::event::EndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom::study::acting_arm::ActingArm;
+use tomcom::study::belief_basis::BeliefBasis;
 use tomcom::study::robot_tally::RobotSummary;
-use tomcom::study::trial_statistics::{BeliefBasis, BeliefErrors, Trial, arrange};
+use tomcom::study::trial_statistics::{BeliefErrors, Trial, arrange};
 
 fn near(found: f64, wanted: f64) {
     assert!((found - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{found} instead of {wanted}");
@@ -73,6 +75,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         lanes: None,
         swept: Vec::new(),
         raters: None,
+        shared_beliefs: None,
         settled_by: None,
         stale_consensus: None,
     }

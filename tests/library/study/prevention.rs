@@ -29,6 +29,7 @@ fn truth() -> TrialTruth {
     TrialTruth {
         presses: (0..10).map(press).collect(),
         spells: vec![spell(0, 2.5, Some(7.5)), spell(1, 3.5, Some(5.5)), spell(2, 8.5, None)],
+        knows_harmless: true,
     }
 }
 
@@ -41,7 +42,7 @@ fn sent(seconds: f64, aspects: &[u8]) -> ConceptSignal {
 fn counted(sent: &[ConceptSignal]) -> [u64; 5] {
     let count = truth().count_signals(sent);
     assert_eq!((count.signals, count.contents), (sent.len() as u64, sent.len() as u64));
-    [count.prevented, count.useless, count.false_inside, count.false_presses, count.harmless]
+    [count.prevented, count.useless, count.false_inside, count.false_presses, count.harmless.expect("harmless ones are known")]
 }
 
 #[test]
@@ -96,6 +97,7 @@ fn a_proposal_is_one_interruption_and_useless_if_no_press_that_it_spares_is_an_e
     let slips = TrialTruth {
         presses: [true, true, false].map(|error| PressTruth { time: at(0.0), error, aspects: Vec::new() }).to_vec(),
         spells: Vec::new(),
+        knows_harmless: true,
     };
     let count = slips.count_proposals(1);
     assert_eq!((count.signals, count.prevented, count.useless), (1, 0, 0));

@@ -65,7 +65,7 @@ fn folder(name: &str) -> PathBuf {
 fn analysis(name: &str) -> RecordingAnalysis {
     let folder = folder(name);
     fs::copy("tests/golden/format-1-hand.jsonl", folder.join("events.jsonl")).expect("a recording");
-    let (_, analysis) = reading::read(&folder, "hand", AnalysisScope { concepts: false, events: true })
+    let (_, analysis) = reading::read(&folder, "hand", AnalysisScope { concepts: false, events: true }, None)
         .expect("a recording")
         .expect("a trial");
     analysis

@@ -1,0 +1,36 @@
+//! Looks at locations: gaze that has rested in a location's area since its last change for long enough to read it.
+
+use crate::base::time::SessionTime;
+use crate::kitchen::LocationId;
+use crate::kitchen::state::MAX_LOCATIONS;
+use crate::session::Session;
+
+/// Length of a look after which a location counts as seen, in seconds.
+pub const LOOK_S: f64 = 0.1;
+
+/// For each location, the time since which the gaze has been in its area without a change there.
+#[derive(Clone, Debug, Default)]
+pub struct Looks {
+    since: [Option<SessionTime>; MAX_LOCATIONS],
+}
+
+impl Looks {
+    /// Notes a change of a location: what was read there before no longer holds.
+    pub fn changed(&mut self, location: LocationId) {
+        self.since[location.index()] = None;
+    }
+
+    /// Ends all looks, as a pause does.
+    pub fn interrupted(&mut self) {
+        self.since = Default::default();
+    }
+
+    /// Notes a usable gaze sample that has just been applied to the session. Returns whether the participant has seen the location's
+    /// present content by now.
+    pub fn sampled(&mut self, session: &Session, location: LocationId) -> bool {
+        let since = &mut self.since[location.index()];
+        let is_there = session.gaze.looked_at[location.index()] == Some(session.time);
+        *since = is_there.then(|| since.unwrap_or(session.time));
+        since.is_some_and(|since| session.time.secs_since(since) >= LOOK_S)
+    }
+}

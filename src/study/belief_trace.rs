@@ -1,0 +1,103 @@
+//! What can change or show the participant's beliefs in a trial: changes, looks, signals and the participant's presses, in order.
+//! Neither estimates nor recorded beliefs are part of it.
+
+use crate::analysis::looks::Looks;
+use crate::base::time::SessionTime;
+use crate::communication::recommendation::aspects_told;
+use crate::gaze::MIN_CONFIDENCE;
+use crate::kitchen::{Agent, AspectId, Change, LocationId, Press, State};
+use crate::session::{Event, Session, Stamped};
+
+/// Something that can change or show a belief.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TraceEvent {
+    /// The trial starts in this state, which the participant sees.
+    Started {
+        /// The empty kitchen.
+        state: State,
+    },
+    /// The kitchen changes by somebody other than the participant: the robot, an order, the wizard's correction.
+    Changed {
+        /// The state before the change.
+        before: State,
+        /// The state after the change.
+        after: State,
+    },
+    /// The gaze has rested on a location long enough to read its present content; once for each look and content.
+    Looked {
+        /// The location.
+        location: LocationId,
+    },
+    /// A signal makes these aspects certain.
+    Told {
+        /// The aspects.
+        aspects: Vec<AspectId>,
+    },
+    /// The participant presses.
+    Pressed {
+        /// Log number of the press.
+        seq: u64,
+        /// The press.
+        press: Press,
+    },
+}
+
+/// The trace of a trial, collected event by event.
+#[derive(Clone, Debug, Default)]
+pub struct BeliefTrace {
+    /// The events with their session times, in order.
+    pub events: Vec<(SessionTime, TraceEvent)>,
+    looks: Looks,
+    /// For each location, whether the present look at its present content is in `events` already.
+    is_noted: Vec<bool>,
+}
+
+impl BeliefTrace {
+    /// Adds an event that has just been applied to the session.
+    pub fn note(&mut self, stamped: &Stamped, change: &Change, session: &Session) {
+        if !session.is_running() && change.states().is_none() {
+            // The display is not read in a pause.
+            self.looks.interrupted();
+            return;
+        }
+        if let Some((before, after)) = change.states() {
+            self.is_noted.resize(session.kitchen.locations.len(), false);
+            for location in session.kitchen.changed(before, after) {
+                self.looks.changed(location);
+                self.is_noted[location.index()] = false;
+            }
+        }
+        let traced = match (*change, &stamped.event) {
+            (Change::TrialStarted { after, .. }, _) => Some(TraceEvent::Started { state: after }),
+            (Change::Press { press, .. }, _) if press.agent == Agent::Human => {
+                Some(TraceEvent::Pressed { seq: stamped.seq, press })
+            }
+            (_, Event::SignalShown { signal, .. }) => {
+                Some(TraceEvent::Told { aspects: aspects_told(&session.kitchen, session.state, signal) })
+            }
+            (_, Event::Gaze(sample)) if sample.confidence >= MIN_CONFIDENCE && session.gaze.fault.is_none() => {
+                self.looked(stamped.time, session);
+                None
+            }
+            _ => change.states().map(|(before, after)| TraceEvent::Changed { before, after }),
+        };
+        self.events.extend(traced.map(|event| (stamped.time, event)));
+    }
+
+    fn looked(&mut self, now: SessionTime, session: &Session) {
+        self.is_noted.resize(session.kitchen.locations.len(), false);
+        for (index, is_noted) in self.is_noted.iter_mut().enumerate() {
+            let location = LocationId(index as u8);
+            let is_seen = self.looks.sampled(session, location);
+            if is_seen && !*is_noted {
+                self.events.push((now, TraceEvent::Looked { location }));
+            }
+            *is_noted = is_seen;
+        }
+    }
+
+    /// Whether there was any look. Without gaze nobody knows what was seen.
+    pub fn has_looks(&self) -> bool {
+        self.events.iter().any(|(_, event)| matches!(event, TraceEvent::Looked { .. }))
+    }
+}

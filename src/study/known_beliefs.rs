@@ -1,0 +1,102 @@
+//! What is known of the participant's false beliefs in a trial: from recorded beliefs of simulated participants, or from raters.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::belief_basis::BeliefBasis;
+use super::belief_trace::BeliefTrace;
+use super::rater_episodes::rater_episodes;
+use crate::kitchen::Kitchen;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::measures::JudgedPress;
+use crate::measures::attribution::{Cause, Target};
+use crate::measures::cause_codes::Codes;
+use crate::measures::sequences::Episode;
+
+/// The false beliefs of a trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KnownBeliefs {
+    /// How they are known.
+    pub basis: BeliefBasis,
+    /// The target of the false belief behind each belief related error, by log number of the press.
+    pub targets: BTreeMap<u64, Target>,
+    /// The periods of false belief. Of people only those that led to errors.
+    pub episodes: Vec<Episode>,
+}
+
+/// How far two raters agree on the false beliefs behind the errors of a trial, by their own codes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SharedBeliefs {
+    /// Errors that both put down to the same false belief.
+    pub same: u64,
+    /// Errors that both put down to a false belief, each to another one.
+    pub differing: u64,
+    /// Errors that one of them alone puts down to a false belief.
+    pub of_one: u64,
+}
+
+impl KnownBeliefs {
+    /// The false beliefs that a simulated participant recorded; `judged` are its presses.
+    pub fn recorded(judged: &[JudgedPress], episodes: Vec<Episode>) -> KnownBeliefs {
+        let target = |press: &JudgedPress| match press.cause {
+            Some(Cause::Belief { target, .. }) => Some((press.seq, target)),
+            _ => None,
+        };
+        let targets = judged.iter().filter_map(target).collect();
+        KnownBeliefs { basis: BeliefBasis::Recorded, targets, episodes }
+    }
+
+    /// The false beliefs that follow from codes on which two raters agree (see [`super::rater_episodes::RULE`]).
+    pub fn coded(
+        basis: BeliefBasis,
+        kitchen: &Kitchen,
+        cost: &mut CostToGo,
+        trace: &BeliefTrace,
+        judged: &[JudgedPress],
+        codes: &Codes,
+    ) -> KnownBeliefs {
+        let errors = judged.iter().filter(|press| press.verdict.error);
+        let target = |press: &JudgedPress| Some((press.seq, codes.0.get(&press.seq)?.target(kitchen, press.before)?));
+        let targets: Vec<(u64, Target)> = errors.filter_map(target).collect();
+        let episodes = rater_episodes(kitchen, cost, trace, judged, &targets);
+        KnownBeliefs { basis, targets: targets.into_iter().collect(), episodes }
+    }
+}
+
+impl KnownBeliefs {
+    /// The period of false belief to which a belief related error belongs.
+    pub fn episode(&self, kitchen: &Kitchen, press: &JudgedPress) -> Option<&Episode> {
+        let target = self.targets.get(&press.seq)?;
+        let is_in = |one: &Episode| one.began <= press.time && one.corrected.is_none_or(|end| press.time <= end);
+        self.episodes.iter().find(|one| {
+            one.errors > 0 && is_in(one) && target.aspects(kitchen).any(|aspect| aspect == one.aspect)
+        })
+    }
+}
+
+impl SharedBeliefs {
+    /// Counts the errors that both raters coded.
+    pub fn count([one, other]: &[Codes; 2]) -> SharedBeliefs {
+        let mut shared = SharedBeliefs::default();
+        for (press, code) in &one.0 {
+            let Some(of_other) = other.0.get(press) else { continue };
+            match (code.aspect(), of_other.aspect()) {
+                (Some(one), Some(other)) if one == other => shared.same += 1,
+                (Some(_), Some(_)) => shared.differing += 1,
+                (Some(_), None) | (None, Some(_)) => shared.of_one += 1,
+                (None, None) => {}
+            }
+        }
+        shared
+    }
+
+    /// Sum of two counts.
+    pub fn plus(self, other: SharedBeliefs) -> SharedBeliefs {
+        SharedBeliefs {
+            same: self.same + other.same,
+            differing: self.differing + other.differing,
+            of_one: self.of_one + other.of_one,
+        }
+    }
+}

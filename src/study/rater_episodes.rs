@@ -1,0 +1,247 @@
+//! False belief episodes of people, by the causes that raters gave to errors. [`RULE`] says how; it is printed in the report.
+//!
+//! Presses are judged by the rules of the kitchen and the cost to go, as errors are. The assistant's estimate has no part in it, so
+//! that it can be judged by these episodes.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::belief_trace::{BeliefTrace, TraceEvent};
+use crate::base::time::SessionTime;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, OrderContent, Press, State, World};
+use crate::measures::JudgedPress;
+use crate::measures::attribution::Target;
+use crate::measures::sequences::Episode;
+
+/// The rule by which the codes of raters give false belief episodes.
+pub const RULE: &str = "Of people, from the codes of two raters: their consensus, else only the false beliefs that both gave to an error \
+     alike; what one of them coded alone is counted beside it. The aspect of an error about a place is its content. An error about an order is \
+     about what the order shows, if it had changed and not been looked at since, else about the recipe of its dish (without any gaze always \
+     about the recipe). The belief is false from the last press, look or signal before the error that shows it right; if the place was changed \
+     by somebody else since, from the first such change; from the start of the trial where there is neither. It lasts until the first press, look \
+     or signal after the error that shows it right, or until the place is again as it was last known. What shows it right: a press that changes the \
+     place and was not coded as an error about it; a press that is no error and would not have helped with the wrong belief; a look of 0.1 s \
+     at the place or a signal about it, unless the next error about it is coded before the place changes and before a press shows the belief right. The \
+     wrong belief is what was last known of the place; of a recipe, the confusions of it that \
+     explain most of the coded errors (if none does, any press that is no error and brings an order of the dish nearer shows it right). An error \
+     coded after the belief was shown right begins another episode. False beliefs without an error are not known.";
+
+/// False belief episodes from an error's coded target, by log number of the press; each led to at least one error. `judged` are all
+/// presses of the participant. In order of their beginnings.
+pub fn rater_episodes(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    trace: &BeliefTrace,
+    judged: &[JudgedPress],
+    coded: &[(u64, Target)],
+) -> Vec<Episode> {
+    let targets: BTreeMap<u64, Target> = coded.iter().copied().collect();
+    let correct = judged.iter().filter(|press| !press.verdict.error && !press.verdict.race);
+    let mut rule = EpisodeRule { kitchen, cost, trace, correct: correct.map(|press| press.seq).collect() };
+    let mut episodes = Vec::new();
+    for (aspect, errors) in rule.by_aspect(&targets) {
+        episodes.extend(rule.episodes(aspect, &errors));
+    }
+    episodes.sort_by_key(|episode: &Episode| (episode.began, episode.aspect));
+    episodes
+}
+
+/// The rule, applied to one trial.
+struct EpisodeRule<'a> {
+    kitchen: &'a Kitchen,
+    cost: &'a mut CostToGo,
+    trace: &'a BeliefTrace,
+    /// Log numbers of the presses that are neither errors nor races.
+    correct: BTreeSet<u64>,
+}
+
+/// The belief about one aspect, followed over the trial.
+struct BeliefCourse {
+    aspect: AspectId,
+    /// When the belief was last shown right.
+    since: SessionTime,
+    /// The value of the location at that time; for recipes without meaning.
+    value: usize,
+    /// When somebody else first changed the location after that.
+    changed: Option<SessionTime>,
+    /// The first look or signal since the last error, change or press that tells whether it did.
+    mended: Option<(SessionTime, usize)>,
+    open: Option<Episode>,
+    done: Vec<Episode>,
+}
+
+impl BeliefCourse {
+    fn new(aspect: AspectId) -> BeliefCourse {
+        let (since, value, done) = (SessionTime::ZERO, 0, Vec::new());
+        BeliefCourse { aspect, since, value, changed: None, mended: None, open: None, done }
+    }
+
+    /// The belief is right at this time, about this value.
+    fn right(&mut self, time: SessionTime, value: usize) {
+        (self.since, self.value, self.changed, self.mended) = (time, value, None, None);
+        self.done.extend(self.open.take().map(|episode| Episode { corrected: Some(time), ..episode }));
+    }
+
+    /// A look or signal has shown this value. Whether it was understood, the next error or press tells.
+    fn told(&mut self, time: SessionTime, value: usize) {
+        self.mended = self.mended.or(Some((time, value)));
+    }
+
+    /// No error has contradicted the last look or signal.
+    fn uphold(&mut self) {
+        if let Some((time, value)) = self.mended {
+            self.right(time, value);
+        }
+    }
+
+    fn changed(&mut self, time: SessionTime, value: usize) {
+        match value == self.value {
+            true => self.right(time, value),
+            false => self.changed = self.changed.or(Some(time)),
+        }
+    }
+
+    fn erred(&mut self) {
+        self.mended = None;
+        let (aspect, began) = (self.aspect, self.changed.unwrap_or(self.since));
+        self.open.get_or_insert(Episode { aspect, began, corrected: None, errors: 0 }).errors += 1;
+    }
+}
+
+/// The time right after a signal, which itself still falls into the false belief that it mends.
+fn after(signal: SessionTime) -> SessionTime {
+    signal + SessionTime(1)
+}
+
+impl EpisodeRule<'_> {
+    /// The coded errors by the aspect that they are about.
+    fn by_aspect(&mut self, targets: &BTreeMap<u64, Target>) -> BTreeMap<AspectId, BTreeSet<u64>> {
+        let (trace, has_looks) = (self.trace, self.trace.has_looks());
+        let mut unseen: BTreeSet<LocationId> = BTreeSet::new();
+        let mut errors: BTreeMap<AspectId, BTreeSet<u64>> = BTreeMap::new();
+        for (_, event) in &trace.events {
+            match event {
+                TraceEvent::Started { .. } => unseen.clear(),
+                TraceEvent::Changed { before, after } => unseen.extend(self.kitchen.changed(*before, *after)),
+                TraceEvent::Looked { location } => {
+                    unseen.remove(location);
+                }
+                TraceEvent::Told { aspects } => unseen.retain(|one| !aspects.contains(&AspectId::of_location(*one))),
+                TraceEvent::Pressed { seq, press } => {
+                    if let Some(&target) = targets.get(seq) {
+                        let aspect = match target {
+                            Target::Order(order, Some(dish)) if !(has_looks && unseen.contains(&order)) => {
+                                self.kitchen.aspect_of_dish(dish)
+                            }
+                            Target::Order(location, _) | Target::Place(location) => AspectId::of_location(location),
+                            Target::Recipe(dish) => self.kitchen.aspect_of_dish(dish),
+                        };
+                        errors.entry(aspect).or_default().insert(*seq);
+                    } else if self.correct.contains(seq) {
+                        let nearer = self.nearer(press);
+                        unseen.retain(|one| !nearer.contains(one));
+                    }
+                }
+            }
+        }
+        errors
+    }
+
+    /// The orders that a press brings nearer.
+    fn nearer(&mut self, press: &Press) -> Vec<LocationId> {
+        let recipes = self.kitchen.true_recipes();
+        let wanted: Vec<LocationId> = self.kitchen.wanted(press.before).map(|(order, _)| order).collect();
+        let mut costs = |state: State, order| self.cost.order(state, &recipes, order);
+        wanted.into_iter().filter(|&order| costs(press.after, order) < costs(press.before, order)).collect()
+    }
+
+    /// The episodes of one aspect that caused the errors with these log numbers.
+    fn episodes(&mut self, aspect: AspectId, errors: &BTreeSet<u64>) -> Vec<Episode> {
+        let (kitchen, trace, wrong) = (self.kitchen, self.trace, self.confusions(aspect, errors));
+        let value = |state: State| kitchen.true_value(state, aspect);
+        let mut now = kitchen.empty_state();
+        let mut course = BeliefCourse::new(aspect);
+        for (time, event) in &trace.events {
+            match event {
+                TraceEvent::Started { state } => {
+                    now = *state;
+                    course.right(*time, value(now));
+                }
+                TraceEvent::Changed { before, after } => {
+                    now = *after;
+                    if value(*before) != value(now) {
+                        course.uphold();
+                        course.changed(*time, value(now));
+                    }
+                }
+                TraceEvent::Looked { location } if AspectId::of_location(*location) == aspect => {
+                    course.told(*time, value(now));
+                }
+                TraceEvent::Told { aspects } if aspects.contains(&aspect) => course.told(after(*time), value(now)),
+                TraceEvent::Looked { .. } | TraceEvent::Told { .. } => {}
+                TraceEvent::Pressed { seq, press } => {
+                    now = press.after;
+                    if errors.contains(seq) {
+                        course.erred();
+                    } else if value(press.before) != value(now)
+                        || (self.correct.contains(seq) && self.shows(press, &course, &wrong))
+                    {
+                        course.uphold();
+                        course.right(*time, value(now));
+                    }
+                }
+            }
+        }
+        course.uphold();
+        course.done.extend(course.open);
+        course.done
+    }
+
+    /// Whether a press that is no error shows that the aspect is believed right.
+    fn shows(&mut self, press: &Press, known: &BeliefCourse, wrong: &[usize]) -> bool {
+        let (kitchen, aspect) = (self.kitchen, known.aspect);
+        match kitchen.aspects[aspect.index()].kind {
+            AspectKind::Location(_) => {
+                known.value != kitchen.true_value(press.before, aspect)
+                    && self.helps(press.before, press.button, None)
+                    && !self.helps(press.before, press.button, Some((aspect, known.value)))
+            }
+            AspectKind::Recipe(dish) => {
+                let nearer = self.nearer(press);
+                nearer.iter().any(|&order| press.before.order(order) == OrderContent::Dish(dish))
+                    && !wrong.iter().any(|&value| self.helps(press.before, press.button, Some((aspect, value))))
+            }
+        }
+    }
+
+    /// The confusions of a recipe that explain most of these errors; none for other aspects, and where no confusion explains any.
+    fn confusions(&mut self, aspect: AspectId, errors: &BTreeSet<u64>) -> Vec<usize> {
+        let (kitchen, trace) = (self.kitchen, self.trace);
+        let one = &kitchen.aspects[aspect.index()];
+        let AspectKind::Recipe(_) = one.kind else { return Vec::new() };
+        let of_error = |(_, event): &'_ (SessionTime, TraceEvent)| match event {
+            TraceEvent::Pressed { seq, press } if errors.contains(seq) => Some(*press),
+            _ => None,
+        };
+        let presses: Vec<Press> = trace.events.iter().filter_map(of_error).collect();
+        let mut explained = |value: usize| {
+            presses.iter().filter(|press| self.helps(press.before, press.button, Some((aspect, value)))).count()
+        };
+        let counts: Vec<(usize, usize)> = (1..one.values.len()).map(|value| (explained(value), value)).collect();
+        let most = counts.iter().map(|(count, _)| *count).max().filter(|&most| most > 0);
+        counts.into_iter().filter(|(count, _)| Some(*count) == most).map(|(_, value)| value).collect()
+    }
+
+    /// Whether a press of the participant brings all orders together nearer, in the true state with this aspect believed otherwise.
+    fn helps(&mut self, state: State, button: ButtonId, otherwise: Option<(AspectId, usize)>) -> bool {
+        let kitchen = self.kitchen;
+        let mut world = World::with_true_recipes(kitchen, state);
+        if let Some((aspect, value)) = otherwise {
+            world.set_value(kitchen, aspect, value);
+        }
+        let next = kitchen.press(world.state, &world.recipes, Agent::Human, button);
+        next.is_some_and(|next| {
+            self.cost.all_orders(next, &world.recipes) < self.cost.all_orders(world.state, &world.recipes)
+        })
+    }
+}

@@ -255,9 +255,10 @@ impl StudySummary {
             similarity: similarity(&blind),
             similarity_with_advice: similarity(&advised),
             similarity_by_trial: counting.iter().filter_map(|trial| similarity_of_trial(trial)).collect(),
-            wizard_beliefs_from: wizard.as_ref().and_then(|wizard| wizard.hits).and_then(|_| {
-                least_reliable(counting.iter().filter(|trial| trial.wizard.is_some()))
-            }),
+            wizard_beliefs_from: wizard
+                .as_ref()
+                .and_then(|wizard| wizard.hits)
+                .and_then(|_| least_reliable(counting.iter().filter(|trial| trial.wizard.is_some()))),
             wizard,
             offers: offers(&counting),
             acceptance: acceptance(&counting),

@@ -69,9 +69,9 @@ impl KnownBeliefs {
     pub fn episode(&self, kitchen: &Kitchen, press: &JudgedPress) -> Option<&Episode> {
         let target = self.targets.get(&press.seq)?;
         let is_in = |one: &Episode| one.began <= press.time && one.corrected.is_none_or(|end| press.time <= end);
-        self.episodes.iter().find(|one| {
-            one.errors > 0 && is_in(one) && target.aspects(kitchen).any(|aspect| aspect == one.aspect)
-        })
+        self.episodes
+            .iter()
+            .find(|one| one.errors > 0 && is_in(one) && target.aspects(kitchen).any(|aspect| aspect == one.aspect))
     }
 }
 

@@ -22,8 +22,8 @@ pub const RULE: &str = "Of people, from the codes of two raters: their consensus
      or signal after the error that shows it right, or until the place is again as it was last known. What shows it right: a press that changes the \
      place and was not coded as an error about it; a press that is no error and would not have helped with the wrong belief; a look of 0.1 s \
      at the place or a signal about it, unless the next error about it is coded before the place changes and before a press shows the belief right. The \
-     wrong belief is what was last known of the place; of a recipe, the confusions of it that \
-     explain most of the coded errors (if none does, any press that is no error and brings an order of the dish nearer shows it right). An error \
+     wrong belief is what was last known of the place; of a recipe, every confusion of it that \
+     explains a coded error (if none does, any press that is no error and brings an order of the dish nearer shows it right). An error \
      coded after the belief was shown right begins another episode. False beliefs without an error are not known.";
 
 /// False belief episodes from an error's coded target, by log number of the press; each led to at least one error. `judged` are all
@@ -214,7 +214,7 @@ impl EpisodeRule<'_> {
         }
     }
 
-    /// The confusions of a recipe that explain most of these errors; none for other aspects, and where no confusion explains any.
+    /// The confusions of a recipe that explain any of these errors; none for other aspects. A press tells only if it goes with none of them.
     fn confusions(&mut self, aspect: AspectId, errors: &BTreeSet<u64>) -> Vec<usize> {
         let (kitchen, trace) = (self.kitchen, self.trace);
         let one = &kitchen.aspects[aspect.index()];
@@ -224,12 +224,9 @@ impl EpisodeRule<'_> {
             _ => None,
         };
         let presses: Vec<Press> = trace.events.iter().filter_map(of_error).collect();
-        let mut explained = |value: usize| {
-            presses.iter().filter(|press| self.helps(press.before, press.button, Some((aspect, value)))).count()
-        };
-        let counts: Vec<(usize, usize)> = (1..one.values.len()).map(|value| (explained(value), value)).collect();
-        let most = counts.iter().map(|(count, _)| *count).max().filter(|&most| most > 0);
-        counts.into_iter().filter(|(count, _)| Some(*count) == most).map(|(_, value)| value).collect()
+        let mut explains =
+            |value: &usize| presses.iter().any(|press| self.helps(press.before, press.button, Some((aspect, *value))));
+        (1..one.values.len()).filter(|value| explains(value)).collect()
     }
 
     /// Whether a press of the participant brings all orders together nearer, in the true state with this aspect believed otherwise.

@@ -120,7 +120,9 @@ pub fn study(
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
     let work = |&(index, (path, name)): &(usize, &(PathBuf, String))| -> Result<Option<(Trial, Facts)>, StudyError> {
-        let Some((own, RecordingAnalysis { trial, facts, rows })) = reading::read(path, name, analysis.extent, analysis.raters.as_ref())? else {
+        let Some((own, RecordingAnalysis { trial, facts, rows })) =
+            reading::read(path, name, analysis.extent, analysis.raters.as_ref())?
+        else {
             return Ok(None);
         };
         same_kitchen((first, &kitchen), (path, &own))?;

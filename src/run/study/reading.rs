@@ -220,14 +220,13 @@ pub fn read(
     }
     let follower = pass.follower();
     let sequences = sequences(&judged);
-    let presses =
-        PressFacts {
-            judged: &judged,
-            sequences: &sequences,
-            by_estimate: by_estimate.as_deref(),
-            coded: &coded,
-            known: known.as_ref(),
-        };
+    let presses = PressFacts {
+        judged: &judged,
+        sequences: &sequences,
+        by_estimate: by_estimate.as_deref(),
+        coded: &coded,
+        known: known.as_ref(),
+    };
     let rows = rows.finish(&follower.session, &presses, &lanes, WINDOW);
     if matches!(basis, Some(BeliefBasis::Consensus | BeliefBasis::Raters)) {
         trial.shared_beliefs = coded.raters.as_ref().map(SharedBeliefs::count);

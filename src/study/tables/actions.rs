@@ -89,7 +89,8 @@ impl ActionRow<'_> {
 }
 
 /// Meanings of columns that take more than a line.
-const SECOND_ASPECT: &str = "second aspect, if only two false beliefs together explain the error, or if the two raters name different ones";
+const SECOND_ASPECT: &str =
+    "second aspect, if only two false beliefs together explain the error, or if the two raters name different ones";
 const RATER: &str = "code of one of the two raters, who were named, settled a consensus or else coded most errors: belief (with location), slip, race, \
                      other or buttons";
 
@@ -179,9 +180,12 @@ impl TableRow for ActionRow<'_> {
                 "beginning of the false belief behind a belief related error, on the trial's clock; empty: not known",
                 |row| row.analysis.and_then(|press| press.false_since_s).map(rounded).into(),
             ),
-            Self::column("false_until_s", "s", "end of that false belief; empty: not known, or none in the trial", |row| {
-                row.analysis.and_then(|press| press.false_until_s).map(rounded).into()
-            }),
+            Self::column(
+                "false_until_s",
+                "s",
+                "end of that false belief; empty: not known, or none in the trial",
+                |row| row.analysis.and_then(|press| press.false_until_s).map(rounded).into(),
+            ),
         ]
     }
 }

@@ -367,9 +367,7 @@ fn shown() -> Vec<TrialColumn> {
 /// False belief episodes, how far raters agree on them, and a wizard's hits.
 fn false_beliefs() -> Vec<TrialColumn> {
     fn shared(name: &'static str, meaning: &'static str, count: fn(SharedBeliefs) -> u64) -> TrialColumn {
-        TrialColumn::Plain(Trial::column(name, "errors", meaning, move |trial| {
-            trial.shared_beliefs.map(count).into()
-        }))
+        TrialColumn::Plain(Trial::column(name, "errors", meaning, move |trial| trial.shared_beliefs.map(count).into()))
     }
     fn wizard(name: &'static str, unit: &'static str, meaning: &'static str, count: Counted) -> TrialColumn {
         TrialColumn::Plain(Trial::column(name, unit, meaning, move |trial| {

@@ -42,7 +42,13 @@ fn sent(seconds: f64, aspects: &[u8]) -> ConceptSignal {
 fn counted(sent: &[ConceptSignal]) -> [u64; 5] {
     let count = truth().count_signals(sent);
     assert_eq!((count.signals, count.contents), (sent.len() as u64, sent.len() as u64));
-    [count.prevented, count.useless, count.false_inside, count.false_presses, count.harmless.expect("harmless ones are known")]
+    [
+        count.prevented,
+        count.useless,
+        count.false_inside,
+        count.false_presses,
+        count.harmless.expect("harmless ones are known"),
+    ]
 }
 
 #[test]

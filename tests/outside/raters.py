@@ -182,7 +182,8 @@ def check_wizard(figures, tables, recordings):
         spells = errors.groupby(["false_since_s", "false_until_s", "aspect"]).size().reset_index()
         hit = 0
         for spell in spells.itertuples():
-            inside = signals[(signals.time_s >= spell.false_since_s - 1e-3) & (signals.time_s < spell.false_until_s - 1e-3)]
+            # A signal that mends the belief falls into the episode, one that showed it right before does not. Times have four digits.
+            inside = signals[(signals.time_s > spell.false_since_s + 1e-4) & (signals.time_s <= spell.false_until_s + 1e-4)]
             about = set()
             for signal in inside.itertuples():
                 target = signal.target.replace("_", " ")

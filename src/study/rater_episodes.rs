@@ -8,7 +8,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::belief_trace::{BeliefTrace, TraceEvent};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, AspectKind, ButtonId, Kitchen, LocationId, OrderContent, Press, State, World};
+use crate::kitchen::{
+    Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, OrderContent, Press, State,
+    World,
+};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Target;
 use crate::measures::sequences::Episode;
@@ -23,7 +26,7 @@ pub const RULE: &str = "Of people, from the codes of two raters: their consensus
      place and was not coded as an error about it; a press that is no error and would not have helped with the wrong belief; a look of 0.1 s \
      at the place or a signal about it, unless the next error about it is coded before the place changes and before a press shows the belief right. The \
      wrong belief is what was last known of the place; of a recipe, every confusion of it that \
-     explains a coded error (if none does, any press that is no error and brings an order of the dish nearer shows it right). An error \
+     explains a coded error, and only a press tells them apart that serves or holds what they differ in (if none does, any press that is no error and brings an order of the dish nearer shows it right). An error \
      coded after the belief was shown right begins another episode. False beliefs without an error are not known.";
 
 /// False belief episodes from an error's coded target, by log number of the press; each led to at least one error. `judged` are all
@@ -106,6 +109,28 @@ impl BeliefCourse {
         let (aspect, began) = (self.aspect, self.changed.unwrap_or(self.since));
         self.open.get_or_insert(Episode { aspect, began, corrected: None, errors: 0 }).errors += 1;
     }
+}
+
+/// Whether a press serves, or has in hand before or after it, what a recipe and its confusion with this value differ in. Other presses can
+/// help with the one and not with the other only because of what lies elsewhere, which the participant need not have seen.
+fn is_about_difference(kitchen: &Kitchen, press: &Press, recipe: AspectId, value: usize) -> bool {
+    let values = &kitchen.aspects[recipe.index()].values;
+    let items = |content: ContentId| match kitchen.content(content).is_stack() {
+        true => kitchen.content(content).items.clone(),
+        false => vec![content],
+    };
+    let [right, wrong] = [values[0], values[value]].map(|code| items(ContentId(code)));
+    let has =
+        |of: &[ContentId], ingredient| of.iter().any(|&item| kitchen.content(item).ingredient == Some(ingredient));
+    let differs = |item: ContentId| {
+        let ingredient = kitchen.content(item).ingredient;
+        right.contains(&item) != wrong.contains(&item)
+            || ingredient.is_some_and(|one| has(&right, one) != has(&wrong, one))
+    };
+    let hand = kitchen.hands[Agent::Human.index()];
+    let in_hand = [press.before, press.after].map(|state| items(state.content(hand)));
+    matches!(kitchen.button(Agent::Human, press.button).action, ButtonAction::Serve(_))
+        || in_hand.into_iter().flatten().any(|item| !item.is_empty() && differs(item))
 }
 
 /// The time right after a signal, which itself still falls into the false belief that it mends.
@@ -209,7 +234,10 @@ impl EpisodeRule<'_> {
             AspectKind::Recipe(dish) => {
                 let nearer = self.nearer(press);
                 nearer.iter().any(|&order| press.before.order(order) == OrderContent::Dish(dish))
-                    && !wrong.iter().any(|&value| self.helps(press.before, press.button, Some((aspect, value))))
+                    && wrong.iter().all(|&value| {
+                        is_about_difference(kitchen, press, aspect, value)
+                            && !self.helps(press.before, press.button, Some((aspect, value)))
+                    })
             }
         }
     }

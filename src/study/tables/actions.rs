@@ -160,32 +160,41 @@ impl TableRow for ActionRow<'_> {
             Self::column("sequence", "", sequence, |row| {
                 row.analysis.and_then(|analysis| analysis.sequence).map(|number| number as u64).into()
             }),
-            Self::column(
-                "cause_estimated",
-                "",
-                "cause of a person's error by the assistant's estimate: belief or slip",
-                |row| row.analysis.and_then(|analysis| analysis.by_estimate).map(cause_name).into(),
-            ),
-            Self::column("rater_1", "", RATER, |row| row.code(|press| press.codes[0].cloned())),
-            Self::column("rater_2", "", "code of the other rater", |row| row.code(|press| press.codes[1].cloned())),
-            Self::column("log_p", "nats", "log probability of the human's press under the estimated belief", |row| {
-                row.recorded.log_p.map(rounded).into()
-            }),
-            Self::column("consensus", "", "code that the two raters share, where it defines the cause", |row| {
-                row.code(|press| press.shared.cloned())
-            }),
-            Self::column(
-                "false_since_s",
-                "s",
-                "beginning of the false belief behind a belief related error, on the trial's clock; empty: not known",
-                |row| row.analysis.and_then(|press| press.false_since_s).map(rounded).into(),
-            ),
-            Self::column(
-                "false_until_s",
-                "s",
-                "end of that false belief; empty: not known, or none in the trial",
-                |row| row.analysis.and_then(|press| press.false_until_s).map(rounded).into(),
-            ),
         ]
+        .into_iter()
+        .chain(of_estimate_and_raters())
+        .collect()
     }
+}
+
+/// What the estimate and raters say about a press, and for how long a false belief lasted.
+fn of_estimate_and_raters<'a>() -> Vec<Column<ActionRow<'a>>> {
+    vec![
+        ActionRow::column(
+            "cause_estimated",
+            "",
+            "cause of a person's error by the assistant's estimate: belief or slip",
+            |row| row.analysis.and_then(|analysis| analysis.by_estimate).map(cause_name).into(),
+        ),
+        ActionRow::column("rater_1", "", RATER, |row| row.code(|press| press.codes[0].cloned())),
+        ActionRow::column("rater_2", "", "code of the other rater", |row| row.code(|press| press.codes[1].cloned())),
+        ActionRow::column("log_p", "nats", "log probability of the human's press under the estimated belief", |row| {
+            row.recorded.log_p.map(rounded).into()
+        }),
+        ActionRow::column("consensus", "", "code that the two raters share, where it defines the cause", |row| {
+            row.code(|press| press.shared.cloned())
+        }),
+        ActionRow::column(
+            "false_since_s",
+            "s",
+            "beginning of the false belief behind a belief related error, on the trial's clock; empty: not known",
+            |row| row.analysis.and_then(|press| press.false_since_s).map(rounded).into(),
+        ),
+        ActionRow::column(
+            "false_until_s",
+            "s",
+            "end of that false belief; empty: not known, or none in the trial",
+            |row| row.analysis.and_then(|press| press.false_until_s).map(rounded).into(),
+        ),
+    ]
 }

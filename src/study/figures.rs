@@ -12,14 +12,14 @@ use super::facts::Facts;
 use super::known_beliefs::SharedBeliefs;
 use super::live_arms::{LiveArm, live_arms};
 use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
-use super::statistics::{Correlation, FTest, Interval, share_interval};
+use super::statistics::{Correlation, FTest};
 use super::tables::trials::measures;
 use super::tables::tutorial_answers::TutorialAnswer;
-use super::trial_statistics::{BeliefErrors, Trial, mean, mean_length};
+use super::trial_statistics::{Trial, mean};
+use super::trial_totals::TrialTotals;
 use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::measures::cause_codes::{Agreement, AgreementTable, Codes};
-use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::{MatchCounts, Similarity, WINDOW};
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::event::EndReason;
@@ -102,55 +102,6 @@ pub struct StudySummary {
     pub left_out: Vec<ExcludedTrial>,
     /// Number of practice recordings, which are not analysed as trials.
     pub practice: u64,
-}
-
-/// Sums over trials.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct TrialTotals {
-    /// Number of presses of both agents.
-    pub actions: u64,
-    /// Presses of the human.
-    pub human_actions: u64,
-    /// Presses of the robot.
-    pub robot_actions: u64,
-    /// The human's presses that were errors.
-    pub errors: u64,
-    /// Presses of the human that the robot may have overtaken; they are not counted as errors.
-    pub races: u64,
-    /// Errors per press of both agents.
-    pub error_rate: Option<f64>,
-    /// Errors per press of the human.
-    pub error_rate_human: Option<f64>,
-    /// Source of the participants' beliefs; null if beliefs are unknown in some trial.
-    pub beliefs_from: Option<BeliefBasis>,
-    /// Errors that are put down to a false belief.
-    pub belief_related_errors: Option<u64>,
-    /// These errors by kind of aspect.
-    pub belief_related_by_kind: Option<CauseKindCounts>,
-    /// Their share of all errors, 0 to 1.
-    pub belief_related_share: Option<f64>,
-    /// 95 % interval of that share.
-    pub belief_related_interval: Option<Interval>,
-    /// Number of sequences of related errors.
-    pub sequences: Option<u64>,
-    /// Mean number of errors in a sequence of related errors.
-    pub mean_sequence_length: Option<f64>,
-    /// Sequences of related errors per 100 presses of the human.
-    pub sequences_per_100: Option<f64>,
-    /// Belief related errors per 100 presses of the human.
-    pub belief_related_per_100: Option<f64>,
-    /// Number of sequences whatever the aspect.
-    pub sequences_any_aspect: Option<u64>,
-    /// Mean number of errors in a sequence whatever the aspect.
-    pub mean_sequence_length_any_aspect: Option<f64>,
-    /// Mean time from a sequence's first error to the first correct press after its last, in seconds.
-    pub mean_recovery_s: Option<f64>,
-    /// False belief episodes that caused at least one error.
-    pub false_belief_episodes: Option<u64>,
-    /// Signals that were shown.
-    pub signals: u64,
-    /// Orders served.
-    pub orders_served: u64,
 }
 
 /// Summary of the trials in one condition.
@@ -299,53 +250,6 @@ fn title(facts: &Facts, trials: &[Trial], simulated: bool) -> String {
         (true, false) => format!("{kitchen}: a study of simulated participants"),
         (true, true) => format!("{kitchen}: a study of people and simulated participants"),
         (false, _) => format!("{kitchen}: a study"),
-    }
-}
-
-impl TrialTotals {
-    fn from_trials(trials: &[&Trial]) -> TrialTotals {
-        let sum = |of: fn(&Trial) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
-        let (actions, human_actions, errors) =
-            (sum(Trial::presses), sum(|trial| trial.human_presses), sum(|t| t.errors));
-        let rate = |presses: u64| (presses > 0).then(|| errors as f64 / presses as f64);
-        let totals = TrialTotals {
-            actions,
-            human_actions,
-            robot_actions: sum(|trial| trial.robot_presses),
-            errors,
-            races: sum(|trial| trial.races),
-            error_rate: rate(actions),
-            error_rate_human: rate(human_actions),
-            signals: sum(|trial| trial.signals),
-            orders_served: sum(|trial| trial.orders),
-            ..TrialTotals::default()
-        };
-        let beliefs: Option<Vec<&BeliefErrors>> = trials.iter().map(|trial| trial.beliefs.as_ref()).collect();
-        let Some(beliefs) = beliefs.filter(|beliefs| !beliefs.is_empty()) else { return totals };
-        let related = beliefs.iter().map(|one| one.errors).sum::<u64>();
-        let lengths: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths.iter().copied()).collect();
-        let any_aspect: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths_any_aspect.iter().copied()).collect();
-        let per_100 = |number: u64| (human_actions > 0).then(|| 100.0 * number as f64 / human_actions as f64);
-        let interval = share_interval(related, errors, super::effect::LEVEL);
-        TrialTotals {
-            // The least reliable source among the trials.
-            beliefs_from: beliefs.iter().map(|one| one.basis).max(),
-            belief_related_errors: Some(related),
-            belief_related_by_kind: Some(
-                beliefs.iter().fold(CauseKindCounts::default(), |sum, one| sum.plus(one.causes)),
-            ),
-            belief_related_share: interval.map(|interval| interval.estimate),
-            belief_related_interval: interval,
-            sequences: Some(lengths.len() as u64),
-            sequences_per_100: per_100(lengths.len() as u64),
-            belief_related_per_100: per_100(related),
-            mean_sequence_length: mean_length(&lengths),
-            sequences_any_aspect: Some(any_aspect.len() as u64),
-            mean_sequence_length_any_aspect: mean_length(&any_aspect),
-            mean_recovery_s: mean(beliefs.iter().flat_map(|one| one.recovery_s.iter().copied())),
-            false_belief_episodes: beliefs.iter().map(|one| one.episodes).sum(),
-            ..totals
-        }
     }
 }
 

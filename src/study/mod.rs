@@ -6,7 +6,7 @@
 //! simulated participants; for people from two raters' codes if both coded every error, else from the estimate. The summary names
 //! the source (`beliefs_from`).
 //!
-//! - [`trial_statistics`] keeps the statistics of each trial; [`figures`] summarizes them with [`effect`], [`roc`] and
+//! - [`trial_statistics`] keeps the statistics of each trial, [`trial_totals`] sums them up; [`figures`] summarizes them with [`effect`], [`roc`] and
 //!   [`statistics`].
 //! - [`tables`] declares the tables: the source of a row, and each [column](mod@column) with name, unit, meaning and value. Header lines,
 //!   rows and [`dictionary`] are generated. A measure that is compared between assisted and unassisted trials is declared as such
@@ -37,4 +37,5 @@ pub mod statistics;
 pub mod svg;
 pub mod tables;
 pub mod trial_statistics;
+pub mod trial_totals;
 pub mod tutorial_summary;

@@ -37,10 +37,17 @@ def chosen(scene, kitchen):
     dish = contents[order]["dish"]
     running = {**every["empty"], "contents": contents, "served": 3}
     press = {"number": 1, "at": {"location": place}, "effective": False, "why": {"reason": "place_full", "about": place}}
-    made = {stage: {**every[stage], "contents": contents} for stage in ("welcome", "instruction", "ready", "paused", "over", "questionnaire", "answers", "thanks")}
+    made = {stage: {**every[stage], "contents": contents} for stage in ("welcome", "instruction", "ready", "paused", "over", "questionnaire", "answers", "answered", "thanks")}
     for stage, text in (("questionnaire", "The signals came when I needed them."), ("answers", "Thank you. Are your answers as you meant them?")):
         made[stage]["question"] = {**made[stage]["question"], "title": "How was it?", "text": text}
+    recipes, question = every["tutorial: cards"]["tutorial"], every["tutorial: question"]["tutorial"]
+    choices = ["Raw rice", "Cooked rice", "Cooked and shaped rice"]
+    explained = {"choices": choices, "wrong": 2, "explanation": "For nigiri the rice is cooked, and then shaped in your hand."}
+    recipes = {**recipes, "number": 13, "title": "The recipes", "text": "Remember them: during the task they are not shown."}
+    question = {**question, "number": 15, "title": "A question", "text": "Which rice does a nigiri need?", "question": {**question["question"], **explained}}
     return made | {
+        "tutorial-recipes": {**every["tutorial: cards"], "tutorial": recipes},
+        "tutorial-question": {**every["tutorial: question"], "tutorial": question},
         "running": running,
         "recipe": {**running, "signal": {"recipe": {"order": order, "dish": dish, "items": items_of(kitchen)[dish]}}},
         "highlight": {**running, "signal": {"highlight": place}},

@@ -66,6 +66,35 @@ def items_of(kitchen):
     return {dish["name"]: dish["items"] for dish in recipes["dish"]}
 
 
+def forms():
+    """Each kind of an item, with an answer."""
+    options = [{"id": str(number), "text": longer(f"somewhat usual {number}")} for number in range(1, 10)]
+    return {
+        "scale": ({"kind": "scale", "points": 7, "low": "strongly disagree", "high": "strongly agree"}, 4),
+        "choice": ({"kind": "choice", "options": options[:4], "several": False}, "2"),
+        "choices": ({"kind": "choice", "options": options, "several": True}, ["1", "9"]),
+        "number": ({"kind": "number", "min": 18, "max": 99, "unit": "years"}, 31),
+        "text": ({"kind": "text", "length": 200}, "a few words"),
+        "slider": ({"kind": "slider", "low": "very low", "high": "very high", "step": 5}, 45),
+    }
+
+
+TUTORIAL_PAGE = {"kind": "text", "title": "The cooking pot", "text": "Rice and crab are cooked there. It holds one thing: what lies in it is in the way of what comes next.", "number": 3,
+                 "of": 18, "done": True, "frames": [], "hint": None, "presses": None, "missed": False, "cards": [], "seconds": None, "question": None}
+
+
+def tutorial_pages(scene, dishes):
+    """Pages of a tutorial, one of each kind."""
+    button = next(button["name"] for button in scene["buttons"] if button["does"] == "process")
+    question = {"choices": [f"The {number}. of three choices" for number in range(1, 4)], "right": None, "wrong": 1, "explanation": "It is the second one, which is said here once more."}
+    return {
+        "text": {"frames": [{"area": "human"}]},
+        "press": {"kind": "press", "presses": [0, 2], "missed": True, "done": False, "hint": {"button": button, "after_s": 0.0}},
+        "cards": {"kind": "recipes", "cards": [{"dish": dish, "items": items} for dish, items in dishes.items()]},
+        "question": {"kind": "question", "done": False, "question": question},
+    }
+
+
 def states(scene, kitchen):
     """Every state, by its name: what the program would tell the page."""
     dishes, spots = items_of(kitchen), scene["locations"]
@@ -84,7 +113,7 @@ def states(scene, kitchen):
 
     def sight(stage="running", turn=0, **changed):
         return {"stage": stage, "practice": False, "contents": contents(turn), "served": 3, "presses": [None, None], "intention": None,
-                "signal": None, "cue": None, "question": None, "target": None, "checks": False, **changed}
+                "signal": None, "cue": None, "question": None, "tutorial": None, "target": None, "checks": False, **changed}
 
     made = {stage: sight(stage) for stage in ("welcome", "instruction", "ready", "paused", "over", "thanks")}
     made["practice"] = sight("ready", practice=True)
@@ -111,11 +140,15 @@ def states(scene, kitchen):
     for number, (place, reason) in enumerate(lines, 1):
         press = {"number": number, "at": place, "effective": False, "why": {"reason": reason.removeprefix("why "), "about": longest}}
         made[f"no effect: {reason} at {json.dumps(place)}"] = sight(presses=[press, None])
-    question = {"title": longer("Acceptance of the signals"), "item": "a", "text": "The signals came at the moments at which they were needed, and told what was not known before.",
-                "number": 3, "of": 12, "points": 7, "low": "strongly disagree", "high": "strongly agree", "answer": 4, "before": "b", "given": []}
-    made["questionnaire"] = sight("questionnaire", question=question)
-    given = [{"text": f"The signals of this trial helped in part {number}.", "rated": number % 7 + 1} for number in range(1, 13)]
-    made["answers"] = sight("questionnaire", question={**question, "item": None, "given": given, "text": scene["words"].get("confirm", "")})
+    question = {"title": longer("Acceptance of the signals"), "item": "a", "number": 3, "of": 12, "answer": None, "before": "b", "given": [],
+                "text": "The signals came at the moments at which they were needed, and told what was not known before."}
+    for name, (form, answer) in forms().items():
+        made["questionnaire" if name == "scale" else f"questionnaire: {name}"] = sight("questionnaire", question={**question, "form": form, "answer": answer})
+    made["answered"] = sight("answered")
+    given = [{"text": f"The signals of this trial helped in part {number}.", "answer": str(number % 7 + 1)} for number in range(1, 13)]
+    made["answers"] = sight("questionnaire", question={**question, "item": None, "form": None, "given": given, "text": "Thank you. Are your answers as you meant them?"})
+    for name, page in tutorial_pages(scene, dishes).items():
+        made[f"tutorial: {name}"] = sight("tutorial", tutorial={**TUTORIAL_PAGE, "step": name, **page})
     return made
 
 

@@ -238,6 +238,8 @@ const Stage = (() => {
   function drawSheet(sight) {
     const { stage, practice } = sight;
     root.dataset.stage = stage;
+    // What was said of a press says nothing of what comes now.
+    if (shown && shown.stage !== stage) parts.why.classList.remove("says");
     const name = stage === "ready" && practice ? "practice" : stage;
     const title = scene.words[name], more = scene.words[`${name} text`];
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;

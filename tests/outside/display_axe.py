@@ -12,7 +12,9 @@ from axe_playwright_python.sync_playwright import Axe
 from display_states import KITCHENS, opened, show, states
 from page import browser
 
-STATES = ("welcome", "instruction", "ready", "practice", "running 0", "served", "paused", "over", "questionnaire", "answers", "thanks")
+STATES = ("welcome", "instruction", "ready", "practice", "running 0", "served", "paused", "over", "questionnaire", "answered", "answers", "thanks")
+# States whose names begin so: the first of each, and all.
+ONE_OF, ALL_OF = ("recipe", "highlight", "no effect"), ("questionnaire:", "tutorial:")
 # What axe cannot decide, and why it is right.
 EXPLAINED = {"color-contrast": "the title of a zone stands on the zone, which other elements overlap; the two colours have a contrast above 4.5"}
 
@@ -27,7 +29,7 @@ def main():
         for kitchen in KITCHENS:
             with opened(arguments.tomcom, chromium, arguments.folder / kitchen, kitchen, "en") as page:
                 every = states(page.ask("Stage.scene()"), kitchen)
-                names = [*STATES, *[next(name for name in every if name.startswith(kind)) for kind in ("recipe", "highlight", "no effect")]]
+                names = [*STATES, *[next(name for name in every if name.startswith(kind)) for kind in ONE_OF], *[name for name in every if name.startswith(ALL_OF)]]
                 for name in names:
                     show(page, every[name])
                     looked += 1

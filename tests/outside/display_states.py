@@ -75,6 +75,7 @@ def forms():
         "choices": ({"kind": "choice", "options": options, "several": True}, ["1", "9"]),
         "number": ({"kind": "number", "min": 18, "max": 99, "unit": "years"}, 31),
         "text": ({"kind": "text", "length": 200}, "a few words"),
+        "consent": ({"kind": "consent", "hold_s": 3.0}, None),
         "slider": ({"kind": "slider", "low": "very low", "high": "very high", "step": 5}, 45),
     }
 

@@ -40,11 +40,21 @@ impl DisplayHealth {
         }
     }
 
+    fn address(&self) -> String {
+        format!("open {} in a browser, full screen", self.url)
+    }
+
+    /// What is to be opened, with its pairing code, as long as no page takes part.
+    pub fn to_open(&self) -> Option<String> {
+        let code = self.code.as_ref().map_or(String::new(), |code| format!("; pairing code {code}"));
+        self.page.is_none().then(|| self.address() + &code)
+    }
+
     /// What is looked at before a trial.
     pub fn check(&self) -> PreflightCheck {
         let Some([width, height]) = self.page else {
             let code = self.code.as_ref().map_or(String::new(), |code| format!(", pairing code {code}"));
-            let open = format!("open {} in a browser, full screen", self.url);
+            let open = self.address();
             return PreflightCheck::new(
                 "display",
                 PreflightVerdict::Failed,

@@ -9,6 +9,7 @@ use super::popup::open;
 use super::theme::{TextRole, Theme};
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
+use crate::console::display_status::DisplayHealth;
 use crate::console::form::{SheetContent, WAIVERS, sheet};
 use crate::console::question::QuestionPage;
 use crate::session::Session;
@@ -97,7 +98,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     let pen = &mut Pen { brush, with_keys: model.playback.is_none() };
     match sheet {
         SheetContent::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
-        SheetContent::Tutorial(tutorial) => draw_tutorial(pen, screen, &where_, tutorial, session),
+        SheetContent::Tutorial(tutorial) => draw_tutorial(pen, screen, &where_, tutorial, (session, model)),
         SheetContent::Questions(questionnaire) => {
             draw_questions(pen, screen, &where_, questionnaire, protocol, session)
         }
@@ -148,9 +149,18 @@ fn draw_steps(
     page.draw(pen, screen, heads.0, heads.1, if has_ticks { &hints } else { &hints[..1] });
 }
 
-fn draw_tutorial(pen: &mut Pen, screen: Rect, where_: &str, tutorial: &Tutorial, session: &Session) {
+fn draw_tutorial(
+    pen: &mut Pen,
+    screen: Rect,
+    where_: &str,
+    tutorial: &Tutorial,
+    (session, model): (&Session, &ConsoleModel),
+) {
     let mut page = Page::new(screen);
     let Some((_, state)) = session.tutorial() else { return };
+    if let Some(address) = model.display.as_ref().and_then(DisplayHealth::to_open) {
+        page.text(0, &format!("no page is connected: {address}"), TextRole::Alarm);
+    }
     for (index, step) in tutorial.steps.iter().enumerate() {
         let is_shown = index == state.step && !state.is_over;
         let role = match (is_shown, state.done.get(index)) {

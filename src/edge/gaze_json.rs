@@ -1,4 +1,5 @@
-//! Gaze from any other program: lines {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1} over TCP or UDP. Coordinates are fractions of the wall display, the origin at the top left; t is the tracker's own clock.
+//! Gaze from any other program: lines {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1} over TCP or UDP. Coordinates are
+//! fractions of the wall display, the origin at the top left; t is the tracker's own clock.
 //! Lines that are no samples are counted. A connection or datagram that does not begin with a JSON object is rejected and
 //! counted, and none of its lines is read: websites can make a browser send requests to this port. From other computers only
 //! listed addresses are read.

@@ -163,7 +163,7 @@ impl FalseBeliefTruth {
 }
 
 impl TrialTruth {
-    /// The truth about these presses, which are all of a trial, by what is known of the participant's beliefs.
+    /// The truth about all presses of a trial, from what is known of the participant's beliefs.
     pub fn new(kitchen: &Kitchen, judged: &[JudgedPress], known: &KnownBeliefs) -> TrialTruth {
         let press = |press: &JudgedPress| PressTruth {
             time: press.time,

@@ -23,7 +23,7 @@ const WAKE: Duration = Duration::from_millis(250);
 /// Largest number of other surfaces that are told.
 const MAX_OTHERS: usize = 8;
 
-/// What is told of messages.
+/// Reads Capture's messages, and sends what they say to the session and to the recorder.
 pub(super) struct Listener<'a> {
     news: Sender<GazeNews>,
     recorder: Sender<RecorderNews>,

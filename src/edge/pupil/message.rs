@@ -8,7 +8,7 @@ use rmpv::decode::read_value_with_max_depth;
 const MAX_DEPTH: usize = 16;
 /// Largest number of items of a datum.
 const MAX_ITEMS: usize = 4096;
-/// Longest name of a surface that is told, in bytes.
+/// Longest name of a surface that is passed on, in bytes.
 const MAX_NAME: usize = 100;
 
 /// Begin of the topics of surfaces; the surface's name follows.

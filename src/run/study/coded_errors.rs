@@ -114,7 +114,7 @@ impl CodedErrors {
     }
 }
 
-/// Whether the analysis of a person's errors would rest on codes of raters who each coded so many errors.
+/// Whether raters who each coded this many errors determine the causes of a person's errors.
 fn is_needed(follower: &Follower, codable: &Codable, coded: usize) -> bool {
     let is_person = follower.session.spec.participant.kind != ParticipantKind::Simulated;
     is_person && !codable.errors.is_empty() && coded == codable.errors.len()

@@ -6,6 +6,7 @@ use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::offer::OfferedAdvice;
 use crate::communication::recommendation::Recommendation;
+use crate::history::probe_wording;
 use crate::history::wording::{self, location as said};
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::sequences::FALSE_BELOW;
@@ -85,6 +86,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
         Event::SignalEnded { reason: SignalEnd::TakenBack } => "signal taken back".to_string(),
         Event::Marker { note } => format!("marker: {note}"),
+        Event::Probe(event) => probe_wording::event(event),
         Event::Protocol(event) => wording::protocol(event),
         Event::Tracker(event) => wording::tracker(event)?,
         Event::Calibration(event) => wording::calibration(event),

@@ -1,6 +1,7 @@
 //! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate. Live sessions
 //! and replays use the same code.
 
+use crate::base::time::SessionTime;
 use crate::communication::repeats::Repeats;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change, Kitchen, Press, State};
@@ -14,6 +15,7 @@ use crate::mind::filter::{BeliefFilter, Evidence};
 use crate::mind::observation::{Observation, Observed};
 use crate::mind::recorded_estimate::EstimateWitness;
 use crate::session::apply::ApplyError;
+use crate::session::probes::{OpenProbe, ProbeEvent, ProbeSubject};
 use crate::session::tracker::TrackerEvent;
 use crate::session::{Applied, Event, Session, Stamped, apply};
 
@@ -43,6 +45,19 @@ pub struct Follower {
     finds_causes: bool,
     /// The estimate before the last counted press of the human.
     pub estimated: Option<PressEstimate>,
+    /// The estimate at the beginning of the last freeze probe.
+    pub probed: Option<ProbedEstimate>,
+}
+
+/// The estimate when the task came to a stand for a probe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbedEstimate {
+    /// Number of the probe.
+    pub probe: u32,
+    /// True state at that moment.
+    pub state: State,
+    /// The estimate.
+    pub belief: DirichletBelief,
 }
 
 /// The estimate before a press of the human.
@@ -107,7 +122,13 @@ impl Follower {
             told_cause,
             finds_causes,
             estimated,
+            probed: None,
         }
+    }
+
+    /// The estimate at `now`, with the unknown gaze since the last event.
+    pub fn belief_at(&mut self, now: SessionTime) -> DirichletBelief {
+        self.filter.at(now, &mut self.cost)
     }
 
     /// Applies the next event.
@@ -131,6 +152,17 @@ impl Follower {
                 Agent::Human => self.human_pressed(stamped, &press),
             },
             (_, Change::Correction { before, after, .. }) => self.judge.others_changed(stamped.time, before, after),
+            _ => {}
+        }
+        match stamped.event {
+            Event::Probe(ProbeEvent::Begun { probe, .. }) => {
+                let (state, belief) = (self.session.state, self.belief_at(stamped.time));
+                self.probed = Some(ProbedEstimate { probe, state, belief });
+            }
+            Event::Probe(ProbeEvent::Ended { .. }) => {
+                let begun = self.session.probes.over.last().map_or(stamped.time, |over| over.begun);
+                self.judge.postpone(stamped.time - begun);
+            }
             _ => {}
         }
         self.estimate(stamped, &applied.change);
@@ -166,7 +198,7 @@ impl Follower {
     fn remember(&mut self, stamped: &Stamped) {
         let (kitchen, state) = (&self.session.kitchen, self.session.state);
         match &stamped.event {
-            Event::Gaze(_) => return,
+            Event::Gaze(_) | Event::Probe(_) => return,
             Event::TrialStarted => self.repeats = Repeats::default(),
             Event::SignalShown { signal, .. } => self.repeats.shown(kitchen, state, signal),
             _ => {}
@@ -184,22 +216,44 @@ impl Follower {
             }
             Change::None | Change::UncountedPress { .. } => {}
         }
+        // While a probe is held the kitchen is off the display, and a pause of the probe is none of the task.
+        let is_frozen = self.session.is_frozen();
         match &stamped.event {
+            Event::TrialPaused | Event::TrialResumed | Event::Gaze(_) if is_frozen => None,
             Event::TrialPaused => Some(Observed::Paused),
             Event::TrialResumed => Some(Observed::Resumed),
             // A faulty sample is recorded and not used.
             Event::Gaze(_) if self.session.gaze.fault.is_some() => None,
             Event::Gaze(sample) => {
                 let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
+                if self.session.probes.ended_at.is_some_and(|ended| taken < ended) {
+                    return None;
+                }
                 Some(Observed::Gaze { sample: self.session.corrected(*sample), taken })
             }
             Event::Tracker(TrackerEvent::DisplayLost) => Some(Observed::DisplayInView(false)),
             Event::Tracker(TrackerEvent::DisplayFound | TrackerEvent::Lost { .. }) => {
                 Some(Observed::DisplayInView(true))
             }
+            Event::Probe(ProbeEvent::Begun { .. }) => Some(Observed::Frozen),
+            Event::Probe(ProbeEvent::Ended { .. }) => {
+                let over = self.session.probes.over.last()?;
+                let teaches = self.session.spec.probes.as_ref().map_or(0.0, |probes| probes.teaches);
+                Some(Observed::Thawed { by: stamped.time - over.begun, asked: self.asked_about(over), teaches })
+            }
             Event::SignalShown { .. } => Some(Observed::Told { location: self.session.shown.as_ref()?.location }),
             _ => None,
         }
+    }
+
+    /// Bit set of the locations about which a probe asked.
+    fn asked_about(&self, probe: &OpenProbe) -> u32 {
+        let asked = probe.questions.iter().take(probe.shown.map_or(0, |shown| shown + 1));
+        let locations = asked.filter_map(|question| match &question.about {
+            ProbeSubject::Location { location } => self.session.kitchen.location_named(location),
+            _ => None,
+        });
+        locations.fold(0, |bits, location| bits | 1 << location.index())
     }
 
     /// The same without attribution of errors, which takes too long for a running session.

@@ -314,6 +314,7 @@ pub fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
             | Event::RobotSafety { .. }
             | Event::RobotTouched { .. }
             | Event::ParticipantBelieves(_)
+            | Event::Probe(_)
             | Event::Advised(_)
             | Event::SignalShown { .. }
             | Event::Screen(_)

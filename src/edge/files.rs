@@ -105,6 +105,9 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     };
     let mut kitchen = read_kitchen_with(&layout_path, keys.as_ref())?;
     kitchen.layout.path.clone_from(&spec.layout);
+    if let Some(probes) = &spec.probes {
+        probes.check_kitchen(&kitchen.kitchen).map_err(|error| wrong_setting(path, &text, error))?;
+    }
     let tutorial = read_tutorial(path, &text, &spec, &kitchen.kitchen)?;
     Ok(SessionFiles { spec, kitchen, keys, questionnaires, tutorial })
 }

@@ -4,5 +4,6 @@
 pub mod belief_track;
 pub mod comparison;
 pub mod landmark;
+pub mod probe_wording;
 pub mod signal_judge;
 pub mod wording;

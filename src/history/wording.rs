@@ -1,6 +1,6 @@
 //! Words for buttons, locations, signals, phases and events.
 
-use crate::base::time::SessionTime;
+use super::probe_wording;
 use crate::base::words::count;
 use crate::communication::offer::OfferedAct;
 use crate::communication::recommendation::Reason;
@@ -205,6 +205,7 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
         TimelineEvent::Corrected { location } => {
             ("wizard", format!("corrected {}", kitchen.location(*location).label()))
         }
+        TimelineEvent::Probe(event) => ("", probe_wording::event(event)),
         TimelineEvent::Excluded(reason) => ("trial", format!("excluded: {reason}")),
         TimelineEvent::Included => ("trial", "no longer excluded".to_string()),
         TimelineEvent::Focus(false) => ("console", "lost the keyboard".to_string()),
@@ -247,23 +248,6 @@ pub fn trial(phase: Phase) -> &'static str {
         Phase::Over(EndReason::Aborted) => "aborted by the wizard",
         Phase::Closed => "closed",
     }
-}
-
-/// Agent that changed a location at a time, from the timeline.
-pub fn changed_by(session: &Session, at: SessionTime) -> Option<Agent> {
-    let since = session.timeline.iter().rev().take_while(|entry| entry.time >= at);
-    since.filter(|entry| entry.time == at).find_map(|entry| match entry.what {
-        TimelineEvent::Press { agent, no_effect: None, .. } => Some(agent),
-        _ => None,
-    })
-}
-
-/// Whether a location changed without a press of the human and has not been looked at since (a fact, not an estimate).
-pub fn is_unseen(session: &Session, location: LocationId) -> bool {
-    let at = session.changed_at[location.index()];
-    let seen = session.gaze.looked_at[location.index()].is_some_and(|seen| seen >= at);
-    let knows = seen || session.gaze.samples == 0 || at == SessionTime::ZERO;
-    !knows && changed_by(session, at) != Some(Agent::Human)
 }
 
 /// A tracker event in words; `None` for fixations and blinks, which are too frequent.

@@ -51,6 +51,11 @@ impl PressJudge {
         }
     }
 
+    /// Moves all times on, because the task stood still for a probe.
+    pub fn postpone(&mut self, by: SessionTime) {
+        self.others_changed_at.iter_mut().flatten().for_each(|at| *at = *at + by);
+    }
+
     /// Judges a press of the human.
     pub fn human_pressed(&self, cost: &mut CostToGo, now: SessionTime, press: &Press) -> PressVerdict {
         let (kitchen, &Press { button, before, after, .. }) = (&self.kitchen, press);

@@ -60,6 +60,13 @@ impl GazePresence {
         (self.last, self.dark_since) = (None, now);
     }
 
+    /// Moves all times on, because the task stood still.
+    pub fn postpone(&mut self, by: SessionTime) {
+        self.last = self.last.map(|last| last + by);
+        self.dark_since = self.dark_since + by;
+        self.accounted = self.accounted + by;
+    }
+
     /// Start of the unknown time after the last sample with known gaze.
     fn unknown_from(&self) -> SessionTime {
         self.dark_since + SessionTime::from_secs_f64(self.allowance_s)

@@ -46,4 +46,15 @@ pub enum Observed {
     Paused,
     /// The trial goes on.
     Resumed,
+    /// The task stands still for a probe, and the kitchen is off the display.
+    Frozen,
+    /// The task goes on where it was: nothing was seen and nothing forgotten meanwhile.
+    Thawed {
+        /// For how long it stood still.
+        by: SessionTime,
+        /// Bit set of the locations about which questions were asked.
+        asked: u32,
+        /// Probability that the human looks at one of them because of the question.
+        teaches: f64,
+    },
 }

@@ -10,9 +10,10 @@
 //! - Planning: `knowledge` (of buttons and processes), `goals` (missing parts), `habits` (and lapses), `planning` (backward
 //!   chaining), `decision` (next presses).
 //! - Consequences of beliefs: `learning` (from own presses), `witness` (for the recording).
-//! - The participant: `simulated` (its data), then its behaviour: `targets`, `signals`, `looking`, `thinking`, `hand`, `acting`.
+//! - The participant: `simulated` (its data), then its behaviour: `targets`, `signals`, `looking`, `thinking`, `hand`, `acting`, `answering`.
 
 mod acting;
+mod answering;
 mod attention;
 mod decision;
 mod eyes;

@@ -19,6 +19,25 @@ pub struct TraitSpread {
 /// A probability that is 0 for everybody: the trait of nobody in the calibrated population.
 const NEVER: TraitSpread = TraitSpread::from_median(0.0, 0.4);
 
+/// Wrong answers to questions of probes: few, since where few beliefs are false, wrong answers hide them.
+const ANSWERS_WRONG: TraitSpread = TraitSpread::from_median(0.01, 0.4);
+/// From this probability on a belief is not false, see `measures::sequences::FALSE_BELOW`.
+const ANSWERS_FROM: f64 = 0.5;
+const ANSWER_S: TraitSpread = TraitSpread::from_median(3.0, 0.3);
+
+// Recordings leave out how questions are answered where it is the default.
+fn is_usual_wrong(value: &TraitSpread) -> bool {
+    *value == ANSWERS_WRONG
+}
+
+fn is_usual_from(value: &f64) -> bool {
+    *value == ANSWERS_FROM
+}
+
+fn is_usual_time(value: &TraitSpread) -> bool {
+    *value == ANSWER_S
+}
+
 impl TraitSpread {
     const fn from_median(median: f64, sigma: f64) -> TraitSpread {
         TraitSpread { median, sigma }
@@ -156,6 +175,15 @@ pub struct Population {
     pub tracker_offset_m: f64,
     /// Whether the participants know the state and all recipes: their errors are those of planning, and slips.
     pub all_knowing: bool,
+    /// Probability of a wrong answer to a question of a freeze probe, whatever is believed.
+    #[serde(skip_serializing_if = "is_usual_wrong")]
+    pub answers_wrong: TraitSpread,
+    /// Least probability of the most probable value for which it is the answer; below, the answer is "I don't know".
+    #[serde(skip_serializing_if = "is_usual_from")]
+    pub answers_from: f64,
+    /// Time to answer a question of a freeze probe, in seconds.
+    #[serde(skip_serializing_if = "is_usual_time")]
+    pub answer_s: TraitSpread,
 }
 
 /// Trials of a participant before the present one.
@@ -216,6 +244,9 @@ impl Default for Population {
             practice_kept: 0.0,
             tracker_offset_m: 0.02,
             all_knowing: false,
+            answers_wrong: ANSWERS_WRONG,
+            answers_from: ANSWERS_FROM,
+            answer_s: ANSWER_S,
         }
     }
 }
@@ -287,6 +318,10 @@ pub struct Individual {
     pub misremembers: f64,
     /// Chance to guess rightly what the robot did unseen.
     pub guesses_robot: f64,
+    /// Chance of a wrong answer to a question of a freeze probe.
+    pub answers_wrong: f64,
+    /// Median time to answer such a question, in seconds.
+    pub answer_s: f64,
 }
 
 /// Least and largest number of own presses that a participant thinks through (study, "Simulated participants").
@@ -341,6 +376,8 @@ impl Population {
             keeps_own_recipe: self.keeps_own_recipe.draw_chance(random),
             misremembers: self.misremembers.draw_chance(random),
             guesses_robot: self.guesses_robot.draw_chance(random),
+            answers_wrong: self.answers_wrong.draw_chance(random),
+            answer_s: self.answer_s.draw(random),
         }
     }
 }

@@ -11,7 +11,7 @@ use super::memory::Memory;
 use super::population::{Experience, Individual, Population};
 use super::signal_sense::SignalSense;
 use super::true_beliefs::ParticipantBeliefs;
-use crate::base::rng::{Stream, stream};
+use crate::base::rng::{Stream, of_trial, stream};
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{ButtonId, Kitchen, LocationId, State};
@@ -65,6 +65,8 @@ pub struct SimulatedParticipant {
     /// Intended button of a slip that the participant has not noticed; `None` otherwise.
     pub(super) meant: Option<ButtonId>,
     pub(super) signals: SignalSense,
+    /// Seed of its answers to the questions of probes.
+    pub(super) answer_seed: u64,
     /// Served orders with the time at which each disappears.
     pub(super) clearing: Vec<(SessionTime, LocationId)>,
 }
@@ -114,6 +116,7 @@ impl SimulatedParticipant {
             robot_pressed_at: SessionTime::ZERO,
             meant: None,
             signals: SignalSense::default(),
+            answer_seed: of_trial(seed, trial),
             clearing: Vec::new(),
             kitchen,
         }

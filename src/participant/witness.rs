@@ -11,6 +11,17 @@ use crate::mind::{AspectBelief, BeliefWitness, PressOrigin, WORTH_TELLING};
 
 /// Records every aspect: its most probable value, the probability of the true value, and all other probabilities worth logging.
 pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, reason: PressReason) -> BeliefWitness {
+    let name = |aspect: &AspectId| kitchen.aspects[aspect.index()].name.clone();
+    BeliefWitness {
+        cause: reason.cause,
+        origin: Some(reason.origin),
+        targets: reason.targets.iter().map(name).collect(),
+        ..without_press(kitchen, beliefs, state)
+    }
+}
+
+/// The same at a freeze probe, after which nothing is pressed because of it.
+pub fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State) -> BeliefWitness {
     let told = |index: usize| {
         let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
         let values = aspect.labels.iter().zip(beliefs.distribution(id)).filter(|(_, p)| **p >= WORTH_TELLING);
@@ -21,17 +32,16 @@ pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, re
             values: values.map(|(label, &p)| (label.clone(), rounded(p))).collect(),
         }
     };
-    let name = |aspect: &AspectId| kitchen.aspects[aspect.index()].name.clone();
     BeliefWitness {
         aspects: (0..kitchen.aspects.len()).map(told).collect(),
-        cause: reason.cause,
-        origin: Some(reason.origin),
-        targets: reason.targets.iter().map(name).collect(),
+        cause: "asked by a probe".to_string(),
+        origin: None,
+        targets: Vec::new(),
     }
 }
 
 /// Rounds a probability to six decimals for the log.
-fn rounded(p: f64) -> f64 {
+pub(super) fn rounded(p: f64) -> f64 {
     (p * 1e6).round() / 1e6
 }
 

@@ -1,7 +1,7 @@
 //! The engine: a running session. It raises the session's own events when they are due, accepts events from outside, and returns
 //! every event once, stamped and in order, for the log.
 //!
-//! At equal times the order is timers, robot, simulated participant, scripted wizard; immediate consequences are applied before anything
+//! At equal times the order is timers, robot, simulated participant, scripted wizard, probes; immediate consequences are applied before anything
 //! else. `headless` jumps from one due time to the next, `live` sleeps until then, and verification uses the recorded times.
 //!
 //! A pause stops clock, robot, orders and participant; pending events are postponed by its length. Presses during a pause are recorded and
@@ -12,6 +12,7 @@
 
 mod agents;
 mod informing;
+mod probing;
 mod robot;
 
 use std::sync::Arc;
@@ -34,6 +35,7 @@ use crate::session::admit::{admit, hygiene};
 use crate::session::apply::ApplyError;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::orders::OrderList;
+use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::timers::TimerQueue;
@@ -57,6 +59,8 @@ pub struct Engine {
     out: Vec<Stamped>,
     /// The latest event after which advice is requested, once its immediate consequences have been applied.
     to_ask: Option<(u64, SessionTime)>,
+    /// The latest request for advice, until it is answered.
+    asked: Option<(u64, SessionTime)>,
     /// Requests for advice that have not been returned yet.
     questions: Vec<AdviceRequest>,
 }
@@ -78,6 +82,7 @@ enum Source {
     Robot,
     Participant,
     Wizard,
+    Probe,
 }
 
 impl Engine {
@@ -98,7 +103,20 @@ impl Engine {
         let follower = Follower::new(Session::new(kitchen, spec, trial), cost);
         let timers = TimerQueue::default();
         let (out, questions) = (Vec::new(), Vec::new());
-        Engine { follower, timers, orders, robot, participant, gaps, wizard, next_seq: 0, out, to_ask: None, questions }
+        Engine {
+            follower,
+            timers,
+            orders,
+            robot,
+            participant,
+            gaps,
+            wizard,
+            next_seq: 0,
+            out,
+            to_ask: None,
+            asked: None,
+            questions,
+        }
     }
 
     /// The advisor of this session; its recommendations return as [`Event::Advised`].
@@ -199,7 +217,9 @@ impl Engine {
     fn next_source(&self) -> Option<(SessionTime, Source)> {
         if !self.session().is_running() {
             let simulated = self.participant.as_ref().filter(|_| self.session().spec.participant.simulates_gaze());
-            return simulated.and_then(|one| Some((one.target_due()?, Source::Participant)));
+            let look = simulated.and_then(|one| Some((one.target_due()?, Source::Participant)));
+            let probe = self.probe_due().map(|due| (due, Source::Probe));
+            return look.into_iter().chain(probe).min();
         }
         let participant = self.participant.as_ref().and_then(SimulatedParticipant::next_due);
         let sources = [
@@ -208,6 +228,7 @@ impl Engine {
             (self.robot.next_due().map(|due| due.max(self.session().time)), Source::Robot),
             (participant, Source::Participant),
             (self.wizard.as_ref().and_then(ScriptedWizard::next_due), Source::Wizard),
+            (self.probe_due(), Source::Probe),
         ];
         sources.into_iter().filter_map(|(due, source)| Some((due?, source))).min()
     }
@@ -219,6 +240,7 @@ impl Engine {
             Source::Robot => self.let_robot_act(now),
             Source::Participant => self.let_participant_act(now),
             Source::Wizard => self.let_wizard_act(now),
+            Source::Probe => self.review_probe(now),
         }
         self.settle(now);
     }
@@ -282,7 +304,13 @@ impl Engine {
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
         self.review_offer(now);
+        self.review_probe(now);
+        if self.session().is_frozen() {
+            // Advice that comes while the task stands still is refused: it is requested afterwards.
+            return;
+        }
         if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
+            self.asked = Some((seq, time));
             self.questions.push(AdviceRequest::from_follower(&self.follower, seq, time));
         }
     }
@@ -325,7 +353,14 @@ impl Engine {
             self.to_ask = Some((stamped.seq, now));
         }
         let advice = match &stamped.event {
-            Event::Advised(advice) => self.acted_on(advice),
+            Event::Advised(advice) => {
+                self.asked = self.asked.filter(|(seq, _)| *seq > advice.for_seq);
+                self.acted_on(advice)
+            }
+            Event::Probe(ProbeEvent::Ended { .. }) => {
+                self.to_ask = self.to_ask.or(self.asked);
+                None
+            }
             _ => None,
         };
         let estimated = self.follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);

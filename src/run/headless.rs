@@ -40,7 +40,7 @@ pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<()
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
     let mut attendant = Attendant::default();
     // The end of the trial's time is always pending, so there is a next event until the trial ends.
-    while engine.session().phase == Phase::Running {
+    while engine.session().phase == Phase::Running || engine.session().is_frozen() {
         for question in engine.take_questions() {
             if let Some(advisor) = &mut advisor {
                 let advice = Event::Advised(advisor.answer(&question));

@@ -63,7 +63,7 @@ pub struct ResumedSession {
     pub lock: RecordingLock,
 }
 
-/// Runs a cut recording again to its end. A running trial is paused there until the participant is back.
+/// Runs a cut recording again to its end. A running trial, or the probe that is held in it, is paused there until the participant is back.
 ///
 /// # Errors
 /// The recording cannot be read, is being written, was not cut off, or does not verify.
@@ -88,7 +88,7 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     }
     let time = again.engine.session().time;
     let mut first = Vec::from(again.produced);
-    if again.engine.session().is_running() {
+    if again.engine.session().can_be_paused() {
         first.extend(again.engine.input(time, Event::TrialPaused).events);
     }
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();

@@ -42,6 +42,7 @@ pub(super) fn admit(session: &Session, event: &CalibrationEvent) -> Result<(), &
         CalibrationEvent::Begun { targets } => {
             unless(session.spec.participant.gaze != GazeSource::None, "there is no gaze in this session")?;
             unless(session.phase != Phase::Running, "pause the trial first: the targets hide the kitchen")?;
+            unless(!session.is_frozen(), "a probe is held: check the gaze after it")?;
             let are_places = targets.iter().flatten().all(|value| (0.0..=1.0).contains(value));
             unless(!targets.is_empty() && targets.len() <= 64 && are_places, "the targets are not on the display")
         }

@@ -3,11 +3,12 @@
 
 use super::event::{EndReason, Event, SignalEnd};
 use super::phase::Phase;
+use super::probe_event::ProbeEvent;
 use super::protocol::{self, ProtocolEvent};
 use super::session_state::Session;
 use super::settings::{ArmKind, Condition, ParticipantKind};
 use super::timeline_entry::TimelineEvent;
-use super::{accuracy_check, interventions, tracker};
+use super::{accuracy_check, interventions, probes, tracker};
 use crate::base::time::SessionTime;
 use crate::communication::{self, Sender, Signal};
 use crate::kitchen::{Agent, LocationKind};
@@ -27,9 +28,10 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             protocol::admit_trial(session)
         }
         Event::Preflight { .. } => refuse_if(phase != Phase::Ready, "the trial was started already"),
-        Event::TrialPaused => refuse_if(phase != Phase::Running, "no trial runs"),
+        Event::TrialPaused => refuse_if(!session.can_be_paused(), "no trial runs"),
         Event::TrialResumed => {
             refuse_if(phase != Phase::Paused, "the trial is not paused")?;
+            refuse_if(session.can_be_paused(), "the trial goes on by itself after the probe")?;
             refuse_if(session.is_calibrating(), "the calibration is being checked")
         }
         Event::TrialEnded { reason: EndReason::Aborted } => Err("an aborted trial needs a reason: trial_aborted"),
@@ -65,6 +67,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             refuse_if(!session.spec.asks_assistant(), "nobody asks the assistant in this session")
         }
         Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown"),
+        Event::Probe(event) => probes::admit(session, event),
         Event::Protocol(event) => protocol::admit(session, event),
         other => interventions::admit(session, other),
     }
@@ -159,6 +162,11 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::SessionEnded => true,
         Event::Calibration(event) => event.is_external(),
         Event::TrialEnded { reason } => *reason == EndReason::Wizard,
+        Event::Probe(event) => match event {
+            ProbeEvent::Requested | ProbeEvent::Skipped { .. } => true,
+            ProbeEvent::Answered { .. } => participant.kind != ParticipantKind::Simulated,
+            _ => false,
+        },
         Event::Protocol(event) => !matches!(event, ProtocolEvent::CriterionChecked { .. }),
         Event::SignalShown { by, .. } => *by == Sender::Wizard && !session.spec.scripts_wizard(),
         Event::SignalEnded { reason } => *reason == SignalEnd::TakenBack,

@@ -6,7 +6,7 @@ use super::gaze_samples::take_sample;
 use super::phase::Phase;
 use super::session_state::{Served, Session, ShownSignal};
 use super::timeline_entry::TimelineEvent;
-use super::{accuracy_check, offers, protocol, robot_changes};
+use super::{accuracy_check, offers, probes, protocol, robot_changes, trial_clock};
 use crate::base::time::SessionTime;
 use crate::communication::offer::{GAP, HOLD, OfferBook, OfferEnd};
 use crate::communication::recommendation::Recommendation;
@@ -164,6 +164,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         Event::SignalShown { by, signal, offer, .. } => {
             let location = named.location(signal.target())?;
             session.cue = Some(stamped.seq);
+            session.probes.signalled_at = Some(now);
             if *by == Sender::Wizard {
                 offers::sends(session, now, signal, offer.is_some());
             }
@@ -171,6 +172,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         }
         Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
         Event::Marker { note: text } => session.note(now, TimelineEvent::Marker(text.clone())),
+        Event::Probe(event) => effects.extend(probes::apply(session, now, event).map(Effect::Postpone)),
         Event::Protocol(event) => protocol::apply(session, event),
         Event::Unblinded { .. } => session.unblinded = true,
         Event::Screen(_) => session.has_console = true,
@@ -262,6 +264,7 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) -> 
     session.presses = [0; 2];
     session.served.clear();
     session.offers = OfferBook::default();
+    probes::start(session);
     let empty = session.kitchen.empty_state();
     let (before, after) = update(session, now, |state| *state = empty);
     session.note(now, TimelineEvent::Trial(Phase::Running));
@@ -274,43 +277,26 @@ fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) -> 
 }
 
 fn pause(session: &mut Session, now: SessionTime) {
-    stop_clock(session, now);
-    session.phase = Phase::Paused;
-    session.gaze.steady_since = None;
+    match session.is_frozen() {
+        true => probes::pause(session, now),
+        false => trial_clock::pause(session, now),
+    }
     session.note(now, TimelineEvent::Trial(Phase::Paused));
 }
 
-fn stop_clock(session: &mut Session, now: SessionTime) {
-    match session.phase {
-        Phase::Running => session.paused_at = now,
-        Phase::Ready => {
-            session.trial_start = now;
-            session.paused_at = now;
-        }
-        _ => {}
-    }
-}
-
-/// Resumes after a pause: pending times are postponed by its length.
+/// Resumes after a pause: pending times are postponed by its length. After a pause in a probe, the probe goes on.
 fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
-    let by = now - session.paused_at;
-    session.pauses.push((session.paused_at, now));
-    session.gaze.steady_since = None;
-    session.paused_total = session.paused_total + by;
-    session.phase = Phase::Running;
-    if let Some((_, _, until)) = &mut session.robot.intention {
-        *until = *until + by;
+    if session.is_frozen() {
+        return probes::resume(session, now);
     }
-    if let Some(shown) = &mut session.shown {
-        shown.until = shown.until + by;
-    }
-    effects.push(Effect::Postpone(by));
+    effects.push(Effect::Postpone(trial_clock::resume(session, now)));
     session.note(now, TimelineEvent::Trial(Phase::Running));
 }
 
 fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects: &mut Vec<Effect>) {
-    stop_clock(session, now);
+    trial_clock::stop(session, now);
     session.phase = Phase::Over(reason);
+    probes::trial_ends(session, now);
     session.robot.rests();
     session.shown = None;
     session.advice = None;
@@ -319,8 +305,9 @@ fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects
 }
 
 fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
-    stop_clock(session, now);
+    trial_clock::stop(session, now);
     session.phase = Phase::Closed;
+    probes::session_ends(session, now);
     session.robot.intention = None;
     session.shown = None;
     session.offers.closes(now, OfferEnd::TrialEnded);

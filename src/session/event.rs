@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::gaze_check::CalibrationEvent;
 use super::preflight_check::PreflightCheck;
+use super::probe_event::ProbeEvent;
 use super::protocol_event::ProtocolEvent;
 use super::tracker::TrackerEvent;
 use super::wall_display::DisplayEvent;
@@ -210,6 +211,8 @@ pub enum Event {
         /// The wizard's note.
         note: String,
     },
+    /// An event of a freeze probe.
+    Probe(ProbeEvent),
     /// An event of the study protocol.
     Protocol(ProtocolEvent),
     /// Witness: the wall clock advanced by this much more than session time, in milliseconds (negative: less), because the
@@ -282,6 +285,7 @@ impl Event {
             Event::SignalDrawn { .. } => "signal_drawn",
             Event::SignalEnded { .. } => "signal_ended",
             Event::Marker { .. } => "marker",
+            Event::Probe(_) => "probe",
             Event::Protocol(_) => "protocol",
             Event::ClockJumped { .. } => "clock_jumped",
             Event::Display(_) => "display",

@@ -39,6 +39,10 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
         return;
     }
     status.last = Some((now, sample));
+    if session.probes.open.is_some() {
+        // The kitchen is not on the display.
+        return;
+    }
     for (index, location) in session.kitchen.locations.iter().enumerate() {
         if location.display.distance_m([sample.x, sample.y], session.kitchen.display_m) == 0.0 {
             status.looked_at[index] = Some(now);

@@ -48,6 +48,10 @@ fn admit_correction(session: &Session, location: &str, content: &str) -> Result<
     if !matches!(session.phase, Phase::Running | Phase::Paused) {
         return Err("the kitchen is corrected during a trial");
     }
+    if session.is_frozen() {
+        // The questions are about the kitchen as it was when the task came to a stand.
+        return Err("the kitchen is corrected after the probe");
+    }
     let kitchen = &session.kitchen;
     let place = kitchen.location_named(location).ok_or("there is no such location")?;
     let what = kitchen.content_named(content).ok_or("there is no such content")?;

@@ -3,15 +3,15 @@
 //!
 //! The files from the ground up:
 //!
-//! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`, [`wall_display`],
+//! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`, `probe_settings`, [`wall_display`],
 //!   [`stream_settings`], [`tracker`] (with its events and state), and the specifications in [`plan`]; [`settings`], all of
 //!   them together. On these stand [`battery`], `session_file`, `requirements`, [`participant_code`], [`header`], [`orders`], and the
 //!   studies in [`plan`].
-//! - What happens: `gaze_check`, [`answer_value`], `protocol_event` (with the phases of a plan), `tutorial_event`, `preflight_check`, [`wizard_screen`]; [`event`],
+//! - What happens: `gaze_check`, [`answer_value`], `protocol_event` (with the phases of a plan), `tutorial_event`, `probe_event`, `preflight_check`, [`wizard_screen`]; [`event`],
 //!   all of them together.
-//! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `tutorial_state`, `protocol_state`; `session_state`, all of them
+//! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `tutorial_state`, `protocol_state`, `probe_state` with `probe_schedule`; `session_state`, all of them
 //!   together.
-//! - What can happen when, and what it changes: `robot_changes`, [`accuracy_check`], [`gaze_samples`], [`tutorial`], [`protocol`],
+//! - What can happen when, and what it changes: `trial_clock`, `unseen_changes`, `robot_changes`, [`accuracy_check`], [`gaze_samples`], [`tutorial`], [`protocol`], [`probes`] with [`probe_sampling`],
 //!   `interventions`; [`admit`] and [`mod@apply`], all of them together. On these stand the rules of [`offers`]. Beside them [`preflight_checks`], and the [`timers`] that [`apply()`] sets.
 
 pub mod accuracy_check;
@@ -35,6 +35,12 @@ mod phase;
 pub mod plan;
 mod preflight_check;
 pub mod preflight_checks;
+mod probe_event;
+pub mod probe_sampling;
+mod probe_schedule;
+mod probe_settings;
+mod probe_state;
+pub mod probes;
 pub mod protocol;
 mod protocol_event;
 mod protocol_state;
@@ -51,9 +57,11 @@ pub mod stream_settings;
 mod timeline_entry;
 pub mod timers;
 pub mod tracker;
+mod trial_clock;
 pub mod tutorial;
 mod tutorial_event;
 mod tutorial_state;
+mod unseen_changes;
 pub mod wall_display;
 pub mod wizard_screen;
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
 use super::gaze_status::GazeStatus;
 use super::phase::Phase;
+use super::probe_state::ProbeBook;
 use super::protocol_state::Protocol;
 use super::robot_status::RobotStatus;
 use super::settings::SessionSpec;
@@ -82,6 +83,8 @@ pub struct Session {
     pub calibrated: Option<AcceptedGazeCheck>,
     /// All entries of the timeline (events without gaze samples).
     pub timeline: Vec<TimelineEntry>,
+    /// The freeze probes of the trial.
+    pub probes: ProbeBook,
     /// Progress within the recording's phases, if it belongs to a plan.
     pub protocol: Option<Protocol>,
 }
@@ -153,6 +156,7 @@ impl Session {
             calibration: None,
             calibrated: None,
             timeline: Vec::new(),
+            probes: ProbeBook::default(),
             protocol,
         }
     }

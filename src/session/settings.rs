@@ -6,6 +6,7 @@ pub use super::condition::Condition;
 pub use super::console_settings::{ConsoleSpec, MAX_NOTES, ThemeChoice, Visibility};
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
 use super::plan::{PlanSpec, StepSpec};
+pub use super::probe_settings::ProbeSpec;
 use super::ranges;
 pub use super::robot_settings::{ArmKind, RobotSpec};
 pub use super::setting_checks::{SettingError, is_code};
@@ -53,6 +54,9 @@ pub struct SessionSpec {
     /// The participant's display.
     #[serde(default)]
     pub display: DisplaySpec,
+    /// Freeze probes; `None`: the task never stands still for questions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probes: Option<ProbeSpec>,
     /// The stream to Rerun's viewers.
     #[serde(default)]
     pub rerun: RerunSpec,
@@ -114,6 +118,9 @@ impl SessionSpec {
         self.console.check()?;
         self.display.check()?;
         self.rerun.check()?;
+        if let Some(probes) = &self.probes {
+            probes.check(self.trial.seconds)?;
+        }
         let population = self.participant.population.as_ref().and_then(Population::fault);
         match self.human.fault().or(population) {
             Some((path, found, remedy)) => Err(SettingError::new(path, found, remedy)),

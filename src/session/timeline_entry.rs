@@ -2,6 +2,7 @@
 
 use super::event::SignalEnd;
 use super::phase::Phase;
+use super::probe_event::ProbeEvent;
 use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::no_effect::NoEffect;
@@ -83,6 +84,8 @@ pub enum TimelineEvent {
     },
     /// The trial reached this phase.
     Trial(Phase),
+    /// An event of a freeze probe, other than a question or an answer.
+    Probe(ProbeEvent),
     /// The trial was excluded from the analysis, for this reason.
     Excluded(String),
     /// The trial was included in the analysis again.

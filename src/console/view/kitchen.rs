@@ -157,7 +157,7 @@ impl<'a> Place<'a> {
         };
         let at = session.changed_at[id.index()];
         let age_s = session.age(at, model.now).as_secs_f64();
-        let fresh = (at > SessionTime::ZERO && age_s < FRESH_S).then(|| (age_s, wording::changed_by(session, at)));
+        let fresh = (at > SessionTime::ZERO && age_s < FRESH_S).then(|| (age_s, session.changed_by(at)));
         let is_shown = session.shown.as_ref().is_some_and(|shown| shown.signal.target() == kitchen.location(id).name);
         let (is_offered, thinks) = (false, None);
         Place { session, model, id, kitchen, content, is_empty, fresh, is_shown, is_offered, thinks }
@@ -240,7 +240,7 @@ impl<'a> Place<'a> {
 
     /// Whether the wizard is told that the participant has not seen the last change; the participant is not.
     fn is_unseen(&self) -> bool {
-        self.model.layer == KeyLayer::Wizard && wording::is_unseen(self.session, self.id)
+        self.model.layer == KeyLayer::Wizard && self.session.is_unseen(self.id)
     }
 
     /// The key of this place in the active layer.

@@ -15,6 +15,7 @@ use crate::console::console_model::ConsoleModel;
 use crate::kitchen::Agent;
 use crate::session::event::SignalEnd;
 use crate::session::offers;
+use crate::session::probes::ProbeEvent;
 use crate::session::settings::Visibility;
 use crate::session::{Phase, Session, TimelineEntry, TimelineEvent};
 
@@ -233,6 +234,9 @@ fn mark(
         TimelineEvent::SignalEnded(SignalEnd::Elapsed) => return None,
         TimelineEvent::Served { .. } => (4, signs.served.to_string(), TextRole::Strong),
         TimelineEvent::OrderShown { .. } => (4, "+".to_string(), TextRole::Quiet),
+        TimelineEvent::Probe(ProbeEvent::Begun { .. }) => (5, "?".to_string(), TextRole::Strong),
+        TimelineEvent::Probe(ProbeEvent::Ended { .. }) => (5, signs.to.to_string(), TextRole::Strong),
+        TimelineEvent::Probe(_) => return None,
         TimelineEvent::Excluded(_) => (5, signs.error.to_string(), TextRole::Signal),
         TimelineEvent::Included => (5, signs.served.to_string(), TextRole::Signal),
         TimelineEvent::Focus(false) => (5, "!".to_string(), TextRole::Alarm),

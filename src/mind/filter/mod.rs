@@ -76,6 +76,8 @@ pub struct BeliefFilter {
     presses: u64,
     /// Time up to which forgetting has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
+    /// When the task came to a stand for a probe, while it stands still.
+    frozen: Option<SessionTime>,
     evidence: Option<Evidence>,
 }
 
@@ -100,6 +102,7 @@ impl BeliefFilter {
             belief: prior.clone(),
             sampler: Sampler::new(&kitchen),
             forgot: None,
+            frozen: None,
             evidence: None,
             kitchen,
             model,
@@ -123,7 +126,12 @@ impl BeliefFilter {
 
     /// Updates the estimate with one observation. The random stream depends on the seed and the number of presses only.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
-        let now = observation.time;
+        let now = self.frozen.unwrap_or(observation.time);
+        match observation.what {
+            Observed::Frozen => return self.frozen = Some(now),
+            Observed::Thawed { by, asked, teaches } => return self.thaw(by, asked, teaches),
+            _ => {}
+        }
         if let Observed::Gaze { sample, taken } = observation.what {
             if self.forgot.is_some() {
                 self.take_sample(&sample, taken, cost);
@@ -152,6 +160,7 @@ impl BeliefFilter {
                 self.show(now, state);
             }
             Observed::Gaze { .. } | Observed::DisplayInView(_) => {}
+            Observed::Frozen | Observed::Thawed { .. } => {}
             Observed::Pressed(press) => {
                 self.presses += 1;
                 let mut random = stream(self.seed, "belief", self.presses);
@@ -182,9 +191,39 @@ impl BeliefFilter {
     /// Accounts for unknown gaze up to `now`. The estimate before a press includes it; [`BeliefFilter::observe`] does the same
     /// first, so calling it changes no later estimate.
     pub fn advance(&mut self, now: SessionTime, cost: &mut CostToGo) {
+        let now = self.frozen.unwrap_or(now);
         if self.forgot.is_some() {
             let unknown_s = self.presence.pass(now);
             self.pass_unknown(unknown_s, cost);
+        }
+    }
+
+    /// The estimate at `now`, with the unknown gaze and the forgetting since the last event. It changes no later estimate.
+    pub fn at(&self, now: SessionTime, cost: &mut CostToGo) -> DirichletBelief {
+        let mut filter = self.clone();
+        let now = filter.frozen.unwrap_or(now);
+        filter.advance(now, cost);
+        filter.forget(now);
+        filter.belief
+    }
+
+    /// The task goes on after it stood still for this long: all times move on by that, so that the estimate is as if it had not, except
+    /// for looks at the locations that were asked about.
+    fn thaw(&mut self, by: SessionTime, asked: u32, teaches: f64) {
+        self.frozen = None;
+        self.forgot = self.forgot.map(|at| at + by);
+        self.presence.postpone(by);
+        self.reader.postpone(by);
+        if teaches <= 0.0 {
+            return;
+        }
+        self.reader.settle();
+        (self.needs, self.stretch) = (None, None);
+        for index in (0..self.kitchen.locations.len()).filter(|index| asked & 1 << index != 0) {
+            let reading = self.reader.reading(&self.kitchen, LocationId(index as u8), self.shown);
+            if !reading.is_empty() {
+                self.belief.aspects[index].learn(teaches, reading.iter().copied());
+            }
         }
     }
 

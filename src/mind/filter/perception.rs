@@ -82,6 +82,12 @@ impl GazeReader {
         }
     }
 
+    /// Moves all times on, because the task stood still.
+    pub fn postpone(&mut self, by: SessionTime) {
+        self.looks.iter_mut().for_each(|look| look.last = look.last + by);
+        self.shown.iter_mut().for_each(|(since, _)| *since = *since + by);
+    }
+
     /// Distribution of the value read at a location while the display shows `state`; empty if it has no value there.
     pub fn reading(&self, kitchen: &Kitchen, location: LocationId, state: State) -> &[f64] {
         let value = kitchen.aspects[location.index()].index_of(state.code(location));

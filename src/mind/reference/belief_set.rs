@@ -144,10 +144,11 @@ impl Particles {
                 self.show(now, state);
             }
             Observed::Told { location } => self.told(location, random),
-            Observed::Paused => self.forgot = None,
-            Observed::Resumed => {
-                self.forgot = Some(now);
-                self.presence.rest(now);
+            Observed::Paused | Observed::Frozen => self.forgot = None,
+            Observed::Resumed => self.go_on(now),
+            Observed::Thawed { asked, teaches, .. } => {
+                self.go_on(now);
+                plausible_looks::asked(&self.kitchen, &self.model, &mut self.of, (asked, self.shown), teaches, random);
             }
         }
         vec![1.0; self.of.len()]
@@ -168,6 +169,11 @@ impl Particles {
             Dirichlet::of_moments(mean, second)
         };
         DirichletBelief { aspects: (0..self.kitchen.aspects.len()).map(of_aspect).collect() }
+    }
+
+    fn go_on(&mut self, now: SessionTime) {
+        self.forgot = Some(now);
+        self.presence.rest(now);
     }
 
     fn show(&mut self, now: SessionTime, state: State) {

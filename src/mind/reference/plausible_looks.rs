@@ -82,6 +82,24 @@ pub fn see_changes(
     }
 }
 
+/// Lets every belief look at each location of a bit set, which shows the state's content, with probability `looks`.
+pub fn asked(
+    kitchen: &Kitchen,
+    model: &HumanModel,
+    people: &mut [Particle],
+    (locations, state): (u32, State),
+    looks: f64,
+    random: &mut Stream,
+) {
+    for index in (0..kitchen.locations.len()).filter(|index| locations & 1 << index != 0) {
+        for person in &mut *people {
+            if random.random::<f64>() < looks {
+                read(kitchen, model, person, LocationId(index as u8), state, random);
+            }
+        }
+    }
+}
+
 /// Makes a belief certain of what it reads at a location.
 fn read(
     kitchen: &Kitchen,

@@ -18,7 +18,7 @@ const fn rare_chance(path: &'static str) -> NumberRange {
         .recorded([0.0, INSIDE_0_AND_1[1]])
 }
 
-pub(super) const RANGES: [NumberRange; 54] = [
+pub(super) const RANGES: [NumberRange; 57] = [
     chance("participant.population.slip.median"),
     chance("participant.population.look_alike_slip.median"),
     chance("participant.population.thoughtless.median"),
@@ -43,6 +43,14 @@ pub(super) const RANGES: [NumberRange; 54] = [
     rare_chance("participant.population.keeps_own_recipe.median"),
     rare_chance("participant.population.misremembers.median"),
     rare_chance("participant.population.guesses_robot.median"),
+    rare_chance("participant.population.answers_wrong.median"),
+    NumberRange::real("participant.population.answers_from", [0.0, 1.0], "", CHANCE),
+    NumberRange::real(
+        "participant.population.answer_s.median",
+        [0.1, 60.0],
+        SECONDS,
+        "a probe lasts less than a minute",
+    ),
     NumberRange::real(
         "participant.population.depth.median",
         [1.0, 10.0],

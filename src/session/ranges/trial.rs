@@ -17,7 +17,7 @@ const LONGEST: &str = "no trial is longer than a day";
 /// What 32 bits hold: as much as no limit at all.
 const COUNT: f64 = 4_294_967_295.0;
 
-pub(super) const RANGES: [NumberRange; 37] = [
+pub(super) const RANGES: [NumberRange; 48] = [
     NumberRange::whole("seed", [0.0, 9_007_199_254_740_991.0], "", "every reader of JSON has these numbers exactly")
         .recorded(ANY),
     NumberRange::whole("trial.presses", [1.0, COUNT], "presses", "the largest numbers are as good as no limit"),
@@ -83,6 +83,17 @@ pub(super) const RANGES: [NumberRange; 37] = [
     NumberRange::real("tracker.gaps.shortest_s", [0.01, DAY_S], SECONDS, LONGEST),
     NumberRange::real("tracker.gaps.longest_s", [0.01, DAY_S], SECONDS, LONGEST),
     NumberRange::real("tracker.distance_m", [0.2, 20.0], "m", "eyes see a display from these distances"),
+    NumberRange::whole("probes.per_trial", [0.0, 50.0], "probes", "more leave no time to work"),
+    NumberRange::real("probes.apart_s", [1.0, 3_600.0], SECONDS, "the participant works on between two probes"),
+    NumberRange::real("probes.after_signal_s", [0.0, 600.0], SECONDS, "with more, hardly any probe is held"),
+    NumberRange::real("probes.wait_s", [0.0, 600.0], SECONDS, "a later probe is not the one that was drawn"),
+    NumberRange::real("probes.limit_s", [5.0, 600.0], SECONDS, "less is too short for an answer; beliefs fade"),
+    NumberRange::real("probes.count_down_s", [0.0, 60.0], SECONDS, "beliefs fade in a longer one"),
+    NumberRange::whole("probes.least_questions", [1.0, 8.0], "questions", "more take minutes"),
+    NumberRange::whole("probes.most_questions", [1.0, 8.0], "questions", "more take minutes"),
+    NumberRange::real("probes.blind_share", [0.0, 1.0], "", "it is a share of probes"),
+    NumberRange::real("probes.least_inclusion", [0.001, 1.0], "", "it is a probability, and analyses divide by it"),
+    NumberRange::real("probes.teaches", [0.0, 1.0], "", CHANCE),
     NumberRange::whole("display.port", [1.0, 65_535.0], "", PORT).recorded(ANY),
     NumberRange::whole(
         "plan.participants",

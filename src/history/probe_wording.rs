@@ -1,0 +1,41 @@
+//! Words for freeze probes: their questions, answers and events.
+
+use super::wording::location as said;
+use crate::base::words::count;
+use crate::session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
+
+/// What a question is about, in words: "cutting board", "recipe of tuna maki".
+pub fn subject(about: &ProbeSubject) -> String {
+    match about {
+        ProbeSubject::Location { location } => said(location),
+        ProbeSubject::Recipe { dish } => format!("recipe of {}", said(dish)),
+        ProbeSubject::NextOrder => "the order that is served next".to_string(),
+        ProbeSubject::NextPress => "the robot's next press".to_string(),
+    }
+}
+
+/// An event of a probe in words.
+pub fn event(event: &ProbeEvent) -> String {
+    match event {
+        ProbeEvent::Requested => "the wizard asks for a probe".to_string(),
+        ProbeEvent::Delayed { probe, reason } => format!("probe {probe} waits: {}", reason.words()),
+        ProbeEvent::Dropped { probe, reason } => format!("probe {probe} is dropped: {}", reason.words()),
+        ProbeEvent::Begun { probe, origin, questions, .. } => {
+            let by = match origin {
+                ProbeOrigin::Schedule => "",
+                ProbeOrigin::Wizard => ", for the wizard",
+            };
+            let questions = count(questions.len() as u64, "question", "questions");
+            format!("probe {probe} begins{by}: the task stands still, {questions}")
+        }
+        ProbeEvent::Asked { probe, question } => format!("probe {probe} asks question {question}"),
+        ProbeEvent::Answered { question, answer: Some(answer), confidence, .. } => {
+            let sure = confidence.map_or(String::new(), |step| format!(" (confidence {step} of 3)"));
+            format!("answer to question {question}: {}{sure}", said(answer))
+        }
+        ProbeEvent::Answered { question, answer: None, .. } => format!("answer to question {question}: I don't know"),
+        ProbeEvent::Skipped { probe, reason } => format!("the wizard skips the rest of probe {probe}: {reason}"),
+        ProbeEvent::Closed { probe, reason } => format!("probe {probe} closes: {}", reason.words()),
+        ProbeEvent::Ended { probe } => format!("the task goes on after probe {probe}"),
+    }
+}

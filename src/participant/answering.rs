@@ -1,0 +1,56 @@
+//! How a simulated participant answers the questions of a freeze probe: by the most probable value of what it believes.
+
+use rand::RngExt;
+
+use super::population::{chance, normal};
+use super::simulated::SimulatedParticipant;
+use super::witness;
+use crate::base::rng::{Stream, stream};
+use crate::kitchen::{AspectId, State};
+use crate::mind::BeliefWitness;
+
+/// Standard deviation of the logarithm of one participant's answering times.
+const ANSWER_JITTER: f64 = 0.35;
+
+impl SimulatedParticipant {
+    /// Record of what it believes now, of which nothing comes but answers.
+    pub fn believes(&self, state: State) -> BeliefWitness {
+        witness::without_press(&self.kitchen, &self.beliefs, state)
+    }
+
+    /// Time from a question to its answer, in seconds.
+    pub fn answers_after_s(&self, probe: u32, question: u32) -> f64 {
+        self.person.answer_s * (ANSWER_JITTER * normal(&mut self.of_answer(probe, question))).exp()
+    }
+
+    /// The answer to a question about an aspect: one of the choices, or `None` for "I don't know".
+    ///
+    /// Where the truth is as probable as anything else, it is the answer: so the answer is right exactly where the belief is not false.
+    pub fn answer(
+        &self,
+        state: State,
+        aspect: AspectId,
+        choices: &[String],
+        (probe, question): (u32, u32),
+    ) -> Option<String> {
+        let mut random = self.of_answer(probe, question);
+        let _time = normal(&mut random);
+        let labels = &self.kitchen.aspects[aspect.index()].labels;
+        let most_likely = witness::rounded(self.beliefs.certainty(aspect));
+        let p_truth = witness::rounded(self.beliefs.p_truth(&self.kitchen, state, aspect));
+        let believed = match p_truth >= most_likely {
+            true => &labels[self.kitchen.true_value(state, aspect)],
+            false => &labels[self.beliefs.most_likely(aspect)],
+        };
+        if chance(&mut random, self.person.answers_wrong) {
+            let others: Vec<&String> = choices.iter().filter(|choice| *choice != believed).collect();
+            return (!others.is_empty()).then(|| others[random.random_range(0..others.len())].clone());
+        }
+        (most_likely >= self.population.answers_from).then(|| believed.clone())
+    }
+
+    /// The random stream of one answer, so that none depends on which others were given.
+    fn of_answer(&self, probe: u32, question: u32) -> Stream {
+        stream(self.answer_seed, "participant's answers", u64::from(probe) << 8 | u64::from(question))
+    }
+}

@@ -1,0 +1,74 @@
+//! Freeze probes in a running session: they begin when they are due, their questions are drawn, and a simulated participant answers.
+
+use super::Engine;
+use crate::base::time::SessionTime;
+use crate::kitchen::AspectId;
+use crate::measures::sequences::FALSE_BELOW;
+use crate::session::Event;
+use crate::session::probe_sampling::{aspect, questions};
+use crate::session::probes::{DueProbe, ProbeEvent, of_trial, upcoming};
+use crate::session::wall_display::Answering;
+
+impl Engine {
+    /// Time of the next event of a probe.
+    pub(super) fn probe_due(&self) -> Option<SessionTime> {
+        let rule = upcoming(self.session()).map(|(due, _)| due);
+        [rule, self.answer_due()].into_iter().flatten().min()
+    }
+
+    /// Time at which the simulated participant answers the shown question.
+    fn answer_due(&self) -> Option<SessionTime> {
+        let (participant, session) = (self.participant.as_ref()?, self.session());
+        let open = session.probes.open.as_ref().filter(|open| !open.is_paused())?;
+        let (shown, _) = open.question()?;
+        let after_s = participant.answers_after_s(open.number, shown as u32 + 1);
+        Some(open.when(open.asked_at, SessionTime::from_secs_f64(after_s)).max(session.time))
+    }
+
+    /// Records what is due of probes. An answer at the last moment counts.
+    pub(super) fn review_probe(&mut self, now: SessionTime) {
+        loop {
+            let rule = upcoming(self.session()).filter(|(due, _)| *due <= now);
+            let answer = self.answer_due().filter(|due| *due <= now);
+            match (rule, answer) {
+                (Some((due, what)), answer) if answer.is_none_or(|answer| due < answer) => self.probe(now, what),
+                (_, Some(_)) => self.let_participant_answer(now),
+                _ => return,
+            }
+        }
+    }
+
+    fn probe(&mut self, now: SessionTime, what: DueProbe) {
+        let (probe, origin, uses_estimate) = match what {
+            DueProbe::Event(event) => return self.record_own(now, Event::Probe(event)),
+            DueProbe::Begin { probe, origin, uses_estimate } => (probe, origin, uses_estimate),
+        };
+        let is_wrong = uses_estimate.then(|| self.believed_wrong(now));
+        let session = self.session();
+        let Some(spec) = of_trial(&session.spec) else { return };
+        let questions = questions(session, spec, probe, is_wrong.as_deref());
+        if let Some(belief) = self.participant.as_ref().map(|one| one.believes(session.state)) {
+            self.record_own(now, Event::ParticipantBelieves(belief));
+        }
+        self.record_own(now, Event::Probe(ProbeEvent::Begun { probe, origin, uses_estimate, questions }));
+    }
+
+    /// Which aspects are believed wrong now, by the estimate.
+    fn believed_wrong(&mut self, now: SessionTime) -> Vec<bool> {
+        let belief = self.follower.belief_at(now);
+        let session = self.session();
+        let is_wrong = |index| belief.p_truth(&session.kitchen, session.state, AspectId(index as u8)) < FALSE_BELOW;
+        (0..session.kitchen.aspects.len()).map(is_wrong).collect()
+    }
+
+    fn let_participant_answer(&mut self, now: SessionTime) {
+        let (Some(participant), session) = (&self.participant, self.session()) else { return };
+        let Some(open) = &session.probes.open else { return };
+        let Some((shown, asked)) = open.question() else { return };
+        let (probe, question) = (open.number, shown as u32 + 1);
+        let answer = aspect(&session.kitchen, &asked.about)
+            .and_then(|aspect| participant.answer(session.state, aspect, &asked.choices, (probe, question)));
+        let (confidence, on) = (None, Answering::Display);
+        self.record_own(now, Event::Probe(ProbeEvent::Answered { probe, question, answer, confidence, on }));
+    }
+}

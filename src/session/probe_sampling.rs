@@ -1,0 +1,141 @@
+//! The questions of a freeze probe, drawn with known probabilities.
+//!
+//! In a probe that uses the estimate, every aspect belongs to one stratum: believed wrong by the estimate, changed unseen, recipe of a
+//! current order, or any other. Each stratum that is not empty has the same share of the questions, divided evenly among its aspects,
+//! above a floor that every aspect has. In a blind probe all aspects have the same probability. The inclusion probability of each drawn
+//! aspect is recorded, so that an analysis can weight by its inverse (Horvitz and Thompson 1952).
+//!
+//! The draw is a systematic one of fixed size over the aspects in random order (Madow 1949), whose inclusion probabilities are exact.
+
+use rand::RngExt;
+
+use super::probe_event::{ProbeQuestion, ProbeSubject};
+use super::probe_schedule::shuffle;
+use super::probe_settings::ProbeSpec;
+use super::session_state::Session;
+use crate::base::rng::{Stream, stream};
+use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent};
+
+/// Number of strata.
+const STRATA: usize = 4;
+
+/// Draws the questions of a probe. `is_wrong`: whether each aspect is believed wrong by the estimate; `None` in a blind probe.
+pub fn questions(session: &Session, spec: &ProbeSpec, probe: u32, is_wrong: Option<&[bool]>) -> Vec<ProbeQuestion> {
+    let name = format!("questions of probes in trial {}", session.trial);
+    let mut random = stream(session.spec.seed, &name, u64::from(probe));
+    let kitchen = &session.kitchen;
+    let mut asked: Vec<AspectId> = (0..kitchen.aspects.len()).map(|index| AspectId(index as u8)).collect();
+    asked.retain(|id| {
+        let aspect = &kitchen.aspects[id.index()];
+        spec.asks_about(&aspect.name, aspect.labels.len())
+    });
+    shuffle(&mut asked, &mut random);
+    let most = (spec.most_questions as usize).min(asked.len());
+    let number = random.random_range((spec.least_questions as usize).min(most)..=most);
+    let shares: Vec<f64> = match is_wrong {
+        None => vec![1.0 / asked.len().max(1) as f64; asked.len()],
+        Some(is_wrong) => stratum_shares(&asked.iter().map(|&id| stratum(session, id, is_wrong)).collect::<Vec<_>>()),
+    };
+    let inclusion = inclusions(&shares, number, spec.least_inclusion);
+    let mut drawn = systematic(&inclusion, number, random.random());
+    shuffle(&mut drawn, &mut random);
+    drawn.into_iter().map(|index| question(kitchen, asked[index], inclusion[index], &mut random)).collect()
+}
+
+/// The stratum of an aspect, from 0.
+fn stratum(session: &Session, id: AspectId, is_wrong: &[bool]) -> usize {
+    let is_current =
+        |dish| session.kitchen.orders.iter().any(|&order| session.state.order(order) == OrderContent::Dish(dish));
+    match session.kitchen.aspects[id.index()].kind {
+        _ if is_wrong.get(id.index()) == Some(&true) => 0,
+        AspectKind::Location(location) if session.is_unseen(location) => 1,
+        AspectKind::Recipe(dish) if is_current(dish) => 2,
+        _ => 3,
+    }
+}
+
+/// The share of each aspect in the questions: strata that are not empty have equal shares, and so have the aspects of a stratum.
+fn stratum_shares(strata: &[usize]) -> Vec<f64> {
+    let mut sizes = [0_usize; STRATA];
+    strata.iter().for_each(|&stratum| sizes[stratum] += 1);
+    let filled = sizes.iter().filter(|size| **size > 0).count();
+    strata.iter().map(|&stratum| 1.0 / (filled * sizes[stratum]) as f64).collect()
+}
+
+/// Inclusion probabilities for `number` draws: a floor for every aspect, and the rest by these shares, which sum to 1. None exceeds 1,
+/// and they sum to `number`.
+fn inclusions(shares: &[f64], number: usize, floor: f64) -> Vec<f64> {
+    let mut is_certain = vec![false; shares.len()];
+    loop {
+        let certain = is_certain.iter().filter(|certain| **certain).count();
+        let open = || shares.iter().zip(&is_certain).filter(|(_, certain)| !**certain).map(|(share, _)| share);
+        let open_share: f64 = open().sum();
+        let left = number as f64 - certain as f64;
+        // Where the floor alone is more than the number of questions allows, it is as high as it can be.
+        let floor = floor.min(left / open().count().max(1) as f64);
+        let rest = left - floor * open().count() as f64;
+        let chance = |(share, certain): (&f64, &bool)| match certain {
+            true => 1.0,
+            false => floor + rest * share / open_share,
+        };
+        let chances: Vec<f64> = shares.iter().zip(&is_certain).map(chance).collect();
+        if chances.iter().all(|chance| *chance <= 1.0) {
+            return chances;
+        }
+        for (certain, chance) in is_certain.iter_mut().zip(&chances) {
+            *certain |= *chance >= 1.0;
+        }
+    }
+}
+
+/// A systematic draw of `number` indices: those at which the sum of the probabilities passes `start`, `start` + 1, and so on.
+fn systematic(inclusion: &[f64], number: usize, start: f64) -> Vec<usize> {
+    let mut drawn = Vec::with_capacity(number);
+    let mut sum = 0.0;
+    for (index, chance) in inclusion.iter().enumerate() {
+        sum += chance;
+        if drawn.len() < number && sum > start + drawn.len() as f64 {
+            drawn.push(index);
+        }
+    }
+    // Rounding can leave the sum just below the last mark.
+    if drawn.len() < number
+        && let Some(last) = (0..inclusion.len()).rev().find(|index| !drawn.contains(index))
+    {
+        drawn.push(last);
+    }
+    drawn
+}
+
+/// The question about an aspect, with its choices in random order.
+fn question(kitchen: &Kitchen, id: AspectId, inclusion: f64, random: &mut Stream) -> ProbeQuestion {
+    let aspect = &kitchen.aspects[id.index()];
+    let about = match aspect.kind {
+        AspectKind::Location(location) => ProbeSubject::Location { location: kitchen.location(location).name.clone() },
+        AspectKind::Recipe(dish) => ProbeSubject::Recipe { dish: kitchen.dish(dish).name.clone() },
+    };
+    let mut choices = aspect.labels.clone();
+    shuffle(&mut choices, random);
+    // Rounded for the log: the analysis divides by it.
+    ProbeQuestion { about, choices, inclusion: (inclusion * 1e9).round() / 1e9 }
+}
+
+/// The aspect that a question is about; none, if it is about what happens next, or about what the kitchen does not have.
+pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
+    match about {
+        ProbeSubject::Location { location } => kitchen.location_named(location).map(AspectId::of_location),
+        ProbeSubject::Recipe { dish } => {
+            let index = kitchen.dishes.iter().position(|known| known.name == *dish)?;
+            Some(kitchen.aspect_of_dish(crate::kitchen::DishId(index as u8)))
+        }
+        ProbeSubject::NextOrder | ProbeSubject::NextPress => None,
+    }
+}
+
+/// Whether a recorded question is one of this kitchen, with all its choices.
+pub(super) fn fits(kitchen: &Kitchen, question: &ProbeQuestion) -> bool {
+    let is_chance = question.inclusion > 0.0 && question.inclusion <= 1.0;
+    let Some(id) = aspect(kitchen, &question.about) else { return false };
+    let labels = &kitchen.aspects[id.index()].labels;
+    is_chance && labels.len() == question.choices.len() && labels.iter().all(|label| question.choices.contains(label))
+}

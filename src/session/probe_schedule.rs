@@ -1,0 +1,67 @@
+//! The times of a trial's freeze probes, drawn beforehand from a stream of their own.
+//!
+//! Each probe comes between once and twice `apart_s` after the one before it (the first: after the start), so that nobody can foresee it. In
+//! a trial that is hardly long enough for all of them they come closer to once.
+
+use rand::RngExt;
+
+use super::probe_settings::ProbeSpec;
+use super::settings::SessionSpec;
+use crate::base::rng::{Stream, stream};
+use crate::base::time::SessionTime;
+
+/// A scheduled probe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScheduledProbe {
+    /// When it is due, on the trial's clock.
+    pub at: SessionTime,
+    /// Whether the belief estimate has a part in the choice of its questions.
+    pub uses_estimate: bool,
+}
+
+/// The settings of the probes of this session's trial; none in a familiarisation, which does not count.
+pub fn of_trial(spec: &SessionSpec) -> Option<&ProbeSpec> {
+    let counts = spec.step.as_ref().is_none_or(|step| step.period.is_some());
+    spec.probes.as_ref().filter(|_| counts)
+}
+
+/// The scheduled probes of a trial.
+pub fn draw(spec: &SessionSpec, trial: u64) -> Vec<ScheduledProbe> {
+    let Some(probes) = of_trial(spec) else { return Vec::new() };
+    let mut random = stream(spec.seed, "times of probes", trial);
+    let number = probes.per_trial as usize;
+    let slack_s = spec.trial.seconds - probes.wait_s - probes.apart_s * number as f64;
+    let spread_s = (slack_s / number.max(1) as f64).clamp(0.0, probes.apart_s);
+    let mut at_s = 0.0;
+    let times: Vec<SessionTime> = (0..number)
+        .map(|_| {
+            at_s += probes.apart_s + spread_s * random.random::<f64>();
+            SessionTime::from_secs_f64(at_s)
+        })
+        .collect();
+    let blind = blind(number, probes.blind_share, &mut random);
+    times.into_iter().zip(blind).map(|(at, is_blind)| ScheduledProbe { at, uses_estimate: !is_blind }).collect()
+}
+
+/// Which probes ignore the estimate: this share of them, in random order. Of a remainder a further one is drawn.
+fn blind(number: usize, share: f64, random: &mut Stream) -> Vec<bool> {
+    let wanted = number as f64 * share;
+    let count = wanted.floor() as usize + usize::from(random.random::<f64>() < wanted.fract());
+    let mut blind: Vec<bool> = (0..number).map(|index| index < count).collect();
+    shuffle(&mut blind, random);
+    blind
+}
+
+/// Shuffles a list (Fisher and Yates).
+pub(super) fn shuffle<T>(list: &mut [T], random: &mut Stream) {
+    for last in (1..list.len()).rev() {
+        list.swap(last, random.random_range(0..=last));
+    }
+}
+
+/// Whether a probe that the wizard asked for uses the estimate: by chance, like those of the schedule.
+pub(super) fn requested_uses_estimate(spec: &SessionSpec, trial: u64, number: u32) -> bool {
+    let share = spec.probes.as_ref().map_or(0.0, |probes| probes.blind_share);
+    let name = format!("requested probes of trial {trial}");
+    stream(spec.seed, &name, u64::from(number)).random::<f64>() >= share
+}

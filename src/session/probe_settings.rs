@@ -1,0 +1,119 @@
+//! Settings of freeze probes: the table `[probes]` of a session file.
+
+use serde::{Deserialize, Serialize};
+
+use super::setting_checks::SettingError;
+use crate::kitchen::Kitchen;
+
+/// How often the task stands still and the participant is asked what it believes. Without the table there are no probes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ProbeSpec {
+    /// Number of probes that are scheduled in a trial.
+    pub per_trial: u32,
+    /// Least time before the first probe and between two, in seconds of the trial's clock.
+    pub apart_s: f64,
+    /// Time after a signal or a probe in which none begins, in seconds of the trial's clock.
+    pub after_signal_s: f64,
+    /// Time for which a probe waits that may not begin, in seconds of the trial's clock; then it is dropped.
+    pub wait_s: f64,
+    /// Time for all questions of a probe, in seconds.
+    pub limit_s: f64,
+    /// Count-down before the task goes on, in seconds.
+    pub count_down_s: f64,
+    /// The least number of questions in a probe.
+    pub least_questions: u32,
+    /// The largest number of questions in a probe.
+    pub most_questions: u32,
+    /// Share of a trial's probes whose questions are chosen without the belief estimate.
+    pub blind_share: f64,
+    /// The least probability with which any question comes into a probe.
+    pub least_inclusion: f64,
+    /// Probability that the participant looks at a place because it was asked about it; the estimate is told so.
+    pub teaches: f64,
+    /// Whether the participant says of each answer how sure it is.
+    pub confidence: bool,
+    /// Whether a probe can also ask what happens next.
+    pub level_2: bool,
+    /// Locations, and recipes as "recipe of DISH", about which nothing is asked.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub leave_out: Vec<String>,
+}
+
+impl Default for ProbeSpec {
+    fn default() -> Self {
+        ProbeSpec {
+            per_trial: 4,
+            apart_s: 60.0,
+            after_signal_s: 10.0,
+            wait_s: 15.0,
+            limit_s: 25.0,
+            count_down_s: 3.0,
+            least_questions: 2,
+            most_questions: 4,
+            blind_share: 0.5,
+            least_inclusion: 0.05,
+            teaches: 0.0,
+            confidence: false,
+            level_2: false,
+            leave_out: Vec::new(),
+        }
+    }
+}
+
+impl ProbeSpec {
+    /// Whether the settings fit each other and a trial of this length.
+    ///
+    /// # Errors
+    /// The first that does not.
+    pub(super) fn check(&self, trial_s: f64) -> Result<(), SettingError> {
+        let ProbeSpec { per_trial, apart_s, wait_s, least_questions, most_questions, .. } = *self;
+        if least_questions > most_questions {
+            let found = format!("least_questions = {least_questions}, and most_questions = {most_questions}");
+            return Err(SettingError::new("probes.least_questions", found, "no more than most_questions"));
+        }
+        let needs_s = f64::from(per_trial) * apart_s + wait_s;
+        if per_trial > 0 && needs_s > trial_s {
+            let found = format!(
+                "per_trial = {per_trial}, which takes {needs_s} s with apart_s = {apart_s} and wait_s = {wait_s}, in a trial of \
+                 {trial_s} s"
+            );
+            let remedy = "fewer probes, a smaller apart_s under [probes], or more seconds under [trial]";
+            return Err(SettingError::new("probes.per_trial", found, remedy));
+        }
+        Ok(())
+    }
+
+    /// Whether the kitchen has what the settings name, and enough to ask about.
+    ///
+    /// # Errors
+    /// The first setting for which it does not.
+    pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
+        let is_there = |name: &String| kitchen.aspects.iter().any(|aspect| aspect.name == *name);
+        if let Some(name) = self.leave_out.iter().find(|name| !is_there(name)) {
+            let found = format!("leave_out = \"{name}\", which the kitchen does not have");
+            let remedy = "names of the layout's locations, or \"recipe of DISH\"";
+            return Err(SettingError::new("probes.leave_out", found, remedy));
+        }
+        let asked = kitchen.aspects.iter().filter(|aspect| self.asks_about(&aspect.name, aspect.labels.len())).count();
+        if (self.most_questions as usize) > asked {
+            let found =
+                format!("most_questions = {}, and {asked} locations and recipes to ask about", self.most_questions);
+            return Err(SettingError::new("probes.most_questions", found, "no more questions than that"));
+        }
+        if self.least_inclusion * asked as f64 > f64::from(self.least_questions) {
+            let found = format!(
+                "least_inclusion = {} for each of {asked} locations and recipes, in probes with least_questions = {}",
+                self.least_inclusion, self.least_questions
+            );
+            let remedy = format!("at most {:.3}, or more questions", f64::from(self.least_questions) / asked as f64);
+            return Err(SettingError::new("probes.least_inclusion", found, remedy));
+        }
+        Ok(())
+    }
+
+    /// Whether questions can be about the aspect of this name and number of values.
+    pub fn asks_about(&self, aspect: &str, values: usize) -> bool {
+        values > 1 && !self.leave_out.iter().any(|name| name == aspect)
+    }
+}

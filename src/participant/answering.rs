@@ -6,11 +6,13 @@ use super::population::{chance, normal};
 use super::simulated::SimulatedParticipant;
 use super::witness;
 use crate::base::rng::{Stream, stream};
-use crate::kitchen::{AspectId, State};
+use crate::kitchen::{AspectId, LocationId, State};
 use crate::mind::BeliefWitness;
 
 /// Standard deviation of the logarithm of one participant's answering times.
 const ANSWER_JITTER: f64 = 0.35;
+/// Least probabilities of the most probable value at which confidence is 2 and 3.
+const SURE_FROM: [f64; 2] = [2.0 / 3.0, 0.9];
 
 impl SimulatedParticipant {
     /// Record of what it believes now, of which nothing comes but answers.
@@ -47,6 +49,20 @@ impl SimulatedParticipant {
             return (!others.is_empty()).then(|| others[random.random_range(0..others.len())].clone());
         }
         (most_likely >= self.population.answers_from).then(|| believed.clone())
+    }
+
+    /// How sure it is of its answer about an aspect, from 1 to 3.
+    pub fn confidence(&self, aspect: AspectId) -> u8 {
+        match self.beliefs.certainty(aspect) {
+            p if p < SURE_FROM[0] => 1,
+            p if p < SURE_FROM[1] => 2,
+            _ => 3,
+        }
+    }
+
+    /// The order that it expects to be served next: the one on which it works.
+    pub fn next_order(&self) -> Option<LocationId> {
+        self.intent.order.map(|(order, _)| order)
     }
 
     /// The random stream of one answer, so that none depends on which others were given.

@@ -11,6 +11,7 @@
 //! It has no clock: the caller passes the time, so that live sessions, simulations and verifications use the same code.
 
 mod agents;
+mod consequences;
 mod informing;
 mod probing;
 mod robot;
@@ -23,7 +24,6 @@ use crate::analysis::follower::Follower;
 use crate::arm::worker::Robot;
 use crate::base::time::SessionTime;
 use crate::communication::Sender;
-use crate::communication::recommendation::Recommendation;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::measures::JudgedPress;
@@ -36,10 +36,9 @@ use crate::session::apply::ApplyError;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::orders::OrderList;
 use crate::session::probes::ProbeEvent;
-use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::timers::TimerQueue;
-use crate::session::{Applied, Effect, Event, Header, Phase, Session, SessionSpec, Stamped, Timer};
+use crate::session::{Applied, Effect, Event, Header, Session, SessionSpec, Stamped, Timer};
 use crate::wizard::ScriptedWizard;
 
 /// A running session.
@@ -378,36 +377,6 @@ impl Engine {
         self.check_criterion(now);
         self.measure_calibration(now);
         Ok(())
-    }
-
-    /// Evaluates the criterion at the end of a familiarisation.
-    fn check_criterion(&mut self, now: SessionTime) {
-        let session = self.session();
-        let Some((step, protocol)) = session.step() else { return };
-        let Some(criterion) = step.criterion.filter(|_| protocol.practice.is_none()) else { return };
-        if !matches!(session.phase, Phase::Over(_)) || session.aborted.is_some() {
-            return;
-        }
-        let (orders, presses) = (session.served.len() as u32, session.presses[Agent::Human.index()]);
-        let errors = self.follower.errors() as u32;
-        let met = criterion.is_met(orders, presses, errors);
-        self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
-    }
-
-    /// Measures the gaze accuracy after the last target of a check.
-    fn measure_calibration(&mut self, now: SessionTime) {
-        let session = self.session();
-        let event = session.calibration.as_ref().and_then(|check| check.to_measure(&session.viewing()));
-        if let Some(event) = event {
-            self.record_own(now, Event::Calibration(event));
-        }
-    }
-
-    /// The signal that the assistant sends because of its recommendation, if it is allowed.
-    fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
-        let signal = advice.best.clone()?;
-        let event = Event::SignalShown { by: Sender::Assistant, signal, accepted: None, offer: None };
-        admit(self.session(), &event).is_ok().then_some(event)
     }
 
     fn perform(&mut self, effect: Effect) {

@@ -5,6 +5,8 @@
 //! above a floor that every aspect has. In a blind probe all aspects have the same probability. The inclusion probability of each drawn
 //! aspect is recorded, so that an analysis can weight by its inverse (Horvitz and Thompson 1952).
 //!
+//! With `level_2` one further question is about what happens next.
+//!
 //! The draw is a systematic one of fixed size over the aspects in random order (Madow 1949), whose inclusion probabilities are exact.
 
 use rand::RngExt;
@@ -14,7 +16,7 @@ use super::probe_schedule::shuffle;
 use super::probe_settings::ProbeSpec;
 use super::session_state::Session;
 use crate::base::rng::{Stream, stream};
-use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent};
+use crate::kitchen::{Agent, AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent};
 
 /// Number of strata.
 const STRATA: usize = 4;
@@ -39,7 +41,40 @@ pub fn questions(session: &Session, spec: &ProbeSpec, probe: u32, is_wrong: Opti
     let inclusion = inclusions(&shares, number, spec.least_inclusion);
     let mut drawn = systematic(&inclusion, number, random.random());
     shuffle(&mut drawn, &mut random);
-    drawn.into_iter().map(|index| question(kitchen, asked[index], inclusion[index], &mut random)).collect()
+    let questions = drawn.into_iter().map(|index| question(kitchen, asked[index], inclusion[index], &mut random));
+    let mut questions: Vec<ProbeQuestion> = questions.collect();
+    if spec.level_2 {
+        questions.push(what_next(session, &mut random));
+    }
+    questions
+}
+
+/// A question about what happens next: about the orders, if there is one, or about the robot.
+fn what_next(session: &Session, random: &mut Stream) -> ProbeQuestion {
+    let kitchen = &session.kitchen;
+    let is_order = |&order: &LocationId| matches!(session.state.order(order), OrderContent::Dish(_));
+    let subjects = match kitchen.orders.iter().any(is_order) {
+        true => vec![ProbeSubject::NextOrder, ProbeSubject::NextPress],
+        false => vec![ProbeSubject::NextPress],
+    };
+    let inclusion = 1.0 / subjects.len() as f64;
+    let about = subjects[random.random_range(0..subjects.len())].clone();
+    let mut choices = labels(kitchen, &about);
+    shuffle(&mut choices, random);
+    ProbeQuestion { about, choices, inclusion }
+}
+
+/// All answers that a question can have, by their names in the log; none, if the kitchen has no such question.
+fn labels(kitchen: &Kitchen, about: &ProbeSubject) -> Vec<String> {
+    match about {
+        ProbeSubject::Location { .. } | ProbeSubject::Recipe { .. } => {
+            aspect(kitchen, about).map_or(Vec::new(), |id| kitchen.aspects[id.index()].labels.clone())
+        }
+        ProbeSubject::NextOrder => kitchen.orders.iter().map(|&order| kitchen.location(order).name.clone()).collect(),
+        ProbeSubject::NextPress => {
+            kitchen.buttons[Agent::Robot.index()].iter().map(|button| button.name.clone()).collect()
+        }
+    }
 }
 
 /// The stratum of an aspect, from 0.
@@ -114,7 +149,7 @@ fn question(kitchen: &Kitchen, id: AspectId, inclusion: f64, random: &mut Stream
         AspectKind::Location(location) => ProbeSubject::Location { location: kitchen.location(location).name.clone() },
         AspectKind::Recipe(dish) => ProbeSubject::Recipe { dish: kitchen.dish(dish).name.clone() },
     };
-    let mut choices = aspect.labels.clone();
+    let mut choices = labels(kitchen, &about);
     shuffle(&mut choices, random);
     // Rounded for the log: the analysis divides by it.
     ProbeQuestion { about, choices, inclusion: (inclusion * 1e9).round() / 1e9 }
@@ -126,7 +161,7 @@ pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
         ProbeSubject::Location { location } => kitchen.location_named(location).map(AspectId::of_location),
         ProbeSubject::Recipe { dish } => {
             let index = kitchen.dishes.iter().position(|known| known.name == *dish)?;
-            Some(kitchen.aspect_of_dish(crate::kitchen::DishId(index as u8)))
+            Some(kitchen.aspect_of_dish(DishId(index as u8)))
         }
         ProbeSubject::NextOrder | ProbeSubject::NextPress => None,
     }
@@ -135,7 +170,9 @@ pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
 /// Whether a recorded question is one of this kitchen, with all its choices.
 pub(super) fn fits(kitchen: &Kitchen, question: &ProbeQuestion) -> bool {
     let is_chance = question.inclusion > 0.0 && question.inclusion <= 1.0;
-    let Some(id) = aspect(kitchen, &question.about) else { return false };
-    let labels = &kitchen.aspects[id.index()].labels;
-    is_chance && labels.len() == question.choices.len() && labels.iter().all(|label| question.choices.contains(label))
+    let labels = labels(kitchen, &question.about);
+    is_chance
+        && !labels.is_empty()
+        && labels.len() == question.choices.len()
+        && labels.iter().all(|label| question.choices.contains(label))
 }

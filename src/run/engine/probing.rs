@@ -6,7 +6,7 @@ use crate::kitchen::AspectId;
 use crate::measures::sequences::FALSE_BELOW;
 use crate::session::Event;
 use crate::session::probe_sampling::{aspect, questions};
-use crate::session::probes::{DueProbe, ProbeEvent, of_trial, upcoming};
+use crate::session::probes::{DueProbe, ProbeEvent, ProbeSubject, of_trial, upcoming};
 use crate::session::wall_display::Answering;
 
 impl Engine {
@@ -66,9 +66,17 @@ impl Engine {
         let Some(open) = &session.probes.open else { return };
         let Some((shown, asked)) = open.question() else { return };
         let (probe, question) = (open.number, shown as u32 + 1);
-        let answer = aspect(&session.kitchen, &asked.about)
-            .and_then(|aspect| participant.answer(session.state, aspect, &asked.choices, (probe, question)));
-        let (confidence, on) = (None, Answering::Display);
+        let kitchen = &session.kitchen;
+        let aspect = aspect(kitchen, &asked.about);
+        let answer = match (&asked.about, aspect) {
+            (_, Some(aspect)) => participant.answer(session.state, aspect, &asked.choices, (probe, question)),
+            (ProbeSubject::NextOrder, _) => participant.next_order().map(|order| kitchen.location(order).name.clone()),
+            // Simulated participants do not predict the robot.
+            _ => None,
+        };
+        let asks_confidence = of_trial(&session.spec).is_some_and(|spec| spec.confidence);
+        let confidence = aspect.filter(|_| asks_confidence && answer.is_some()).map(|one| participant.confidence(one));
+        let on = Answering::Display;
         self.record_own(now, Event::Probe(ProbeEvent::Answered { probe, question, answer, confidence, on }));
     }
 }

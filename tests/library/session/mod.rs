@@ -4,6 +4,7 @@ mod files;
 mod judgement;
 mod offers;
 mod orders;
+mod probes;
 mod robot;
 mod trial;
 

@@ -1,0 +1,42 @@
+//! Events that follow at once from others: the criterion of a familiarisation, the measured gaze accuracy, the assistant's signal.
+
+use super::Engine;
+use crate::base::time::SessionTime;
+use crate::communication::Sender;
+use crate::communication::recommendation::Recommendation;
+use crate::kitchen::Agent;
+use crate::session::admit::admit;
+use crate::session::protocol::ProtocolEvent;
+use crate::session::{Event, Phase};
+
+impl Engine {
+    /// Evaluates the criterion at the end of a familiarisation.
+    pub(super) fn check_criterion(&mut self, now: SessionTime) {
+        let session = self.session();
+        let Some((step, protocol)) = session.step() else { return };
+        let Some(criterion) = step.criterion.filter(|_| protocol.practice.is_none()) else { return };
+        if !matches!(session.phase, Phase::Over(_)) || session.aborted.is_some() {
+            return;
+        }
+        let (orders, presses) = (session.served.len() as u32, session.presses[Agent::Human.index()]);
+        let errors = self.follower.errors() as u32;
+        let met = criterion.is_met(orders, presses, errors);
+        self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
+    }
+
+    /// Measures the gaze accuracy after the last target of a check.
+    pub(super) fn measure_calibration(&mut self, now: SessionTime) {
+        let session = self.session();
+        let event = session.calibration.as_ref().and_then(|check| check.to_measure(&session.viewing()));
+        if let Some(event) = event {
+            self.record_own(now, Event::Calibration(event));
+        }
+    }
+
+    /// The signal that the assistant sends because of its recommendation, if it is allowed.
+    pub(super) fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
+        let signal = advice.best.clone()?;
+        let event = Event::SignalShown { by: Sender::Assistant, signal, accepted: None, offer: None };
+        admit(self.session(), &event).is_ok().then_some(event)
+    }
+}

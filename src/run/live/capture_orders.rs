@@ -6,6 +6,7 @@ use tokio::sync::mpsc::Sender;
 
 use crate::edge::pupil::CaptureRequest;
 use crate::run::desk::GazeTracker;
+use crate::session::probes::ProbeEvent;
 use crate::session::{Event, Phase, Session};
 
 const RUNNING: &str = "trial running";
@@ -60,6 +61,14 @@ impl CaptureOrders {
             Event::TrialResumed => {
                 self.phase = Some(RUNNING);
                 "trial resumed".to_string()
+            }
+            Event::Probe(ProbeEvent::Begun { probe, .. }) => {
+                self.phase = Some(PAUSED);
+                format!("probe {probe} begun")
+            }
+            Event::Probe(ProbeEvent::Ended { probe }) => {
+                self.phase = Some(RUNNING);
+                format!("probe {probe} ended")
             }
             Event::TrialEnded { .. } => "trial ended".to_string(),
             Event::TrialAborted { .. } => "trial aborted".to_string(),

@@ -93,7 +93,7 @@ fn twin(mut engine: Engine, time: SessionTime, signal: &Signal) -> TwinResult {
     let told = aspects_told(&session.kitchen, session.state, signal);
     let presses = engine.judged().len();
     let mut attendant = Attendant::default();
-    while engine.session().phase == Phase::Running {
+    while engine.session().phase == Phase::Running || engine.session().is_frozen() {
         attendant.step(&mut engine);
         let _ = engine.take_questions();
         // What a participant believes is recorded before its presses.

@@ -11,7 +11,7 @@ use tomcom::session::ranges;
 use super::{as_number, every_setting, extremes, folder, has, questionnaire, set};
 
 /// Settings that other rules bound beside their range: together with others, or as multiples of others.
-const RULED: [&str; 14] = [
+const RULED: [&str; 16] = [
     "human.perception.look_alike",
     "human.perception.anything",
     "participant.population.signal_after_s",
@@ -19,6 +19,8 @@ const RULED: [&str; 14] = [
     "tracker.corners",
     "tracker.gaps.shortest_s",
     "tracker.gaps.longest_s",
+    "probes.per_trial",
+    "probes.least_inclusion",
     "plan.block",
     "plan.questionnaire.after",
     "plan.participants",

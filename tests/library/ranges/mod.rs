@@ -35,6 +35,14 @@ fn every_setting() -> toml::Table {
         keeps_own_recipe = { median = 0.5, sigma = 0.4 }
         misremembers = { median = 0.5, sigma = 0.4 }
         guesses_robot = { median = 0.5, sigma = 0.4 }
+        answers_wrong = { median = 0.5, sigma = 0.4 }
+        answers_from = 0.4
+        answer_s = { median = 2.0, sigma = 0.4 }
+        [probes]
+        per_trial = 0
+        least_questions = 1
+        most_questions = 8
+        least_inclusion = 0.01
         [plan]
         name = "all"
         participants = 2

@@ -81,6 +81,7 @@ fn check_end(range: &NumberRange, value: f64, folder: &Path) {
             && value > 0.0
         || range.path == "tracker.gaps.shortest_s" && value > 5.0
         || range.path == "tracker.gaps.longest_s" && value < 1.0
+        || ["probes.per_trial", "probes.least_inclusion"].contains(&range.path) && value >= 1.0
         || range.path == "tracker.corners";
     let ran = run(&format!("{} = {value}", range.path), range.path, &settings, folder);
     assert!(ran || is_refused, "{} = {value} is refused", range.path);

@@ -3,6 +3,7 @@
 mod assistants;
 mod equality;
 mod offers;
+mod probes;
 mod reading;
 mod scenes;
 mod winding;

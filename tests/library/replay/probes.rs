@@ -1,0 +1,182 @@
+//! Recordings with freeze probes: they verify whole and cut, whatever is pressed in a probe, and go on in the probe in which they were cut.
+
+use std::fs;
+use std::sync::Arc;
+
+use rand::RngExt;
+use tomcom::base::rng::stream;
+use tomcom::base::time::SessionTime;
+use tomcom::edge::files::SessionFiles;
+use tomcom::edge::log::{LOG_NAME, LogWriter};
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::run::engine::Engine;
+use tomcom::run::replay::Replay;
+use tomcom::run::resume::resume;
+use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::run::verify::verify;
+use tomcom::session::event::EndReason;
+use tomcom::session::probes::{ProbeEnd, ProbeEvent};
+use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, ProbeSpec};
+use tomcom::session::wall_display::Answering;
+use tomcom::session::{Event, Header};
+
+use super::{anything, folder, session};
+
+/// Many probes in a short time.
+fn often() -> ProbeSpec {
+    ProbeSpec { per_trial: 10, apart_s: 15.0, ..ProbeSpec::default() }
+}
+
+#[test]
+fn a_simulated_recording_with_probes_verifies_whole_and_cut_at_every_event_of_a_probe() {
+    let mut files = session("probes.toml");
+    (files.spec.trial.seconds, files.spec.robot.arm) = (90.0, ArmKind::Physics);
+    files.spec.probes =
+        Some(ProbeSpec { per_trial: 2, apart_s: 20.0, confidence: true, level_2: true, ..ProbeSpec::default() });
+    let out = folder("probes");
+    let request = SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: out.clone() };
+    let recording = simulate(&request, || ()).expect("the folder can be written").recordings.remove(0);
+    let log = std::path::Path::new(&recording).join(LOG_NAME);
+    let found = verify(&log).expect("a recording");
+    assert!(found.verified && !found.cut, "{found:?}");
+    let text = fs::read_to_string(&log).expect("a log");
+    let lines: Vec<&str> = text.lines().collect();
+    let of_probes: Vec<usize> = (0..lines.len()).filter(|&index| lines[index].contains("\"kind\":\"probe\"")).collect();
+    assert!(of_probes.len() >= 16, "{}", of_probes.len());
+    for index in of_probes {
+        let cut = folder("probes-cut").join(LOG_NAME);
+        fs::write(&cut, lines[..=index].join("\n") + "\n").expect("the folder can be written");
+        let found = verify(&cut).expect("a recording");
+        assert!(found.verified && found.cut, "cut after line {index}: {found:?}");
+    }
+}
+
+#[test]
+fn a_changed_question_or_time_of_a_probe_does_not_verify() {
+    let mut files = session("probes.toml");
+    files.spec.trial.seconds = 90.0;
+    files.spec.probes = Some(ProbeSpec { per_trial: 1, apart_s: 20.0, ..ProbeSpec::default() });
+    let request = SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: folder("probes-changed") };
+    let recording = simulate(&request, || ()).expect("the folder can be written").recordings.remove(0);
+    let log = std::path::Path::new(&recording).join(LOG_NAME);
+    let text = fs::read_to_string(&log).expect("a log");
+    for (from, to) in [("\"inclusion\":0.", "\"inclusion\":0.9"), ("\"uses_estimate\":true", "\"uses_estimate\":false")]
+    {
+        let begun = text.lines().find(|line| line.contains("\"did\":\"begun\"")).expect("a probe");
+        let (from, to) = if begun.contains(from) { (from, to) } else { (to, from) };
+        assert!(begun.contains(from), "{begun}");
+        fs::write(&log, text.replace(begun, &begun.replacen(from, to, 1))).expect("the folder can be written");
+        assert!(!verify(&log).expect("a recording").verified, "{to}");
+    }
+}
+
+/// Files of a session with somebody at keyboard and mouse.
+fn by_hand(seed: u64) -> SessionFiles {
+    let mut files = session("probes.toml");
+    files.spec.robot.arm = ArmKind::Timed;
+    files.spec.trial.condition = Condition::Wizard;
+    files.spec.participant.kind = ParticipantKind::Keyboard;
+    files.spec.participant.gaze = GazeSource::Mouse;
+    (files.spec.seed, files.spec.probes) = (seed, Some(often()));
+    files
+}
+
+/// What may happen around probes, as a seeded mess.
+fn around_probes(engine: &Engine, random: &mut impl RngExt) -> Event {
+    let open = engine.session().probes.open.as_ref();
+    let probe = open.map_or(1, |open| open.number);
+    let shown = open.and_then(|open| open.question());
+    Event::Probe(match (random.random_range(0..12), shown) {
+        (0, _) => ProbeEvent::Requested,
+        (1, _) => ProbeEvent::Skipped { probe, reason: "phone".to_string() },
+        (2..=6, Some((index, question))) => ProbeEvent::Answered {
+            probe,
+            question: index as u32 + 1,
+            answer: random.random_bool(0.8).then(|| question.choices[0].clone()),
+            confidence: None,
+            on: Answering::Console,
+        },
+        _ => return anything(&engine.session().kitchen, random),
+    })
+}
+
+#[test]
+fn whatever_hands_do_around_probes_the_recording_verifies_and_replays_to_the_same_session() {
+    for seed in 0..3 {
+        let files = by_hand(seed);
+        let kitchen = Arc::new(files.kitchen.kitchen);
+        let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+        let mut log = LogWriter::create_live(&folder(&format!("probes-hand-{seed}")), "2026-03-14", &header)
+            .expect("the folder can be written");
+        let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+        let mut random = stream(seed, "hand at probes", 0);
+        let mut now_s = 0.5;
+        let mut give = |engine: &mut Engine, now_s: f64, event: Event| {
+            let events = engine.input(SessionTime::from_secs_f64(now_s), event).events;
+            events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
+        };
+        give(&mut engine, now_s, Event::TrialStarted);
+        for _ in 0..1500 {
+            now_s += random.random_range(0.0..0.4);
+            let event = around_probes(&engine, &mut random);
+            give(&mut engine, now_s, event);
+        }
+        give(&mut engine, now_s, Event::TrialEnded { reason: EndReason::Wizard });
+        give(&mut engine, now_s, Event::SessionEnded);
+        let ends: Vec<Option<ProbeEnd>> =
+            engine.session().probes.over.iter().map(|over| over.closed.map(|(end, _)| end)).collect();
+        assert!(ends.len() >= 3, "seed {seed}: {ends:?}");
+        let log = log.folder().join(LOG_NAME);
+        let found = verify(&log).expect("a recording");
+        assert!(found.verified && !found.cut, "seed {seed}: {found:?}");
+        let mut replay = Replay::open(&log).expect("a recording");
+        replay.run().expect("a recording");
+        assert_eq!(engine.session(), replay.session(), "seed {seed}");
+        assert_eq!((engine.belief(), engine.judged()), (replay.follower.filter.belief(), &replay.follower.judged[..]));
+    }
+}
+
+#[test]
+fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
+    let files = by_hand(5);
+    let kitchen = Arc::new(files.kitchen.kitchen);
+    let mut header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    header.started = Some("2026-03-14T10:00:00Z".to_string());
+    let mut log = LogWriter::create_live(&folder("probes-killed"), "2026-03-14", &header).expect("a folder");
+    let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+    let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
+    let asked = |engine: &Engine| engine.session().probes.open.as_ref().and_then(|open| open.question()).is_some();
+    while !asked(&engine) {
+        events.extend(engine.fire());
+    }
+    let answer = |engine: &Engine, after_s: f64| {
+        let open = engine.session().probes.open.as_ref().expect("a probe");
+        let (shown, asked) = open.question().expect("a question");
+        let (question, answer) = (shown as u32 + 1, Some(asked.choices[0].clone()));
+        let on = Answering::Display;
+        let event = Event::Probe(ProbeEvent::Answered { probe: open.number, question, answer, confidence: None, on });
+        (engine.session().time + SessionTime::from_secs_f64(after_s), event)
+    };
+    let (at, event) = answer(&engine, 2.0);
+    events.extend(engine.input(at, event).events);
+    events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
+    let recording = log.folder().to_path_buf();
+    drop(log);
+
+    let mut resumed = resume(&recording).expect("it can be continued");
+    assert_eq!(resumed.first.last().map(|one| &one.event), Some(&Event::TrialPaused));
+    let engine = &mut resumed.engine;
+    let open = engine.session().probes.open.clone().expect("the probe is held");
+    assert!(open.is_paused() && open.shown == Some(1) && open.answers[0].is_some(), "{open:?}");
+    assert_eq!(engine.next_due(), None, "nothing is due until the participant is back");
+    let hour = SessionTime::from_secs_f64(3600.0);
+    assert_eq!(engine.input(resumed.time + hour, Event::TrialResumed).refused, None);
+    while engine.session().is_frozen() && asked(engine) {
+        let (at, event) = answer(engine, 1.0);
+        assert_eq!(engine.input(at, event).refused, None);
+    }
+    let closed = engine.session().probes.open.as_ref().and_then(|open| open.closed).map(|(end, _)| end);
+    assert_eq!(closed, Some(ProbeEnd::Answered));
+    engine.fire();
+    assert!(engine.session().is_running(), "the task goes on");
+}

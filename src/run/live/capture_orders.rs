@@ -24,12 +24,15 @@ pub(super) struct CaptureOrders {
     /// Labels of the trial's state: whether it runs, and the signal that is shown.
     phase: Option<&'static str>,
     signal: Option<String>,
+    /// Number of the freeze probe that is held.
+    probe: Option<u32>,
 }
 
 impl CaptureOrders {
     /// Prepares Pupil Capture for a recording with this name; the trial of a continued recording is recorded from now on.
     pub fn begin(tracker: &GazeTracker, name: String, session: &Session, now: Instant) -> CaptureOrders {
         let mut capture = CaptureOrders { orders: tracker.orders(), name, ..CaptureOrders::default() };
+        capture.probe = session.probes.open.as_ref().map(|open| open.number);
         capture.phase = match session.phase {
             Phase::Running => Some(RUNNING),
             Phase::Paused => Some(PAUSED),
@@ -58,16 +61,17 @@ impl CaptureOrders {
                 self.phase = Some(PAUSED);
                 PAUSED.to_string()
             }
+            Event::TrialResumed if self.probe.is_some() => "the probe goes on".to_string(),
             Event::TrialResumed => {
                 self.phase = Some(RUNNING);
                 "trial resumed".to_string()
             }
             Event::Probe(ProbeEvent::Begun { probe, .. }) => {
-                self.phase = Some(PAUSED);
+                (self.phase, self.probe) = (Some(PAUSED), Some(*probe));
                 format!("probe {probe} begun")
             }
             Event::Probe(ProbeEvent::Ended { probe }) => {
-                self.phase = Some(RUNNING);
+                (self.phase, self.probe) = (Some(RUNNING), None);
                 format!("probe {probe} ended")
             }
             Event::TrialEnded { .. } => "trial ended".to_string(),
@@ -85,7 +89,7 @@ impl CaptureOrders {
             _ => return,
         };
         if ends {
-            (self.phase, self.signal) = (None, None);
+            (self.phase, self.signal, self.probe) = (None, None, None);
         }
         if !label.is_empty() {
             self.annotate(label, at);
@@ -98,7 +102,7 @@ impl CaptureOrders {
     /// Ends Capture's recording of a trial that is left before its end.
     pub fn leave(&mut self, at: Instant) {
         if std::mem::take(&mut self.is_on) {
-            (self.phase, self.signal) = (None, None);
+            (self.phase, self.signal, self.probe) = (None, None, None);
             self.annotate("session left".to_string(), at);
             self.order(CaptureRequest::StopRecording);
         }

@@ -13,7 +13,8 @@ fn exactly(median: f64) -> TraitSpread {
 #[test]
 fn people_without_a_trait_are_as_they_were_before_it_existed() {
     let text = serde_json::to_string(&Population::default()).expect("JSON");
-    for name in ["keeps_own_recipe", "misremembers", "guesses_robot"] {
+    let answers = ["answers_wrong", "answers_from", "answer_s"];
+    for name in ["keeps_own_recipe", "misremembers", "guesses_robot"].into_iter().chain(answers) {
         assert!(!text.contains(name), "{name} stands in every recording");
     }
     let read: Population = serde_json::from_str(&text).expect("a population");

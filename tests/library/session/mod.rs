@@ -4,6 +4,8 @@ mod files;
 mod judgement;
 mod offers;
 mod orders;
+mod probe_questions;
+mod probe_trials;
 mod probes;
 mod robot;
 mod trial;

@@ -6,6 +6,8 @@ use serde::Serialize;
 
 use super::likelihood::LogLikelihood;
 use super::looks::Looks;
+use super::probe_figures::ProbeFigures;
+use super::probe_lines;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::gaze::MIN_CONFIDENCE;
@@ -14,6 +16,7 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Change, Kitchen, LocationId, Press};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::Cause;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::belief_detection::{Detection, EstimateView, PressView, TrialView};
 use crate::measures::flags::{MOST_FALSE_FLAGS, ThresholdSource, Thresholds};
 use crate::mind::belief::Belief;
@@ -30,22 +33,41 @@ pub struct BeliefCheck {
     pub recordings: u64,
     /// Presses of the human in the trials.
     pub human_actions: u64,
+    /// How it is known what participants believed: recorded, or by their answers to probes; null if it is not.
+    pub beliefs_from: Option<BeliefBasis>,
     /// How well the estimate finds false beliefs.
     #[serde(flatten)]
     pub detection: Detection,
     /// Log likelihood per press, in nats.
     pub log_likelihood: LogLikelihood,
+    /// Answers to probes, and the estimate against them; absent without answers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub probes: Option<ProbeFigures>,
 }
 
 impl BeliefCheck {
-    /// Pools the presses of several trials in one kitchen and checks them.
-    pub fn from_trials(kitchen: &Arc<Kitchen>, trials: &[TrialView], thresholds: Option<Thresholds>) -> BeliefCheck {
+    /// Pools the presses of several trials in one kitchen and checks them. Where no beliefs are recorded, the probes of these trials
+    /// take their place.
+    pub fn from_trials(
+        kitchen: &Arc<Kitchen>,
+        trials: &[TrialView],
+        thresholds: Option<Thresholds>,
+        probes: Option<ProbeFigures>,
+    ) -> BeliefCheck {
         let mut cost = CostToGo::new(kitchen.clone());
+        let mut detection = Detection::from_trials(kitchen, trials, thresholds);
+        let is_recorded = trials.iter().flatten().any(|press| press.held.is_some());
+        if let Some(found) = probes.as_ref().filter(|_| !is_recorded) {
+            detection = found.detection.in_place_of(detection);
+        }
+        let by_probes = probes.as_ref().map(|found| found.beliefs_from);
         BeliefCheck {
+            beliefs_from: if is_recorded { Some(BeliefBasis::Recorded) } else { by_probes },
             recordings: trials.len() as u64,
             human_actions: trials.iter().map(Vec::len).sum::<usize>() as u64,
-            detection: Detection::from_trials(kitchen, trials, thresholds),
+            detection,
             log_likelihood: LogLikelihood::from_trials(kitchen, &mut cost, &DecisionModel::default(), trials, SEED),
+            probes,
         }
     }
 }
@@ -194,6 +216,7 @@ pub fn describe(check: &BeliefCheck) -> String {
     for aspect in &found.aspects {
         text.push_str(&format!("{:<32}{:>8}{:>8.3}\n", aspect.aspect, number(aspect.auc), aspect.wrong));
     }
+    text += &check.probes.as_ref().map_or(String::new(), probe_lines::describe);
     text + &legend(check)
 }
 

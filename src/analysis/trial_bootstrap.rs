@@ -24,3 +24,25 @@ pub fn interval<T: Copy>(trials: &[T], seed: u64, statistic: impl Fn(&[T]) -> f6
     resampled.sort_by(f64::total_cmp);
     INTERVAL.map(|share| resampled[((RESAMPLES - 1) as f64 * share).round() as usize])
 }
+
+/// The same of a statistic that some draws do not have: those are left out. `None` with fewer than two units, or if fewer than half of
+/// the draws have it.
+pub fn interval_where_known<T: Copy>(
+    units: &[T],
+    seed: u64,
+    statistic: impl Fn(&[T]) -> Option<f64>,
+) -> Option<[f64; 2]> {
+    if units.len() < 2 {
+        return None;
+    }
+    let mut random = stream(seed, "bootstrap over participants", 0);
+    let mut resampled: Vec<f64> = (0..RESAMPLES)
+        .filter_map(|_| {
+            let drawn: Vec<T> = units.iter().map(|_| units[random.random_range(0..units.len())]).collect();
+            statistic(&drawn)
+        })
+        .collect();
+    resampled.sort_by(f64::total_cmp);
+    let last = resampled.len().checked_sub(1)?;
+    (2 * resampled.len() >= RESAMPLES).then(|| INTERVAL.map(|share| resampled[(last as f64 * share).round() as usize]))
+}

@@ -5,19 +5,26 @@ use serde::Serialize;
 /// Area under the ROC curve from pairs (score, is positive): the share of pairs of a positive and a negative in which the positive
 /// scores higher; ties count as half (mid-ranks; Hanley and McNeil 1982). `None` without positives or without negatives.
 pub fn auc(scored: &[(f64, bool)]) -> Option<f64> {
+    let alike: Vec<(f64, bool, f64)> = scored.iter().map(|&(score, case)| (score, case, 1.0)).collect();
+    weighted_auc(&alike)
+}
+
+/// The same from (score, is positive, weight), where a pair of a positive and a negative weighs the product of both weights.
+pub fn weighted_auc(scored: &[(f64, bool, f64)]) -> Option<f64> {
     let mut sorted = scored.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let cases = sorted.iter().filter(|(_, case)| *case).count() as f64;
-    let others = sorted.len() as f64 - cases;
+    let weights = |of: &[(f64, bool, f64)], is_case: bool| -> f64 {
+        of.iter().filter(|one| one.1 == is_case).map(|one| one.2).sum()
+    };
+    let (cases, others) = (weights(&sorted, true), weights(&sorted, false));
     if cases == 0.0 || others == 0.0 {
         return None;
     }
-    // Twice the number of ordered pairs, to stay with integers.
+    // Twice the weight of ordered pairs: without weights these are integers.
     let (mut twice, mut below) = (0.0, 0.0);
     for tied in sorted.chunk_by(|a, b| a.0 == b.0) {
-        let tied_cases = tied.iter().filter(|(_, case)| *case).count() as f64;
-        let tied_others = tied.len() as f64 - tied_cases;
-        twice += tied_cases * (2.0 * below + tied_others);
+        let tied_others = weights(tied, false);
+        twice += weights(tied, true) * (2.0 * below + tied_others);
         below += tied_others;
     }
     Some(twice / (2.0 * cases * others))
@@ -51,22 +58,43 @@ impl Calibration {
         range: [f64; 2],
         bins: usize,
     ) -> Calibration {
-        let mut sums = vec![(0u64, 0.0, 0u64); bins];
+        let alike = predictions.into_iter().map(|(p, came_true)| (p, came_true, 1.0));
+        Calibration::from_weighted(alike, range, bins)
+    }
+
+    /// The same from (prediction, happened, weight): means and shares of a bin, and the mean over bins, are weighted.
+    pub fn from_weighted(
+        predictions: impl IntoIterator<Item = (f64, bool, f64)>,
+        range: [f64; 2],
+        bins: usize,
+    ) -> Calibration {
+        #[derive(Clone, Copy, Default)]
+        struct Sum {
+            n: u64,
+            weight: f64,
+            predicted: f64,
+            came_true: f64,
+        }
+        let mut sums = vec![Sum::default(); bins];
         let [from, to] = range;
-        for (p, came_true) in predictions {
+        for (p, came_true, weight) in predictions {
             if (from..=to).contains(&p) {
                 let bin = ((p - from) / (to - from) * bins as f64) as usize;
                 let sum = &mut sums[bin.min(bins - 1)];
-                *sum = (sum.0 + 1, sum.1 + p, sum.2 + u64::from(came_true));
+                sum.n += 1;
+                sum.weight += weight;
+                sum.predicted += weight * p;
+                sum.came_true += if came_true { weight } else { 0.0 };
             }
         }
-        let bin = |&(n, predicted, observed): &(u64, f64, u64)| {
-            let count = n.max(1) as f64;
-            CalibrationBin { n, predicted: predicted / count, observed: observed as f64 / count }
+        let bin = |sum: &Sum| {
+            let whole = if sum.n == 0 { 1.0 } else { sum.weight };
+            CalibrationBin { n: sum.n, predicted: sum.predicted / whole, observed: sum.came_true / whole }
         };
         let bins: Vec<CalibrationBin> = sums.iter().map(bin).collect();
-        let total: u64 = bins.iter().map(|bin| bin.n).sum();
-        let off: f64 = bins.iter().map(|bin| bin.n as f64 * (bin.predicted - bin.observed).abs()).sum();
-        Calibration { bins, ece: (total > 0).then(|| off / total as f64) }
+        let total: f64 = sums.iter().map(|sum| sum.weight).sum();
+        let off = sums.iter().zip(&bins).map(|(sum, bin)| sum.weight * (bin.predicted - bin.observed).abs());
+        let off: f64 = off.sum();
+        Calibration { bins, ece: (total > 0.0).then(|| off / total) }
     }
 }

@@ -5,11 +5,12 @@
 //! - A press: [`errors`], [`attribution`] (why), `judged_press` (both); [`sequences`] of errors and episodes of false belief,
 //!   `cause_kinds` (orders, recipes, places).
 //! - An estimate of beliefs: [`detection`], `press_view` (what was known before a press), [`flags`],
-//!   [`belief_detection`] (all of these).
+//!   [`belief_detection`] (all of these). [`belief_basis`]: how it is known what was believed.
 //! - Communication: `median`, [`matching`] of two lanes, [`wizard_performance`]. [`cause_codes`] by people has its
 //!   agreement from `matching`; [`consensus`] of two raters; [`rater_choice`], which two count.
 
 pub mod attribution;
+pub mod belief_basis;
 pub mod belief_detection;
 pub mod cause_codes;
 pub mod cause_kinds;

@@ -6,10 +6,14 @@ use std::sync::Arc;
 use super::parallel;
 use super::replay::{Replay, SameKitchen, each_once};
 use crate::analysis::belief_check::{BeliefCheck, PressViews};
+use crate::analysis::probe_collector::ProbeCollector;
+use crate::analysis::probe_figures::ProbeFigures;
+use crate::analysis::probe_record::ProbedTrial;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::Kitchen;
 use crate::measures::belief_detection::{EstimateView, TrialView, aspect_groups};
 use crate::measures::flags::chosen_thresholds;
+use crate::session::settings::ParticipantKind;
 
 /// Checks the pooled recordings of one kitchen. The thresholds of flags are chosen on the recordings `choose_on`, which are not
 /// checked, or by cross-fitting if there are none. `done` is called after each recording.
@@ -19,7 +23,7 @@ use crate::measures::flags::chosen_thresholds;
 /// to choose on whose beliefs are not known.
 pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheck> {
     let all: Vec<PathBuf> = recordings.iter().chain(choose_on).cloned().collect();
-    let BeliefCheckTrials { kitchen, mut trials } = views(&all, done)?;
+    let BeliefCheckTrials { kitchen, mut trials, probes } = views(&all, done)?;
     let other = trials.split_off(recordings.len());
     let thresholds = match choose_on.first() {
         None => None,
@@ -28,7 +32,9 @@ pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sy
             FileError::from_finding(first, found, "recordings of simulated participants".to_string())
         })?),
     };
-    Ok(BeliefCheck::from_trials(&kitchen, &trials, thresholds))
+    let checked = probes[..recordings.len()].iter().flatten();
+    let probes = ProbeFigures::from_trials(checked.map(|(participant, probed)| (participant.as_str(), probed)));
+    Ok(BeliefCheck::from_trials(&kitchen, &trials, thresholds, probes))
 }
 
 /// Recorded trials of one kitchen.
@@ -38,6 +44,8 @@ pub struct BeliefCheckTrials {
     pub kitchen: Arc<Kitchen>,
     /// Trials in the order of the recordings.
     pub trials: Vec<TrialView>,
+    /// The probes of each trial, with the participant; `None` where there were none.
+    pub probes: Vec<Option<(String, ProbedTrial)>>,
 }
 
 /// Replays recordings on all processors and collects their presses. `done` is called after each recording.
@@ -47,25 +55,36 @@ pub struct BeliefCheckTrials {
 pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheckTrials> {
     each_once(recordings)?;
     let results = parallel::each(recordings, |recording| view(recording), done);
-    let (mut one_kitchen, mut trials) = (SameKitchen::default(), Vec::new());
+    let (mut one_kitchen, mut trials, mut probes) = (SameKitchen::default(), Vec::new(), Vec::new());
     for (result, recording) in results.into_iter().zip(recordings) {
-        let (kitchen, trial) = result?;
+        let (kitchen, trial, probed) = result?;
         one_kitchen.admit(recording, &kitchen)?;
         trials.push(trial);
+        probes.push(probed);
     }
-    Ok(BeliefCheckTrials { kitchen: one_kitchen.kitchen()?, trials })
+    Ok(BeliefCheckTrials { kitchen: one_kitchen.kitchen()?, trials, probes })
 }
 
-/// The presses of one recording.
-fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView)> {
+/// The presses of one recording, and its probes with the participant.
+fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView, Option<(String, ProbedTrial)>)> {
     let mut replay = Replay::open(recording)?;
+    let mut probes = ProbeCollector::default();
     let mut views = PressViews::default();
     while let Some(replayed) = replay.step()? {
         let (follower, seq) = (&replay.follower, replayed.stamped.seq);
         let judged = follower.judged.last().filter(|press| press.seq == seq);
         let estimated = follower.estimated.as_ref().filter(|one| one.press == seq);
         let estimate = estimated.map(|one| EstimateView::from_witness(&one.witness(&follower.session.kitchen)));
+        probes.note(&replayed.stamped, &replayed.change, follower);
         views.add(&follower.session, judged, estimate, &replayed.stamped, &replayed.change);
     }
-    Ok((replay.session().kitchen.clone(), views.trial))
+    let session = replay.session();
+    let spec = &session.spec;
+    // Every seed reuses the codes of simulated participants.
+    let participant = match spec.participant.kind {
+        ParticipantKind::Simulated => format!("seed{}-{}", spec.seed, spec.participant.code),
+        _ => spec.participant.code.clone(),
+    };
+    let probed = Some(probes.finish(session)).filter(ProbedTrial::is_any);
+    Ok((session.kitchen.clone(), views.trial, probed.map(|probed| (participant, probed))))
 }

@@ -28,13 +28,15 @@ pub enum Table {
     Beliefs,
     /// A row for each run of gaze samples on one location.
     Gaze,
+    /// A row for each question of a probe.
+    Probes,
     /// A row for each column of every table: its unit and meaning.
     Dictionary,
 }
 
 impl Table {
     /// Every table.
-    pub const ALL: [Table; 11] = [
+    pub const ALL: [Table; 12] = [
         Table::Participants,
         Table::Trials,
         Table::Questionnaires,
@@ -45,6 +47,7 @@ impl Table {
         Table::Offers,
         Table::Beliefs,
         Table::Gaze,
+        Table::Probes,
         Table::Dictionary,
     ];
     /// Tables whose rows are events of a trial.
@@ -64,6 +67,7 @@ impl Table {
             Table::Offers => "offers",
             Table::Beliefs => "beliefs",
             Table::Gaze => "gaze",
+            Table::Probes => "probes",
             Table::Dictionary => "dictionary",
         }
     }

@@ -10,6 +10,7 @@ use super::tables::concept_table::ConceptRow;
 use super::tables::gaze_runs::GazeRow;
 use super::tables::offer_table::OfferRow;
 use super::tables::participants::ParticipantRow;
+use super::tables::probe_table::ProbeRow;
 use super::tables::questionnaires::AnswerRow;
 use super::tables::tutorial_answers::TutorialAnswer;
 use super::trial_statistics::Trial;
@@ -53,6 +54,7 @@ pub fn columns(table: Table) -> Vec<DictionaryRow> {
         Table::Offers => declared::<OfferRow>(),
         Table::Beliefs => declared::<BeliefRow>(),
         Table::Gaze => declared::<GazeRow>(),
+        Table::Probes => declared::<ProbeRow>(),
         Table::Dictionary => declared::<DictionaryRow>(),
     }
 }

@@ -6,19 +6,22 @@ use serde::Serialize;
 
 use super::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
 use super::arm_group::{ArmGroup, by_arm};
-use super::belief_basis::BeliefBasis;
-use super::effect::{AssistanceEffect, effect, pairs};
+use crate::measures::belief_basis::BeliefBasis;
+use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
 use super::facts::Facts;
 use super::known_beliefs::SharedBeliefs;
 use super::live_arms::{LiveArm, live_arms};
 use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
 use super::statistics::{Correlation, FTest};
+use super::tables::probe_table::PROBES_WRONG;
 use super::tables::trials::measures;
 use super::tables::tutorial_answers::TutorialAnswer;
 use super::trial_statistics::{Trial, mean};
 use super::trial_totals::TrialTotals;
 use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
+use crate::analysis::probe_figures::ProbeFigures;
+use crate::analysis::probe_record::ProbedTrial;
 use crate::measures::cause_codes::{Agreement, AgreementTable, Codes};
 use crate::measures::matching::{MatchCounts, Similarity, WINDOW};
 use crate::measures::wizard_performance::WizardMeasures;
@@ -90,6 +93,9 @@ pub struct StudySummary {
     /// Answers to the questions of tutorials; absent if none was answered.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tutorial: Option<TutorialSummary>,
+    /// What participants knew, by their answers to probes, and the estimate against it; absent without answers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub probes: Option<ProbeFigures>,
     /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<Agreement>,
     /// How far these raters agree on the false beliefs from which episodes follow.
@@ -169,7 +175,7 @@ impl StudySummary {
         let counting: Vec<&Trial> = trials.iter().filter(|trial| trial.counts()).collect();
         let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);
         let effects: Vec<AssistanceEffect> =
-            measures().into_iter().map(|measure| effect(measure, &pairs(trials, measure), SEED)).collect();
+            compared(trials).map(|measure| effect(measure, &pairs(trials, measure), SEED)).collect();
         let comparison = concepts(&counting);
         let mut participants: Vec<&str> = counting.iter().map(|trial| trial.participant.as_str()).collect();
         participants.dedup();
@@ -216,6 +222,7 @@ impl StudySummary {
             questionnaires: items(&counting),
             questionnaire_scores: scores(&counting),
             tutorial: None,
+            probes: ProbeFigures::from_trials(probed(&counting)),
             raters: agreement(&counting),
             shared_beliefs: counting.iter().filter_map(|trial| trial.shared_beliefs).reduce(|sum, one| sum.plus(one)),
             consensus: consensus(&counting),
@@ -229,6 +236,17 @@ impl StudySummary {
     pub fn with_tutorials(self, answers: &[TutorialAnswer]) -> StudySummary {
         StudySummary { tutorial: TutorialSummary::from_answers(answers), ..self }
     }
+}
+
+/// The measures that are compared in these trials: that of probes only where there are any.
+fn compared(trials: &[Trial]) -> impl Iterator<Item = StudyMeasure> {
+    let has_probes = trials.iter().any(|trial| trial.probes.is_some());
+    measures().into_iter().filter(move |measure| *measure != PROBES_WRONG || has_probes)
+}
+
+/// The probes of trials, each with its participant.
+fn probed<'a>(trials: &[&'a Trial]) -> impl Iterator<Item = (&'a str, &'a ProbedTrial)> {
+    trials.iter().filter_map(|trial| Some((trial.participant.as_str(), trial.probes.as_ref()?)))
 }
 
 /// The least reliable source of beliefs among these trials.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 use super::belief_trace::BeliefTrace;
 use super::rater_episodes::rater_episodes;
 use crate::kitchen::Kitchen;

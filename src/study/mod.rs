@@ -17,7 +17,6 @@
 pub mod acceptance;
 pub mod acting_arm;
 pub mod arm_group;
-pub mod belief_basis;
 pub mod belief_trace;
 pub mod charts;
 pub mod column;

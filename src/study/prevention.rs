@@ -10,7 +10,7 @@
 
 use serde::Serialize;
 
-use super::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 use super::known_beliefs::KnownBeliefs;
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen};

@@ -3,11 +3,12 @@
 use serde::Serialize;
 
 use super::acting_arm::ActingArm;
-use super::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 use super::known_beliefs::SharedBeliefs;
 use super::robot_tally::RobotSummary;
 use super::roc::SweptTrial;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
+use crate::analysis::probe_record::ProbedTrial;
 use crate::measures::cause_codes::Codes;
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::CommunicationEvent;
@@ -97,6 +98,8 @@ pub struct Trial {
     pub settled_by: Option<[String; 2]>,
     /// Why a consensus is not used: a rater's code that changed after it was settled.
     pub stale_consensus: Option<String>,
+    /// The questions of probes and their answers; `None` without probes.
+    pub probes: Option<ProbedTrial>,
 }
 
 /// Errors that false beliefs caused in a trial.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 use super::effect::LEVEL;
 use super::statistics::{Interval, share_interval};
 use super::trial_statistics::{BeliefErrors, Trial, mean, mean_length};

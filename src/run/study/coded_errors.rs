@@ -9,7 +9,7 @@ use crate::measures::attribution::{Cause, Target};
 use crate::measures::cause_codes::{CauseKind, Codable, Code, Codes};
 use crate::measures::rater_choice::{RaterChoice, RaterPair};
 use crate::session::settings::ParticipantKind;
-use crate::study::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 
 /// What raters say about the errors of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -27,6 +27,7 @@ use crate::study::figures::StudySummary;
 use crate::study::report;
 use crate::study::tables::concept_table::{ConceptRow, concepts};
 use crate::study::tables::participants::{ParticipantRow, participants};
+use crate::study::tables::probe_table::{ProbeRow, probes};
 use crate::study::tables::questionnaires::{AnswerRow, answers};
 use crate::study::tables::tutorial_answers::TutorialAnswer;
 use crate::study::trial_statistics::{Trial, arrange};
@@ -152,6 +153,7 @@ pub fn study(
     filled.extend(export.table::<AnswerRow>(trials.iter().flat_map(answers))?);
     filled.extend(export.table::<TutorialAnswer>(&tutorials)?);
     filled.extend(export.table::<ConceptRow>(trials.iter().filter(|trial| trial.counts()).flat_map(concepts))?);
+    filled.extend(export.table::<ProbeRow>(trials.iter().flat_map(probes))?);
     filled.extend(export.table::<DictionaryRow>(dictionary())?);
     filled.sort_unstable();
     let path = export.report(&report::page(&figures, &trials, &facts, &filled))?;

@@ -11,7 +11,9 @@ use super::twin::useful_signals;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::follower::Follower;
 use crate::analysis::offer_summary::TimedOffer;
+use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::order_work::{RegretSum, order_times};
+use crate::analysis::probe_record::ProbedTrial;
 use crate::analysis::watcher::{CompareRequest, ComparisonFollower};
 use crate::analysis::wizard_log::{WizardLog, clock_at};
 use crate::base::time::SessionTime;
@@ -34,7 +36,7 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::{Condition, ParticipantKind, Visibility};
 use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEvent};
 use crate::study::acting_arm::ActingArm;
-use crate::study::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::study::belief_trace::BeliefTrace;
 use crate::study::facts::Facts;
 use crate::study::known_beliefs::{KnownBeliefs, SharedBeliefs};
@@ -161,6 +163,7 @@ pub fn read(
     let mut robot = RobotTally::new(header.session.robot.arm);
     let mut regret = RegretSum::new(CostToGo::new(kitchen.clone()));
     let mut answers = Vec::new();
+    let mut probes = ProbeCollector::default();
     let is_simulated = header.session.participant.kind == ParticipantKind::Simulated;
     let is_coded = rater_codes::raters(log.folder())?.len() >= 2;
     let mut pass = Pass::new(log.session(), extent, is_simulated || is_coded);
@@ -179,6 +182,7 @@ pub fn read(
             .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
         let follower = pass.follower();
         hands.note(&line.stamped, &follower.session);
+        probes.note(&line.stamped, &change, follower);
         regret.note(&kitchen, &change);
         robot.note(&line.stamped.event, follower.session.trial_clock(line.stamped.time), was_on);
         if let Some(by_estimate) = &mut by_estimate {
@@ -227,6 +231,7 @@ pub fn read(
         coded: &coded,
         known: known.as_ref(),
     };
+    trial.probes = Some(probes.finish(&follower.session)).filter(ProbedTrial::is_any);
     let rows = rows.finish(&follower.session, &presses, &lanes, WINDOW);
     if matches!(basis, Some(BeliefBasis::Consensus | BeliefBasis::Raters)) {
         trial.shared_beliefs = coded.raters.as_ref().map(SharedBeliefs::count);
@@ -281,7 +286,7 @@ fn known_beliefs(
             let (codes, mut cost) = (coded.shared(judged)?, CostToGo::new(kitchen.clone()));
             Some(KnownBeliefs::coded(basis, kitchen, &mut cost, trace, judged, &codes))
         }
-        BeliefBasis::Estimate => None,
+        BeliefBasis::Estimate | BeliefBasis::Probes => None,
     }
 }
 
@@ -362,6 +367,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         shared_beliefs: None,
         settled_by: None,
         stale_consensus: None,
+        probes: None,
     }
 }
 

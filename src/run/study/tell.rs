@@ -3,7 +3,7 @@
 use crate::base::words::count;
 use crate::measures::matching::{MatchShares, Similarity};
 use crate::session::event::EndReason;
-use crate::study::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
 use crate::study::live_arms::LiveArm;

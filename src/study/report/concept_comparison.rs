@@ -4,7 +4,7 @@ use maud::{Markup, Render, html};
 
 use super::elements::{Captions, UNKNOWN, keys, nothing, number, scroll, section, with_interval};
 use crate::base::words::count;
-use crate::study::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::study::charts::{self, MOST_SIGNALS};
 use crate::study::figures::StudySummary;
 use crate::study::live_arms::LiveArm;

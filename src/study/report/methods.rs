@@ -6,7 +6,7 @@ use super::elements::{arm, section};
 use crate::base::words;
 use crate::session::event::EndReason;
 use crate::study::arm_group::ArmGroup;
-use crate::study::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
 
@@ -102,7 +102,8 @@ fn analysis(figures: &StudySummary) -> String {
         }
         Some(BeliefBasis::Raters) => "Causes of errors were coded by two raters.",
         Some(BeliefBasis::Estimate) => "Causes of errors were attributed by the assistant's estimate of the beliefs.",
-        None => "Causes of errors are not known for all trials.",
+        // Probes tell no causes of errors.
+        Some(BeliefBasis::Probes) | None => "Causes of errors are not known for all trials.",
     };
     format!(
         "Every recording was replayed event by event; errors, their causes{computed} were recomputed from the recorded events. \

@@ -10,7 +10,7 @@ use crate::measures::matching::MatchShares;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::plan::ItemKind;
 use crate::session::settings::Condition;
-use crate::study::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::study::figures::StudySummary;
 
 /// Table with this study's results beside the paper's.

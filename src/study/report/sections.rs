@@ -6,7 +6,7 @@ use super::elements::{Captions, PageColumn, UNKNOWN, cells, condition, count, nu
 use crate::base::words;
 use crate::measures::cause_codes::Agreement;
 use crate::session::event::EndReason;
-use crate::study::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::study::column::Table;
 use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;

@@ -7,6 +7,7 @@ pub mod concept_table;
 pub mod gaze_runs;
 pub mod offer_table;
 pub mod participants;
+pub mod probe_table;
 pub mod questionnaires;
 pub mod trials;
 pub mod tutorial_answers;

@@ -10,6 +10,7 @@ use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::effect::StudyMeasure;
 use crate::study::known_beliefs::SharedBeliefs;
 use crate::study::robot_tally::ArmSummary;
+use crate::study::tables::probe_table::PROBES_WRONG;
 use crate::study::trial_statistics::{BeliefErrors, Trial, mean_length};
 
 /// Main measure of the report.
@@ -43,7 +44,7 @@ const NUMBER_OF_ERRORS: StudyMeasure = StudyMeasure {
     value: |trial| Some(trial.errors as f64),
 };
 
-/// The compared measures, in column order; the first is [`HEADLINE`], the last the number of errors.
+/// The compared measures, in column order; the first is [`HEADLINE`], the last the number of errors and those that came later.
 pub fn measures() -> Vec<StudyMeasure> {
     let measure = |column: TrialColumn| match column {
         Compared(measure) => Some(measure),
@@ -53,6 +54,7 @@ pub fn measures() -> Vec<StudyMeasure> {
     let rank = |measure: &StudyMeasure| match measure {
         one if *one == HEADLINE => 0,
         one if *one == NUMBER_OF_ERRORS => 2,
+        one if *one == PROBES_WRONG => 3,
         _ => 1,
     };
     let mut measures: Vec<StudyMeasure> = declared().filter_map(measure).collect();
@@ -87,6 +89,7 @@ fn declared() -> impl Iterator<Item = TrialColumn> {
         .chain(offered())
         .chain(shown())
         .chain(false_beliefs())
+        .chain(probed())
 }
 
 fn plain(
@@ -393,5 +396,18 @@ fn false_beliefs() -> Vec<TrialColumn> {
         shared("one_rater_belief", "errors that one of them alone puts down to a false belief", |shared| shared.of_one),
         wizard("wizard_hits", "episodes", "episodes with a signal of the wizard in time", |wizard| wizard.hits),
         wizard("wizard_omissions", "episodes", "episodes without one", |wizard| wizard.omissions),
+    ]
+}
+
+/// Answers to probes.
+fn probed() -> Vec<TrialColumn> {
+    vec![
+        plain(
+            "probe_questions",
+            "questions",
+            "questions of probes in the main results: scheduled, about what is, answered in time; empty: no probes",
+            |t| t.probes.as_ref().map(|probes| probes.counted().count() as u64).into(),
+        ),
+        Compared(PROBES_WRONG),
     ]
 }

@@ -14,7 +14,7 @@ use tomcom::measures::cause_kinds::CauseKindCounts;
 use tomcom::session::event::EndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom::study::acting_arm::ActingArm;
-use tomcom::study::belief_basis::BeliefBasis;
+use tomcom::measures::belief_basis::BeliefBasis;
 use tomcom::study::robot_tally::RobotSummary;
 use tomcom::study::trial_statistics::{BeliefErrors, Trial, arrange};
 
@@ -78,6 +78,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         shared_beliefs: None,
         settled_by: None,
         stale_consensus: None,
+        probes: None,
     }
 }
 

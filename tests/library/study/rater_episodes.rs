@@ -10,7 +10,7 @@ use tomcom::measures::JudgedPress;
 use tomcom::measures::attribution::Target;
 use tomcom::measures::cause_codes::{Code, Codes};
 use tomcom::measures::errors::PressJudge;
-use tomcom::study::belief_basis::BeliefBasis;
+use tomcom::measures::belief_basis::BeliefBasis;
 use tomcom::study::belief_trace::{BeliefTrace, TraceEvent};
 use tomcom::study::known_beliefs::{KnownBeliefs, SharedBeliefs};
 use tomcom::study::prevention::TrialTruth;

@@ -21,7 +21,7 @@ use tomcom::session::answer_value::AnswerValue;
 use tomcom::session::event::EndReason;
 use tomcom::session::plan::ItemKind;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
-use tomcom::study::belief_basis::BeliefBasis;
+use tomcom::measures::belief_basis::BeliefBasis;
 use tomcom::study::column::{Table, TableCell, TableRow};
 use tomcom::study::facts::Facts;
 use tomcom::study::figures::StudySummary;

@@ -8,6 +8,8 @@ use serde::Serialize;
 pub enum BeliefBasis {
     /// Recorded beliefs of a simulated participant.
     Recorded,
+    /// Answers to probes; they tell false beliefs, not the causes of errors.
+    Probes,
     /// Consensus of two raters for every error.
     Consensus,
     /// Codes of two raters for every error; an error is belief related if both coded a false belief.
@@ -21,6 +23,7 @@ impl BeliefBasis {
     pub fn name(self) -> &'static str {
         match self {
             BeliefBasis::Recorded => "recorded",
+            BeliefBasis::Probes => "probes",
             BeliefBasis::Consensus => "consensus",
             BeliefBasis::Raters => "raters",
             BeliefBasis::Estimate => "estimate",
@@ -31,6 +34,7 @@ impl BeliefBasis {
     pub fn words(self) -> &'static str {
         match self {
             BeliefBasis::Recorded => "the recorded beliefs of simulated participants",
+            BeliefBasis::Probes => "the participants' answers to probes",
             BeliefBasis::Consensus => "the consensus of two raters",
             BeliefBasis::Raters => "the codes of two raters",
             BeliefBasis::Estimate => "the assistant's estimate",

@@ -1,0 +1,174 @@
+//! How often participants know what is asked in probes: by aspect, by what happened there, by condition, and the effect of assistance.
+
+use serde::Serialize;
+
+use super::probe_record::{ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial, weighted_share};
+use super::trial_bootstrap::interval_where_known;
+use crate::session::settings::Condition;
+
+/// What the rows of a table of accuracies are formed by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AccuracyGrouping {
+    /// Orders, recipes, other places.
+    Kind,
+    /// Each aspect by itself.
+    Aspect,
+    /// Time since the location's last change.
+    Age,
+    /// Whether the location changed since the participant's last look at it.
+    Seen,
+    /// Who could send signals.
+    Condition,
+    /// Whether the estimate had a part in the choice of questions.
+    Choice,
+    /// The participant's confidence.
+    Confidence,
+}
+
+/// Share of right answers in one group of questions.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProbeAccuracy {
+    /// What the group is formed by.
+    pub by: AccuracyGrouping,
+    /// The group.
+    pub group: String,
+    /// Number of questions that were answered in time.
+    pub n: u64,
+    /// Of these, answered with "I don't know", which counts as wrong.
+    pub unsure: u64,
+    /// Weighted share of right answers.
+    pub accuracy: Option<f64>,
+    /// Its 95 % interval by bootstrap over participants; null with fewer than two.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// Effect of assistance on situation awareness.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AwarenessEffect {
+    /// Number of participants with answers in assisted and in unassisted trials.
+    pub participants: u64,
+    /// Mean over these participants of accuracy with assistance minus accuracy without.
+    pub difference: f64,
+    /// Its 95 % interval by bootstrap over participants; null with fewer than two.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// Upper ends of the groups by time since the last change, in seconds, and their names.
+const AGES: [(f64, &str); 4] = [
+    (5.0, "changed less than 5 s ago"),
+    (15.0, "changed 5 to 15 s ago"),
+    (60.0, "changed 15 to 60 s ago"),
+    (f64::INFINITY, "changed more than 60 s ago"),
+];
+
+/// The groups of a question, in the order of the table.
+fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(AccuracyGrouping, usize, String)> {
+    let kind = match question.kind {
+        ProbedKind::Order => 0,
+        ProbedKind::Recipe => 1,
+        _ => 2,
+    };
+    let condition = match trial.condition {
+        Condition::None => 0,
+        Condition::Wizard => 1,
+        Condition::Assistant => 2,
+    };
+    let choice = ["drawn without the estimate", "drawn with the estimate"][usize::from(question.uses_estimate)];
+    let mut groups = vec![
+        (AccuracyGrouping::Kind, kind, question.kind.words().to_string()),
+        (AccuracyGrouping::Aspect, 0, question.aspect.clone()),
+        (AccuracyGrouping::Condition, condition, trial.condition.name().to_string()),
+        (AccuracyGrouping::Choice, usize::from(question.uses_estimate), choice.to_string()),
+    ];
+    if let Some((frozen, changed_unseen)) =
+        question.frozen.as_ref().and_then(|frozen| Some((frozen, frozen.changed_unseen?)))
+    {
+        groups.push(match frozen.changed_s {
+            None => (AccuracyGrouping::Age, AGES.len(), "not changed in the trial".to_string()),
+            Some(s) => {
+                let age = AGES.iter().position(|(to, _)| s < *to).unwrap_or(AGES.len() - 1);
+                (AccuracyGrouping::Age, age, AGES[age].1.to_string())
+            }
+        });
+        let seen = ["not changed by others since the last look", "changed by others since the last look"];
+        let index = usize::from(changed_unseen);
+        groups.push((AccuracyGrouping::Seen, index, seen[index].to_string()));
+    }
+    if let Some(confidence) = question.confidence.filter(|_| question.response != ProbeResponse::Unsure) {
+        let group = format!("confidence {confidence} of 3");
+        groups.push((AccuracyGrouping::Confidence, usize::from(confidence), group));
+    }
+    groups
+}
+
+/// Accuracies over the questions of the main results, in all groupings; `participants` holds the trials of each participant.
+pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAccuracy> {
+    let mut all: Vec<(AccuracyGrouping, usize, String)> = participants
+        .iter()
+        .flatten()
+        .flat_map(|trial| trial.counted().flat_map(|question| groups(trial, question)))
+        .collect();
+    all.sort();
+    all.dedup();
+    all.into_iter()
+        .map(|key| {
+            let is_in =
+                |trial: &ProbedTrial, question: &ProbedQuestion| question.is_counted() && groups(trial, question).contains(&key);
+            accuracy(participants, (key.0, &key.2), seed, is_in)
+        })
+        .collect()
+}
+
+/// Accuracy over the questions of a group.
+pub fn accuracy(
+    participants: &[Vec<&ProbedTrial>],
+    (by, group): (AccuracyGrouping, &str),
+    seed: u64,
+    is_in: impl Fn(&ProbedTrial, &ProbedQuestion) -> bool,
+) -> ProbeAccuracy {
+    let of_one = |trials: &Vec<&ProbedTrial>| -> Vec<(f64, bool)> {
+        let all = trials.iter().flat_map(|trial| trial.questions.iter().filter(|one| is_in(trial, one)));
+        all.filter_map(|one| Some((one.weight(), !one.is_wrong()?))).collect()
+    };
+    let answers: Vec<Vec<(f64, bool)>> = participants.iter().map(of_one).collect();
+    // The bootstrap needs only each participant's sums of weights: of all answers, and of right ones.
+    let sums: Vec<[f64; 2]> = answers
+        .iter()
+        .filter(|of_one| !of_one.is_empty())
+        .map(|of_one| {
+            let right = of_one.iter().filter(|(_, is_right)| *is_right).map(|(weight, _)| weight).sum();
+            [of_one.iter().map(|(weight, _)| weight).sum(), right]
+        })
+        .collect();
+    let share = |sums: &[[f64; 2]]| {
+        let [all, right] = sums.iter().fold([0.0, 0.0], |[all, right], one| [all + one[0], right + one[1]]);
+        (all > 0.0).then(|| right / all)
+    };
+    let questions = || participants.iter().flatten().flat_map(|trial| trial.questions.iter().filter(|one| is_in(trial, one)));
+    ProbeAccuracy {
+        by,
+        group: group.to_string(),
+        n: questions().filter(|one| one.is_wrong().is_some()).count() as u64,
+        unsure: questions().filter(|one| one.response == ProbeResponse::Unsure).count() as u64,
+        accuracy: weighted_share(answers.into_iter().flatten()),
+        interval: interval_where_known(&sums, seed, share),
+    }
+}
+
+/// The effect of assistance on accuracy, within participants; `None` without a participant who has answers in both.
+pub fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<AwarenessEffect> {
+    let share = |trials: &[&ProbedTrial], assisted: bool| {
+        let of = trials.iter().filter(|trial| (trial.condition != Condition::None) == assisted);
+        let answers = of.flat_map(|trial| trial.counted());
+        weighted_share(answers.filter_map(|one| Some((one.weight(), !one.is_wrong()?))))
+    };
+    let differences: Vec<f64> =
+        participants.iter().filter_map(|of| Some(share(of, true)? - share(of, false)?)).collect();
+    let mean = |of: &[f64]| (!of.is_empty()).then(|| of.iter().sum::<f64>() / of.len() as f64);
+    Some(AwarenessEffect {
+        participants: differences.len() as u64,
+        difference: mean(&differences)?,
+        interval: interval_where_known(&differences, seed, mean),
+    })
+}

@@ -1,0 +1,204 @@
+//! Reads probes from a recording, event by event, with what was true and estimated when the trial froze.
+
+use std::collections::BTreeMap;
+
+use super::follower::Follower;
+use super::probe_record::{FrozenAspect, FrozenBelief, ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial};
+use super::seen_contents::SeenContents;
+use crate::base::incomplete_beta::regularized_incomplete_beta;
+use crate::base::time::SessionTime;
+use crate::kitchen::{Agent, AspectId, AspectKind, ButtonAction, Change, Kitchen, LocationKind, OrderContent, Press};
+use crate::measures::sequences::FALSE_BELOW;
+use crate::mind::BeliefWitness;
+use crate::session::probe_event::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
+use crate::session::{Event, Session, Stamped};
+
+/// Collects the questions of a recording's probes.
+#[derive(Debug, Default)]
+pub struct ProbeCollector {
+    seen: SeenContents,
+    /// Time and belief of the last record of a simulated participant's belief.
+    belief: Option<(SessionTime, BeliefWitness)>,
+    open: Option<OpenQuestions>,
+    questions: Vec<ProbedQuestion>,
+    begun: u64,
+    dropped: u64,
+    skipped: u64,
+}
+
+/// The questions of the probe that is open.
+#[derive(Debug)]
+struct OpenQuestions {
+    drawn: Vec<ProbedQuestion>,
+    /// When each question appeared.
+    asked: Vec<Option<SessionTime>>,
+}
+
+impl ProbeCollector {
+    /// Takes note of an event that the follower has just applied.
+    pub fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower) {
+        let session = &follower.session;
+        self.seen.note(session, stamped, change);
+        match &stamped.event {
+            Event::ParticipantBelieves(witness) => self.belief = Some((stamped.time, witness.clone())),
+            Event::TrialPaused => self.seen.interrupted(),
+            Event::Probe(event) => self.probe(stamped.time, event, follower),
+            _ => {}
+        }
+        if let Change::Press { press, .. } = change {
+            self.next(&session.kitchen, press);
+        }
+    }
+
+    fn probe(&mut self, now: SessionTime, event: &ProbeEvent, follower: &Follower) {
+        match event {
+            ProbeEvent::Begun { probe, origin, uses_estimate, questions } => {
+                self.begun += 1;
+                self.seen.interrupted();
+                let drawn: Vec<ProbedQuestion> = (1..)
+                    .zip(questions)
+                    .map(|(number, question)| ProbedQuestion {
+                        probe: *probe,
+                        question: number,
+                        origin: *origin,
+                        uses_estimate: *uses_estimate,
+                        ..self.frozen(now, question, follower)
+                    })
+                    .collect();
+                self.open = Some(OpenQuestions { asked: vec![None; drawn.len()], drawn });
+            }
+            ProbeEvent::Asked { question, .. } => {
+                if let Some((asked, _)) = self.question(*question) {
+                    *asked = Some(now);
+                }
+            }
+            ProbeEvent::Answered { question, answer, confidence, .. } => {
+                if let Some((asked, drawn)) = self.question(*question) {
+                    drawn.response = answer.clone().map_or(ProbeResponse::Unsure, ProbeResponse::Value);
+                    drawn.confidence = *confidence;
+                    drawn.took_s = asked.map(|asked| now.secs_since(asked));
+                }
+            }
+            ProbeEvent::Dropped { .. } => self.dropped += 1,
+            ProbeEvent::Skipped { .. } => self.skipped += 1,
+            ProbeEvent::Ended { .. } => self.close(),
+            ProbeEvent::Requested | ProbeEvent::Delayed { .. } | ProbeEvent::Closed { .. } => {}
+        }
+    }
+
+    /// The question with this number in the open probe, and when it appeared.
+    fn question(&mut self, number: u32) -> Option<(&mut Option<SessionTime>, &mut ProbedQuestion)> {
+        let open = self.open.as_mut()?;
+        let index = (number as usize).checked_sub(1)?;
+        Some((open.asked.get_mut(index)?, open.drawn.get_mut(index)?))
+    }
+
+    /// Keeps the questions of the open probe that were shown.
+    fn close(&mut self) {
+        let Some(open) = self.open.take() else { return };
+        let shown = open.drawn.into_iter().zip(open.asked).filter(|(_, asked)| asked.is_some());
+        self.questions.extend(shown.map(|(question, _)| question));
+    }
+
+    /// A question as it stands when the trial freezes.
+    fn frozen(&self, now: SessionTime, question: &ProbeQuestion, follower: &Follower) -> ProbedQuestion {
+        let (session, kitchen) = (&follower.session, &follower.session.kitchen);
+        let (kind, aspect) = subject(kitchen, &question.about);
+        let truth = aspect.map(|aspect| label(kitchen, aspect, kitchen.true_value(session.state, aspect)));
+        ProbedQuestion {
+            probe: 0,
+            question: 0,
+            time_s: session.trial_clock(now).as_secs_f64(),
+            origin: ProbeOrigin::Schedule,
+            uses_estimate: false,
+            kind,
+            aspect: aspect.map_or(kind.name().to_string(), |aspect| kitchen.aspects[aspect.index()].name.clone()),
+            inclusion: question.inclusion,
+            truth,
+            response: ProbeResponse::Missing,
+            confidence: None,
+            took_s: None,
+            frozen: aspect.map(|aspect| self.aspect(now, aspect, follower)),
+        }
+    }
+
+    /// What is known of an aspect now.
+    fn aspect(&self, now: SessionTime, aspect: AspectId, follower: &Follower) -> FrozenAspect {
+        let (session, kitchen) = (&follower.session, &follower.session.kitchen);
+        let (labels, estimate) = (&kitchen.aspects[aspect.index()].labels, follower.filter.belief().aspect(aspect));
+        let truth = kitchen.true_value(session.state, aspect);
+        let estimate_p_truth = estimate.mean()[truth];
+        let [of_truth, of_others] = [estimate_p_truth, 1.0 - estimate_p_truth].map(|mean| mean * estimate.precision());
+        let believed = self.belief.as_ref().filter(|(at, _)| *at == now);
+        let believed = believed.and_then(|(_, witness)| witness.aspects.get(aspect.index()));
+        let location = match kitchen.aspects[aspect.index()].kind {
+            AspectKind::Location(location) => Some(location),
+            AspectKind::Recipe(_) => None,
+        };
+        // Recipes do not change: what is usual, and what was seen, is true.
+        let of_code = |code: u8| label(kitchen, aspect, kitchen.aspects[aspect.index()].index_of(code).unwrap_or(truth));
+        let of_location = |code: Option<u8>| code.map_or_else(|| label(kitchen, aspect, truth), of_code);
+        FrozenAspect {
+            values: labels.len(),
+            estimate: label(kitchen, aspect, estimate.most_likely()),
+            estimate_p: labels.iter().cloned().zip(estimate.mean().iter().copied()).collect::<BTreeMap<_, _>>(),
+            estimate_p_truth,
+            estimate_p_false: regularized_incomplete_beta(FALSE_BELOW, of_truth, of_others),
+            believed: believed
+                .map(|own| FrozenBelief { believes: own.believes.clone(), p_truth: own.p_truth }),
+            changed_s: location.and_then(|location| self.seen.changed_s(session, location)),
+            changed_unseen: location.map(|location| self.seen.is_changed_unseen(location)),
+            usual: of_location(location.map(|location| self.seen.usual(session, location))),
+            last_seen: of_location(location.map(|location| self.seen.last_seen(location))),
+        }
+    }
+
+    /// Answers open questions about what comes next by a press that has just happened.
+    fn next(&mut self, kitchen: &Kitchen, press: &Press) {
+        let button = kitchen.button(press.agent, press.button);
+        let served = match button.action {
+            ButtonAction::Serve(order) if press.effective => {
+                matches!(press.before.order(order), OrderContent::Dish(_)).then_some(order)
+            }
+            _ => None,
+        };
+        for question in self.questions.iter_mut().filter(|question| question.truth.is_none()) {
+            question.truth = match question.kind {
+                ProbedKind::NextOrder => served.map(|order| kitchen.location(order).name.clone()),
+                ProbedKind::NextPress if press.agent == Agent::Robot => Some(button.name.clone()),
+                _ => None,
+            };
+        }
+    }
+
+    /// The probes of the recording, whose last event has been noted.
+    pub fn finish(mut self, session: &Session) -> ProbedTrial {
+        self.close();
+        let condition = session.spec.trial.condition;
+        let ProbeCollector { begun, dropped, skipped, questions, .. } = self;
+        ProbedTrial { condition, begun, dropped, skipped, questions }
+    }
+}
+
+/// Kind and aspect of a question.
+fn subject(kitchen: &Kitchen, about: &ProbeSubject) -> (ProbedKind, Option<AspectId>) {
+    match about {
+        ProbeSubject::Location { location } => {
+            let id = kitchen.location_named(location);
+            let is_order = id.is_some_and(|id| kitchen.location(id).kind == LocationKind::Order);
+            (if is_order { ProbedKind::Order } else { ProbedKind::Place }, id.map(AspectId::of_location))
+        }
+        ProbeSubject::Recipe { dish } => {
+            let is_it = |kind: AspectKind| matches!(kind, AspectKind::Recipe(id) if kitchen.dish(id).name == *dish);
+            let index = kitchen.aspects.iter().position(|aspect| is_it(aspect.kind));
+            (ProbedKind::Recipe, index.map(|index| AspectId(index as u8)))
+        }
+        ProbeSubject::NextOrder => (ProbedKind::NextOrder, None),
+        ProbeSubject::NextPress => (ProbedKind::NextPress, None),
+    }
+}
+
+/// Name of an aspect's value.
+fn label(kitchen: &Kitchen, aspect: AspectId, value: usize) -> String {
+    kitchen.aspects[aspect.index()].labels[value].clone()
+}

@@ -1,0 +1,77 @@
+//! Figures of probes as lines of text.
+
+use super::probe_accuracy::AccuracyGrouping;
+use super::probe_figures::ProbeFigures;
+use crate::base::words::count;
+
+/// The figures of probes for the terminal.
+pub fn describe(found: &ProbeFigures) -> String {
+    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.3}"));
+    let percent = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value));
+    let within = |interval: Option<[f64; 2]>, scale: f64, digits: usize| {
+        interval.map_or(String::new(), |[from, to]| format!(" ({:.digits$} to {:.digits$})", scale * from, scale * to))
+    };
+    let (counts, detection, scores) = (&found.counts, &found.detection, &found.log_scores);
+    let mut text = format!(
+        "probes: {} of {} in {}; {} count, {} of them \"I don't know\"; left out: {} without an answer in time, {} in probes of the \
+         wizard, {} about what comes next\n\
+         right answers: {}{}\n\
+         estimate against answers, weighted by the chance of each question: area under the ROC {}{} (locations {}, where knowing \
+         only what changed unseen gives {}, recipes {}; unweighted {}), calibration error {}{}\n\
+         log score of answers: estimate {} (with wrong answers at random {}), what usually lies there {}, what was seen last {}, what \
+         is true {} nats\n",
+        count(counts.questions, "question", "questions"),
+        count(found.participants, "participant", "participants"),
+        count(counts.probes, "probe", "probes"),
+        counts.counted,
+        counts.unsure,
+        counts.unanswered,
+        counts.by_wizard,
+        counts.level_2,
+        percent(found.accuracy.accuracy),
+        within(found.accuracy.interval, 100.0, 1),
+        number(detection.auc),
+        within(found.auc_interval, 1.0, 3),
+        number(detection.auc_locations),
+        number(detection.auc_baseline),
+        number(detection.auc_recipes),
+        number(found.auc_unweighted),
+        number(detection.ece),
+        within(found.ece_interval, 1.0, 3),
+        number(scores.estimate),
+        number(scores.estimate_with_slips),
+        number(scores.usual),
+        number(scores.last_seen),
+        number(scores.truth),
+    );
+    // Single aspects and the way of drawing stand in the figures.
+    let told = [AccuracyGrouping::Kind, AccuracyGrouping::Age, AccuracyGrouping::Seen, AccuracyGrouping::Condition];
+    for one in found.accuracies.iter().filter(|one| told.contains(&one.by)) {
+        let share = percent(one.accuracy);
+        text += &format!("  {:<44}{share:>8}{} of {}\n", one.group, within(one.interval, 100.0, 1), one.n);
+    }
+    if let Some(effect) = &found.assistance {
+        text += &format!(
+            "assistance: {:+.1} % right answers{} within {}\n",
+            100.0 * effect.difference,
+            within(effect.interval, 100.0, 1),
+            count(effect.participants, "participant", "participants"),
+        );
+    }
+    for one in &found.level_2 {
+        text += &format!("what comes next: {}: {} right of {}\n", one.group, percent(one.accuracy), one.n);
+    }
+    if let Some(known) = &found.by_true_beliefs {
+        text += &format!(
+            "by the recorded beliefs at {} of these questions: area {}, calibration error {}; by their answers {} and {}; {} of the \
+             answers agree\n",
+            known.n,
+            number(known.detection.auc),
+            number(known.detection.ece),
+            number(known.by_answers.auc),
+            number(known.by_answers.ece),
+            percent(Some(known.agreement)),
+        );
+    }
+    text
+}

@@ -1,0 +1,114 @@
+//! How well answers to probes are predicted: by the estimate, and by three base rates that know no gaze model, no memory and no
+//! presses: what usually lies there, what was last seen there, and what is true.
+
+use serde::Serialize;
+
+use super::probe_record::{FrozenAspect, ProbedKind, ProbedQuestion};
+use crate::mind::dirichlet::LEAST_MEAN;
+
+/// Mean log of the probability of the answered value, weighted, in nats; higher is better. "I don't know" names no value and is left
+/// out.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ProbeLogScores {
+    /// Number of answers.
+    pub n: u64,
+    /// By the estimate, which predicts beliefs and knows of no wrong answers.
+    pub estimate: Option<f64>,
+    /// By the estimate with a share of answers at random, which is chosen on the other participants.
+    pub estimate_with_slips: Option<f64>,
+    /// By what lay there longest until then.
+    pub usual: Option<f64>,
+    /// By what the participant last saw there: it is wrong if that changed since the last look.
+    pub last_seen: Option<f64>,
+    /// By what is true.
+    pub truth: Option<f64>,
+}
+
+/// An answer that names a value, with what predicts it.
+#[derive(Clone, Copy, Debug)]
+struct NamedAnswer<'a> {
+    /// Number of the participant.
+    participant: usize,
+    is_recipe: bool,
+    weight: f64,
+    answer: &'a str,
+    truth: &'a str,
+    frozen: &'a FrozenAspect,
+}
+
+/// Shares of answers at random that are tried.
+const SLIPS: [f64; 9] = [0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
+
+impl NamedAnswer<'_> {
+    fn estimated(&self) -> f64 {
+        self.frozen.estimate_p.get(self.answer).copied().unwrap_or(LEAST_MEAN)
+    }
+
+    fn with_slips(&self, share: f64) -> f64 {
+        (1.0 - share) * self.estimated() + share / self.frozen.values.max(1) as f64
+    }
+}
+
+impl ProbeLogScores {
+    /// Scores the questions of the main results, given with the number of their participant. What base rates have to learn, how
+    /// often they are right, they learn on the other participants.
+    pub fn from_questions(questions: &[(usize, &ProbedQuestion)]) -> ProbeLogScores {
+        let named: Vec<NamedAnswer> = questions.iter().filter_map(|&(of, question)| named(of, question)).collect();
+        let mean = |log_p: &dyn Fn(&NamedAnswer) -> f64| {
+            let (weights, sum) = named
+                .iter()
+                .fold((0.0, 0.0), |(weights, sum), one| (weights + one.weight, sum + one.weight * log_p(one)));
+            (weights > 0.0).then(|| sum / weights)
+        };
+        let participants = named.iter().map(|one| one.participant + 1).max().unwrap_or(0);
+        let slips: Vec<f64> = (0..participants).map(|without| share_of_slips(&named, without)).collect();
+        let point = |of: for<'a> fn(&NamedAnswer<'a>) -> &'a str| {
+            let rates: Vec<[f64; 2]> =
+                (0..participants).map(|without| [false, true].map(|group| rate(&named, without, group, of))).collect();
+            mean(&|one| {
+                let right = rates[one.participant][usize::from(one.is_recipe)];
+                let others = (one.frozen.values.max(2) - 1) as f64;
+                if of(one) == one.answer { right.ln() } else { ((1.0 - right) / others).ln() }
+            })
+        };
+        ProbeLogScores {
+            n: named.len() as u64,
+            estimate: mean(&|one| one.estimated().ln()),
+            estimate_with_slips: mean(&|one| one.with_slips(slips[one.participant]).ln()),
+            usual: point(|one| &one.frozen.usual),
+            last_seen: point(|one| &one.frozen.last_seen),
+            truth: point(|one| one.truth),
+        }
+    }
+}
+
+fn named(participant: usize, question: &ProbedQuestion) -> Option<NamedAnswer<'_>> {
+    question.is_counted().then_some(())?;
+    Some(NamedAnswer {
+        participant,
+        is_recipe: question.kind == ProbedKind::Recipe,
+        weight: question.weight(),
+        answer: question.answer()?,
+        truth: question.truth.as_deref()?,
+        frozen: question.frozen.as_ref()?,
+    })
+}
+
+/// How often a prediction of one value is right for the other participants, by Laplace's rule of succession.
+fn rate<'a>(
+    named: &[NamedAnswer<'a>],
+    without: usize,
+    is_recipe: bool,
+    of: fn(&NamedAnswer<'a>) -> &'a str,
+) -> f64 {
+    let others = named.iter().filter(|one| one.participant != without && one.is_recipe == is_recipe);
+    let (n, right) = others.fold((0u32, 0u32), |(n, right), one| (n + 1, right + u32::from(of(one) == one.answer)));
+    f64::from(right + 1) / f64::from(n + 2)
+}
+
+/// The likeliest share of answers at random for the other participants.
+fn share_of_slips(named: &[NamedAnswer], without: usize) -> f64 {
+    let others = || named.iter().filter(|one| one.participant != without);
+    let score = |share: f64| others().map(|one| one.with_slips(share).ln()).sum::<f64>();
+    SLIPS.into_iter().fold(SLIPS[0], |best, share| if score(share) > score(best) { share } else { best })
+}

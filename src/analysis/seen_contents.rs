@@ -1,0 +1,103 @@
+//! What the participant has last seen at each location, and what has lain there: by gaze, changes and own presses alone, without any
+//! estimate.
+
+use super::looks::Looks;
+use crate::base::time::SessionTime;
+use crate::gaze::MIN_CONFIDENCE;
+use crate::kitchen::state::MAX_LOCATIONS;
+use crate::kitchen::{Change, LocationId, State};
+use crate::session::{Event, Session, Stamped};
+
+/// One location's history.
+#[derive(Clone, Debug, Default)]
+struct SeenLocation {
+    /// Code of the content that was last seen there.
+    seen: u8,
+    /// Somebody else changed it since.
+    is_changed_unseen: bool,
+    /// Session time of the last change in the trial.
+    changed: Option<SessionTime>,
+    /// For each code, how long it lay there until the last change, on the trial's clock.
+    lay: Vec<(u8, SessionTime)>,
+    /// Trial clock of the last change.
+    since: SessionTime,
+}
+
+/// History of all locations of a session.
+#[derive(Clone, Debug, Default)]
+pub struct SeenContents {
+    locations: [SeenLocation; MAX_LOCATIONS],
+    looks: Looks,
+}
+
+impl SeenContents {
+    /// Takes note of an event that has just been applied.
+    pub fn note(&mut self, session: &Session, stamped: &Stamped, change: &Change) {
+        if let Change::TrialStarted { after, .. } = change {
+            *self = SeenContents::default();
+            for (index, location) in self.locations.iter_mut().enumerate() {
+                location.seen = after.code(LocationId(index as u8));
+            }
+            return;
+        }
+        let is_own = change.human_press().is_some();
+        let is_look = matches!(&stamped.event, Event::Gaze(sample) if sample.confidence >= MIN_CONFIDENCE);
+        for index in 0..session.kitchen.locations.len() {
+            let place = LocationId(index as u8);
+            if let Some((before, after)) = change.states().filter(|(one, other)| one.code(place) != other.code(place)) {
+                self.changed(session, place, [before, after], is_own);
+            }
+            if is_look && self.looks.sampled(session, place) {
+                let location = &mut self.locations[index];
+                (location.seen, location.is_changed_unseen) = (session.state.code(place), false);
+            }
+        }
+    }
+
+    fn changed(&mut self, session: &Session, place: LocationId, [before, after]: [State; 2], is_own: bool) {
+        self.looks.changed(place);
+        let now = session.trial_clock(session.time);
+        let location = &mut self.locations[place.index()];
+        location.lay.push((before.code(place), now - location.since));
+        (location.since, location.changed) = (now, Some(session.time));
+        location.is_changed_unseen = !is_own;
+        if is_own {
+            location.seen = after.code(place);
+        }
+    }
+
+    /// Ends all looks, as a pause does.
+    pub fn interrupted(&mut self) {
+        self.looks.interrupted();
+    }
+
+    /// Whether somebody else changed a location since the participant last looked at it or changed it.
+    pub fn is_changed_unseen(&self, place: LocationId) -> bool {
+        self.locations[place.index()].is_changed_unseen
+    }
+
+    /// Code of the content that the participant last saw at a location, or made.
+    pub fn last_seen(&self, place: LocationId) -> u8 {
+        self.locations[place.index()].seen
+    }
+
+    /// Seconds since a location's last change, without pauses; `None` if it has not changed in the trial.
+    pub fn changed_s(&self, session: &Session, place: LocationId) -> Option<f64> {
+        let changed = self.locations[place.index()].changed?;
+        Some(session.age(changed, session.time).as_secs_f64())
+    }
+
+    /// Code of the content that has lain at a location longest in the trial; the present one where several are equal.
+    pub fn usual(&self, session: &Session, place: LocationId) -> u8 {
+        let location = &self.locations[place.index()];
+        let present = session.state.code(place);
+        let now = session.trial_clock(session.time);
+        let of = |code: u8| {
+            let before = location.lay.iter().filter(|(other, _)| *other == code).map(|(_, time)| *time);
+            let current = if code == present { now - location.since } else { SessionTime::ZERO };
+            before.fold(current, |sum, time| sum + time)
+        };
+        let codes = location.lay.iter().map(|(code, _)| *code);
+        codes.fold(present, |best, code| if of(code) > of(best) { code } else { best })
+    }
+}

@@ -8,7 +8,9 @@ use super::roc::{Roc, RocPoint};
 use super::svg::{PlotAxis, SvgChart, minus};
 use super::tables::trials::HEADLINE;
 use super::trial_statistics::{Trial, mean};
+use crate::analysis::probe_figures::ProbeFigures;
 use crate::communication::concept::ConceptName;
+use crate::measures::detection::CalibrationBin;
 use crate::session::settings::Condition;
 
 /// Chart of errors by condition and participant (paper's figure, top left); lines join a participant's two trials, means are black.
@@ -178,6 +180,23 @@ fn curve(chart: &mut SvgChart, roc: &Roc, to: f64, of: fn(&RocPoint) -> (f64, f6
         let title = format!("{} at {}: {y:.2} prevented, {x:.2}", roc.concept.title(), point.parameter);
         chart.point(&format!("small {class}"), x, y, &title);
     }
+}
+
+/// Chart of the estimate's calibration by answers to probes; `None` without a prediction in the range.
+pub fn probe_calibration(found: &ProbeFigures) -> Option<Markup> {
+    let filled: Vec<&CalibrationBin> = found.detection.calibration.bins.iter().filter(|bin| bin.n > 0).collect();
+    filled.first()?;
+    let x = PlotAxis::between("predicted probability of a false belief", 0.0, 1.0);
+    let y = PlotAxis::between("share of wrong answers", 0.0, 1.0);
+    let mut chart = SvgChart::new(420.0, 380.0, x, y);
+    chart.line("thin", &[(0.0, 0.0), (1.0, 1.0)]);
+    let points: Vec<(f64, f64)> = filled.iter().map(|bin| (bin.predicted, bin.observed)).collect();
+    chart.line("tom-com", &points);
+    for bin in filled {
+        let title = format!("{} answers: predicted {:.2}, wrong {:.2}", bin.n, bin.predicted, bin.observed);
+        chart.point("tom-com", bin.predicted, bin.observed, &title);
+    }
+    Some(chart.finish("Calibration of the estimate by answers to probes"))
 }
 
 /// CSS class with the concept's colour.

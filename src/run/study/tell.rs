@@ -1,5 +1,6 @@
 //! Text summary of a study for the terminal.
 
+use crate::analysis::probe_lines;
 use crate::base::words::count;
 use crate::measures::matching::{MatchShares, Similarity};
 use crate::session::event::EndReason;
@@ -107,6 +108,7 @@ pub fn describe(figures: &StudySummary) -> String {
             text += &format!("  {:<10}{}\n", roc.concept.title(), shares(&roc.useless_at_equal_signals));
         }
     }
+    text += &figures.probes.as_ref().map_or(String::new(), probe_lines::describe);
     text += &of_live(&figures.live);
     let compared = [
         ("wizard and ToM-Com", &figures.similarity),

@@ -1,6 +1,7 @@
 //! The report: one self-contained HTML page for screen and print.
 
 mod assistance;
+mod awareness;
 mod concept_comparison;
 mod elements;
 mod methods;
@@ -27,6 +28,7 @@ pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[T
         sections::summary(figures),
         results::beside_the_paper(captions, figures),
         assistance::assistance(captions, figures, trials),
+        awareness::awareness(captions, figures),
         concept_comparison::concepts(captions, figures),
         results::similarity(captions, figures),
         robot_counts::robot(captions, figures),

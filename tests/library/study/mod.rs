@@ -3,6 +3,7 @@
 mod effect;
 mod live_arms;
 mod prevention;
+mod probes;
 mod rater_episodes;
 mod report;
 mod tables;

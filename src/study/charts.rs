@@ -189,7 +189,7 @@ pub fn probe_calibration(found: &ProbeFigures) -> Option<Markup> {
     let x = PlotAxis::between("predicted probability of a false belief", 0.0, 1.0);
     let y = PlotAxis::between("share of wrong answers", 0.0, 1.0);
     let mut chart = SvgChart::new(420.0, 380.0, x, y);
-    chart.line("thin", &[(0.0, 0.0), (1.0, 1.0)]);
+    chart.line("ideal", &[(0.0, 0.0), (1.0, 1.0)]);
     let points: Vec<(f64, f64)> = filled.iter().map(|bin| (bin.predicted, bin.observed)).collect();
     chart.line("tom-com", &points);
     for bin in filled {

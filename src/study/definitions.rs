@@ -65,6 +65,16 @@ pub const DEFINITIONS: &[(&str, &str)] = &[
          signal.",
     ),
     (
+        "Probes",
+        "The task freezes, and the participant says what it believes. An answer that differs from the truth at the freeze is a false belief; \
+         \"I don't know\" is one, too. Main results: scheduled questions about locations and recipes, answered in time. Left out: questions \
+         without an answer, probes that the wizard asked for, questions about what comes next. Every question weighs 1 / inclusion, the \
+         inverse of the probability with which it was drawn (Horvitz and Thompson 1952): shares, areas under the ROC (each pair of a wrong and a right answer \
+         weighs the product of both weights) and calibration are about everything that could have been asked. Log score: weighted mean of \
+         ln p(answer); how often what is usual, last seen or true is answered is learned on the other participants. Intervals: bootstrap over \
+         participants.",
+    ),
+    (
         "Orders",
         "Time per order: from its appearance to its serving. Additional presses: the summed regret of both agents' presses per \
          served order, since orders interleave. Experience: the effect of the period on press durations, from the same mixed \

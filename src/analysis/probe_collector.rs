@@ -10,7 +10,7 @@ use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonAction, Change, Kitchen, LocationKind, OrderContent, Press};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::BeliefWitness;
-use crate::session::probe_event::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
+use crate::session::probes::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use crate::session::{Event, Session, Stamped};
 
 /// Collects the questions of a recording's probes.
@@ -125,7 +125,9 @@ impl ProbeCollector {
     /// What is known of an aspect now.
     fn aspect(&self, now: SessionTime, aspect: AspectId, follower: &Follower) -> FrozenAspect {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
-        let (labels, estimate) = (&kitchen.aspects[aspect.index()].labels, follower.filter.belief().aspect(aspect));
+        let labels = &kitchen.aspects[aspect.index()].labels;
+        // The estimate as it stood at the freeze, with what passed since the last event.
+        let estimate = follower.probed.as_ref().map_or(follower.filter.belief(), |probed| &probed.belief).aspect(aspect);
         let truth = kitchen.true_value(session.state, aspect);
         let estimate_p_truth = estimate.mean()[truth];
         let [of_truth, of_others] = [estimate_p_truth, 1.0 - estimate_p_truth].map(|mean| mean * estimate.precision());

@@ -8,7 +8,7 @@ use super::probe_record::{ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial
 use super::probe_scores::ProbeLogScores;
 use super::trial_bootstrap::interval_where_known;
 use crate::measures::belief_basis::BeliefBasis;
-use crate::session::probe_event::ProbeOrigin;
+use crate::session::probes::ProbeOrigin;
 
 /// Seed of the bootstrap: the same answers give the same intervals.
 const SEED: u64 = 1;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::measures::sequences::FALSE_BELOW;
-use crate::session::probe_event::ProbeOrigin;
+use crate::session::probes::ProbeOrigin;
 use crate::session::settings::Condition;
 
 /// What a question was about.

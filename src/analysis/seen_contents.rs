@@ -15,11 +15,11 @@ struct SeenLocation {
     seen: u8,
     /// Somebody else changed it since.
     is_changed_unseen: bool,
-    /// Session time of the last change in the trial.
-    changed: Option<SessionTime>,
+    /// Whether it has changed in the trial.
+    has_changed: bool,
     /// For each code, how long it lay there until the last change, on the trial's clock.
     lay: Vec<(u8, SessionTime)>,
-    /// Trial clock of the last change.
+    /// Time of the last change, or of the trial's start, on the trial's clock.
     since: SessionTime,
 }
 
@@ -59,7 +59,7 @@ impl SeenContents {
         let now = session.trial_clock(session.time);
         let location = &mut self.locations[place.index()];
         location.lay.push((before.code(place), now - location.since));
-        (location.since, location.changed) = (now, Some(session.time));
+        (location.since, location.has_changed) = (now, true);
         location.is_changed_unseen = !is_own;
         if is_own {
             location.seen = after.code(place);
@@ -83,8 +83,8 @@ impl SeenContents {
 
     /// Seconds since a location's last change, without pauses; `None` if it has not changed in the trial.
     pub fn changed_s(&self, session: &Session, place: LocationId) -> Option<f64> {
-        let changed = self.locations[place.index()].changed?;
-        Some(session.age(changed, session.time).as_secs_f64())
+        let location = &self.locations[place.index()];
+        location.has_changed.then(|| session.trial_clock(session.time).secs_since(location.since))
     }
 
     /// Code of the content that has lain at a location longest in the trial; the present one where several are equal.

@@ -10,7 +10,7 @@ use tomcom::analysis::probe_figures::ProbeFigures;
 use tomcom::analysis::probe_record::{FrozenAspect, FrozenBelief, ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial};
 use tomcom::base::rng::{Stream, stream};
 use tomcom::measures::belief_basis::BeliefBasis;
-use tomcom::session::probe_event::ProbeOrigin;
+use tomcom::session::probes::ProbeOrigin;
 use tomcom::session::settings::Condition;
 use tomcom::study::column::TableRow;
 use tomcom::study::facts::Facts;

@@ -5,12 +5,11 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::likelihood::LogLikelihood;
-use super::looks::Looks;
 use super::probe_figures::ProbeFigures;
 use super::probe_lines;
+use super::seen_contents::SeenContents;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
-use crate::gaze::MIN_CONFIDENCE;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Change, Kitchen, LocationId, Press};
@@ -109,9 +108,7 @@ impl PressViews {
 /// What the baseline knows of a session before its next event.
 #[derive(Default)]
 struct Before {
-    /// For each location, whether somebody other than the human changed it since the human last looked at it or changed it.
-    unseen_change: [bool; MAX_LOCATIONS],
-    looks: Looks,
+    seen: SeenContents,
     /// For each location, the time of the last change, if it was made by somebody other than the human.
     others_changed: [Option<SessionTime>; MAX_LOCATIONS],
 }
@@ -119,17 +116,12 @@ struct Before {
 impl Before {
     /// Notes the changes and the gaze of an event that has just been applied.
     fn notice(&mut self, session: &Session, event: &Event, change: &Change) {
+        self.seen.note(session, event, change);
         let is_own = change.human_press().is_some();
-        let is_look = matches!(event, Event::Gaze(sample) if sample.confidence >= MIN_CONFIDENCE);
         for index in 0..session.kitchen.locations.len() {
             let location = LocationId(index as u8);
             if change.states().is_some_and(|(before, after)| before.code(location) != after.code(location)) {
-                self.unseen_change[index] = !is_own;
-                self.looks.changed(location);
                 self.others_changed[index] = (!is_own).then_some(session.time);
-            }
-            if is_look {
-                self.unseen_change[index] &= !self.looks.sampled(session, location);
             }
         }
     }
@@ -149,7 +141,9 @@ impl Before {
             button: press.button,
             held,
             estimate: None,
-            unseen_change: self.unseen_change[..kitchen.locations.len()].to_vec(),
+            unseen_change: (0..kitchen.locations.len())
+                .map(|index| self.seen.is_changed_unseen(LocationId(index as u8)))
+                .collect(),
             since_change_s: self.others_changed[..kitchen.locations.len()].iter().map(since_s).collect(),
             errs_about: Vec::new(),
         };

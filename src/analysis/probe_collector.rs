@@ -38,7 +38,7 @@ impl ProbeCollector {
     /// Takes note of an event that the follower has just applied.
     pub fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower) {
         let session = &follower.session;
-        self.seen.note(session, stamped, change);
+        self.seen.note(session, &stamped.event, change);
         match &stamped.event {
             Event::ParticipantBelieves(witness) => self.belief = Some((stamped.time, witness.clone())),
             Event::TrialPaused => self.seen.interrupted(),

@@ -3,10 +3,10 @@
 
 use super::looks::Looks;
 use crate::base::time::SessionTime;
-use crate::gaze::MIN_CONFIDENCE;
+use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Change, LocationId, State};
-use crate::session::{Event, Session, Stamped};
+use crate::session::{Event, Session};
 
 /// One location's history.
 #[derive(Clone, Debug, Default)]
@@ -32,7 +32,7 @@ pub struct SeenContents {
 
 impl SeenContents {
     /// Takes note of an event that has just been applied.
-    pub fn note(&mut self, session: &Session, stamped: &Stamped, change: &Change) {
+    pub fn note(&mut self, session: &Session, event: &Event, change: &Change) {
         if let Change::TrialStarted { after, .. } = change {
             *self = SeenContents::default();
             for (index, location) in self.locations.iter_mut().enumerate() {
@@ -41,7 +41,8 @@ impl SeenContents {
             return;
         }
         let is_own = change.human_press().is_some();
-        let is_look = matches!(&stamped.event, Event::Gaze(sample) if sample.confidence >= MIN_CONFIDENCE);
+        let is_seen = |sample: &GazeSample| sample.confidence >= MIN_CONFIDENCE && !session.is_frozen();
+        let is_look = matches!(event, Event::Gaze(sample) if is_seen(sample));
         for index in 0..session.kitchen.locations.len() {
             let place = LocationId(index as u8);
             if let Some((before, after)) = change.states().filter(|(one, other)| one.code(place) != other.code(place)) {

@@ -190,6 +190,9 @@ pub(super) struct FitArgs {
     /// recordings.
     #[arg(long, value_name = "FILE")]
     pub(super) start: Option<PathBuf>,
+    /// Use answers to probes beside presses, and tell by how much they narrow the intervals; takes a second search without them.
+    #[arg(long)]
+    pub(super) probes: bool,
     /// Largest number of likelihood evaluations.
     #[arg(long, default_value_t = 600, value_parser = clap::value_parser!(u64).range(10..=100_000))]
     pub(super) tries: u64,

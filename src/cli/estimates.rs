@@ -51,9 +51,10 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
         // Before the search, so that it is not in vain.
         files::check_fitted(path).map_err(|error| unwritable(path, error))?;
     }
-    let trials = fit::FitTrials::read(&args.recordings)?;
+    let trials = fit::FitTrials::read(&args.recordings, args.probes)?;
     let plan = fitting::FitPlan { parameters, start, most_tries: args.tries as usize };
-    let bar = progress(plan.most_tries as u64, "tries at most");
+    let searches = if args.probes { 2 } else { 1 };
+    let bar = progress(searches * plan.most_tries as u64, "tries at most");
     let found = fit::fit(&trials, &plan, || bar.inc(1));
     bar.finish_and_clear();
     if let Some(path) = &args.out {

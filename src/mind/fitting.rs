@@ -1,5 +1,5 @@
 //! Fitting the human model: the parameters that can be fitted, the scale on which each is fitted, and the likelihood of a
-//! trial's presses.
+//! trial's presses and answers to probes.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use super::filter::BeliefFilter;
 use super::model::HumanModel;
 use super::observation::{Observation, Observed};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Kitchen, Press};
+use crate::kitchen::{Agent, AspectId, Kitchen, Press};
 use std::sync::Arc;
 
 /// Offset of 1 / tau, in presses, at which the scale of tau saturates.
@@ -145,28 +145,83 @@ impl Parameter {
     }
 }
 
-/// Number of the human's presses in one trial, and their log likelihood.
+/// Share of answers to probes that name any of the values, by mistake.
+pub const ANSWERS_AT_RANDOM: f64 = 0.02;
+
+/// An answer to a probe that names a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ProbedValue {
+    /// Number of observations up to the freeze, that of the freeze included.
+    pub after: usize,
+    /// The aspect that was asked about.
+    pub aspect: AspectId,
+    /// Index of the answered value.
+    pub value: usize,
+}
+
+/// Observations of a trial, and its answers to probes in their order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FitObservations {
+    /// Seed of the filter.
+    pub seed: u64,
+    /// What the filter observes.
+    pub observations: Vec<Observation>,
+    /// The answers; none, if they are not to be used.
+    pub answers: Vec<ProbedValue>,
+}
+
+/// Number of the human's presses and answers in one trial, and their log likelihoods.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Likelihood {
     /// Number of presses.
     pub presses: u64,
     /// Sum over presses of ln p under the estimate before each press, in nats.
     pub log_p: f64,
+    /// Number of answers.
+    pub answers: u64,
+    /// Sum over answers of ln p under the estimate at the freeze, with [`ANSWERS_AT_RANDOM`], in nats.
+    pub log_p_answers: f64,
 }
 
-/// Log likelihood of a trial's presses under a human model. The filter's random stream depends on `seed` only, so that two
-/// models are compared on common random numbers.
+impl Likelihood {
+    /// Log likelihood of presses and answers.
+    pub fn total(&self) -> f64 {
+        self.log_p + self.log_p_answers
+    }
+
+    /// Sum over two trials.
+    pub fn plus(self, other: Likelihood) -> Likelihood {
+        Likelihood {
+            presses: self.presses + other.presses,
+            log_p: self.log_p + other.log_p,
+            answers: self.answers + other.answers,
+            log_p_answers: self.log_p_answers + other.log_p_answers,
+        }
+    }
+}
+
+/// Log likelihood of a trial's presses and answers under a human model. The filter's random stream depends on the seed only, so that
+/// two models are compared on common random numbers.
 pub fn likelihood(
     kitchen: &Arc<Kitchen>,
     model: &HumanModel,
-    seed: u64,
-    observations: &[Observation],
+    trial: &FitObservations,
     cost: &mut CostToGo,
 ) -> Likelihood {
-    let mut filter = BeliefFilter::new(kitchen.clone(), model.clone(), seed);
+    let mut filter = BeliefFilter::new(kitchen.clone(), model.clone(), trial.seed);
     let mut found = Likelihood::default();
-    for observation in observations {
+    let mut answers = trial.answers.iter().peekable();
+    for (index, observation) in trial.observations.iter().enumerate() {
         filter.observe(observation, cost);
+        if answers.peek().is_some_and(|answer| answer.after == index + 1) {
+            let belief = filter.at(observation.time, cost);
+            while let Some(answer) = answers.next_if(|answer| answer.after == index + 1) {
+                let means = belief.aspect(answer.aspect).mean();
+                let p = (1.0 - ANSWERS_AT_RANDOM) * means[answer.value] + ANSWERS_AT_RANDOM / means.len() as f64;
+                found.answers += 1;
+                found.log_p_answers += p.ln();
+            }
+        }
         if let (Observed::Pressed(Press { agent: Agent::Human, .. }), Some(evidence)) =
             (observation.what, filter.evidence())
         {

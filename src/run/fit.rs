@@ -1,18 +1,22 @@
 //! `tomcom fit RECORDING...`: reads recordings, and computes their likelihood on all processors for
 //! [`crate::analysis::fitting`].
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::parallel::WorkerPool;
 use super::replay::{Replay, SameKitchen, each_once};
+use crate::analysis::fitting::fitted_answers::IntervalShrinkage;
 use crate::analysis::fitting::{self, FitPlan, FitSummary, FittedRecordings};
-use crate::edge::file_error::FileResult;
+use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::mind::fitting::{Likelihood, likelihood};
+use crate::mind::fitting::{FitObservations, Likelihood, ProbedValue, likelihood};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::Observation;
+use crate::session::Event;
+use crate::session::probe_sampling;
+use crate::session::probes::{ProbeEvent, ProbeQuestion};
 
 /// The trials of a fit, all of one kitchen.
 #[derive(Clone, Debug)]
@@ -23,45 +27,97 @@ pub struct FitTrials {
     pub model: HumanModel,
     /// Whether another recording has a different human model.
     pub differ: bool,
-    /// Seed of the filter and observations of each trial.
-    pub observations: Vec<(u64, Vec<Observation>)>,
+    /// Observations of each trial.
+    pub observations: Vec<FitObservations>,
 }
 
 impl FitTrials {
-    /// Reads recordings.
+    /// Reads recordings; their answers to probes only with `probes`.
     ///
     /// # Errors
-    /// A recording that cannot be read or applied, or one of another kitchen.
-    pub fn read(recordings: &[PathBuf]) -> FileResult<FitTrials> {
+    /// A recording that cannot be read or applied, or one of another kitchen; no answer where answers are to be used.
+    pub fn read(recordings: &[PathBuf], probes: bool) -> FileResult<FitTrials> {
         each_once(recordings)?;
         let (mut one_kitchen, mut observations, mut models) = (SameKitchen::default(), Vec::new(), Vec::new());
         for recording in recordings {
             let mut replay = Replay::open(recording)?;
             one_kitchen.admit(recording, &replay.session().kitchen)?;
             models.push(replay.session().spec.human.clone());
-            observations.push((replay.session().seed(), replay.observations()?));
+            let own = read_trial(&mut replay)?;
+            observations.push(if probes { own } else { FitObservations { answers: Vec::new(), ..own } });
+        }
+        if probes && observations.iter().all(|one| one.answers.is_empty()) {
+            let first = recordings.first().map_or(Path::new("."), PathBuf::as_path);
+            let found = "no answer to a probe in any of the recordings".to_string();
+            return Err(FileError::from_finding(first, found, "recordings with probes, or no --probes".to_string()));
         }
         let kitchen = one_kitchen.kitchen()?;
         let differ = models.windows(2).any(|pair| pair[0] != pair[1]);
         Ok(FitTrials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations })
     }
+
+    /// The same trials without their answers.
+    fn without_answers(&self) -> FitTrials {
+        let mut trials = self.clone();
+        trials.observations.iter_mut().for_each(|one| one.answers.clear());
+        trials
+    }
 }
 
-/// Fits the parameters of a plan to trials. `tried` is called after each evaluation.
+/// Observations and answers of a recording. "I don't know" names no value and is left out, and so are answers about what comes next.
+fn read_trial(replay: &mut Replay) -> FileResult<FitObservations> {
+    let mut trial = FitObservations { seed: replay.session().seed(), ..FitObservations::default() };
+    let mut questions: Vec<ProbeQuestion> = Vec::new();
+    let mut frozen = 0;
+    while let Some(event) = replay.step()? {
+        if let Some(what) = replay.follower.observed(&event.stamped, &event.change) {
+            trial.observations.push(Observation { time: event.stamped.time, what });
+        }
+        match event.stamped.event {
+            Event::Probe(ProbeEvent::Begun { questions: drawn, .. }) => {
+                (questions, frozen) = (drawn, trial.observations.len());
+            }
+            Event::Probe(ProbeEvent::Answered { question, answer: Some(answer), .. }) => {
+                let asked = (question as usize).checked_sub(1).and_then(|index| questions.get(index));
+                let kitchen = &replay.session().kitchen;
+                let value = asked.and_then(|asked| {
+                    let aspect = probe_sampling::aspect(kitchen, &asked.about)?;
+                    let labels = &kitchen.aspects[aspect.index()].labels;
+                    let value = labels.iter().position(|label| *label == answer)?;
+                    Some(ProbedValue { after: frozen, aspect, value })
+                });
+                trial.answers.extend(value);
+            }
+            _ => {}
+        }
+    }
+    Ok(trial)
+}
+
+/// Fits the parameters of a plan to trials. `tried` is called after each evaluation. Where there are answers to probes, the fit is repeated
+/// without them, to tell what they add.
 pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
+    let mut found = fit_once(trials, plan, &tried);
+    if let Some(answers) = &mut found.answers {
+        let alone = fit_once(&trials.without_answers(), plan, &tried);
+        let both = plan.parameters.iter().zip(alone.parameters.iter().zip(&found.parameters));
+        let shrinkage = both.map(|(parameter, (alone, with))| {
+            IntervalShrinkage::between(*parameter, alone.value, alone.interval, with.interval)
+        });
+        answers.shrinkage = shrinkage.collect();
+    }
+    found
+}
+
+fn fit_once(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
     let kitchen = &trials.kitchen;
     // The threads' caches of costs to go are kept between evaluations.
     let pool = WorkerPool::new(|| CostToGo::new(kitchen.clone()));
     let of_all = |model: &HumanModel| {
-        let of_trial = |cost: &mut CostToGo, (seed, observations): &(u64, Vec<Observation>)| {
-            likelihood(kitchen, model, *seed, observations, cost)
-        };
+        let of_trial = |cost: &mut CostToGo, trial: &FitObservations| likelihood(kitchen, model, trial, cost);
         // Summed in the order of the trials, so the sum does not depend on the number of threads.
         let found = pool.each(&trials.observations, of_trial, || {});
-        found.into_iter().fold(Likelihood::default(), |sum, one| Likelihood {
-            presses: sum.presses + one.presses,
-            log_p: sum.log_p + one.log_p,
-        })
+        found.into_iter().fold(Likelihood::default(), Likelihood::plus)
     };
     let number = trials.observations.len() as u64;
     let recordings = FittedRecordings { number, model: &trials.model, differ: trials.differ };

@@ -10,7 +10,6 @@ use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogReader, at_line};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Change, Kitchen};
-use crate::mind::observation::Observation;
 use crate::session::{Event, Session, Stamped};
 
 /// A recording with the session at the present position of the replay.
@@ -72,20 +71,6 @@ impl Replay {
     pub fn run(&mut self) -> FileResult<()> {
         while self.step()?.is_some() {}
         Ok(())
-    }
-
-    /// Applies all remaining events and returns their observations for the belief filter.
-    ///
-    /// # Errors
-    /// Errors of [`Replay::step`].
-    pub fn observations(&mut self) -> FileResult<Vec<Observation>> {
-        let mut observations = Vec::new();
-        loop {
-            let Some(event) = self.step()? else { return Ok(observations) };
-            if let Some(what) = self.follower.observed(&event.stamped, &event.change) {
-                observations.push(Observation { time: event.stamped.time, what });
-            }
-        }
     }
 
     /// Replays up to the next request for advice after a press; `None` at the present end of the log.

@@ -1,16 +1,19 @@
 //! Maximum likelihood fits of the human model to recorded presses.
 //!
-//! The log likelihood is the sum over all presses of ln p(press | estimate before the press). Parameters are transformed to an
+//! The log likelihood is the sum over all presses of ln p(press | estimate before the press), and, if probes are used, over all
+//! answers of ln p(answer | estimate at the freeze). Parameters are transformed to an
 //! unbounded scale and searched within bounds. The filter's random numbers make the log likelihood noisy by some nats, so the
 //! search uses a sequence of quadratic surfaces ([`ascent`]). Standard errors follow from the curvature of the last surface (the
 //! observed information) and from the noise. A parameter whose maximum lies at a bound is not identified; its interval is one-sided.
 
 pub mod ascent;
 pub mod downhill_simplex;
+pub mod fitted_answers;
 pub mod response_surface;
 
 use serde::Serialize;
 
+pub use self::fitted_answers::FittedAnswers;
 use self::ascent::{BoundReached, FittedVariable, Maximum, ascend};
 use crate::base::words::count;
 use crate::mind::fitting::{Likelihood, Parameter};
@@ -68,6 +71,9 @@ pub struct FitSummary {
     /// The human model with the fitted values.
     #[serde(skip)]
     pub model: HumanModel,
+    /// Answers to probes, if they were used.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub answers: Option<FittedAnswers>,
 }
 
 /// Result for one fitted parameter.
@@ -148,7 +154,7 @@ pub fn fit(
         let model = with(at);
         // Invalid models get an infinite loss.
         let is_possible = ranges::check_human_model(&model).is_ok() && model.fault().is_none();
-        let loss = if is_possible { -likelihood(&model).log_p } else { f64::INFINITY };
+        let loss = if is_possible { -likelihood(&model).total() } else { f64::INFINITY };
         tried();
         loss
     };
@@ -158,11 +164,11 @@ pub fn fit(
     let before = likelihood(begin);
     let Maximum { mut variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
     let mut model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
-    let mut log_p = likelihood(&model).log_p;
+    let mut after = likelihood(&model);
     // A search that did not converge may end at a point worse than its start.
-    if !converged && log_p < before.log_p {
+    if !converged && after.total() < before.total() {
         variables.iter_mut().zip(&start).for_each(|(variable, &start)| variable.at = start);
-        (model, log_p) = (begin.clone(), before.log_p);
+        (model, after) = (begin.clone(), before);
     }
     let presses = before.presses.max(1) as f64;
     let fitted = plan.parameters.iter().zip(&variables);
@@ -170,7 +176,7 @@ pub fn fit(
         recordings: trials.number,
         human_actions: before.presses,
         log_likelihood_before: before.log_p / presses,
-        log_likelihood: log_p / presses,
+        log_likelihood: after.log_p / presses,
         tries: evaluations as u64,
         most_tries: plan.most_tries as u64,
         begins_with_recordings: plan.start.is_none(),
@@ -178,6 +184,7 @@ pub fn fit(
         converged,
         parameters: fitted.map(|(one, found)| FittedParameter::from_variable(*one, one.get(begin), found)).collect(),
         model,
+        answers: (before.answers > 0).then(|| FittedAnswers::from_likelihoods(before, after)),
     }
 }
 
@@ -250,6 +257,7 @@ pub fn describe(fit: &FitSummary) -> String {
         let name = format!("{} ({})", one.name, one.unit);
         text.push_str(&format!("{name:<24}{:>10.4}{:>12.4}{error:>10}{interval:>22}\n", one.before, one.value));
     }
+    text += &fit.answers.as_ref().map_or(String::new(), fitted_answers::describe);
     text + &untold(fit)
 }
 

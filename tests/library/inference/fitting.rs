@@ -5,7 +5,7 @@ use std::sync::Arc;
 use tomcom::analysis::fitting::{FitPlan, FitSummary, describe};
 use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::mind::fitting::Parameter;
+use tomcom::mind::fitting::{FitObservations, Parameter};
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::Observation;
 use tomcom::run::fit::{FitTrials, fit};
@@ -37,7 +37,7 @@ fn trials(kitchen: &Arc<Kitchen>, model: &HumanModel, experiment: &Experiment) -
         let mut human = Human::new(kitchen, model, seed, index);
         let mut of_trial: Vec<Observation> = Vec::new();
         live(&mut world, &mut human, presses, |observation, _, _| of_trial.push(*observation));
-        observations.push((index, of_trial));
+        observations.push(FitObservations { seed: index, observations: of_trial, answers: Vec::new() });
         cost = world.cost;
     }
     FitTrials { kitchen: kitchen.clone(), model: model.clone(), differ: false, observations }

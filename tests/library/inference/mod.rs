@@ -5,6 +5,7 @@ mod calibration;
 mod drop_outs;
 mod exact;
 mod fitting;
+mod fitting_answers;
 mod grid;
 mod laws;
 mod observed;

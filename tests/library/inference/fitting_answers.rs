@@ -1,0 +1,110 @@
+//! Answers to probes in a fit: their likelihood, and what they tell that presses do not.
+
+use rand::RngExt;
+use tomcom::analysis::fitting::{FitPlan, describe};
+use tomcom::base::rng::stream;
+use tomcom::base::time::SessionTime;
+use tomcom::kitchen::cost_to_go::CostToGo;
+use tomcom::kitchen::{Agent, AspectId, AspectKind};
+use tomcom::mind::filter::BeliefFilter;
+use tomcom::mind::fitting::{ANSWERS_AT_RANDOM, FitObservations, Likelihood, Parameter, ProbedValue, likelihood};
+use tomcom::mind::model::HumanModel;
+use tomcom::mind::observation::{Observation, Observed};
+use tomcom::run::fit::{FitTrials, fit};
+
+use super::world::{Human, World, kitchen, live};
+
+fn at(seconds: f64) -> SessionTime {
+    SessionTime::from_secs_f64(seconds)
+}
+
+#[test]
+fn an_answer_is_as_likely_as_the_estimate_at_the_freeze_says() {
+    let (kitchen, model) = (kitchen("layouts/sushi.toml"), HumanModel::default());
+    let mut cost = CostToGo::new(kitchen.clone());
+    let state = kitchen.empty_state();
+    let observations: Vec<Observation> = [
+        (0.0, Observed::Started { state }),
+        (40.0, Observed::Frozen),
+        (60.0, Observed::Thawed { by: at(20.0), asked: 0, teaches: 0.0 }),
+    ]
+    .map(|(seconds, what)| Observation { time: at(seconds), what })
+    .to_vec();
+    let mut filter = BeliefFilter::new(kitchen.clone(), model.clone(), 7);
+    filter.observe(&observations[0], &mut cost);
+    let frozen = filter.at(at(40.0), &mut cost);
+    let aspect = AspectId(kitchen.aspects.iter().position(|one| matches!(one.kind, AspectKind::Recipe(_))).unwrap() as u8);
+    let answer = |value: usize| ProbedValue { after: 2, aspect, value };
+    let answers = vec![answer(0), answer(1)];
+    let trial = FitObservations { seed: 7, observations, answers };
+    let found = likelihood(&kitchen, &model, &trial, &mut cost);
+    let means = frozen.aspect(aspect).mean();
+    let p = |value: usize| (1.0 - ANSWERS_AT_RANDOM) * means[value] + ANSWERS_AT_RANDOM / means.len() as f64;
+    let wanted = p(0).ln() + p(1).ln();
+    assert_eq!((found.presses, found.answers), (0, 2));
+    assert!((found.log_p_answers - wanted).abs() < 1e-12, "{found:?} instead of {wanted}");
+    assert_eq!(found.total(), found.log_p_answers);
+    let none = FitObservations { answers: Vec::new(), ..trial };
+    assert_eq!(likelihood(&kitchen, &model, &none, &mut cost), Likelihood::default());
+}
+
+/// People who know half of the recipes at first, forget within a minute, and are asked about two recipes and a place every ten presses.
+fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
+    let kitchen = kitchen("layouts/sushi.toml");
+    let mut start = HumanModel::default();
+    (start.inference.beliefs, start.inference.states, start.inference.max_beliefs) = (256, 16, 256);
+    start.prior.recipe_truth = 0.5;
+    (start.decision.tau, start.decision.lapse) = (2.5, 0.08);
+    let mut truth = start.clone();
+    truth.transition.recipe_half_life_s = 60.0;
+    let recipes = kitchen.aspects.iter().filter(|one| matches!(one.kind, AspectKind::Recipe(_))).count();
+    let places = kitchen.locations.len();
+    let (mut cost, mut observations) = (CostToGo::new(kitchen.clone()), Vec::new());
+    for index in 0..people {
+        let mut world = World::new(kitchen.clone(), cost, 15.0, 31, index).with_signals(10.0);
+        let mut human = Human::new(&kitchen, &truth, 31, index);
+        let mut random = stream(31, "questions", index);
+        let mut trial = FitObservations { seed: index, ..FitObservations::default() };
+        let mut pressed = 0;
+        live(&mut world, &mut human, presses, |observation, human, _| {
+            if matches!(observation.what, Observed::Pressed(press) if press.agent == Agent::Human) {
+                pressed += 1;
+                if pressed % 10 == 0 {
+                    let pause = |what| Observation { time: observation.time, what };
+                    trial.observations.push(pause(Observed::Frozen));
+                    let after = trial.observations.len();
+                    for about in [random.random_range(0..places), places + random.random_range(0..recipes), places + random.random_range(0..recipes)] {
+                        let believed = &human.people.of[0].of[about];
+                        let value = (0..believed.len()).max_by(|&a, &b| believed[a].total_cmp(&believed[b])).unwrap();
+                        trial.answers.push(ProbedValue { after, aspect: AspectId(about as u8), value });
+                    }
+                    let going_on = Observed::Thawed { by: SessionTime::ZERO, asked: 0, teaches: 0.0 };
+                    trial.observations.push(pause(going_on));
+                }
+            }
+            trial.observations.push(*observation);
+        });
+        observations.push(trial);
+        cost = world.cost;
+    }
+    (FitTrials { kitchen, model: start, differ: false, observations }, truth)
+}
+
+#[test]
+fn answers_narrow_the_interval_of_what_presses_hardly_tell() {
+    let (trials, truth) = probed(10, 60);
+    let parameters = vec![Parameter::RecipeHalfLifeS];
+    let plan = FitPlan { parameters, start: None, most_tries: 60 };
+    let found = fit(&trials, &plan, || {});
+    println!("{}", describe(&found));
+    let answers = found.answers.as_ref().expect("answers were used");
+    assert_eq!(answers.answers, 10 * 6 * 3);
+    assert!(answers.log_likelihood > answers.log_likelihood_before, "{answers:?}");
+    let [half_life] = &found.parameters[..] else { panic!("{found:?}") };
+    let error = half_life.standard_error.unwrap_or_else(|| panic!("{half_life:?}: not identified"));
+    let off = (half_life.value / truth.transition.recipe_half_life_s).ln() * half_life.value / error;
+    assert!(off.abs() < 4.0, "{half_life:?}");
+    // Presses alone tell it less well, or not at all.
+    let [alone] = &answers.shrinkage[..] else { panic!("{answers:?}") };
+    assert!(alone.ratio.is_none_or(|ratio| ratio < 0.8), "{alone:?}");
+}

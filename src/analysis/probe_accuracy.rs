@@ -113,8 +113,9 @@ pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAcc
     all.dedup();
     all.into_iter()
         .map(|key| {
-            let is_in =
-                |trial: &ProbedTrial, question: &ProbedQuestion| question.is_counted() && groups(trial, question).contains(&key);
+            let is_in = |trial: &ProbedTrial, question: &ProbedQuestion| {
+                question.is_counted() && groups(trial, question).contains(&key)
+            };
             accuracy(participants, (key.0, &key.2), seed, is_in)
         })
         .collect()
@@ -145,7 +146,8 @@ pub fn accuracy(
         let [all, right] = sums.iter().fold([0.0, 0.0], |[all, right], one| [all + one[0], right + one[1]]);
         (all > 0.0).then(|| right / all)
     };
-    let questions = || participants.iter().flatten().flat_map(|trial| trial.questions.iter().filter(|one| is_in(trial, one)));
+    let questions =
+        || participants.iter().flatten().flat_map(|trial| trial.questions.iter().filter(|one| is_in(trial, one)));
     ProbeAccuracy {
         by,
         group: group.to_string(),

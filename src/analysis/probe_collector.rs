@@ -127,7 +127,8 @@ impl ProbeCollector {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
         let labels = &kitchen.aspects[aspect.index()].labels;
         // The estimate as it stood at the freeze, with what passed since the last event.
-        let estimate = follower.probed.as_ref().map_or(follower.filter.belief(), |probed| &probed.belief).aspect(aspect);
+        let estimate =
+            follower.probed.as_ref().map_or(follower.filter.belief(), |probed| &probed.belief).aspect(aspect);
         let truth = kitchen.true_value(session.state, aspect);
         let estimate_p_truth = estimate.mean()[truth];
         let [of_truth, of_others] = [estimate_p_truth, 1.0 - estimate_p_truth].map(|mean| mean * estimate.precision());
@@ -138,7 +139,8 @@ impl ProbeCollector {
             AspectKind::Recipe(_) => None,
         };
         // Recipes do not change: what is usual, and what was seen, is true.
-        let of_code = |code: u8| label(kitchen, aspect, kitchen.aspects[aspect.index()].index_of(code).unwrap_or(truth));
+        let of_code =
+            |code: u8| label(kitchen, aspect, kitchen.aspects[aspect.index()].index_of(code).unwrap_or(truth));
         let of_location = |code: Option<u8>| code.map_or_else(|| label(kitchen, aspect, truth), of_code);
         FrozenAspect {
             values: labels.len(),
@@ -146,8 +148,7 @@ impl ProbeCollector {
             estimate_p: labels.iter().cloned().zip(estimate.mean().iter().copied()).collect::<BTreeMap<_, _>>(),
             estimate_p_truth,
             estimate_p_false: regularized_incomplete_beta(FALSE_BELOW, of_truth, of_others),
-            believed: believed
-                .map(|own| FrozenBelief { believes: own.believes.clone(), p_truth: own.p_truth }),
+            believed: believed.map(|own| FrozenBelief { believes: own.believes.clone(), p_truth: own.p_truth }),
             changed_s: location.and_then(|location| self.seen.changed_s(session, location)),
             changed_unseen: location.map(|location| self.seen.is_changed_unseen(location)),
             usual: of_location(location.map(|location| self.seen.usual(session, location))),

@@ -86,9 +86,9 @@ impl ProbeDetection {
         };
         let of_groups = [area(false, &p_wrong), area(true, &p_wrong)];
         let known: Vec<f64> = of_groups.into_iter().flatten().collect();
-        let predictions = beliefs.iter().filter_map(|one| {
-            Some((one.question.frozen.as_ref()?.estimate_p_false, one.is_wrong, one.weight))
-        });
+        let predictions = beliefs
+            .iter()
+            .filter_map(|one| Some((one.question.frozen.as_ref()?.estimate_p_false, one.is_wrong, one.weight)));
         let calibration = Calibration::from_weighted(predictions, CALIBRATED, CALIBRATION_BINS);
         ProbeDetection {
             wrong: weighted_share(beliefs.iter().map(|one| (one.weight, one.is_wrong))),

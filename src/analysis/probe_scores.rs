@@ -95,12 +95,7 @@ fn named(participant: usize, question: &ProbedQuestion) -> Option<NamedAnswer<'_
 }
 
 /// How often a prediction of one value is right for the other participants, by Laplace's rule of succession.
-fn rate<'a>(
-    named: &[NamedAnswer<'a>],
-    without: usize,
-    is_recipe: bool,
-    of: fn(&NamedAnswer<'a>) -> &'a str,
-) -> f64 {
+fn rate<'a>(named: &[NamedAnswer<'a>], without: usize, is_recipe: bool, of: fn(&NamedAnswer<'a>) -> &'a str) -> f64 {
     let others = named.iter().filter(|one| one.participant != without && one.is_recipe == is_recipe);
     let (n, right) = others.fold((0u32, 0u32), |(n, right), one| (n + 1, right + u32::from(of(one) == one.answer)));
     f64::from(right + 1) / f64::from(n + 2)

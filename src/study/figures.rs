@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
 use super::arm_group::{ArmGroup, by_arm};
-use crate::measures::belief_basis::BeliefBasis;
 use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
 use super::facts::Facts;
 use super::known_beliefs::SharedBeliefs;
@@ -22,6 +21,7 @@ use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::analysis::probe_figures::ProbeFigures;
 use crate::analysis::probe_record::ProbedTrial;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::cause_codes::{Agreement, AgreementTable, Codes};
 use crate::measures::matching::{MatchCounts, Similarity, WINDOW};
 use crate::measures::wizard_performance::WizardMeasures;

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::measures::belief_basis::BeliefBasis;
 use super::belief_trace::BeliefTrace;
 use super::rater_episodes::rater_episodes;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::measures::JudgedPress;
 use crate::measures::attribution::{Cause, Target};
+use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::cause_codes::Codes;
 use crate::measures::sequences::Episode;
 

@@ -10,11 +10,11 @@
 
 use serde::Serialize;
 
-use crate::measures::belief_basis::BeliefBasis;
 use super::known_beliefs::KnownBeliefs;
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen};
 use crate::measures::JudgedPress;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::sequences::Episode;
 
 /// True errors and false beliefs of a trial.

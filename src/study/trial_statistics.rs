@@ -3,12 +3,12 @@
 use serde::Serialize;
 
 use super::acting_arm::ActingArm;
-use crate::measures::belief_basis::BeliefBasis;
 use super::known_beliefs::SharedBeliefs;
 use super::robot_tally::RobotSummary;
 use super::roc::SweptTrial;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::analysis::probe_record::ProbedTrial;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::cause_codes::Codes;
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::CommunicationEvent;

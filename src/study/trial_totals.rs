@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use crate::measures::belief_basis::BeliefBasis;
 use super::effect::LEVEL;
 use super::statistics::{Interval, share_interval};
 use super::trial_statistics::{BeliefErrors, Trial, mean, mean_length};
+use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::cause_kinds::CauseKindCounts;
 
 /// Sums over trials.

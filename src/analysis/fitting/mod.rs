@@ -13,8 +13,8 @@ pub mod response_surface;
 
 use serde::Serialize;
 
-pub use self::fitted_answers::FittedAnswers;
 use self::ascent::{BoundReached, FittedVariable, Maximum, ascend};
+pub use self::fitted_answers::FittedAnswers;
 use crate::base::words::count;
 use crate::mind::fitting::{Likelihood, Parameter};
 use crate::mind::model::HumanModel;

@@ -6,10 +6,10 @@ use crate::edge::log::{LogReader, consensus_file, rater_codes};
 use crate::kitchen::Kitchen;
 use crate::measures::JudgedPress;
 use crate::measures::attribution::{Cause, Target};
+use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::cause_codes::{CauseKind, Codable, Code, Codes};
 use crate::measures::rater_choice::{RaterChoice, RaterPair};
 use crate::session::settings::ParticipantKind;
-use crate::measures::belief_basis::BeliefBasis;
 
 /// What raters say about the errors of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]

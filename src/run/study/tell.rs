@@ -2,9 +2,9 @@
 
 use crate::analysis::probe_lines;
 use crate::base::words::count;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::matching::{MatchShares, Similarity};
 use crate::session::event::EndReason;
-use crate::measures::belief_basis::BeliefBasis;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
 use crate::study::live_arms::LiveArm;

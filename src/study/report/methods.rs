@@ -4,9 +4,9 @@ use maud::{Markup, html};
 
 use super::elements::{arm, section};
 use crate::base::words;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::session::event::EndReason;
 use crate::study::arm_group::ArmGroup;
-use crate::measures::belief_basis::BeliefBasis;
 use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
 

@@ -6,11 +6,11 @@ use super::elements::{Captions, UNKNOWN, cells, condition, count, nothing, numbe
 use crate::analysis::offer_summary::{OfferDurations, OfferSummary};
 use crate::base::words;
 use crate::communication::offer::OfferEnd;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::matching::MatchShares;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::plan::ItemKind;
 use crate::session::settings::Condition;
-use crate::measures::belief_basis::BeliefBasis;
 use crate::study::figures::StudySummary;
 
 /// Table with this study's results beside the paper's.

@@ -4,9 +4,9 @@ use maud::{Markup, Render, html};
 
 use super::elements::{Captions, PageColumn, UNKNOWN, cells, condition, count, number, p_sentence, percent, section};
 use crate::base::words;
+use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::cause_codes::Agreement;
 use crate::session::event::EndReason;
-use crate::measures::belief_basis::BeliefBasis;
 use crate::study::column::Table;
 use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;

@@ -74,11 +74,15 @@ fn question<'a>() -> Vec<ProbeColumn<'a>> {
         ProbeRow::column("participant", "", "as in participants", |row| (&row.trial.participant).into()),
         ProbeRow::column("condition", "", "as in trials", |row| row.trial.condition.name().into()),
         ProbeRow::column("probe", "", "number of the probe in the trial, from 1", |row| row.question.probe.into()),
-        ProbeRow::column("question", "", "number of the question in the probe, from 1", |row| row.question.question.into()),
+        ProbeRow::column("question", "", "number of the question in the probe, from 1", |row| {
+            row.question.question.into()
+        }),
         ProbeRow::column("time_s", "s", "time of the freeze on the trial's clock", |row| {
             rounded(row.question.time_s).into()
         }),
-        ProbeRow::column("origin", "", "who asked for the probe: schedule or wizard", |row| row.question.origin.name().into()),
+        ProbeRow::column("origin", "", "who asked for the probe: schedule or wizard", |row| {
+            row.question.origin.name().into()
+        }),
         ProbeRow::column("uses_estimate", "", "whether the estimate had a part in the choice of questions", |row| {
             row.question.uses_estimate.into()
         }),
@@ -103,7 +107,9 @@ fn answer<'a>() -> Vec<ProbeColumn<'a>> {
         ProbeRow::column("answer", "", answer, |row| row.question.answer().into()),
         ProbeRow::column("response", "", response, |row| row.response().into()),
         ProbeRow::column("wrong", "", wrong, |row| row.question.is_wrong().into()),
-        ProbeRow::column("confidence", "", "1 (low) to 3 (high); empty: not asked", |row| row.question.confidence.into()),
+        ProbeRow::column("confidence", "", "1 (low) to 3 (high); empty: not asked", |row| {
+            row.question.confidence.into()
+        }),
         ProbeRow::column("took_s", "s", "time from the question's appearance to the answer", |row| {
             row.question.took_s.map(rounded).into()
         }),
@@ -114,7 +120,8 @@ fn answer<'a>() -> Vec<ProbeColumn<'a>> {
 fn frozen<'a>() -> Vec<ProbeColumn<'a>> {
     let p_false = "probability by the estimate that the belief in the truth is below one half: the prediction that calibration judges";
     let believed = "probability of the true value in a simulated participant's belief";
-    let unseen = "whether somebody else changed the location since the last look of 0.1 s or own press there; empty: a recipe";
+    let unseen =
+        "whether somebody else changed the location since the last look of 0.1 s or own press there; empty: a recipe";
     vec![
         ProbeRow::column("estimate", "", "most probable value in the estimated belief at the freeze", |row| {
             row.frozen(|one| &one.estimate)
@@ -146,9 +153,14 @@ fn frozen<'a>() -> Vec<ProbeColumn<'a>> {
         ProbeRow::column("usual", "", "value that lay there longest until then; of a recipe the true one", |row| {
             row.frozen(|one| &one.usual)
         }),
-        ProbeRow::column("last_seen", "", "value that the participant last saw there, or made; of a recipe the true one", |row| {
-            row.frozen(|one| &one.last_seen)
+        ProbeRow::column(
+            "last_seen",
+            "",
+            "value that the participant last saw there, or made; of a recipe the true one",
+            |row| row.frozen(|one| &one.last_seen),
+        ),
+        ProbeRow::column("values", "", "number of values that could be answered", |row| {
+            row.frozen(|one| one.values as u64)
         }),
-        ProbeRow::column("values", "", "number of values that could be answered", |row| row.frozen(|one| one.values as u64)),
     ]
 }

@@ -33,7 +33,8 @@ fn an_answer_is_as_likely_as_the_estimate_at_the_freeze_says() {
     let mut filter = BeliefFilter::new(kitchen.clone(), model.clone(), 7);
     filter.observe(&observations[0], &mut cost);
     let frozen = filter.at(at(40.0), &mut cost);
-    let aspect = AspectId(kitchen.aspects.iter().position(|one| matches!(one.kind, AspectKind::Recipe(_))).unwrap() as u8);
+    let aspect =
+        AspectId(kitchen.aspects.iter().position(|one| matches!(one.kind, AspectKind::Recipe(_))).unwrap() as u8);
     let answer = |value: usize| ProbedValue { after: 2, aspect, value };
     let answers = vec![answer(0), answer(1)];
     let trial = FitObservations { seed: 7, observations, answers };
@@ -73,7 +74,11 @@ fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
                     let pause = |what| Observation { time: observation.time, what };
                     trial.observations.push(pause(Observed::Frozen));
                     let after = trial.observations.len();
-                    for about in [random.random_range(0..places), places + random.random_range(0..recipes), places + random.random_range(0..recipes)] {
+                    for about in [
+                        random.random_range(0..places),
+                        places + random.random_range(0..recipes),
+                        places + random.random_range(0..recipes),
+                    ] {
                         let believed = &human.people.of[0].of[about];
                         let value = (0..believed.len()).max_by(|&a, &b| believed[a].total_cmp(&believed[b])).unwrap();
                         trial.answers.push(ProbedValue { after, aspect: AspectId(about as u8), value });

@@ -3,6 +3,7 @@
 mod effect;
 mod live_arms;
 mod prevention;
+mod probe_recordings;
 mod probes;
 mod rater_episodes;
 mod report;
@@ -11,11 +12,11 @@ mod tutorials;
 
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
+use tomcom::measures::belief_basis::BeliefBasis;
 use tomcom::measures::cause_kinds::CauseKindCounts;
 use tomcom::session::event::EndReason;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
 use tomcom::study::acting_arm::ActingArm;
-use tomcom::measures::belief_basis::BeliefBasis;
 use tomcom::study::robot_tally::RobotSummary;
 use tomcom::study::trial_statistics::{BeliefErrors, Trial, arrange};
 

@@ -7,7 +7,9 @@ use rand::seq::SliceRandom;
 use tomcom::analysis::probe_accuracy::AccuracyGrouping;
 use tomcom::analysis::probe_detection::{ProbeDetection, WeighedBelief};
 use tomcom::analysis::probe_figures::ProbeFigures;
-use tomcom::analysis::probe_record::{FrozenAspect, FrozenBelief, ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial};
+use tomcom::analysis::probe_record::{
+    FrozenAspect, FrozenBelief, ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial,
+};
 use tomcom::base::rng::{Stream, stream};
 use tomcom::measures::belief_basis::BeliefBasis;
 use tomcom::session::probes::ProbeOrigin;
@@ -66,7 +68,9 @@ fn frozen(is_recipe: bool) -> FrozenAspect {
     FrozenAspect {
         values: 3,
         estimate: "rice".to_string(),
-        estimate_p: BTreeMap::from([("rice", 0.7), ("empty", 0.2), ("salmon", 0.1)].map(|(name, p)| (name.to_string(), p))),
+        estimate_p: BTreeMap::from(
+            [("rice", 0.7), ("empty", 0.2), ("salmon", 0.1)].map(|(name, p)| (name.to_string(), p)),
+        ),
         estimate_p_truth: 0.7,
         estimate_p_false: 0.3,
         believed: None,
@@ -147,7 +151,8 @@ fn biases(studies: u64, blind_share: f64) -> [[f64; 3]; 2] {
             asked.extend(draw(&aspects, uses_estimate, &mut random));
             everything.extend(aspects.iter().map(|one| one.question(1.0, false)));
         }
-        let figures = |found: &ProbeDetection| [found.wrong, found.auc_locations, found.auc_recipes].map(Option::unwrap);
+        let figures =
+            |found: &ProbeDetection| [found.wrong, found.auc_locations, found.auc_recipes].map(Option::unwrap);
         let truth = figures(&detection(&everything, true));
         for (sum, weighted) in sums.iter_mut().zip([true, false]) {
             let found = figures(&detection(&asked, weighted));
@@ -276,8 +281,16 @@ fn accuracy_is_told_by_age_looks_and_condition_and_the_effect_within_participant
         let rows = found.accuracies.iter().filter(|one| one.by == by);
         rows.map(|one| (one.group.as_str(), one.n, (one.accuracy.unwrap() * 6.0).round() / 6.0)).collect()
     };
-    let ages = ["changed less than 5 s ago", "changed 15 to 60 s ago", "changed more than 60 s ago", "not changed in the trial"];
-    assert_eq!(of(AccuracyGrouping::Age), [(ages[0], 3, 0.0), (ages[1], 3, 4.0 / 6.0), (ages[2], 3, 1.0), (ages[3], 3, 1.0)]);
+    let ages = [
+        "changed less than 5 s ago",
+        "changed 15 to 60 s ago",
+        "changed more than 60 s ago",
+        "not changed in the trial",
+    ];
+    assert_eq!(
+        of(AccuracyGrouping::Age),
+        [(ages[0], 3, 0.0), (ages[1], 3, 4.0 / 6.0), (ages[2], 3, 1.0), (ages[3], 3, 1.0)]
+    );
     let seen = ["not changed by others since the last look", "changed by others since the last look"];
     assert_eq!(of(AccuracyGrouping::Seen), [(seen[0], 6, 1.0), (seen[1], 6, 2.0 / 6.0)]);
     assert_eq!(of(AccuracyGrouping::Condition), [("none", 6, 0.5), ("wizard", 6, 5.0 / 6.0)]);
@@ -306,7 +319,12 @@ fn probes_stand_in_tables_and_report() {
     let effect = figures.effects.iter().find(|effect| effect.measure == PROBES_WRONG).expect("it is compared");
     assert_eq!(effect.groups, [3, 3]);
     let page = report::page(&figures, &trials, &Facts::default(), &[]);
-    for part in ["What people knew", "Calibration of the estimate by answers to probes", "12 about what comes next", "what was last seen there"] {
+    for part in [
+        "What people knew",
+        "Calibration of the estimate by answers to probes",
+        "12 about what comes next",
+        "what was last seen there",
+    ] {
         assert!(page.contains(part), "{part} is missing");
     }
     let rows: Vec<ProbeRow> = trials.iter().flat_map(probes).collect();

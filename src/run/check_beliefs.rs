@@ -37,6 +37,9 @@ pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sy
     Ok(BeliefCheck::from_trials(&kitchen, &trials, thresholds, probes))
 }
 
+/// A recording's probes, with the participant.
+pub type ProbedParticipant = (String, ProbedTrial);
+
 /// Recorded trials of one kitchen.
 #[derive(Clone, Debug)]
 pub struct BeliefCheckTrials {
@@ -45,7 +48,7 @@ pub struct BeliefCheckTrials {
     /// Trials in the order of the recordings.
     pub trials: Vec<TrialView>,
     /// The probes of each trial, with the participant; `None` where there were none.
-    pub probes: Vec<Option<(String, ProbedTrial)>>,
+    pub probes: Vec<Option<ProbedParticipant>>,
 }
 
 /// Replays recordings on all processors and collects their presses. `done` is called after each recording.
@@ -65,8 +68,8 @@ pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Belie
     Ok(BeliefCheckTrials { kitchen: one_kitchen.kitchen()?, trials, probes })
 }
 
-/// The presses of one recording, and its probes with the participant.
-fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView, Option<(String, ProbedTrial)>)> {
+/// The presses of one recording, and its probes.
+fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView, Option<ProbedParticipant>)> {
     let mut replay = Replay::open(recording)?;
     let mut probes = ProbeCollector::default();
     let mut views = PressViews::default();

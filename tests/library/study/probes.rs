@@ -103,6 +103,11 @@ fn probed(condition: Condition, questions: Vec<ProbedQuestion>) -> ProbedTrial {
     ProbedTrial { condition, begun: 1, dropped: 0, skipped: 0, questions }
 }
 
+/// A trial with one question, rightly answered.
+pub(super) fn one_right_answer(condition: Condition) -> ProbedTrial {
+    probed(condition, vec![question(ProbedKind::Place)])
+}
+
 /// Questions of a probe: without the estimate all aspects are as likely; with it, half of the questions are about what it believes
 /// wrong. Drawn systematically in random order, so that the probabilities are exact.
 fn draw(aspects: &[Synthetic], uses_estimate: bool, random: &mut Stream) -> Vec<ProbedQuestion> {
@@ -144,7 +149,7 @@ fn biases(studies: u64, blind_share: f64) -> [[f64; 3]; 2] {
     for study in 0..studies {
         let mut random = stream(20, "synthetic studies of probes", study);
         let (mut asked, mut everything) = (Vec::new(), Vec::new());
-        for _ in 0..192 {
+        for _ in 0..96 {
             let aspects: Vec<Synthetic> =
                 (0..PLACES + RECIPES).map(|index| Synthetic::draw(index >= PLACES, &mut random)).collect();
             let uses_estimate = random.random::<f64>() >= blind_share;
@@ -166,6 +171,7 @@ fn biases(studies: u64, blind_share: f64) -> [[f64; 3]; 2] {
 fn weights_take_out_the_choice_of_questions_by_the_estimate() {
     for blind_share in [0.5, 0.0] {
         let [weighted, unweighted] = biases(1000, blind_share);
+        println!("{blind_share} blind: bias weighted {weighted:?}, unweighted {unweighted:?}");
         for (bias, what) in weighted.iter().zip(["share", "places", "recipes"]) {
             assert!(bias.abs() < 0.01, "{what} with {blind_share} blind: bias {bias}");
         }

@@ -13,6 +13,8 @@ use tomcom::study::tables::participants::participants;
 use tomcom::study::tables::trials::{HEADLINE, measures};
 use tomcom::study::trial_statistics::Trial;
 
+use super::probes::one_right_answer;
+
 /// The columns that other people's scripts may name. Columns are appended; none is renamed, moved or taken away.
 const PUBLISHED: [(Table, &str); 10] = [
     (
@@ -127,7 +129,7 @@ fn columns_have_names_of_their_own_that_need_no_quotes() {
 /// A statistic that is compared is declared once, and is then a column of trials and two of participants.
 #[test]
 fn statistics_stand_in_both_tables_with_the_same_values() {
-    let trials = pair();
+    let trials = pair().map(|trial| Trial { probes: Some(one_right_answer(trial.condition)), ..trial });
     let rows: Vec<_> = participants(&trials).collect();
     let [participant] = &rows[..] else { panic!("one participant") };
     assert_eq!(cell(participant, "assisted_second"), TableCell::Flag(true));

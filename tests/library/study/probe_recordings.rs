@@ -8,7 +8,7 @@ use tomcom::analysis::follower::Follower;
 use tomcom::analysis::probe_collector::ProbeCollector;
 use tomcom::analysis::probe_figures::ProbeFigures;
 use tomcom::analysis::probe_record::{ProbeResponse, ProbedQuestion, ProbedTrial};
-use tomcom::edge::files::kitchen as read_kitchen;
+use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectKind, Kitchen, LocationId};
 use tomcom::mind::BeliefWitness;

@@ -18,6 +18,7 @@ use super::notice::NoticeLevel;
 use super::panel::Panel;
 use super::picker::Picker;
 use super::playback::Playback;
+use super::probe_keys::ProbeEntry;
 use super::rater_session::RaterSession;
 use super::view::theme::Theme;
 use crate::base::time::SessionTime;
@@ -170,6 +171,8 @@ pub struct ConsoleModel {
     pub coding: Option<RaterSession>,
     /// Playback position, in a replay.
     pub playback: Option<Playback>,
+    /// The answer to the question of a probe that is being entered here.
+    pub probe_entry: ProbeEntry,
     /// Index of the chosen reason for waiving the criterion of the practice, until enter confirms it.
     pub waiver: Option<usize>,
     /// What the wizard has chosen to do with the result of a gaze check, until enter confirms it.
@@ -217,6 +220,7 @@ impl ConsoleModel {
             lesson: None,
             coding: None,
             playback: None,
+            probe_entry: ProbeEntry::default(),
             waiver: None,
             gaze_choice: None,
             answered: None,

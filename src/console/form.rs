@@ -7,12 +7,14 @@ use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
 use super::note::TextInput;
 use super::notice::NoticeLevel;
+use super::probe_keys;
 use super::sending::send;
 use crate::session::answer_value::AnswerValue;
+use crate::session::probes::OpenProbe;
 use crate::session::plan::{ItemForm, PhaseSpec, Questionnaire, Tutorial};
 use crate::session::protocol::{Protocol, ProtocolEvent};
 use crate::session::tutorial::{TutorialEvent, TutorialReader};
-use crate::session::{Event, Session};
+use crate::session::{Event, Phase, Session};
 
 /// Preset reasons for waiving the criterion of the practice.
 pub const WAIVERS: [&str; 4] =
@@ -21,6 +23,8 @@ pub const WAIVERS: [&str; 4] =
 /// Content of the form sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SheetContent<'a> {
+    /// A freeze probe: the trial stands still.
+    Probe(&'a OpenProbe),
     /// Steps to tick in order.
     Steps {
         /// The heading of the sheet.
@@ -40,6 +44,7 @@ impl SheetContent<'_> {
     /// Name in the log, as part of the wizard's visible screen.
     pub fn name(&self) -> &'static str {
         match self {
+            SheetContent::Probe(_) => "probe",
             SheetContent::Steps { .. } => "steps",
             SheetContent::Tutorial(_) => "tutorial",
             SheetContent::Questions(_) => "questionnaire",
@@ -50,6 +55,9 @@ impl SheetContent<'_> {
 
 /// The sheet of the running phase, if it has one.
 pub fn sheet(session: &Session) -> Option<SheetContent<'_>> {
+    if let Some(open) = session.probes.open.as_ref().filter(|_| session.phase == Phase::Paused) {
+        return Some(SheetContent::Probe(open));
+    }
     let (_, protocol) = session.step()?;
     match session.study_phase()? {
         PhaseSpec::Instruction { steps } => {
@@ -108,8 +116,13 @@ pub(super) fn stroke(session: &Session, code: KeyCode, advances: bool) -> Option
 
 /// Carries out a key of the sheet.
 pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKey) -> Option<ConsoleCommand> {
-    let (sheet, protocol) = (sheet(session)?, session.protocol.as_ref()?);
+    let sheet = sheet(session)?;
+    if let SheetContent::Probe(open) = sheet {
+        return probe_keys::write(model, session, open, stroke);
+    }
+    let protocol = session.protocol.as_ref()?;
     match (sheet, stroke) {
+        (SheetContent::Probe(_), _) => None,
         (SheetContent::Failed, SheetKey::Leave) => Some(ConsoleCommand::Next),
         (SheetContent::Tutorial(tutorial), stroke) => read(model, session, tutorial, stroke),
         (_, SheetKey::Leave) => leave(model, session),

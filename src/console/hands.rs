@@ -10,6 +10,7 @@ use super::sending::send;
 use crate::communication::Sender;
 use crate::history::wording;
 use crate::kitchen::Agent;
+use crate::session::probes::ProbeEvent;
 use crate::session::{Event, Phase, Session};
 use crossterm::event::KeyCode;
 
@@ -60,7 +61,19 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
             refuse(model, "there is no trial to exclude")
         }
         ManualAction::Exclude => ask(model, PickerQuestion::Exclude),
+        ManualAction::AskProbe => {
+            let words = "a probe is asked for: it begins as soon as it may";
+            send(model, session, Event::Probe(ProbeEvent::Requested), NoticeLevel::Done, words)
+        }
+        ManualAction::SkipProbe if skippable(session).is_none() => refuse(model, "no probe is open"),
+        ManualAction::SkipProbe => ask(model, PickerQuestion::SkipProbe),
     }
+}
+
+/// Number of the probe whose questions can be skipped.
+pub(super) fn skippable(session: &Session) -> Option<u32> {
+    let open = session.probes.open.as_ref()?;
+    (open.closed.is_none() && session.phase == Phase::Paused).then_some(open.number)
 }
 
 fn redo(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
@@ -143,6 +156,10 @@ pub(super) fn pick(
         }
         (PickerQuestion::Abort, PickerAnswer::Reason(reason)) => {
             send(model, session, Event::TrialAborted { reason }, NoticeLevel::Done, "aborted")
+        }
+        (PickerQuestion::SkipProbe, PickerAnswer::Reason(reason)) => {
+            let event = ProbeEvent::Skipped { probe: skippable(session)?, reason };
+            send(model, session, Event::Probe(event), NoticeLevel::Done, "the rest of the probe is skipped")
         }
         (_, PickerAnswer::Reason(reason)) => {
             let words = format!("excluded: {reason}");

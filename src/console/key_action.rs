@@ -85,6 +85,10 @@ pub enum ManualAction {
     NoteInWords,
     /// Exclude the trial from the analysis for a reason, or take that back.
     Exclude,
+    /// Ask for a freeze probe.
+    AskProbe,
+    /// Skip the rest of a freeze probe, for a reason.
+    SkipProbe,
 }
 
 /// A navigation key of the screen.

@@ -162,7 +162,7 @@ fn on_sheet(
             None
         }
         (Some(stroke), _) => form::write(model, session, stroke),
-        (None, Some(action)) if acts_on_sheet(&action) => act(model, session, action),
+        (None, Some(action)) if acts_on_sheet(session, &action) => act(model, session, action),
         (None, _) => {
             model.say(
                 NoticeLevel::Refused,

@@ -9,6 +9,7 @@ use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 use toml::Spanned;
 
 use super::chord::KeyChord;
+use super::key_action::ManualAction;
 use super::key_action::{KeyAction, KeyBinding, KeyError, KeyPlace, KeySection};
 
 /// A parsed key file: for each table, action names with their keys. Missing actions keep their keys.
@@ -100,14 +101,17 @@ impl KeyMap {
 }
 
 impl KeyMap {
-    /// Takes from the palette, unless the file is about it, the keys that the file gives to others: the files in recordings may be older
-    /// than the palette, and it has two keys.
+    /// Takes from the palette and from the keys of probes, unless the file is about them, the keys that the file gives to others: the
+    /// files in recordings may be older than these actions, and the palette finds every action.
     fn spare_keys(&self, lines: &mut [KeyBinding]) {
         let is_given = |line: &&KeyBinding| self.entry(line).is_some();
         let given: Vec<KeyChord> = lines.iter().filter(is_given).flat_map(|line| line.chords.clone()).collect();
-        let palette = lines.iter_mut().find(|line| line.action == KeyAction::Palette);
-        if let Some(palette) = palette.filter(|line| self.entry(line).is_none()) {
-            palette.chords.retain(|chord| !given.contains(chord));
+        let is_young = |action: &KeyAction| {
+            let probes = [ManualAction::AskProbe, ManualAction::SkipProbe].map(KeyAction::Hand);
+            *action == KeyAction::Palette || probes.contains(action)
+        };
+        for line in lines.iter_mut().filter(|line| is_young(&line.action) && self.entry(line).is_none()) {
+            line.chords.retain(|chord| !given.contains(chord));
         }
     }
 }

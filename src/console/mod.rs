@@ -35,6 +35,7 @@ pub mod picker;
 pub mod playback;
 mod possible;
 pub mod preflight;
+pub mod probe_keys;
 pub mod question;
 pub mod rater_session;
 pub mod recording_picker;

@@ -20,6 +20,8 @@ pub enum PickerQuestion {
     Abort,
     /// Why is it left out of the analysis?
     Exclude,
+    /// Why is the rest of the probe skipped?
+    SkipProbe,
 }
 
 /// What can be answered.
@@ -31,7 +33,7 @@ pub enum PickerAnswer {
     Content(ContentId),
     /// A button of the robot.
     Button(ButtonId),
-    /// Why the trial is aborted, or not to be counted.
+    /// Why the trial is aborted, or not to be counted, or the probe is skipped.
     Reason(String),
 }
 
@@ -80,6 +82,7 @@ impl Picker {
             PickerQuestion::Button => "The robot's next press".to_string(),
             PickerQuestion::Abort => "Abort the trial: why?".to_string(),
             PickerQuestion::Exclude => "Leave the trial out: why?".to_string(),
+            PickerQuestion::SkipProbe => "Skip the rest of the probe: why?".to_string(),
         }
     }
 
@@ -95,7 +98,7 @@ impl Picker {
             PickerQuestion::Place => places(session),
             PickerQuestion::Content(place) => contents(session, place),
             PickerQuestion::Button => buttons(session),
-            PickerQuestion::Abort | PickerQuestion::Exclude => reasons(session),
+            PickerQuestion::Abort | PickerQuestion::Exclude | PickerQuestion::SkipProbe => reasons(session),
         }
     }
 

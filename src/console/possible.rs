@@ -4,6 +4,7 @@ use super::beliefs::{beliefs, visibility};
 use super::compared::ComparisonKey;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
+use super::hands::skippable;
 use super::key_action::{KeyAction, ManualAction, PanelKey, RaterKey};
 use super::playback::{Playback, ReplayKey, SPEEDS};
 use super::preflight;
@@ -13,6 +14,7 @@ use crate::session::accuracy_check::CalibrationEvent;
 use crate::session::admit::admit;
 use crate::session::event::SignalEnd;
 use crate::session::offers;
+use crate::session::probes::ProbeEvent;
 use crate::session::settings::Visibility;
 use crate::session::{Event, Phase, Session};
 
@@ -23,7 +25,7 @@ pub(super) fn is_possible(session: &Session, model: &ConsoleModel, action: &KeyA
 
 /// The same once the open dialog is closed.
 pub(super) fn is_possible_behind(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
-    (!has_sheet(session, model) || acts_on_sheet(action)) && does(session, model, action)
+    (!has_sheet(session, model) || acts_on_sheet(session, action)) && does(session, model, action)
 }
 
 /// Whether a sheet lies in front of the console and takes the keys.
@@ -32,8 +34,13 @@ fn has_sheet(session: &Session, model: &ConsoleModel) -> bool {
 }
 
 /// Whether an action is possible while a sheet lies in front of the console: what helps, leaves, or mends.
-pub(super) fn acts_on_sheet(action: &KeyAction) -> bool {
-    matches!(
+pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
+    // In a probe the trial can also be ended.
+    let in_probe = matches!(
+        action,
+        KeyAction::EndTrial | KeyAction::Hand(ManualAction::SkipProbe | ManualAction::Abort | ManualAction::NoteInWords)
+    );
+    (in_probe && session.is_frozen()) || matches!(
         action,
         KeyAction::Help
             | KeyAction::Palette
@@ -54,7 +61,7 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
     let has_control = || model.keys.chord_for(action).is_some_and(|chord| chord.ctrl);
     let stops = *action == KeyAction::StopRobot;
     match &model.dialog {
-        None if has_sheet(session, model) => acts_on_sheet(action),
+        None if has_sheet(session, model) => acts_on_sheet(session, action),
         None => true,
         // Enter answers the question, esc leaves it.
         Some(Dialog::Send(_)) => !matches!(action, KeyAction::Accept | KeyAction::Look(PanelKey::All)),
@@ -125,6 +132,8 @@ fn intervenes(session: &Session, hand: ManualAction) -> bool {
         ManualAction::Preflight => phase == Phase::Ready,
         ManualAction::Calibrate => admits(Event::Calibration(CalibrationEvent::begin())),
         ManualAction::NoteInWords => phase == Phase::Paused,
+        ManualAction::AskProbe => admits(Event::Probe(ProbeEvent::Requested)),
+        ManualAction::SkipProbe => skippable(session).is_some(),
         ManualAction::Exclude => !matches!(phase, Phase::Ready | Phase::Closed),
     }
 }

@@ -7,11 +7,13 @@ use crossterm::event::KeyCode;
 
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog, RecordingStatus, ViewerStreamStatus};
-use super::display_status::DisplayHealth;
+use super::display_status::{DisplayHealth, is_wanted};
 use super::key_action::KeyAction;
 use super::key_action::ManualAction;
 use super::notice::NoticeLevel;
+use super::probe_keys::{ProbeAnswerer, answerer};
 use crate::session::admit::admit;
+use crate::session::probes::of_trial;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, space};
 use crate::session::{Event, Session};
 
@@ -22,6 +24,7 @@ pub const OVERRIDE: char = 'o';
 pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     let mut checks = participant(session, model.now, &key(model, &KeyAction::Hand(ManualAction::Calibrate)));
     checks.extend(model.display.as_ref().map(DisplayHealth::check));
+    checks.extend(probes(session, model));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
     checks.extend(model.viewers.as_ref().map(viewers));
     checks
@@ -54,6 +57,22 @@ fn robot(session: &Session, model: &ConsoleModel) -> PreflightCheck {
         }
         (false, false) => PreflightCheck::ok("robot", "ready"),
     }
+}
+
+/// The freeze probes of the trial, and where they are answered.
+fn probes(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
+    let probes = of_trial(&session.spec)?;
+    let minutes = session.spec.trial.seconds / 60.0;
+    let found = |where_: &str| format!("{} in {} min, {where_}", probes.per_trial, (10.0 * minutes).round() / 10.0);
+    Some(match answerer(session, model) {
+        ProbeAnswerer::Display => PreflightCheck::ok("probes", found("on the display")),
+        ProbeAnswerer::Simulated => PreflightCheck::ok("probes", found("answered by the simulated participant")),
+        ProbeAnswerer::Console if !is_wanted(session) => PreflightCheck::ok("probes", found("on the console")),
+        ProbeAnswerer::Console => {
+            let remedy = "open the participant's page; else read the questions out, and enter the answers here";
+            PreflightCheck::new("probes", PreflightVerdict::Warning, found("on the console: no page is connected"), remedy)
+        }
+    })
 }
 
 fn recording(model: &ConsoleModel) -> PreflightCheck {

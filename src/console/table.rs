@@ -104,6 +104,15 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         hand("check_gaze", 'v', ManualAction::Calibrate, TRIAL, "check the gaze by targets"),
         hand("correct", 'u', ManualAction::Correct, TRIAL, "correct what lies where"),
         hand("abort_trial", 'x', ManualAction::Abort, TRIAL, "abort it (asks why)"),
+        hand("ask_probe", 'a', ManualAction::AskProbe, TRIAL, "ask for a probe"),
+        line(
+            "skip_probe",
+            &plain(Delete),
+            KeyAction::Hand(ManualAction::SkipProbe),
+            TRIAL,
+            "skip the rest of a probe (asks why)",
+            None,
+        ),
         hand("redo_trial", 'n', ManualAction::Redo, TRIAL, "do an aborted one again"),
         hand("exclude_trial", 'l', ManualAction::Exclude, TRIAL, "exclude it, include it"),
         line(

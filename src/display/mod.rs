@@ -11,6 +11,7 @@ mod consent;
 mod display_place;
 mod displayed_item;
 pub mod page_language;
+mod probe_page;
 mod robot_hand;
 mod robot_pose;
 mod scene;
@@ -18,6 +19,7 @@ mod sight;
 mod tutorial_page;
 
 pub use consent::consent_sight;
+pub use probe_page::{ProbeWording, choice_made_of, probe_left, probe_wording};
 pub use robot_hand::RobotHand;
 pub use robot_pose::RobotPose;
 pub use scene::{DisplayScene, scene};

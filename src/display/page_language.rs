@@ -62,6 +62,16 @@ impl DisplayWords {
         }
     }
 
+    /// The words that stand for exactly this; none where the language has none.
+    pub(super) fn known(&self, name: &str) -> Option<String> {
+        self.words.get(name).cloned()
+    }
+
+    /// The sentence of this name with `what` in place of its "#".
+    pub(super) fn filled(&self, name: &str, what: &str) -> String {
+        self.of_name(name).replace('#', what)
+    }
+
     /// The page's own words, by what they stand for.
     pub fn of_page(&self) -> BTreeMap<String, String> {
         let own = self.words.iter().filter_map(|(key, word)| Some((key.strip_prefix(PAGE)?.to_string(), word.clone())));

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::display_place::{DisplayPlace, spot};
 use super::displayed_item::{DisplayedItem, question};
+use super::probe_page::{DisplayedProbe, probe};
 use super::tutorial_page::{DisplayedTutorial, RecipeCard, card, tutorial};
 use crate::communication::Signal;
 use crate::kitchen::no_effect::NoEffect;
@@ -19,7 +20,7 @@ pub struct DisplayUpdate {
     pub stage: DisplayStage,
     /// It is for practice.
     pub practice: bool,
-    /// What each location shows, in the order of [`super::DisplayScene::locations`].
+    /// What each location shows, in the order of [`super::DisplayScene::locations`]; nothing of it during a probe.
     pub contents: Vec<ShownContent>,
     /// Orders served in this trial.
     pub served: usize,
@@ -35,6 +36,8 @@ pub struct DisplayUpdate {
     pub question: Option<DisplayedItem>,
     /// The step of the tutorial, if there is one.
     pub tutorial: Option<DisplayedTutorial>,
+    /// The question of a probe, if one is open.
+    pub probe: Option<DisplayedProbe>,
     /// Where the eyes are asked to look while the gaze is checked, in fractions of the display.
     pub target: Option<[f64; 2]>,
     /// The gaze is being checked: nothing else is shown.
@@ -57,6 +60,8 @@ pub enum DisplayStage {
     Running,
     /// The trial is paused.
     Paused,
+    /// The trial stands still, and the participant is asked what they believe.
+    Probe,
     /// The trial is over.
     Over,
     /// An item of a questionnaire is asked.
@@ -129,12 +134,13 @@ pub fn sight(session: &Session) -> DisplayUpdate {
     let practised = session.tutorial_step();
     let state = practised.map_or(session.state, |(_, tutorial)| tutorial.kitchen);
     let contents = (0..kitchen.locations.len()).map(|index| shown(kitchen, state, LocationId(index as u8)));
-    let is_trial = matches!(session.phase, Phase::Running | Phase::Paused);
+    let probe = probe(session);
+    let is_trial = probe.is_none() && matches!(session.phase, Phase::Running | Phase::Paused);
     let intention = session.robot.intention.filter(|_| session.spec.display.intention && is_trial);
     DisplayUpdate {
-        stage: stage(session),
+        stage: if probe.is_some() { DisplayStage::Probe } else { stage(session) },
         practice: matches!(session.study_phase(), Some(PhaseSpec::Familiarisation)),
-        contents: contents.collect(),
+        contents: contents.filter(|_| probe.is_none()).collect(),
         served: session.served.len(),
         presses: Agent::BOTH.map(|agent| match practised.is_some() {
             true => practised_press(session).filter(|_| agent == Agent::Human),
@@ -144,11 +150,12 @@ pub fn sight(session: &Session) -> DisplayUpdate {
             .map(|(button, ..)| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action)),
         signal: match practised {
             Some((step, tutorial)) => explained(kitchen, tutorial.kitchen, step),
-            None => session.shown.as_ref().and_then(|shown| told(kitchen, session.state, &shown.signal)),
+            None => session.shown.as_ref().filter(|_| probe.is_none()).and_then(|shown| told(kitchen, session.state, &shown.signal)),
         },
         cue: session.cue,
         question: question(session),
         tutorial: tutorial(session),
+        probe,
         target: session.calibration.as_ref().and_then(RunningGazeCheck::target),
         checks: session.calibration.as_ref().is_some_and(|check| check.result.is_none()),
     }

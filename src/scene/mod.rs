@@ -1,5 +1,5 @@
 //! A session as Rerun shows it, as plain data: updates of entities with their times. Entities are the kitchen, the arm, beliefs,
-//! net benefits of signals, and a text log.
+//! net benefits of signals, probes, and a text log.
 //!
 //! A [`SessionScene`] follows a session event by event, live and from a recording. It does not depend on the viewer.
 
@@ -9,6 +9,7 @@ mod colours;
 pub mod entity_content;
 mod happenings;
 mod place_entities;
+mod probe_entities;
 
 use crate::base::time::SessionTime;
 use crate::kitchen::Change;
@@ -17,10 +18,11 @@ use crate::mind::dirichlet::DirichletBelief;
 use crate::session::{Event, Session, Stamped, apply};
 use arm::ArmScene;
 use belief_entities::BeliefScene;
+use probe_entities::ProbeScene;
 pub use entity_content::{EntityData, EntityUpdate};
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
-pub const VERSION: u32 = 5;
+pub const VERSION: u32 = 6;
 
 /// Updates of entities at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +52,7 @@ pub struct SessionScene {
     session: Session,
     arm: ArmScene,
     belief: BeliefScene,
+    probes: ProbeScene,
     /// Sequence number of the first event that it has not seen.
     next: u64,
     /// Number of timeline entries that it has shown.
@@ -63,6 +66,7 @@ impl SessionScene {
             session: session.clone(),
             arm: ArmScene::new(session),
             belief: BeliefScene::default(),
+            probes: ProbeScene::default(),
             next,
             told: session.timeline.len(),
         }
@@ -138,6 +142,7 @@ impl SessionScene {
             Event::Advised(advice) => rows.extend(happenings::advice(&session.kitchen, advice)),
             Event::OfferOpened(offer) => rows.push(happenings::offer_opened(offer)),
             Event::OfferClosed { reason, .. } => rows.push(happenings::offer_closed(*reason)),
+            Event::Probe(event) => rows.extend(self.probes.follow(session, event, derived.belief)),
             Event::Protocol(event) => rows.push(happenings::protocol(event)),
             _ => {}
         }

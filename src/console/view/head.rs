@@ -7,6 +7,7 @@ use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::console::console_model::{ConsoleModel, RecordingStatus, ViewerStreamStatus};
+use crate::console::probe_keys;
 use crate::history::wording;
 use crate::robot::safety::SafetyMode;
 use crate::session::settings::{Condition, GazeSource};
@@ -29,6 +30,8 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let stage = match (model.lesson.is_some(), session.phase) {
         (true, _) => "TRAINING".to_string(),
         (false, Phase::Running) if is_replayed => "REPLAY".to_string(),
+        (false, Phase::Paused) if session.is_frozen() && !session.can_be_paused() => "PROBE PAUSED".to_string(),
+        (false, Phase::Paused) if session.is_frozen() => "PROBE".to_string(),
         _ => wording::stage(session),
     };
     let (mark, style) = match session.phase {
@@ -64,7 +67,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let needed = needed(&healths);
     let mut right = area.right().saturating_sub(needed).max(x);
     let quiet = brush.style(TextRole::Quiet);
-    for text in facts(session, model) {
+    for text in probe_keys::status(session, model).into_iter().chain(facts(session, model)) {
         if x + width(&text) + gap < right {
             x = brush.text(x, area.y, right - x, &text, quiet) + gap;
         }

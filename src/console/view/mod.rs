@@ -18,6 +18,7 @@ pub mod paint;
 pub mod picker;
 mod place_buttons;
 mod popup;
+mod probe_sheet;
 pub mod recommendation_panel;
 pub mod recordings_page;
 pub mod regions;

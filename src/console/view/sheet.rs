@@ -6,6 +6,7 @@ use ratatui::layout::Rect;
 
 use super::paint::{KeyHint, Painter, width, wrap};
 use super::popup::open;
+use super::probe_sheet;
 use super::theme::{TextRole, Theme};
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
@@ -21,16 +22,19 @@ use crate::session::protocol::{ItemAnswer, Protocol};
 const WIDEST: u16 = 84;
 
 /// Drawing context of a sheet.
-struct Pen<'a, 'b> {
+pub(super) struct Pen<'a, 'b> {
     brush: &'a mut Painter<'b>,
     with_keys: bool,
 }
 
-/// Lines of a sheet with indent and style.
+/// A text of a line with its indent and style.
+type PagePart = (u16, String, TextRole);
+
+/// Lines of a sheet.
 #[derive(Default)]
-struct Page {
+pub(super) struct Page {
     columns: u16,
-    lines: Vec<(u16, String, TextRole)>,
+    lines: Vec<Vec<PagePart>>,
     /// Index of the line that must be visible.
     focus: usize,
     /// Lines that can be clicked, each with its key.
@@ -38,21 +42,39 @@ struct Page {
 }
 
 impl Page {
-    fn new(screen: Rect) -> Page {
+    /// An empty page for a screen.
+    pub(super) fn new(screen: Rect) -> Page {
         Page { columns: screen.width.saturating_sub(4).min(WIDEST).saturating_sub(4), ..Page::default() }
     }
 
-    fn text(&mut self, indent: u16, text: &str, role: TextRole) {
+    /// Width of its text.
+    pub(super) fn columns(&self) -> u16 {
+        self.columns
+    }
+
+    /// Adds a text, in as many lines as it needs.
+    pub(super) fn text(&mut self, indent: u16, text: &str, role: TextRole) {
         let lines = wrap(text, self.columns.saturating_sub(indent));
-        self.lines.extend(lines.into_iter().map(|line| (indent, line, role)));
+        self.lines.extend(lines.into_iter().map(|line| vec![(indent, line, role)]));
+    }
+
+    /// Adds a line of texts in columns of this width.
+    pub(super) fn cells(&mut self, width: u16, cells: Vec<(&str, TextRole)>) {
+        let part = |(index, (text, role)): (usize, (&str, TextRole))| (index as u16 * width, text.to_string(), role);
+        self.lines.push(cells.into_iter().enumerate().map(part).collect());
+    }
+
+    /// The next line must be visible, or the last where none follows.
+    pub(super) fn focus_here(&mut self) {
+        self.focus = self.lines.len();
     }
 
     /// Adds a text with a mark before its first line.
     fn marked(&mut self, mark: &str, text: &str, role: TextRole) {
         let first = self.lines.len();
         self.text(width(mark) + 1, text, role);
-        if let Some(line) = self.lines.get_mut(first) {
-            *line = (0, format!("{mark} {}", line.1), role);
+        if let Some([(indent, text, _)]) = self.lines.get_mut(first).map(Vec::as_mut_slice) {
+            (*indent, *text) = (0, format!("{mark} {text}"));
         }
     }
 
@@ -63,22 +85,25 @@ impl Page {
         self.marked(mark, text, role);
     }
 
-    fn space(&mut self) {
-        self.lines.push((0, String::new(), TextRole::Text));
+    /// Adds an empty line.
+    pub(super) fn space(&mut self) {
+        self.lines.push(Vec::new());
     }
 
     /// Draws the visible part of the page around its focus, with key hints on the last line.
-    fn draw(self, pen: &mut Pen, screen: Rect, title: &str, remark: &str, keys: &[KeyHint]) {
+    pub(super) fn draw(self, pen: &mut Pen, screen: Rect, title: &str, remark: &str, keys: &[KeyHint]) {
         let rows = (self.lines.len() as u16 + 5).min(screen.height.saturating_sub(2));
         let brush = &mut *pen.brush;
         let inside = open(brush, screen, (self.columns + 4, rows), title, remark);
         let room = usize::from(inside.height.saturating_sub(3));
         let last = self.lines.len().saturating_sub(room);
         let from = (self.focus + 2).saturating_sub(room).min(last);
-        for (row, (indent, line, role)) in self.lines.iter().skip(from).take(room).enumerate() {
-            let style = brush.style(*role);
+        for (row, line) in self.lines.iter().skip(from).take(room).enumerate() {
             let (x, y) = (inside.x + 1, inside.y + 1 + row as u16);
-            let end = brush.text(x + indent, y, self.columns - indent, line, style);
+            let end = line.iter().fold(x, |_, (indent, text, role)| {
+                let style = brush.style(*role);
+                brush.text(x + indent, y, self.columns - indent, text, style)
+            });
             let key = self.keys.iter().find(|(line, _)| *line == from + row);
             if let Some((_, chord)) = key.filter(|_| pen.with_keys) {
                 brush.key_target(x, y, end, *chord);
@@ -92,11 +117,16 @@ impl Page {
 
 /// Draws the sheet of the running phase, if it has one.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
-    let (Some(sheet), Some((step, protocol))) = (sheet(session), session.step()) else { return };
-    let where_ = format!("{}  {}", session.spec.participant.code, step.label());
     // In a replay the keys have other meanings.
     let pen = &mut Pen { brush, with_keys: model.playback.is_none() };
+    let sheet = sheet(session);
+    if let Some(SheetContent::Probe(open)) = sheet {
+        return probe_sheet::draw(pen, screen, open, session, model);
+    }
+    let (Some(sheet), Some((step, protocol))) = (sheet, session.step()) else { return };
+    let where_ = format!("{}  {}", session.spec.participant.code, step.label());
     match sheet {
+        SheetContent::Probe(_) => {}
         SheetContent::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
         SheetContent::Tutorial(tutorial) => draw_tutorial(pen, screen, &where_, tutorial, (session, model)),
         SheetContent::Questions(questionnaire) => {
@@ -193,7 +223,7 @@ fn draw_tutorial(
 }
 
 /// The key of a hint that can be clicked.
-fn plain(code: KeyCode) -> Option<KeyChord> {
+pub(super) fn plain(code: KeyCode) -> Option<KeyChord> {
     Some(KeyChord::plain(code))
 }
 
@@ -310,9 +340,9 @@ fn scale(page: &mut Page, of: &Scale, given: Option<&AnswerValue>) {
     };
     let points: Vec<String> = (1..=of.points).map(point).collect();
     let line = points.join("   ");
-    page.lines.push((0, line.clone(), TextRole::Strong));
+    page.lines.push(vec![(0, line.clone(), TextRole::Strong)]);
     let gap = usize::from(width(&line).saturating_sub(width(&of.low) + width(&of.high)).max(3));
-    page.lines.push((0, format!("{}{}{}", of.low, " ".repeat(gap), of.high), TextRole::Quiet));
+    page.lines.push(vec![(0, format!("{}{}{}", of.low, " ".repeat(gap), of.high), TextRole::Quiet)]);
 }
 
 fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, waiver: Option<usize>) {

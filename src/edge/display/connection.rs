@@ -323,6 +323,9 @@ impl Talk {
             FromPage::Turn { step, forward } => PageInput::Turn { step, forward },
             FromPage::Choose { step, choice } => PageInput::Choose { step, choice },
             FromPage::CardsShown { step } => PageInput::CardsShown { step },
+            FromPage::Believe { probe, question, choice, items, sure } => {
+                PageInput::Believe { probe, question, choice, items, sure }
+            }
             FromPage::Drawn { cue, at } => PageInput::Drawn { cue, at: self.hub.moment(at) },
             FromPage::Redrawn { took } => {
                 let change = |page: &mut ActivePage| page.redraw_ms = Some(took);

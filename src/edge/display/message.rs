@@ -12,6 +12,8 @@ use crate::session::answer_value::AnswerValue;
 pub(super) const MAX_BYTES: usize = 4096;
 /// Longest text in a message.
 const MAX_TEXT: usize = 64;
+/// Most items of a stack.
+const MAX_ITEMS: usize = 16;
 /// Longest answer in words, in characters.
 const MAX_ANSWER: usize = 500;
 /// Largest screen width or height, in pixels.
@@ -107,6 +109,19 @@ pub enum FromPage {
         /// The step's id.
         step: String,
     },
+    /// Answer to the question of a probe: a choice, or items that lie on one another; neither: "I don't know".
+    Believe {
+        /// Number of the probe.
+        probe: u32,
+        /// Number of the question, from 1.
+        question: u32,
+        /// Number of the choice, from 1.
+        choice: Option<u16>,
+        /// The items of a stack, by name.
+        items: Vec<String>,
+        /// How sure the participant is, from 1 to 3, if that is asked.
+        sure: Option<u8>,
+    },
     /// The screen shows the event with this sequence number.
     Drawn {
         /// Sequence number of the event.
@@ -152,6 +167,12 @@ pub fn read(text: &str) -> Option<FromPage> {
         FromPage::Answer { item, answer } => is_text(item) && answer.as_ref().is_none_or(is_answer),
         FromPage::Back { item } => is_text(item),
         FromPage::Turn { step, .. } | FromPage::Choose { step, .. } | FromPage::CardsShown { step } => is_text(step),
+        FromPage::Believe { choice, items, sure, .. } => {
+            *choice != Some(0)
+                && items.len() <= MAX_ITEMS
+                && items.iter().all(is_text)
+                && sure.is_none_or(|sure| (1..=3).contains(&sure))
+        }
         FromPage::Drawn { at, .. } => is_time(at),
         FromPage::Redrawn { took } => (0.0..1e6).contains(took),
         FromPage::Size { width, height } => is_size(*width, *height),
@@ -180,14 +201,19 @@ pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
     text(&Message { kind: "scene", scene })
 }
 
-/// The message with the present sight.
-pub(super) fn sight(sight: &DisplayUpdate) -> Arc<str> {
+/// The message with the present sight; during a probe also the seconds that it still has, and when that was on the server's clock.
+pub(super) fn sight(sight: &DisplayUpdate, left: Option<(f64, f64)>) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
         kind: &'static str,
         sight: &'a DisplayUpdate,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        at: Option<f64>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        left_s: Option<f64>,
     }
-    text(&Message { kind: "sight", sight })
+    let (at, left_s) = (left.map(|(at_ms, _)| at_ms), left.map(|(_, left_s)| left_s));
+    text(&Message { kind: "sight", sight, at, left_s })
 }
 
 /// The message with the robot's pose.

@@ -17,6 +17,7 @@ mod status;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 use std::sync::Arc;
+use std::time::Instant;
 
 use tokio::net::TcpListener;
 use tokio::sync::mpsc::{Receiver, channel};
@@ -48,6 +49,8 @@ pub struct PageConnection {
     sight: watch::Sender<Arc<str>>,
     robot: watch::Sender<Arc<str>>,
     status: Arc<DisplayStatus>,
+    /// Zero of the server's clock.
+    began: Instant,
 }
 
 impl Display {
@@ -67,13 +70,14 @@ impl Display {
             sight: watch::Sender::new(Arc::from("")),
             robot: watch::Sender::new(Arc::from("")),
             status: status.clone(),
+            began: Instant::now(),
         };
         let told = PageFeed {
             scene: screen.scene.subscribe(),
             sight: screen.sight.subscribe(),
             robot: screen.robot.subscribe(),
         };
-        let hub = ServerState::new(code.clone(), words.of_page(), send, told, status);
+        let hub = ServerState::new(code.clone(), words.of_page(), send, (told, status), screen.began);
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
         std::thread::Builder::new()
             .name("display".to_string())
@@ -124,9 +128,10 @@ impl PageConnection {
         self.scene.send_replace(message::scene(scene));
     }
 
-    /// Sends the present sight to the pages.
-    pub fn show(&self, sight: &DisplayUpdate) {
-        self.sight.send_replace(message::sight(sight));
+    /// Sends the present sight to the pages, with the time in seconds that a probe still has.
+    pub fn show(&self, sight: &DisplayUpdate, left_s: Option<f64>) {
+        let at_ms = self.began.elapsed().as_secs_f64() * 1000.0;
+        self.sight.send_replace(message::sight(sight, left_s.map(|left_s| (at_ms, left_s))));
     }
 
     /// Sends where the robot's hand is to the pages.

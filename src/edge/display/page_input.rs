@@ -67,6 +67,19 @@ pub enum PageInput {
         /// The step's id.
         step: String,
     },
+    /// Answer to the question of a probe.
+    Believe {
+        /// Number of the probe.
+        probe: u32,
+        /// Number of the question, from 1.
+        question: u32,
+        /// Number of the choice, from 1; without one and without items: "I don't know".
+        choice: Option<u16>,
+        /// The items of a stack, by name.
+        items: Vec<String>,
+        /// How sure the participant is, from 1 to 3.
+        sure: Option<u8>,
+    },
     /// The event with this sequence number was drawn at this instant.
     Drawn {
         /// Sequence number of the event.

@@ -41,7 +41,7 @@ const AGAIN: Duration = Duration::from_millis(100);
 const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
 /// Files of the page: path, content type, text.
-const FILES: [(&str, &str, &str); 10] = [
+const FILES: [(&str, &str, &str); 11] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
     ("/display.js", "text/javascript; charset=utf-8", include_str!("page/display.js")),
@@ -49,6 +49,7 @@ const FILES: [(&str, &str, &str); 10] = [
     ("/room.js", "text/javascript; charset=utf-8", include_str!("page/room.js")),
     ("/stage.js", "text/javascript; charset=utf-8", include_str!("page/stage.js")),
     ("/tutorial.js", "text/javascript; charset=utf-8", include_str!("page/tutorial.js")),
+    ("/probe.js", "text/javascript; charset=utf-8", include_str!("page/probe.js")),
     ("/questions.js", "text/javascript; charset=utf-8", include_str!("page/questions.js")),
     ("/hands.js", "text/javascript; charset=utf-8", include_str!("page/hands.js")),
     ("/art.js", "text/javascript; charset=utf-8", include_str!("page/art.js")),

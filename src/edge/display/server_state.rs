@@ -50,16 +50,16 @@ pub(super) struct ServerState {
 }
 
 impl ServerState {
-    /// The state of a server that nobody is connected to yet.
+    /// The state of a server that nobody is connected to yet; its clock begins at `began`.
     pub fn new(
         code: Option<String>,
         words: BTreeMap<String, String>,
         inputs: Sender<PageInput>,
-        told: PageFeed,
-        status: Arc<DisplayStatus>,
+        (told, status): (PageFeed, Arc<DisplayStatus>),
+        began: Instant,
     ) -> ServerState {
         let pairing = code.map(|code| Mutex::new(PairingDesk::new(code)));
-        let (acting, connections, began) = (watch::Sender::new(None), ConnectionTable::new(LIMITS), Instant::now());
+        let (acting, connections) = (watch::Sender::new(None), ConnectionTable::new(LIMITS));
         ServerState { pairing, words, inputs, told, status, acting, connections, began }
     }
 

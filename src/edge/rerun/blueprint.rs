@@ -117,7 +117,10 @@ fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
         .with_origin(path(lane, "human/belief/wrong"))
         .with_contents([path(lane, "human/belief/wrong/**")]);
     let beliefs = beliefs(lane, "P(truth): false ones marked, circles estimate, diamonds participant", properties);
-    let beliefs = Tabs::new([beliefs, wrong.into()]);
+    let probes = StateTimelineView::new("Probes: answers and estimate")
+        .with_origin(path(lane, "human/probes"))
+        .with_contents([path(lane, "human/probes/**")]);
+    let beliefs = Tabs::new([beliefs, wrong.into(), probes.into()]);
     let safety = StateTimelineView::new("Safety")
         .with_origin(path(lane, "robot/safety"))
         .with_contents([path(lane, "robot/safety/**")]);

@@ -36,7 +36,7 @@ impl WallDisplay {
         let screen = self.0.as_ref().map(Display::screen);
         if let Some(screen) = &screen {
             screen.build(&scene(session));
-            screen.show(&consent_sight(session, text));
+            screen.show(&consent_sight(session, text), None);
         }
         screen.is_some()
     }

@@ -5,12 +5,13 @@ use std::time::Instant;
 use crate::base::time::SessionTime;
 use crate::console::display_status::DisplayHealth;
 use crate::console::notice::NoticeLevel;
-use crate::display::{DisplayUpdate, RobotHand, RobotPose, scene, sight};
+use crate::display::{DisplayUpdate, RobotHand, RobotPose, choice_made_of, probe_left, scene, sight};
 use crate::edge::display::{Display, PageConnection};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::run::desk::{OperatorDesk, PageInput};
 use crate::session::admit::admit;
+use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
 use crate::session::tutorial::{TutorialEvent, TutorialReader};
@@ -58,11 +59,11 @@ impl ParticipantDisplay {
     }
 
     /// Updates the content if it changed.
-    pub fn show(&mut self, session: &Session) {
-        let now = sight(session);
-        if self.shown.as_ref() != Some(&now) {
-            self.screen.show(&now);
-            self.shown = Some(now);
+    pub fn show(&mut self, session: &Session, now: SessionTime) {
+        let seen = sight(session);
+        if self.shown.as_ref() != Some(&seen) {
+            self.screen.show(&seen, probe_left(session, now).map(SessionTime::as_secs_f64));
+            self.shown = Some(seen);
         }
     }
 
@@ -114,6 +115,9 @@ impl PageEvent {
             PageInput::Turn { step, forward } => turn(session, &step, forward),
             PageInput::Choose { step, choice } => practise(session, TutorialEvent::Answered { step, choice }),
             PageInput::CardsShown { step } => practise(session, TutorialEvent::CardsHidden { step }),
+            PageInput::Believe { probe, question, choice, items, sure } => {
+                believe(session, (probe, question), (choice, &items), sure)
+            }
             PageInput::Drawn { cue, at } => {
                 Some(Event::Display(DisplayEvent::Drawn { cue, at_ns: session_time(at, now) }))
             }
@@ -128,6 +132,10 @@ fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> Pa
     if session.kitchen.button_named(Agent::Human, &button).is_none() {
         let text = "the display told a button that the kitchen does not have".to_string();
         return PageEvent { event: None, notice: Some((NoticeLevel::Refused, text)) };
+    }
+    // A press that was under way when the probe began is none.
+    if session.probes.open.is_some() {
+        return PageEvent::default();
     }
     if session.tutorial_step().is_some() {
         return PageEvent { event: practise(session, TutorialEvent::Pressed { button }), notice: None };
@@ -155,6 +163,25 @@ fn turn(session: &Session, step: &str, forward: bool) -> Option<Event> {
 /// An event of the tutorial. What the page cannot do now is no news for the wizard: it was late, or pressed in a step without presses.
 fn practise(session: &Session, event: TutorialEvent) -> Option<Event> {
     let event = Event::Protocol(ProtocolEvent::Tutorial(event));
+    admit(session, &event).is_ok().then_some(event)
+}
+
+/// The answer to the question of a probe. One that is late, or names no choice, is none, and no news for the wizard.
+fn believe(
+    session: &Session,
+    (probe, question): (u32, u32),
+    (choice, items): (Option<u16>, &[String]),
+    confidence: Option<u8>,
+) -> Option<Event> {
+    let open = session.probes.open.as_ref().filter(|open| open.number == probe)?;
+    let (_, asked) = open.question().filter(|(index, _)| *index as u32 + 1 == question)?;
+    let answer = match choice {
+        _ if !items.is_empty() => Some(choice_made_of(&session.kitchen, asked, items)?),
+        Some(number) => Some(asked.choices.get(usize::from(number).checked_sub(1)?)?.clone()),
+        None => None,
+    };
+    let on = Answering::Display;
+    let event = Event::Probe(ProbeEvent::Answered { probe, question, answer, confidence, on });
     admit(session, &event).is_ok().then_some(event)
 }
 

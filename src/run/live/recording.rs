@@ -7,7 +7,8 @@ use crate::console::notice::NoticeLevel;
 use crate::edge::doctor::free_bytes;
 use crate::edge::log::WriteError;
 use crate::history::belief_track::{self, BeliefSnapshot};
-use crate::history::wording;
+use crate::history::{probe_wording, wording};
+use crate::session::probes::ProbeEvent;
 use crate::session::{Event, Phase, Stamped};
 
 impl Live {
@@ -20,6 +21,9 @@ impl Live {
                 Event::SignalShown { .. } => self.undrawn = Some(stamped.seq),
                 Event::RobotSafety { mode, force_n, joint } if mode.has_stopped_itself() => {
                     self.model.say(NoticeLevel::Alarm, wording::arm_stopped(mode, force_n, joint));
+                }
+                Event::Probe(ref event @ (ProbeEvent::Delayed { .. } | ProbeEvent::Dropped { .. })) => {
+                    self.model.warn(probe_wording::event(event));
                 }
                 _ => {}
             }

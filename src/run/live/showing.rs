@@ -60,7 +60,7 @@ impl Live {
     /// Updates the participant's display.
     pub(super) fn show_participant(&mut self) {
         if let Some(display) = &mut self.display {
-            display.show(self.engine.session());
+            display.show(self.engine.session(), self.clock.now());
         }
     }
 

@@ -60,14 +60,15 @@
     } else if (message.kind === "robot") {
       Robot.move(message.robot);
     } else if (message.kind === "sight") {
-      see(message.sight);
+      see(message);
     }
   }
 
-  function see(sight) {
-    const before = Stage.shown(), count = (one) => (one && one.presses[0] ? one.presses[0].number : 0);
+  /** What is seen now. A probe has so many seconds left, as of when the program said it. */
+  function see({ sight, at: toldAt, left_s }) {
+    const now = performance.now(), before = Stage.shown(), count = (one) => (one && one.presses[0] ? one.presses[0].number : 0);
     const isAnswer = before && count(sight) > count(before);
-    Stage.show(sight);
+    Stage.show(sight, (left_s || 0) - (trips.length && toldAt ? Math.max(0, serverTime(now) - toldAt) / 1000 : 0));
     const isNew = before && sight.cue !== null && sight.cue !== cue;
     cue = sight.cue;
     if (isNew) Stage.flash();

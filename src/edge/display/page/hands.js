@@ -4,6 +4,8 @@
 const Hands = (() => {
   // The same button within so many milliseconds is a contact that bounces.
   const BOUNCE_MS = 50, PUSHED_MS = 8;
+  // Buttons of a standard gamepad, by the keys that mean the same while a probe is asked.
+  const PAD = { 0: "Enter", 12: "ArrowUp", 13: "ArrowDown", 14: "ArrowLeft", 15: "ArrowRight" };
   const down = new Set(), pads = new Map(), last = new Map();
   let tell = () => {};
 
@@ -43,6 +45,11 @@ const Hands = (() => {
       Questions.key(event.key, question, isHeld);
       return;
     }
+    // While a probe is asked no button of the kitchen is pressed.
+    if (Stage.shown() && Stage.shown().probe) {
+      if (Probe.press(event.key, isHeld)) event.preventDefault();
+      return;
+    }
     const lesson = Stage.shown() && Stage.shown().tutorial;
     if (lesson && Tutorial.key(event.key, lesson, isHeld)) return event.preventDefault();
     const button = scene.buttons.find(({ key }) => key && key.toLowerCase() === event.key.toLowerCase());
@@ -52,12 +59,13 @@ const Hands = (() => {
   }
 
   function touched(event) {
-    const hit = event.target.closest("[data-button], [data-rate], [data-option], [data-typed], [data-does], [data-turn], [data-choose]");
+    const hit = event.target.closest("[data-button], [data-rate], [data-option], [data-typed], [data-does], [data-turn], [data-choose], [data-believe], [data-unknown], [data-done], [data-sure]");
     if (!hit || event.button > 0) return;
     event.preventDefault();
     const question = Stage.shown() && Stage.shown().question;
     const lesson = Stage.shown() && Stage.shown().tutorial;
-    if (lesson && (hit.dataset.turn || hit.dataset.choose)) Tutorial.touch(hit.dataset, lesson);
+    if (Stage.shown() && Stage.shown().probe) Probe.touch(hit.dataset);
+    else if (lesson && (hit.dataset.turn || hit.dataset.choose)) Tutorial.touch(hit.dataset, lesson);
     else if (hit.dataset.button) press(hit.dataset.button, timeOf(event.timeStamp));
     else if (question) Questions.touch(hit.dataset, question);
   }
@@ -76,6 +84,7 @@ const Hands = (() => {
       const now = [...pad.buttons].map((button) => (typeof button === "object" ? button.pressed : button > 0.5));
       now.forEach((isDown, number) => {
         if (!isDown || before[number] || !scene) return;
+        if (Stage.shown() && Stage.shown().probe) return Probe.press(PAD[number], false);
         const button = scene.buttons.find(({ gamepad }) => gamepad === number);
         if (button) press(button.name, timeOf(pad.timestamp));
       });
@@ -89,6 +98,7 @@ const Hands = (() => {
     tell = toTell;
     Questions.begin(toAnswer);
     Tutorial.begin(toAnswer);
+    Probe.begin(toAnswer);
     window.addEventListener("keydown", typed);
     window.addEventListener("keyup", (event) => {
       down.delete(event.code || event.key);

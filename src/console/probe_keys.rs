@@ -1,0 +1,138 @@
+//! The sheet of a freeze probe: the wizard pauses it, and enters the answers where the participant has no display.
+
+use super::console_message::ConsoleCommand;
+use super::console_model::ConsoleModel;
+use super::form::SheetKey;
+use super::notice::NoticeLevel;
+use super::sending::send;
+use crate::session::probes::{OpenProbe, ProbeEvent, ProbeOrigin};
+use crate::session::settings::ParticipantKind;
+use crate::session::wall_display::Answering;
+use crate::session::{Event, Session};
+
+/// An answer that is being entered at the console.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ProbeEntry {
+    /// Numbers of the probe and of the question that it is for.
+    of: (u32, usize),
+    /// Number of the choice; 0: "I don't know".
+    pub choice: Option<usize>,
+    /// The choice is confirmed, and how sure the participant is comes next.
+    pub asks_sure: bool,
+    /// How sure the participant is, from 1 to 3.
+    pub sure: Option<u8>,
+}
+
+/// Who answers the questions of a probe now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProbeAnswerer {
+    /// The participant, on the display.
+    Display,
+    /// The wizard enters what the participant says.
+    Console,
+    /// The simulated participant.
+    Simulated,
+}
+
+/// Who answers now: the wizard where no page is connected.
+pub fn answerer(session: &Session, model: &ConsoleModel) -> ProbeAnswerer {
+    match session.spec.participant.kind {
+        ParticipantKind::Simulated => ProbeAnswerer::Simulated,
+        _ if model.display.as_ref().is_some_and(|display| display.page.is_some()) => ProbeAnswerer::Display,
+        _ => ProbeAnswerer::Console,
+    }
+}
+
+/// The answer that is being entered for the question with this index; a new one for another question.
+pub fn entry(model: &ConsoleModel, open: &OpenProbe, question: usize) -> ProbeEntry {
+    let of = (open.number, question);
+    Some(model.probe_entry).filter(|entry| entry.of == of).unwrap_or(ProbeEntry { of, ..ProbeEntry::default() })
+}
+
+/// "probe 2 of 4": the probe, and how many are expected in the trial.
+pub fn numbered(session: &Session, number: u32) -> String {
+    let book = &session.probes;
+    let asked_for = book.over.iter().chain(&book.open).filter(|probe| probe.origin == ProbeOrigin::Wizard).count()
+        + usize::from(book.waiting.as_ref().is_some_and(|waiting| waiting.origin == ProbeOrigin::Wizard));
+    let all = (book.schedule.len() + asked_for).max(number as usize);
+    format!("probe {number} of {all}")
+}
+
+/// What is to be said of the probes of the trial now: "probe 2 of 4 · question 1 of 3", or when the next is due.
+pub fn status(session: &Session, model: &ConsoleModel) -> Option<String> {
+    let book = &session.probes;
+    if let Some(open) = &book.open {
+        let name = numbered(session, open.number);
+        let question = open.shown.filter(|_| open.closed.is_none());
+        return Some(match question {
+            Some(shown) => format!("{name} \u{b7} question {} of {}", shown + 1, open.questions.len()),
+            None => name,
+        });
+    }
+    if let Some(waiting) = &book.waiting {
+        return Some(format!("{} waits", numbered(session, waiting.number)));
+    }
+    let next = book.schedule.get(book.came_due).filter(|_| session.is_running())?;
+    let in_s = next.at.as_secs_f64() - session.trial_clock(model.now).as_secs_f64();
+    Some(format!("{} in {:.0} s", numbered(session, book.numbered + 1), in_s.max(0.0).ceil()))
+}
+
+/// Carries out a key of the sheet.
+pub(super) fn write(
+    model: &mut ConsoleModel,
+    session: &Session,
+    open: &OpenProbe,
+    stroke: SheetKey,
+) -> Option<ConsoleCommand> {
+    if stroke == SheetKey::Leave {
+        let (event, words) = match session.can_be_paused() {
+            true => (Event::TrialPaused, "the probe is paused"),
+            false => (Event::TrialResumed, "the probe goes on"),
+        };
+        return send(model, session, event, NoticeLevel::Done, words);
+    }
+    match answerer(session, model) {
+        ProbeAnswerer::Simulated => return refuse(model, "the simulated participant answers"),
+        ProbeAnswerer::Display => return refuse(model, "the participant answers on the display"),
+        ProbeAnswerer::Console => {}
+    }
+    let Some((index, question)) = open.question() else { return refuse(model, "no question is asked now") };
+    let (mut entry, choices) = (entry(model, open, index), question.choices.len());
+    let confidence = session.spec.probes.as_ref().is_some_and(|probes| probes.confidence);
+    match stroke {
+        SheetKey::Digit(digit @ 1..=3) if entry.asks_sure => entry.sure = Some(digit),
+        SheetKey::Digit(_) if entry.asks_sure => return refuse(model, "how sure: 1, 2 or 3"),
+        SheetKey::Digit(digit) => {
+            let digit = usize::from(digit);
+            let longer = entry.choice.filter(|&choice| choice > 0).map(|choice| 10 * choice + digit);
+            match longer.filter(|&number| number <= choices).or((digit <= choices).then_some(digit)) {
+                Some(number) => entry.choice = Some(number),
+                None => return refuse(model, "the question has no such choice"),
+            }
+        }
+        SheetKey::Forward | SheetKey::Back if entry.asks_sure => return refuse(model, "how sure: 1, 2 or 3"),
+        SheetKey::Forward => entry.choice = Some(entry.choice.map_or(1, |choice| (choice + 1).min(choices))),
+        SheetKey::Back => entry.choice = Some(entry.choice.map_or(0, |choice| choice.saturating_sub(1))),
+        SheetKey::Undo if entry.asks_sure => (entry.asks_sure, entry.sure) = (false, None),
+        SheetKey::Undo => entry.choice = entry.choice.filter(|&choice| choice > 9).map(|choice| choice / 10),
+        SheetKey::Confirm => match entry.choice {
+            None => return refuse(model, "first the number of the choice; 0: the participant does not know"),
+            Some(1..) if confidence && !entry.asks_sure => entry.asks_sure = true,
+            Some(1..) if confidence && entry.sure.is_none() => return refuse(model, "how sure: 1, 2 or 3"),
+            Some(number) => {
+                let answer = number.checked_sub(1).and_then(|index| question.choices.get(index)).cloned();
+                let (probe, question, on) = (open.number, index as u32 + 1, Answering::Console);
+                let event = ProbeEvent::Answered { probe, question, answer, confidence: entry.sure, on };
+                return send(model, session, Event::Probe(event), NoticeLevel::Done, "");
+            }
+        },
+        SheetKey::Leave | SheetKey::Skip | SheetKey::Letter(_) => {}
+    }
+    model.probe_entry = entry;
+    None
+}
+
+fn refuse(model: &mut ConsoleModel, reason: &str) -> Option<ConsoleCommand> {
+    model.say(NoticeLevel::Refused, reason);
+    None
+}

@@ -1,0 +1,97 @@
+//! Freeze probes: what is asked, and the participant's answers beside the estimate at that time.
+
+use super::EntityUpdate;
+use super::colours;
+use super::entity_content::{EntityData, LogLevel, slug};
+use crate::history::{probe_wording, wording};
+use crate::kitchen::AspectId;
+use crate::mind::dirichlet::DirichletBelief;
+use crate::session::Session;
+use crate::session::probes::{ProbeEvent, ProbeQuestion, ProbeSubject};
+
+/// Lane of the question that is asked.
+const ASKED: &str = "human/probes/asked";
+/// Lines of the text log.
+const SAID: &str = "human/answers";
+
+/// The lanes of probes.
+#[derive(Clone, Debug, Default)]
+pub struct ProbeScene {
+    /// Lanes with a text. The answers stand until the next probe begins: during a probe the trial's clock stands still.
+    filled: Vec<String>,
+}
+
+impl ProbeScene {
+    /// Updates by an event that has just been applied; `belief` is the estimate after it.
+    pub fn follow(
+        &mut self,
+        session: &Session,
+        event: &ProbeEvent,
+        belief: Option<&DirichletBelief>,
+    ) -> Vec<EntityUpdate> {
+        let question = |number: u32| {
+            let open = session.probes.open.as_ref()?;
+            open.questions.get((number as usize).checked_sub(1)?)
+        };
+        match event {
+            ProbeEvent::Begun { .. } => self.filled.drain(..).map(|lane| state(lane, "")).collect(),
+            ProbeEvent::Asked { question: number, .. } => {
+                let asked = question(*number).map_or_else(String::new, |asked| probe_wording::subject(&asked.about));
+                vec![state(ASKED, asked)]
+            }
+            ProbeEvent::Answered { question: number, answer, .. } => {
+                let Some(asked) = question(*number) else { return Vec::new() };
+                self.answered(session, asked, answer.as_deref(), belief)
+            }
+            ProbeEvent::Closed { .. } => vec![state(ASKED, "")],
+            _ => Vec::new(),
+        }
+    }
+
+    fn answered(
+        &mut self,
+        session: &Session,
+        asked: &ProbeQuestion,
+        answer: Option<&str>,
+        belief: Option<&DirichletBelief>,
+    ) -> Vec<EntityUpdate> {
+        let about = probe_wording::subject(&asked.about);
+        let said = match (answer, &asked.about) {
+            (None, _) => "does not know".to_string(),
+            (Some(name), ProbeSubject::Location { .. } | ProbeSubject::Recipe { .. }) => {
+                session.kitchen.worded(name).to_string()
+            }
+            (Some(name), ProbeSubject::NextOrder | ProbeSubject::NextPress) => wording::location(name),
+        };
+        let estimate = aspect(session, &asked.about).zip(belief).map(|(aspect, belief)| {
+            let (held, values) = (&belief.aspects[aspect.index()], &session.kitchen.aspects[aspect.index()]);
+            let value = held.most_likely();
+            format!("{} {:.0} %", values.wordings[value], 100.0 * held.mean()[value])
+        });
+        let beside = estimate.as_ref().map_or_else(String::new, |estimate| format!(" (estimate: {estimate})"));
+        let text = format!("human answers, {about}: {said}{beside}");
+        let line = EntityData::Words { level: LogLevel::Info, text, colour: colours::agent_colour(crate::kitchen::Agent::Human) };
+        let lane = |kind: &str| format!("human/probes/{}_{kind}", slug(&about));
+        let mut rows = vec![EntityUpdate::new(SAID, line)];
+        for (kind, text) in [("answer", Some(said)), ("estimate", estimate)] {
+            if let Some(text) = text {
+                self.filled.push(lane(kind));
+                rows.push(state(lane(kind), text));
+            }
+        }
+        rows
+    }
+}
+
+fn state(entity: impl Into<String>, text: impl Into<String>) -> EntityUpdate {
+    EntityUpdate::new(entity, EntityData::State(text.into()))
+}
+
+/// The aspect that a question is about, if it is about one.
+fn aspect(session: &Session, about: &ProbeSubject) -> Option<AspectId> {
+    match about {
+        ProbeSubject::Location { location } => session.kitchen.aspect_named(location),
+        ProbeSubject::Recipe { dish } => Some(session.kitchen.aspect_of_dish(session.kitchen.dish_named(dish)?)),
+        ProbeSubject::NextOrder | ProbeSubject::NextPress => None,
+    }
+}

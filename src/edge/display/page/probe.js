@@ -1,26 +1,44 @@
 "use strict";
 /** A freeze probe: one question after the other on the blanked display, answered by touch, mouse, keys or gamepad; then a count-down. */
 const Probe = (() => {
-  // Room of the choices in hundredths of the stage's width, and the least width of a choice there.
-  const ROOM = [84, 32], LEAST = 11.4, BETWEEN = 0.8;
+  // Lengths in hundredths of the stage's width: space between choices, their frames (of recipes), size of words that can still be read
+  // from afar, height of a row, and size of a recipe's pictures.
+  const BETWEEN = 0.8, WITHIN = 0.9, AROUND = 2.4, READ = 1.38, HIGHEST = 17, LARGEST = 4.4;
   // An answer that nothing follows for so long was not taken: it can be given again.
   const UNHEARD_MS = 2000;
   let tell = () => {}, key = "", shown = null, parts = null, timer = 0, ends = 0;
   // What is chosen and not told yet: numbers of choices. `waits`: they are to be confirmed by how sure the participant is.
   let chosen = [], waits = false, isTold = false;
 
-  /** The columns in which so many choices have the largest pictures. */
-  function columnsFor(count, tall) {
-    let best = 1, most = 0;
-    for (let columns = 1; columns <= count; columns += 1) {
-      const wide = (ROOM[0] - BETWEEN * (columns - 1)) / columns, rows = Math.ceil(count / columns);
-      const high = (ROOM[1] - BETWEEN * (rows - 1)) / rows;
-      if (columns > 1 && wide < LEAST) break;
-      // Recipe cards are as high as their items, other choices as a picture over two lines of words.
-      const size = tall ? Math.min(high, wide * 1.4) : Math.min(high - 4, wide * 0.62);
-      if (size > most + 0.01) [best, most] = [columns, size];
+  const ruler = document.createElement("canvas").getContext("2d");
+
+  /** The width of the longest word, in the size that is still read well. */
+  function longest(all) {
+    ruler.font = `600 100px ${getComputedStyle(document.body).fontFamily}`;
+    return READ * Math.max(...all.flatMap((text) => text.split(/\s+/)).map((word) => ruler.measureText(word).width / 100));
+  }
+
+  /** Puts the choices into the columns in which their pictures are largest. */
+  function arrange(list, choices, scene) {
+    const em = parseFloat(getComputedStyle(list).fontSize), room = [list.clientWidth / em, list.clientHeight / em];
+    const recipes = choices.map(({ shows }) => shows && shows.recipe).filter(Boolean), items = Math.max(0, ...recipes.map((of) => of.length));
+    const words = longest(items ? recipes.flat().map((name) => scene.items[name].label) : choices.map((choice) => choice.words));
+    let best = { columns: 1, size: 0, beside: false };
+    for (let columns = 1; columns <= choices.length; columns += 1) {
+      const wide = (room[0] - BETWEEN * (columns - 1)) / columns, rows = Math.ceil(choices.length / columns);
+      const high = (room[1] - BETWEEN * (rows - 1)) / rows, rest = wide - words;
+      // Pictures over two lines of words, or beside them; a recipe's items stand below one another, each beside its words.
+      const sizes = items ? [0, Math.min(LARGEST, (high - AROUND) / items - 0.4, rest - AROUND - 1)]
+        : [rest < WITHIN ? 0 : Math.min(high - WITHIN - 3.4, HIGHEST - 4.3, wide - WITHIN), Math.min(high - WITHIN, rest - 2.4, HIGHEST / 2)];
+      sizes.forEach((size, beside) => {
+        // Of equal pictures those in few rows; recipes in few columns, where their words have more room.
+        if (size > best.size + (items || beside ? 0.01 : -0.01)) best = { columns, size, beside: Boolean(beside && !items) };
+      });
     }
-    return best;
+    // The same rows, filled evenly.
+    list.style.setProperty("--columns", Math.ceil(choices.length / Math.ceil(choices.length / best.columns)));
+    list.style.setProperty("--part", `${Math.max(1, best.size).toFixed(2)}em`);
+    list.classList.toggle("beside", best.beside);
   }
 
   /** The picture of a choice: what lies there, a place, or nothing. */
@@ -57,19 +75,14 @@ const Probe = (() => {
   }
 
   /** What the question is about, beside it. */
-  function subjectOf(about, kit) {
-    const made = kit.element("span", "subject");
-    if (about.dish !== undefined) made.innerHTML = Art.dish(kit.scene, about.dish);
-    else made.innerHTML = about.robot ? Art.place("robot_hand", 100) : pictureOf(about, kit);
-    return made;
-  }
+  const subjectOf = (about, kit) => kit.element("span", "subject", pictureOf(about, kit));
 
   /** Draws the question, or what is shown before the first and after the last one. */
   function draw(sheet, probe, leftS, kit) {
     const { element, text, scene } = kit, words = scene.words, now = `${probe.probe}/${probe.question}/${probe.closed}`;
     if (now !== key) [key, chosen, waits, isTold] = [now, [], false, false];
     shown = probe;
-    const all = element("div", "probe"), bar = element("div", "left");
+    const all = element("div", "probing"), bar = element("div", "left");
     all.setAttribute("role", "group");
     parts = { all, buttons: [], kit };
     if (probe.closed) {
@@ -79,25 +92,34 @@ const Probe = (() => {
     } else {
       const head = element("div", "asks"), title = element("div", "title");
       title.append(text("p", "count", words["probe count"].replace("#", probe.question).replace("#", probe.of)), text("h2", "", probe.text));
-      head.append(subjectOf(probe.about, kit), title);
-      const tall = probe.choices.some(({ shows }) => shows && shows.recipe), list = element("div", tall ? "choices cards" : "choices");
-      list.style.setProperty("--columns", columnsFor(probe.choices.length, tall));
+      head.append(...(probe.about ? [subjectOf(probe.about, kit)] : []), title);
+      const isCards = probe.choices.some(({ shows }) => shows && shows.recipe), list = element("div", isCards ? "choices cards" : "choices");
       list.append(...probe.choices.map((choice) => choiceOf(choice, kit)));
       if (probe.parts.length) title.append(text("p", "several", words["probe several"]));
       all.append(head, list, element("div", "row"), bar);
     }
     sheet.replaceChildren(all);
-    if (!probe.closed && probe.choices.length) { update(); fit(all); }
+    if (!probe.closed && probe.choices.length) {
+      update();
+      arrange(all.querySelector(".choices"), probe.choices, scene);
+      fit(all);
+    }
     run(bar, all.querySelector(".seconds"), leftS);
   }
 
-  /** Makes the words smaller until each stands in its place. */
+  /** Makes the words of the choices, and those of the question, smaller until each stands in its place. */
   function fit(all) {
     const fits = (made) => made.scrollWidth <= made.clientWidth + 1 && made.scrollHeight <= made.clientHeight + 1;
-    for (let size = 1; size > 0.5; size -= 0.04) {
-      all.style.setProperty("--words", size);
-      if (fits(all) && [...all.querySelectorAll(".choice, .choices, .title")].every(fits)) return;
+    for (const [words, places] of [["--asks", ".asks, .title"], ["--words", ".choices, .choice, .picture"]]) {
+      for (let size = 1; size > 0.5; size -= 0.02) {
+        all.style.setProperty(words, size);
+        if ([...all.querySelectorAll(places)].every(fits)) break;
+      }
     }
+    // Where the words of one choice need two lines, all leave them room: the pictures are of one size.
+    const isBroken = (made) => made.clientHeight > 1.7 * parseFloat(getComputedStyle(made).fontSize);
+    const list = all.querySelector(".choices:not(.cards, .beside)");
+    if (list && [...list.querySelectorAll(".words")].some(isBroken)) list.classList.add("two");
   }
 
   /** The time that is left: a quiet bar, or the seconds of the count-down. */
@@ -106,7 +128,7 @@ const Probe = (() => {
     ends = performance.now() + 1000 * leftS;
     const step = () => {
       const left = Math.max(0, (ends - performance.now()) / 1000);
-      bar.style.width = `${Math.min(100, (100 * left) / shown.limit_s).toFixed(1)}%`;
+      bar.style.width = `${Math.min(80, (80 * left) / shown.limit_s).toFixed(1)}%`;
       if (seconds) seconds.textContent = Math.max(1, Math.ceil(left - 0.05));
     };
     step();

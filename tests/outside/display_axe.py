@@ -14,7 +14,7 @@ from page import browser
 
 STATES = ("welcome", "instruction", "ready", "practice", "running 0", "served", "paused", "over", "questionnaire", "answered", "answers", "thanks")
 # States whose names begin so: the first of each, and all.
-ONE_OF, ALL_OF = ("recipe", "highlight", "no effect"), ("questionnaire:", "tutorial:")
+ONE_OF, ALL_OF = ("recipe", "highlight", "no effect"), ("questionnaire:", "tutorial:", "probe:")
 # What axe cannot decide, and why it is right.
 EXPLAINED = {"color-contrast": "the title of a zone stands on the zone, which other elements overlap; the two colours have a contrast above 4.5"}
 

@@ -96,6 +96,50 @@ def tutorial_pages(scene, dishes):
     }
 
 
+PROBE = {"probe": 1, "question": 2, "of": 3, "text": "", "about": None, "choices": [], "parts": [], "confidence": False, "limit_s": 25.0, "closed": False}
+
+
+def probe_pages(scene, kitchen, dishes):
+    """Questions of probes, one of each kind and the longest lists of these kitchens, and what stands before and after them.
+
+    `touched`: choices that are touched; where the page asks how sure the participant is, it does so then.
+    """
+    english, words = (tomllib.loads(Path(f"src/display/languages/{language}.toml").read_text()) for language in ("en", scene["language"]))
+    stretch = longer if scene["language"] == "en" and scene["words"]["back"] != english["page back"] else str
+    said = lambda name, what="": stretch({**english, **words}[name]).replace("#", what)
+    recipes = tomllib.loads(Path(f"recipes/{kitchen}.toml").read_text())
+    slots = [slot["items"] for slot in recipes["slot"]]
+    at = {spot["name"]: index for index, spot in enumerate(scene["locations"])}
+    label = lambda index: scene["locations"][index]["label"]
+    nothing = (said("empty"), "empty")
+    items = [(known["label"], {"item": name}) for name, known in scene["items"].items()]
+    menu = [(known["label"], {"dish": name}) for name, known in scene["dishes"].items()]
+    pot, board, small = ("cooking_pot", "assembly_board", "rolling_mat") if kitchen == "sushi" else ("grill_plate", "board", "tray")
+    first, second = slots[0], slots[1]
+    stacks = [(" + ".join(scene["items"][item]["label"] for item in (below, second[0])), {"stack": [below, second[0]]}) for below in first]
+    variants = [[one, *items[1:]] for items in dishes.values() for one in slots[0]][:8]
+    dish = max(scene["dishes"], key=lambda name: len(scene["dishes"][name]["label"]))
+    orders = [index for index, spot in enumerate(scene["locations"]) if spot["kind"] == "order"]
+    takes = [(said("do take", shelf["label"]), {"storage": index}) for index, shelf in enumerate(scene["storages"]) if shelf["agent"] == "robot"]
+    uses = [(said("do use", spot["label"]), {"location": index}) for index, spot in enumerate(scene["locations"]) if spot["kind"] == "place"]
+    asked = {
+        "before": {"question": 0},
+        "place": {"text": said("ask " + pot.replace("_", " ")), "about": {"location": at[pot]}, "choices": [nothing, *items]},
+        "stack": {"text": said("ask " + board.replace("_", " ")), "about": {"location": at[board]}, "choices": [*menu, nothing, *items], "parts": slots},
+        "few": {"text": said("ask place", label(at[small])), "about": {"location": at[small]}, "choices": [*items[:2], nothing, *stacks]},
+        "recipe": {"text": said("ask recipe", scene["dishes"][dish]["label"]), "about": {"dish": dish}, "choices": [("", {"recipe": variant}) for variant in variants]},
+        "order": {"text": said("ask order", label(orders[0])), "about": {"order": 0}, "choices": [(said("no order"), "empty"), (said("served"), None), *menu]},
+        "next order": {"text": said("ask next order"), "choices": [(label(index), {"order": number}) for number, index in enumerate(orders)]},
+        "next press": {"text": said("ask next press"), "about": {"location": at["robot_hand"]}, "choices": takes + uses},
+        "sure": {"text": said("ask robot hand"), "about": {"location": at["robot_hand"]}, "choices": [nothing, *items], "confidence": True, "touched": [3]},
+        "after": {"question": 0, "closed": True},
+    }
+    def page(number, state):
+        choices = [{"number": at, "words": words, "shows": shows} for at, (words, shows) in enumerate(state.get("choices", []), 1)]
+        return {**PROBE, **state, "probe": number, "choices": choices}
+    return {name: page(number, state) for number, (name, state) in enumerate(asked.items(), 1)}
+
+
 def states(scene, kitchen):
     """Every state, by its name: what the program would tell the page."""
     dishes, spots = items_of(kitchen), scene["locations"]
@@ -114,7 +158,7 @@ def states(scene, kitchen):
 
     def sight(stage="running", turn=0, **changed):
         return {"stage": stage, "practice": False, "contents": contents(turn), "served": 3, "presses": [None, None], "intention": None,
-                "signal": None, "cue": None, "question": None, "tutorial": None, "target": None, "checks": False, **changed}
+                "signal": None, "cue": None, "question": None, "tutorial": None, "probe": None, "target": None, "checks": False, **changed}
 
     made = {stage: sight(stage) for stage in ("welcome", "instruction", "ready", "paused", "over", "thanks")}
     made["practice"] = sight("ready", practice=True)
@@ -150,8 +194,12 @@ def states(scene, kitchen):
     made["answers"] = sight("questionnaire", question={**question, "item": None, "form": None, "given": given, "text": "Thank you. Are your answers as you meant them?"})
     for name, page in tutorial_pages(scene, dishes).items():
         made[f"tutorial: {name}"] = sight("tutorial", tutorial={**TUTORIAL_PAGE, "step": name, **page})
+    for name, page in probe_pages(scene, kitchen, dishes).items():
+        made[f"probe: {name}"] = sight("probe", probe=page, contents=[])
     return made
 
 
 def show(page, sight):
-    page.ask(f"Stage.show({json.dumps(sight)})")
+    page.ask(f"Stage.show({json.dumps(sight)}, 17)")
+    for choice in (sight["probe"] or {}).get("touched", []):
+        page.ask(f"Probe.touch({{ believe: {choice} }})")

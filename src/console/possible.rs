@@ -38,17 +38,19 @@ pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
     // In a probe the trial can also be ended.
     let in_probe = matches!(
         action,
-        KeyAction::EndTrial | KeyAction::Hand(ManualAction::SkipProbe | ManualAction::Abort | ManualAction::NoteInWords)
+        KeyAction::EndTrial
+            | KeyAction::Hand(ManualAction::SkipProbe | ManualAction::Abort | ManualAction::NoteInWords)
     );
-    (in_probe && session.is_frozen()) || matches!(
-        action,
-        KeyAction::Help
-            | KeyAction::Palette
-            | KeyAction::Quit
-            | KeyAction::StopRobot
-            | KeyAction::ResumeRobot
-            | KeyAction::Hand(ManualAction::Calibrate)
-    )
+    (in_probe && session.is_frozen())
+        || matches!(
+            action,
+            KeyAction::Help
+                | KeyAction::Palette
+                | KeyAction::Quit
+                | KeyAction::StopRobot
+                | KeyAction::ResumeRobot
+                | KeyAction::Hand(ManualAction::Calibrate)
+        )
 }
 
 /// Whether the trial can be done again.

@@ -13,8 +13,8 @@ use super::key_action::ManualAction;
 use super::notice::NoticeLevel;
 use super::probe_keys::{ProbeAnswerer, answerer};
 use crate::session::admit::admit;
-use crate::session::probes::of_trial;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, participant, space};
+use crate::session::probes::of_trial;
 use crate::session::{Event, Session};
 
 /// The key that overrides failed checks and starts the trial.
@@ -70,7 +70,12 @@ fn probes(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
         ProbeAnswerer::Console if !is_wanted(session) => PreflightCheck::ok("probes", found("on the console")),
         ProbeAnswerer::Console => {
             let remedy = "open the participant's page; else read the questions out, and enter the answers here";
-            PreflightCheck::new("probes", PreflightVerdict::Warning, found("on the console: no page is connected"), remedy)
+            PreflightCheck::new(
+                "probes",
+                PreflightVerdict::Warning,
+                found("on the console: no page is connected"),
+                remedy,
+            )
         }
     })
 }

@@ -198,9 +198,8 @@ fn choices(kitchen: &Kitchen, words: &DisplayWords, question: &ProbeQuestion) ->
 
 /// A content of a location, or what an order wants.
 fn content(kitchen: &Kitchen, words: &DisplayWords, location: &str, name: &str) -> (String, Option<ProbePicture>) {
-    let is_order = kitchen
-        .location_named(location)
-        .is_some_and(|location| kitchen.location(location).kind == LocationKind::Order);
+    let is_order =
+        kitchen.location_named(location).is_some_and(|location| kitchen.location(location).kind == LocationKind::Order);
     let dish = || Some(ProbePicture::Dish(name.to_string()));
     match (is_order, name) {
         (true, "none") => return (words.of_name("no order"), Some(ProbePicture::Empty)),

@@ -150,7 +150,11 @@ pub fn sight(session: &Session) -> DisplayUpdate {
             .map(|(button, ..)| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action)),
         signal: match practised {
             Some((step, tutorial)) => explained(kitchen, tutorial.kitchen, step),
-            None => session.shown.as_ref().filter(|_| probe.is_none()).and_then(|shown| told(kitchen, session.state, &shown.signal)),
+            None => session
+                .shown
+                .as_ref()
+                .filter(|_| probe.is_none())
+                .and_then(|shown| told(kitchen, session.state, &shown.signal)),
         },
         cue: session.cue,
         question: question(session),

@@ -18,8 +18,8 @@ use crate::mind::dirichlet::DirichletBelief;
 use crate::session::{Event, Session, Stamped, apply};
 use arm::ArmScene;
 use belief_entities::BeliefScene;
-use probe_entities::ProbeScene;
 pub use entity_content::{EntityData, EntityUpdate};
+use probe_entities::ProbeScene;
 
 /// Version of the scene's content and layout. A stream with another version is rebuilt from the log.
 pub const VERSION: u32 = 6;

@@ -4,10 +4,10 @@ use super::EntityUpdate;
 use super::colours;
 use super::entity_content::{EntityData, LogLevel, slug};
 use crate::history::{probe_wording, wording};
-use crate::kitchen::AspectId;
+use crate::kitchen::Agent;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::session::Session;
 use crate::session::probes::{ProbeEvent, ProbeQuestion, ProbeSubject};
+use crate::session::{Session, probe_sampling};
 
 /// Lane of the question that is asked.
 const ASKED: &str = "human/probes/asked";
@@ -63,14 +63,14 @@ impl ProbeScene {
             }
             (Some(name), ProbeSubject::NextOrder | ProbeSubject::NextPress) => wording::location(name),
         };
-        let estimate = aspect(session, &asked.about).zip(belief).map(|(aspect, belief)| {
+        let estimate = probe_sampling::aspect(&session.kitchen, &asked.about).zip(belief).map(|(aspect, belief)| {
             let (held, values) = (&belief.aspects[aspect.index()], &session.kitchen.aspects[aspect.index()]);
             let value = held.most_likely();
             format!("{} {:.0} %", values.wordings[value], 100.0 * held.mean()[value])
         });
         let beside = estimate.as_ref().map_or_else(String::new, |estimate| format!(" (estimate: {estimate})"));
         let text = format!("human answers, {about}: {said}{beside}");
-        let line = EntityData::Words { level: LogLevel::Info, text, colour: colours::agent_colour(crate::kitchen::Agent::Human) };
+        let line = EntityData::Words { level: LogLevel::Info, text, colour: colours::agent_colour(Agent::Human) };
         let lane = |kind: &str| format!("human/probes/{}_{kind}", slug(&about));
         let mut rows = vec![EntityUpdate::new(SAID, line)];
         for (kind, text) in [("answer", Some(said)), ("estimate", estimate)] {
@@ -85,13 +85,4 @@ impl ProbeScene {
 
 fn state(entity: impl Into<String>, text: impl Into<String>) -> EntityUpdate {
     EntityUpdate::new(entity, EntityData::State(text.into()))
-}
-
-/// The aspect that a question is about, if it is about one.
-fn aspect(session: &Session, about: &ProbeSubject) -> Option<AspectId> {
-    match about {
-        ProbeSubject::Location { location } => session.kitchen.aspect_named(location),
-        ProbeSubject::Recipe { dish } => Some(session.kitchen.aspect_of_dish(session.kitchen.dish_named(dish)?)),
-        ProbeSubject::NextOrder | ProbeSubject::NextPress => None,
-    }
 }

@@ -103,7 +103,8 @@ fn has_recipe(kitchen: &Kitchen, list: &[String]) -> bool {
 }
 
 /// Fields of what the page is told.
-const FIELDS: [&str; 27] = [
+const FIELDS: [&str; 28] = [
+    "probe",
     "tutorial",
     "why",
     "reason",

@@ -7,6 +7,7 @@ mod console;
 mod cost_to_go;
 mod display;
 mod display_palette;
+mod display_probes;
 mod display_server;
 mod display_words;
 mod escapes;

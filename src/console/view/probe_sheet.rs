@@ -28,7 +28,8 @@ pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Sess
     if let Some(address) = model.display.as_ref().and_then(DisplayHealth::to_open).filter(|_| is_wanted(session)) {
         page.text(0, &format!("no page is connected: {address}"), TextRole::Alarm);
     }
-    let question = open.shown.filter(|_| open.closed.is_none()).and_then(|shown| Some((shown, open.questions.get(shown)?)));
+    let question =
+        open.shown.filter(|_| open.closed.is_none()).and_then(|shown| Some((shown, open.questions.get(shown)?)));
     match question {
         _ if open.is_paused() => page.text(0, "The probe is paused: its time stands still.", TextRole::Strong),
         Some((index, question)) => ask(&mut page, (open, index, question), (session, model), who),
@@ -39,7 +40,8 @@ pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Sess
     }
     answers(&mut page, open, session, model);
     let title = status(session, model).unwrap_or_default();
-    let left = probe_left(session, model.now).map_or(String::new(), |left| format!("{:.0} s left", left.as_secs_f64().ceil()));
+    let left =
+        probe_left(session, model.now).map_or(String::new(), |left| format!("{:.0} s left", left.as_secs_f64().ceil()));
     let chord = |action| model.keys.chord_for(&action);
     let (pause, skip) = (chord(KeyAction::Advance), chord(KeyAction::Hand(ManualAction::SkipProbe)));
     let [pause_key, skip_key] = [pause, skip].map(|chord| chord.map(|chord| chord.to_string()).unwrap_or_default());
@@ -84,13 +86,18 @@ fn ask(
     let entry = entry(model, open, index);
     let is_chosen = |number: usize| who == ProbeAnswerer::Console && entry.choice == Some(number);
     let numbered = choices.iter().enumerate().map(|(index, choice)| (index + 1, choice.as_str()));
-    let cells: Vec<(usize, String)> = numbered.chain([(0, "does not know")]).map(|(number, words)| (number, cell(number, words, is_chosen(number)))).collect();
+    let cells: Vec<(usize, String)> = numbered
+        .chain([(0, "does not know")])
+        .map(|(number, words)| (number, cell(number, words, is_chosen(number))))
+        .collect();
     let widest = cells.iter().map(|(_, text)| width(text)).max().unwrap_or(1) + 2;
     let columns = usize::from((page.columns() / widest).clamp(1, if cells.len() > 8 { 4 } else { 1 }));
     let rows = cells.len().div_ceil(columns);
     for row in 0..rows {
         let line: Vec<&(usize, String)> = (0..columns).filter_map(|column| cells.get(column * rows + row)).collect();
-        let parts = line.iter().map(|(number, text)| (text.as_str(), if is_chosen(*number) { TextRole::Strong } else { TextRole::Text }));
+        let parts = line
+            .iter()
+            .map(|(number, text)| (text.as_str(), if is_chosen(*number) { TextRole::Strong } else { TextRole::Text }));
         if line.iter().any(|(number, _)| is_chosen(*number)) {
             page.focus_here();
         }
@@ -118,7 +125,8 @@ fn sure(page: &mut Page, entry: ProbeEntry) {
 /// The answers so far; what was answered stands there only where the study shows beliefs to the wizard.
 fn answers(page: &mut Page, open: &OpenProbe, session: &Session, model: &ConsoleModel) {
     let is_shown = visibility(session, model) >= Visibility::Belief;
-    let given = open.questions.iter().zip(&open.answers).filter_map(|(question, given)| Some((question, given.as_ref()?)));
+    let given =
+        open.questions.iter().zip(&open.answers).filter_map(|(question, given)| Some((question, given.as_ref()?)));
     for (index, (question, given)) in given.enumerate() {
         if index == 0 {
             page.space();

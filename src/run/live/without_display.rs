@@ -26,7 +26,7 @@ impl ParticipantDisplay {
     }
 
     /// Nothing is shown to the participant.
-    pub fn show(&mut self, _: &Session) {
+    pub fn show(&mut self, _: &Session, _: SessionTime) {
         match *self {}
     }
 

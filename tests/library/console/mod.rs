@@ -14,6 +14,7 @@ mod layers;
 mod notices;
 mod palette;
 mod pointer;
+mod probes;
 mod recording_picker;
 mod screens;
 mod sheets;

@@ -20,7 +20,7 @@ ARC_MINUTES, DISTANCE_M = 17, 3
 SIZES = [(1920, 1080), (1280, 800), (3840, 2160)]
 
 MEASURE = """([states, DISTANCE_M]) => Object.entries(states).map(([name, sight]) => {
-  Stage.show(sight, 17);
+  Stage.show(sight, () => 17);
   for (const choice of (sight.probe && sight.probe.touched) || []) Probe.touch({ believe: choice });
   const SLACK = 1, found = [], stage = document.getElementById("stage").getBoundingClientRect();
   const isSeen = (made) => made.checkVisibility({ opacityProperty: true, visibilityProperty: true });

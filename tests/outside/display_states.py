@@ -200,6 +200,6 @@ def states(scene, kitchen):
 
 
 def show(page, sight):
-    page.ask(f"Stage.show({json.dumps(sight)}, 17)")
+    page.ask(f"Stage.show({json.dumps(sight)}, () => 17)")
     for choice in (sight["probe"] or {}).get("touched", []):
         page.ask(f"Probe.touch({{ believe: {choice} }})")

@@ -64,11 +64,11 @@
     }
   }
 
-  /** What is seen now. A probe has so many seconds left, as of when the program said it. */
+  /** What is seen now. A probe had so many seconds left at a time of the program's clock, which a new page learns a moment later. */
   function see({ sight, at: toldAt, left_s }) {
-    const now = performance.now(), before = Stage.shown(), count = (one) => (one && one.presses[0] ? one.presses[0].number : 0);
+    const before = Stage.shown(), count = (one) => (one && one.presses[0] ? one.presses[0].number : 0);
     const isAnswer = before && count(sight) > count(before);
-    Stage.show(sight, (left_s || 0) - (trips.length && toldAt ? Math.max(0, serverTime(now) - toldAt) / 1000 : 0));
+    Stage.show(sight, () => (left_s || 0) - (trips.length ? Math.max(0, serverTime(performance.now()) - toldAt) / 1000 : 0));
     const isNew = before && sight.cue !== null && sight.cue !== cue;
     cue = sight.cue;
     if (isNew) Stage.flash();

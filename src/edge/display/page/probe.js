@@ -6,7 +6,7 @@ const Probe = (() => {
   const BETWEEN = 0.8, WITHIN = 0.9, AROUND = 2.4, READ = 1.38, HIGHEST = 17, LARGEST = 4.4;
   // An answer that nothing follows for so long was not taken: it can be given again.
   const UNHEARD_MS = 2000;
-  let tell = () => {}, key = "", shown = null, parts = null, timer = 0, ends = 0;
+  let tell = () => {}, key = "", shown = null, parts = null, timer = 0;
   // What is chosen and not told yet: numbers of choices. `waits`: they are to be confirmed by how sure the participant is.
   let chosen = [], waits = false, isTold = false;
 
@@ -78,7 +78,7 @@ const Probe = (() => {
   const subjectOf = (about, kit) => kit.element("span", "subject", pictureOf(about, kit));
 
   /** Draws the question, or what is shown before the first and after the last one. */
-  function draw(sheet, probe, leftS, kit) {
+  function draw(sheet, probe, left, kit) {
     const { element, text, scene } = kit, words = scene.words, now = `${probe.probe}/${probe.question}/${probe.closed}`;
     if (now !== key) [key, chosen, waits, isTold] = [now, [], false, false];
     shown = probe;
@@ -104,7 +104,7 @@ const Probe = (() => {
       arrange(all.querySelector(".choices"), probe.choices, scene);
       fit(all);
     }
-    run(bar, all.querySelector(".seconds"), leftS);
+    run(bar, all.querySelector(".seconds"), left);
   }
 
   /** Makes the words of the choices, and those of the question, smaller until each stands in its place. */
@@ -123,13 +123,12 @@ const Probe = (() => {
   }
 
   /** The time that is left: a quiet bar, or the seconds of the count-down. */
-  function run(bar, seconds, leftS) {
+  function run(bar, seconds, left) {
     clearInterval(timer);
-    ends = performance.now() + 1000 * leftS;
     const step = () => {
-      const left = Math.max(0, (ends - performance.now()) / 1000);
-      bar.style.width = `${Math.min(80, (80 * left) / shown.limit_s).toFixed(1)}%`;
-      if (seconds) seconds.textContent = Math.max(1, Math.ceil(left - 0.05));
+      const now = Math.max(0, left());
+      bar.style.width = `${Math.min(80, (80 * now) / shown.limit_s).toFixed(1)}%`;
+      if (seconds) seconds.textContent = Math.max(1, Math.ceil(now - 0.05));
     };
     step();
     timer = setInterval(step, 100);

@@ -235,7 +235,7 @@ const Stage = (() => {
   }
 
   const BIG = ["welcome", "questionnaire", "thanks", "probe"];
-  function drawSheet(sight, leftS) {
+  function drawSheet(sight, left) {
     const { stage, practice } = sight;
     root.dataset.stage = stage;
     // What was said of a press says nothing of what comes now.
@@ -249,7 +249,7 @@ const Stage = (() => {
     const free = recipe ? room.forRecipe([...parts.all, parts.cards[recipe.order]]) : parts.free;
     if (sight.tutorial) return Tutorial.draw(parts.sheet, sight.tutorial, { scene, free, element, text, put, partOf });
     Tutorial.end();
-    if (sight.probe) return Probe.draw(parts.sheet, sight.probe, leftS, { scene, element, text, contentOf });
+    if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });
     Probe.end();
     const card = element("div", "card");
     card.append(text("h1", "", title || ""), text("p", "", more || ""));
@@ -271,8 +271,8 @@ const Stage = (() => {
     parts.target.dataset.is = is;
   }
 
-  /** `leftS`: the seconds that a probe still has. */
-  function show(sight, leftS = 0) {
+  /** `left` tells the seconds that a probe still has. */
+  function show(sight, left = () => 0) {
     if (!scene) return;
     // The kitchen stands still during a probe, and nothing of it is told; then it is as it was.
     sight.contents.forEach((what, index) => drawLocation(index, what));
@@ -280,7 +280,7 @@ const Stage = (() => {
     drawIntention(sight.intention);
     if (sight.contents.length) Robot.hold(sight.contents, contentOf);
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal);
-    if (!shown || JSON.stringify([shown.stage, shown.practice, shown.question, shown.tutorial, shown.probe]) !== JSON.stringify([sight.stage, sight.practice, sight.question, sight.tutorial, sight.probe])) drawSheet(sight, leftS);
+    if (!shown || JSON.stringify([shown.stage, shown.practice, shown.question, shown.tutorial, shown.probe]) !== JSON.stringify([sight.stage, sight.practice, sight.question, sight.tutorial, sight.probe])) drawSheet(sight, left);
     drawTarget(sight);
     parts.served.textContent = sight.served ? `✓ ${sight.served}` : "";
     shown = sight;

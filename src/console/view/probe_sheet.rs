@@ -8,7 +8,6 @@ use super::paint::{KeyHint, width};
 use super::sheet::{Page, Pen, plain};
 use super::theme::TextRole;
 use crate::console::beliefs::visibility;
-use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
 use crate::console::display_status::{DisplayHealth, is_wanted};
 use crate::console::key_action::{KeyAction, ManualAction};

@@ -49,6 +49,7 @@ pub enum ProbeEvent {
         /// The question, from 1.
         question: u32,
         /// One of the question's choices; `None`: "I don't know".
+        #[serde(default, skip_serializing_if = "Option::is_none")]
         answer: Option<String>,
         /// How sure the participant is, from 1 to 3, if it was asked.
         #[serde(default, skip_serializing_if = "Option::is_none")]

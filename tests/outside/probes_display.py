@@ -179,14 +179,14 @@ def plays(tomcom, chromium, folder, kitchen, language):
         again = page.ask("document.querySelector('.probing .left').getBoundingClientRect().width")
         assert again < left - 20, f"the time that is left began anew: {left} and {again} px"
         # A press during a probe is none, whichever way it comes.
-        before = len([event for event in events(folder) if event["event"] == "press" and event["agent"] == "human"])
+        before = len([event for event in events(folder) if event["kind"] == "press" and event["agent"] == "human"])
         page.page.keyboard.press("q")
         page.ask("document.querySelector('[data-button]').dispatchEvent(new PointerEvent('pointerdown', { bubbles: true }))")
         given.append(answer(page, "touch", None))
         page.asks(3)
         given.append(answer(page, "touch", 1))
         page.stage("running")
-        assert len([event for event in events(folder) if event["event"] == "press" and event["agent"] == "human"]) == before
+        assert len([event for event in events(folder) if event["kind"] == "press" and event["agent"] == "human"]) == before
 
         # By keys. A late answer, to a question that is over or to a probe that is closed, changes nothing.
         page.page.wait_for_timeout(800)
@@ -246,7 +246,7 @@ def check_log(tomcom, folder, given):
     """The log has the answers that were given, and only these."""
     log = events(folder)
     asked = {event["probe"]: event["questions"] for event in log if event.get("did") == "begun"}
-    found = [(event["probe"], event["question"], event["answer"]) for event in log if event.get("did") == "answered"]
+    found = [(event["probe"], event["question"], event.get("answer")) for event in log if event.get("did") == "answered"]
     assert len(found) == len(given), (found, given)
     for (probe, question, answer), choice in zip(found, given):
         wanted = meant(asked[probe][question - 1], choice) if choice else None

@@ -53,7 +53,6 @@ def chosen(scene, kitchen):
         "probe-question": every["probe: place"],
         "probe-stack": {**every["probe: stack"], "probe": {**stack, "touched": lying}},
         "probe-recipe": every["probe: recipe"],
-        "probe-after": every["probe: after"],
         "running": running,
         "recipe": {**running, "signal": {"recipe": {"order": order, "dish": dish, "items": items_of(kitchen)[dish]}}},
         "highlight": {**running, "signal": {"highlight": place}},

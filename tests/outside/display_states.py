@@ -117,7 +117,7 @@ def probe_pages(scene, kitchen, dishes):
     pot, board, small = ("cooking_pot", "assembly_board", "rolling_mat") if kitchen == "sushi" else ("grill_plate", "board", "tray")
     first, second = slots[0], slots[1]
     stacks = [(" + ".join(scene["items"][item]["label"] for item in (below, second[0])), {"stack": [below, second[0]]}) for below in first]
-    variants = [[one, *items[1:]] for items in dishes.values() for one in slots[0]][:8]
+    variants = [[one, *items[1:-1], last] for one in slots[0] for items in list(dishes.values())[:1] for last in slots[-1]][:8]
     dish = max(scene["dishes"], key=lambda name: len(scene["dishes"][name]["label"]))
     orders = [index for index, spot in enumerate(scene["locations"]) if spot["kind"] == "order"]
     takes = [(said("do take", shelf["label"]), {"storage": index}) for index, shelf in enumerate(scene["storages"]) if shelf["agent"] == "robot"]

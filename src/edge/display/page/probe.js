@@ -110,7 +110,7 @@ const Probe = (() => {
   /** Makes the words of the choices, and those of the question, smaller until each stands in its place. */
   function fit(all) {
     const fits = (made) => made.scrollWidth <= made.clientWidth + 1 && made.scrollHeight <= made.clientHeight + 1;
-    for (const [words, places] of [["--asks", ".asks, .title"], ["--words", ".choices, .choice, .picture"]]) {
+    for (const [words, places] of [["--asks", ".asks, .title"], ["--words", ".choices, .choice, .choice .words"]]) {
       for (let size = 1; size > 0.5; size -= 0.02) {
         all.style.setProperty(words, size);
         if ([...all.querySelectorAll(places)].every(fits)) break;

@@ -5,9 +5,11 @@ use std::path::Path;
 
 use tomcom::base::time::SessionTime;
 use tomcom::communication::Sender;
+use tomcom::history::probe_wording;
 use tomcom::kitchen::Agent;
 use tomcom::run::replay::Replay;
 use tomcom::scene::{DerivedData, EntityData, EntityUpdate, SceneUpdate, SessionScene};
+use tomcom::session::probes::ProbeEvent;
 use tomcom::session::settings::ArmKind;
 use tomcom::session::{Event, Stamped};
 
@@ -106,4 +108,59 @@ fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
         }
     }
     assert!(count > 20, "{count} presses");
+}
+
+#[test]
+fn a_scene_shows_answers_of_probes_beside_the_estimate() {
+    let out = simulated("probes.toml", ArmKind::Timed, "scene-probes", 1, 3);
+    let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
+    let (moments, events) = shown(&recording);
+    let state = |moment: &SceneUpdate, lane: &str| -> Option<String> {
+        moment.rows.iter().find(|row| row.entity == lane).map(|row| match &row.shown {
+            EntityData::State(text) => text.clone(),
+            other => panic!("{other:?}"),
+        })
+    };
+    let mut asked = Vec::new();
+    let (mut answers, mut lanes) = (0, Vec::new());
+    for stamped in &events {
+        let Event::Probe(event) = &stamped.event else { continue };
+        let moment = moments.iter().find(|moment| moment.step == stamped.seq && !moment.rows.is_empty());
+        match event {
+            ProbeEvent::Begun { questions, .. } => {
+                // The answers of the probe before vanish.
+                let cleared = |lane: &String| moment.and_then(|moment| state(moment, lane)).as_deref() == Some("");
+                assert!(lanes.iter().all(cleared), "{lanes:?}");
+                lanes.clear();
+                asked.clone_from(questions);
+            }
+            ProbeEvent::Asked { question, .. } => {
+                let about = probe_wording::subject(&asked[*question as usize - 1].about);
+                assert_eq!(state(moment.expect("a moment"), "human/probes/asked"), Some(about));
+            }
+            ProbeEvent::Answered { question, answer, .. } => {
+                answers += 1;
+                let (moment, about) =
+                    (moment.expect("a moment"), probe_wording::subject(&asked[*question as usize - 1].about));
+                let lane = |kind: &str| {
+                    format!("human/probes/{}_{kind}", about.replace(|letter: char| !letter.is_alphanumeric(), "_"))
+                };
+                let said = state(moment, &lane("answer")).expect("an answer");
+                assert_eq!(answer.is_none(), said == "does not know", "{said}");
+                let estimate = state(moment, &lane("estimate")).expect("an estimate");
+                assert!(estimate.ends_with(" %"), "{estimate}");
+                let line = format!("human answers, {about}: {said} (estimate: {estimate})");
+                let is_line = |row: &EntityUpdate| {
+                    row.entity == "happened" && matches!(&row.shown, EntityData::Words { text, .. } if *text == line)
+                };
+                assert!(moment.rows.iter().any(is_line), "{line}");
+                lanes.extend([lane("answer"), lane("estimate")]);
+            }
+            ProbeEvent::Closed { .. } => {
+                assert_eq!(state(moment.expect("a moment"), "human/probes/asked").as_deref(), Some(""));
+            }
+            _ => {}
+        }
+    }
+    assert!(answers > 3, "{answers} answers");
 }

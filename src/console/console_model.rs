@@ -18,7 +18,7 @@ use super::notice::NoticeLevel;
 use super::panel::Panel;
 use super::picker::Picker;
 use super::playback::Playback;
-use super::probe_keys::ProbeEntry;
+use super::probe_entry::ProbeEntry;
 use super::rater_session::RaterSession;
 use super::view::theme::Theme;
 use crate::base::time::SessionTime;

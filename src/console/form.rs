@@ -9,6 +9,7 @@ use super::note::TextInput;
 use super::notice::NoticeLevel;
 use super::probe_keys;
 use super::sending::send;
+use super::sheet_key::SheetKey;
 use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{ItemForm, PhaseSpec, Questionnaire, Tutorial};
 use crate::session::probes::OpenProbe;
@@ -72,26 +73,6 @@ pub fn sheet(session: &Session) -> Option<SheetContent<'_>> {
         }
         PhaseSpec::Trial => None,
     }
-}
-
-/// A key of the sheet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum SheetKey {
-    /// Tick the step, go on from the item, or confirm.
-    Confirm,
-    /// Go on to the next phase, if nothing is missing.
-    Leave,
-    /// Show the next item.
-    Forward,
-    /// Show the item before.
-    Back,
-    /// Take back the last tick, or show the item before.
-    Undo,
-    /// Leave the item out.
-    Skip,
-    Digit(u8),
-    /// Another letter, or a minus sign: it begins an answer that is typed.
-    Letter(char),
 }
 
 /// The meaning of a key on a sheet, if any; `advances` marks the key that starts and pauses trials.

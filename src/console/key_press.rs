@@ -20,6 +20,7 @@ use super::panels;
 use super::possible::acts_on_sheet;
 use super::preflight;
 use super::sending::send;
+use super::sheet_key::SheetKey;
 use super::view::dialog::{help_pages, report_rest};
 use crate::session::event::EndReason;
 use crate::session::{Event, Phase, Session};
@@ -157,7 +158,7 @@ fn on_sheet(
     match (form::stroke(session, code, action == Some(KeyAction::Advance)), action) {
         // Nobody reads a step so fast: the key is still down from the last one. An answer is always taken: one that is lost
         // would put those after it at the wrong items, one too many is seen.
-        (Some(form::SheetKey::Confirm | form::SheetKey::Leave), _) if touch == Touch::Again => {
+        (Some(SheetKey::Confirm | SheetKey::Leave), _) if touch == Touch::Again => {
             model.say(NoticeLevel::Refused, "not yet: read it, then press the key again");
             None
         }

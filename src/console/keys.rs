@@ -4,7 +4,7 @@
 //! change both. The space bar always stops the robot, in every view and layer.
 
 use super::chord::KeyChord;
-use super::key_action::{KeyAction, KeyBinding, KeyError, KeyLayer, KeyPlace, KeySection, RaterKey};
+use super::key_action::{KeyAction, KeyBinding, KeyError, KeyLayer, KeyPlace, KeySection, ManualAction, RaterKey};
 use super::keymap::KeyMap;
 use super::playback::ReplayKey;
 use super::table;
@@ -42,6 +42,7 @@ impl KeyBindings {
             KeyAction::Press(_) | KeyAction::SwitchLayer => at_keyboard,
             KeyAction::Move(_) => false,
             KeyAction::Note(index) => *index < spec.console.notes.len(),
+            KeyAction::Hand(ManualAction::AskProbe | ManualAction::SkipProbe) => spec.probes.is_some(),
             _ => line.section != KeySection::Replay,
         });
         bindings.retain(|line| !line.chords.is_empty());

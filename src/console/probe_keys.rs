@@ -2,26 +2,13 @@
 
 use super::console_message::ConsoleCommand;
 use super::console_model::ConsoleModel;
-use super::form::SheetKey;
 use super::notice::NoticeLevel;
 use super::sending::send;
+use super::sheet_key::SheetKey;
 use crate::session::probes::{OpenProbe, ProbeEvent, ProbeOrigin};
 use crate::session::settings::ParticipantKind;
 use crate::session::wall_display::Answering;
 use crate::session::{Event, Session};
-
-/// An answer that is being entered at the console.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ProbeEntry {
-    /// Numbers of the probe and of the question that it is for.
-    of: (u32, usize),
-    /// Number of the choice; 0: "I don't know".
-    pub choice: Option<usize>,
-    /// The choice is confirmed, and how sure the participant is comes next.
-    pub asks_sure: bool,
-    /// How sure the participant is, from 1 to 3.
-    pub sure: Option<u8>,
-}
 
 /// Who answers the questions of a probe now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,12 +28,6 @@ pub fn answerer(session: &Session, model: &ConsoleModel) -> ProbeAnswerer {
         _ if model.display.as_ref().is_some_and(|display| display.page.is_some()) => ProbeAnswerer::Display,
         _ => ProbeAnswerer::Console,
     }
-}
-
-/// The answer that is being entered for the question with this index; a new one for another question.
-pub fn entry(model: &ConsoleModel, open: &OpenProbe, question: usize) -> ProbeEntry {
-    let of = (open.number, question);
-    Some(model.probe_entry).filter(|entry| entry.of == of).unwrap_or(ProbeEntry { of, ..ProbeEntry::default() })
 }
 
 /// "probe 2 of 4": the probe, and how many are expected in the trial.
@@ -97,7 +78,7 @@ pub(super) fn write(
         ProbeAnswerer::Console => {}
     }
     let Some((index, question)) = open.question() else { return refuse(model, "no question is asked now") };
-    let (mut entry, choices) = (entry(model, open, index), question.choices.len());
+    let (mut entry, choices) = (model.probe_entry.for_question(open.number, index), question.choices.len());
     let confidence = session.spec.probes.as_ref().is_some_and(|probes| probes.confidence);
     match stroke {
         SheetKey::Digit(digit @ 1..=3) if entry.asks_sure => entry.sure = Some(digit),

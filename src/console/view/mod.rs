@@ -25,6 +25,7 @@ pub mod regions;
 pub mod robot_panel;
 mod scrub;
 pub mod sheet;
+mod sheet_page;
 pub mod shown;
 pub mod theme;
 pub mod timeline;

@@ -5,13 +5,14 @@ use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
 use super::paint::{KeyHint, width};
-use super::sheet::{Page, Pen, plain};
+use super::sheet_page::{Page, Pen, plain};
 use super::theme::TextRole;
 use crate::console::beliefs::visibility;
 use crate::console::console_model::ConsoleModel;
 use crate::console::display_status::{DisplayHealth, is_wanted};
 use crate::console::key_action::{KeyAction, ManualAction};
-use crate::console::probe_keys::{ProbeAnswerer, ProbeEntry, answerer, entry, status};
+use crate::console::probe_entry::ProbeEntry;
+use crate::console::probe_keys::{ProbeAnswerer, answerer, status};
 use crate::display::{ProbeWording, probe_left, probe_wording};
 use crate::session::Session;
 use crate::session::probes::{OpenProbe, ProbeAnswer, ProbeQuestion};
@@ -82,7 +83,7 @@ fn ask(
         TextRole::Quiet,
     );
     page.space();
-    let entry = entry(model, open, index);
+    let entry = model.probe_entry.for_question(open.number, index);
     let is_chosen = |number: usize| who == ProbeAnswerer::Console && entry.choice == Some(number);
     let numbered = choices.iter().enumerate().map(|(index, choice)| (index + 1, choice.as_str()));
     let cells: Vec<(usize, String)> = numbered
@@ -132,7 +133,7 @@ fn answers(page: &mut Page, open: &OpenProbe, session: &Session, model: &Console
         }
         let wording = probe_wording(session, question);
         let answer = if is_shown { answered(&wording, question, given) } else { "answered".to_string() };
-        page.text(0, &format!("{} {}. {answer}", index + 1, wording.question), TextRole::Quiet);
+        page.text(0, &format!("{} {} {answer}", index + 1, wording.question), TextRole::Quiet);
     }
 }
 

@@ -1,10 +1,10 @@
 //! Freeze probes at the console: the sheet at three sizes, its keys, and what it does not show.
 
 use crossterm::event::KeyCode;
-use tomcom::console::ConsoleCommand;
 use tomcom::console::display_status::DisplayHealth;
 use tomcom::console::preflight::checks;
 use tomcom::console::probe_keys::status;
+use tomcom::console::{ConsoleCommand, KeyBindings, KeyMap};
 use tomcom::kitchen::{AspectId, AspectKind};
 use tomcom::session::Event;
 use tomcom::session::preflight_checks::PreflightVerdict;
@@ -20,6 +20,8 @@ fn probed(kitchen: &str, has_page: bool, confidence: bool) -> Stage {
     let mut stage = Stage::new(kitchen, ParticipantKind::Display);
     let settings = format!("confidence = {confidence}");
     stage.session.spec.probes = Some(toml::from_str(&settings).expect("settings of probes"));
+    let (kitchen, spec) = (stage.session.kitchen.clone(), &stage.session.spec);
+    stage.model.keys = KeyBindings::live(&kitchen, spec, &KeyMap::default()).expect("the keys are free");
     let page = has_page.then_some([1920, 1080]);
     stage.model.display =
         Some(DisplayHealth { url: "http://127.0.0.1:50022".to_string(), page, ..DisplayHealth::default() });

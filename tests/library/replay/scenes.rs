@@ -8,12 +8,13 @@ use tomcom::communication::Sender;
 use tomcom::history::probe_wording;
 use tomcom::kitchen::Agent;
 use tomcom::run::replay::Replay;
+use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
 use tomcom::scene::{DerivedData, EntityData, EntityUpdate, SceneUpdate, SessionScene};
 use tomcom::session::probes::ProbeEvent;
 use tomcom::session::settings::ArmKind;
 use tomcom::session::{Event, Stamped};
 
-use super::simulated;
+use super::{folder, session, simulated};
 
 /// Everything that a recording shows, and its events.
 fn shown(recording: &Path) -> (Vec<SceneUpdate>, Vec<Stamped>) {
@@ -112,7 +113,9 @@ fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
 
 #[test]
 fn a_scene_shows_answers_of_probes_beside_the_estimate() {
-    let out = simulated("probes.toml", ArmKind::Timed, "scene-probes", 1, 3);
+    let (files, out) = (session("probes.toml"), folder("scene-probes"));
+    simulate(&SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: out.clone() }, || ())
+        .expect("the folder can be written");
     let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
     let (moments, events) = shown(&recording);
     let state = |moment: &SceneUpdate, lane: &str| -> Option<String> {

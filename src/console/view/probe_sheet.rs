@@ -122,9 +122,9 @@ fn sure(page: &mut Page, entry: ProbeEntry) {
     page.focus_here();
 }
 
-/// The answers so far; what was answered stands there only where the study shows beliefs to the wizard.
+/// The answers so far; what was answered stands there only where the study shows beliefs to the wizard, and not for raters.
 fn answers(page: &mut Page, open: &OpenProbe, session: &Session, model: &ConsoleModel) {
-    let is_shown = visibility(session, model) >= Visibility::Belief;
+    let is_shown = visibility(session, model) >= Visibility::Belief && model.coding.is_none();
     let given =
         open.questions.iter().zip(&open.answers).filter_map(|(question, given)| Some((question, given.as_ref()?)));
     for (index, (question, given)) in given.enumerate() {

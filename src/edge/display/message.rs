@@ -242,6 +242,8 @@ mod tests {
         assert!(read(r#"{"kind": "answer", "item": "age", "answer": 31}"#).is_some());
         assert!(read(r#"{"kind": "answer", "item": "remarks", "answer": "Too fast."}"#).is_some());
         assert!(read(r#"{"kind": "answer", "item": "aids", "answer": ["glasses"]}"#).is_some());
+        let stack = r#"{"kind": "believe", "probe": 1, "question": 2, "choice": null, "items": ["nori", "rice cooked"], "sure": 3}"#;
+        assert!(read(stack).is_some());
         for wrong in [
             "",
             "nonsense",
@@ -255,6 +257,11 @@ mod tests {
             r#"{"kind": "answer", "item": "age", "answer": 31.5}"#,
             r#"{"kind": "answer", "item": "remarks", "answer": "two\nlines"}"#,
             r#"{"kind": "answer", "item": "aids", "answer": {"glasses": true}}"#,
+            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": 0, "items": [], "sure": null}"#,
+            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": 1, "items": [], "sure": 4}"#,
+            r#"{"kind": "believe", "probe": -1, "question": 1, "choice": 1, "items": [], "sure": null}"#,
+            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": null, "items": [""], "sure": null}"#,
+            r#"{"kind": "believe", "probe": 1, "question": 1, "choice": 1, "items": [], "sure": null, "right": true}"#,
             r#"{"kind": "pointer", "x": 1e9, "y": 0}"#,
             r#"{"kind": "hello", "page": "a", "width": 0, "height": 1, "code": null}"#,
             r#"{"kind": "size", "width": 1920, "height": 200000}"#,

@@ -5,6 +5,7 @@ mod choices;
 mod cohorts;
 mod data;
 mod estimates;
+mod exports;
 mod failure;
 mod list;
 mod operate;
@@ -81,6 +82,7 @@ pub fn main() -> ExitCode {
         CliCommand::Keys(args) => keys(&args),
         CliCommand::Exclude(args) => exclude(&args),
         CliCommand::Codes(args) => data::codes(&args),
+        CliCommand::Export(args) => exports::export(&args),
         CliCommand::Forget(args) => data::forget(&args),
         CliCommand::Doctor(args) => examine(&args),
         CliCommand::Completions(args) => completions(&args),

@@ -5,6 +5,8 @@ pub mod advisor;
 #[cfg(feature = "cli")]
 pub mod belief_check;
 #[cfg(feature = "cli")]
+pub mod bids;
+#[cfg(feature = "cli")]
 pub mod cohort_table;
 pub mod compared_recording;
 pub mod comparison_summary;

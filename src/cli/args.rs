@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use super::choices::{ArmArg, ConceptArg, SimulatedCondition};
 use super::cohorts::RobustnessArgs;
 use super::data::{CodesArgs, ForgetArgs};
+use super::exports::ExportArgs;
 use super::list::ListArgs;
 use super::operate::{OperateArgs, OperateFlags};
 use super::output::OutputFormat;
@@ -49,6 +50,7 @@ pub(super) enum CliCommand {
     Keys(KeysArgs),
     Exclude(ExcludeArgs),
     Codes(CodesArgs),
+    Export(ExportArgs),
     Forget(ForgetArgs),
     Doctor(DoctorArgs),
     Completions(CompletionsArgs),

@@ -2,6 +2,7 @@
 
 pub mod ask;
 pub mod battery_file;
+pub mod bids_tree;
 pub mod clock;
 pub mod connection_table;
 pub mod datagram_holder;

@@ -5,6 +5,8 @@ pub mod accuracy;
 #[cfg(feature = "cli")]
 mod advisor_desk;
 #[cfg(feature = "cli")]
+pub mod bids_export;
+#[cfg(feature = "cli")]
 pub mod check_beliefs;
 #[cfg(feature = "cli")]
 pub mod code_exchange;

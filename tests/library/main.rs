@@ -1,6 +1,7 @@
 //! The crate used as a library, a module a theme.
 
 mod arm;
+mod bids_export;
 mod cohort;
 mod connection_table;
 mod console;

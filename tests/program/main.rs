@@ -5,6 +5,7 @@ mod commands;
 mod damage;
 mod docs;
 mod escapes;
+mod exports;
 mod forgetting;
 mod forgetting_damage;
 mod forgetting_others;

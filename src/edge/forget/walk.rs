@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::owner::RecordingOwner;
 use super::subject::ForgetSubject;
+use crate::edge::bids_tree;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::consensus_file::CONSENSUS_NAME;
 use crate::edge::log::{EXCLUSION_NAME, LOCK_NAME, LOG_NAME, RRD_NAME, SETTINGS_NAME, is_damaged_log};
@@ -16,6 +17,10 @@ use crate::session::settings::is_code;
 /// Why a file in the folder of a recording is left.
 const STRANGE: &str = "in the folder of one of the participant's recordings, and tomcom did not write it; it is to be deleted or \
                        moved by hand";
+
+/// Why a data set with the participant in it is left.
+const EXPORTED: &str = "a BIDS data set of tomcom export with the participant in it; delete the folder, and export what is left of the \
+                        recordings again";
 
 /// What is or may be about the participant and is left, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -97,6 +102,9 @@ impl ForgetWalk {
 
     /// Takes up a folder with everything below it.
     fn enter(&mut self, folder: &Path, is_inside: bool) {
+        if bids_tree::codes(folder).is_some_and(|codes| codes.contains(&self.subject.code)) {
+            return self.left.push(LeftFile::new(folder, EXPORTED));
+        }
         let owner = RecordingOwner::read(folder);
         let (mut is_own, mut is_known) = (is_inside, false);
         match owner {

@@ -1,0 +1,28 @@
+//! Recordings as the tables of the Brain Imaging Data Structure (BIDS): behaviour of one recording a session, gaze as eye-tracking
+//! recording, questionnaires as phenotype.
+//!
+//! Column names and required fields are those of BIDS 1.10 and later (behavioral experiments, physiological recordings, phenotypic
+//! data). Files have their content here; the caller writes them.
+
+mod belief_rows;
+mod dataset;
+mod event_cells;
+mod event_columns;
+mod event_levels;
+mod labels;
+mod phenotype;
+mod recording_tables;
+mod sample_rows;
+mod session_rows;
+mod spans;
+mod tsv;
+
+pub use self::dataset::{
+    CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS_NAME, PROGRAM_NAME, ParticipantRow, dataset_files,
+};
+pub use self::event_levels::LEVELS;
+pub use self::labels::{Labels, letters_and_digits, session_label};
+pub use self::phenotype::Phenotypes;
+pub use self::recording_tables::{PressOutcome, RecordingTables, TableCounts};
+pub use self::session_rows::{SessionRow, sessions_files};
+pub use self::tsv::BidsFile;

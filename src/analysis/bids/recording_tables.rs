@@ -1,0 +1,168 @@
+//! The tables of one recording.
+
+use super::belief_rows::BeliefRows;
+use super::event_cells::EventCells;
+use super::event_columns::{EVENTS, WORDS};
+use super::sample_rows::{SampleRows, ViewingFacts};
+use super::spans::OpenSpans;
+use super::tsv::{self, BidsFile, TaskFacts, or_nothing, seconds, yes};
+use crate::base::time::SessionTime;
+use crate::session::accuracy_check::CalibrationEvent;
+use crate::session::event::{EndReason, Event};
+use crate::session::plan::ItemForm;
+use crate::session::protocol::ProtocolEvent;
+use crate::session::settings::GazeSource;
+use crate::session::wall_display::DisplayEvent;
+use crate::session::{Phase, Session, Stamped};
+
+/// What a press did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PressOutcome {
+    /// Whether the button did anything.
+    pub effective: bool,
+    /// Whether it was an error; only presses of the human in the trial are judged.
+    pub error: Option<bool>,
+}
+
+/// How many rows the tables of a recording have; together as many as the log has events.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct TableCounts {
+    /// Events.
+    pub events: u64,
+    /// Gaze samples.
+    pub gaze: u64,
+    /// Fixations and blinks beside gaze.
+    pub eye_events: u64,
+    /// Samples of the arm.
+    pub arm: u64,
+    /// Rows about single aspects of beliefs, of which one event has many.
+    pub beliefs: u64,
+    /// Events with words that somebody typed, which were left out.
+    pub words_left_out: u64,
+}
+
+/// A row of the events.
+#[derive(Debug)]
+struct EventRow {
+    onset: SessionTime,
+    duration: Option<SessionTime>,
+    /// What follows the duration.
+    rest: String,
+    /// It stands among the events of the tracker, where there is gaze.
+    is_of_eyes: bool,
+}
+
+/// The tables of one recording, which grow event by event.
+#[derive(Debug)]
+pub struct RecordingTables {
+    with_words: bool,
+    rows: Vec<EventRow>,
+    spans: OpenSpans,
+    samples: SampleRows,
+    beliefs: BeliefRows,
+    viewing: ViewingFacts,
+    words_left_out: u64,
+    ended: Option<EndReason>,
+}
+
+impl RecordingTables {
+    /// The tables before the first event. `with_words`: what somebody typed is exported, too.
+    pub fn new(session: &Session, with_words: bool) -> RecordingTables {
+        let is_pointer = session.spec.participant.gaze == GazeSource::Mouse;
+        RecordingTables {
+            with_words,
+            rows: Vec::new(),
+            spans: OpenSpans::default(),
+            samples: SampleRows::default(),
+            beliefs: BeliefRows::default(),
+            viewing: ViewingFacts { is_pointer, resolution: None, gaze_checks: 0 },
+            words_left_out: 0,
+            ended: None,
+        }
+    }
+
+    /// Why the trial ended, if it did.
+    pub fn ended(&self) -> Option<EndReason> {
+        self.ended
+    }
+
+    /// Adds an event that was applied to the session. `outcome`: of presses.
+    pub fn note(&mut self, stamped: &Stamped, session: &Session, outcome: Option<PressOutcome>) {
+        let mut is_of_eyes = false;
+        match &stamped.event {
+            Event::Gaze(sample) => return self.samples.note_gaze(stamped, sample),
+            Event::RobotMoves(sample) => return self.samples.note_arm(stamped, sample),
+            Event::Tracker(event) => is_of_eyes = self.samples.note_found(stamped, event),
+            Event::TrialEnded { reason } => self.ended = Some(*reason),
+            Event::TrialAborted { .. } => self.ended = Some(EndReason::Aborted),
+            Event::Calibration(CalibrationEvent::Measured { found: Some(_) }) => self.viewing.gaze_checks += 1,
+            Event::Display(DisplayEvent::Connected { width_px, height_px }) => {
+                self.viewing.resolution = Some([*width_px, *height_px]);
+            }
+            _ => {}
+        }
+        self.beliefs.note(stamped);
+        let (duration, over) = self.spans.note(self.rows.len(), stamped.time, &stamped.event);
+        for (row, lasted) in over {
+            self.rows[row].duration = Some(lasted);
+        }
+        let rest = self.rest(stamped, session, outcome);
+        self.rows.push(EventRow { onset: stamped.time, duration, rest, is_of_eyes });
+    }
+
+    fn rest(&mut self, stamped: &Stamped, session: &Session, outcome: Option<PressOutcome>) -> String {
+        let cells = EventCells::from_event(&stamped.event, is_words(&stamped.event, session));
+        let is_on = matches!(session.phase, Phase::Running | Phase::Paused)
+            || matches!(stamped.event, Event::TrialEnded { .. } | Event::TrialAborted { .. });
+        let clock = is_on.then(|| seconds(session.trial_clock(stamped.time)));
+        let mut all = vec![stamped.event.kind().to_string(), stamped.seq.to_string(), or_nothing(clock)];
+        all.extend([cells.what.clone(), cells.agent.clone(), cells.button.clone()]);
+        all.push(or_nothing(outcome.map(|outcome| yes(outcome.effective))));
+        all.push(or_nothing(outcome.and_then(|outcome| outcome.error).map(yes)));
+        all.extend(cells.rest());
+        match self.with_words {
+            true => all.push(cells.words),
+            false => self.words_left_out += u64::from(!cells.words.is_empty()),
+        }
+        tsv::line(all)
+    }
+
+    /// The files, after the last event, with the numbers of their rows.
+    pub fn into_files(self, session: &Session) -> (Vec<BidsFile>, TableCounts) {
+        let task = TaskFacts { name: session.kitchen.name.clone(), title: session.kitchen.title.clone() };
+        let has_gaze = self.samples.has_gaze();
+        let [gaze, found, arm] = self.samples.counts();
+        let rows: Vec<&EventRow> = self.rows.iter().filter(|row| !(has_gaze && row.is_of_eyes)).collect();
+        let counts = TableCounts {
+            events: rows.len() as u64,
+            gaze,
+            eye_events: if has_gaze { found } else { 0 },
+            arm,
+            beliefs: self.beliefs.count,
+            words_left_out: self.words_left_out,
+        };
+        let columns: Vec<_> = EVENTS.into_iter().chain(self.with_words.then_some(WORDS)).collect();
+        let mut text = tsv::line(tsv::names(&columns));
+        for row in rows {
+            let duration = row.duration.map(|duration| match duration {
+                SessionTime::ZERO => "0".to_string(),
+                duration => seconds(duration),
+            });
+            text += &format!("{}\t{}\t{}", seconds(row.onset), or_nothing(duration), row.rest);
+        }
+        let mut about = tsv::described(&columns);
+        task.tell(&mut about);
+        about.insert("StimulusPresentation".to_string(), self.viewing.presentation(session));
+        let mut files = vec![BidsFile::new("events.tsv", text), BidsFile::json("events.json", &about.into())];
+        files.extend(self.beliefs.into_files(&task));
+        files.extend(self.samples.into_files(session, &self.viewing, &task));
+        (files, counts)
+    }
+}
+
+/// Whether an event is an answer in the participant's own words.
+fn is_words(event: &Event, session: &Session) -> bool {
+    let Event::Protocol(ProtocolEvent::ItemAnswered { item, .. }) = event else { return false };
+    let form = session.questionnaire().and_then(|asked| asked.form(asked.position(item)?));
+    matches!(form, Some(ItemForm::Text { .. }))
+}

@@ -1,0 +1,254 @@
+//! Gaze as eye-tracking recording with what the tracker found in it, and the motion of the arm.
+
+use serde_json::{Map, Value, json};
+
+use super::event_cells;
+use super::tsv::{self, BidsColumn, BidsFile, TaskFacts, or_nothing, seconds};
+use crate::base::time::SessionTime;
+use crate::gaze::GazeSample;
+use crate::robot::moment::ArmSample;
+use crate::session::settings::GazeSource;
+use crate::session::tracker::TrackerEvent;
+use crate::session::{Session, Stamped};
+
+/// Samples further apart than this do not count for the rate, in seconds.
+const GAP_S: f64 = 0.5;
+
+const GAZE: [BidsColumn; 7] = [
+    BidsColumn::of_unit(
+        "timestamp",
+        "s",
+        "Session time at which the sample was taken, by the tracker's clock set against the session's; where the tracker tells no time, \
+         when it arrived. Samples are in its order",
+    ),
+    BidsColumn::of_unit(
+        "x_coordinate",
+        "1",
+        "Fraction of the display's width, from its left edge, as recorded: without the offset that a gaze check found",
+    ),
+    BidsColumn::of_unit(
+        "y_coordinate",
+        "1",
+        "Fraction of the display's height, from its upper edge downwards, as recorded",
+    ),
+    BidsColumn::of_unit("confidence", "1", "The tracker's confidence, 0 to 1; below 0.6 the sample is not used"),
+    BidsColumn::of_unit("arrival", "s", "Session time at which the sample arrived"),
+    BidsColumn::of_unit("device_time", "s", "Time on the tracker's own clock"),
+    BidsColumn::new("seq", "Number of the sample in the log"),
+];
+
+const FOUND: &[(&str, &str)] = &[
+    ("fixation", "A fixation, as the tracker finds them"),
+    ("eyes_closed", "Onset of a blink"),
+    ("eyes_opened", "Offset of a blink"),
+];
+
+const EYE_EVENTS: [BidsColumn; 8] = [
+    BidsColumn::of_unit("onset", "s", "Session time, as the timestamps of the samples"),
+    BidsColumn::of_unit("duration", "s", "Of fixations; n/a where the tracker does not tell it"),
+    BidsColumn::of_levels("trial_type", FOUND, "What the tracker found"),
+    BidsColumn::of_unit("x_coordinate", "1", "Place of a fixation, in fractions of the display's width"),
+    BidsColumn::of_unit("y_coordinate", "1", "The same, in fractions of its height"),
+    BidsColumn::of_unit("dispersion", "deg", "How far the samples of a fixation are spread"),
+    BidsColumn::of_unit("confidence", "1", "The tracker's confidence, 0 to 1"),
+    BidsColumn::new("seq", "Number of the event in the log"),
+];
+
+const PHASES: &[(&str, &str)] = &[
+    ("rests", "It stands above the buttons"),
+    ("retracts", "Comes up from a button"),
+    ("travels", "On its way over the buttons"),
+    ("hovers", "Above its button, ready to press"),
+    ("presses", "Down on its button"),
+];
+
+const ARM: [BidsColumn; 14] = [
+    BidsColumn::of_unit("timestamp", "s", "Session time"),
+    BidsColumn::of_levels("phase", PHASES, "What the arm does"),
+    BidsColumn::of_unit("joint_1", "rad", "Angle of the first joint, from the base on"),
+    BidsColumn::of_unit("joint_2", "rad", "Angle of the second joint"),
+    BidsColumn::of_unit("joint_3", "rad", "Angle of the third joint"),
+    BidsColumn::of_unit("joint_4", "rad", "Angle of the fourth joint"),
+    BidsColumn::of_unit("joint_5", "rad", "Angle of the fifth joint"),
+    BidsColumn::of_unit("joint_6", "rad", "Angle of the sixth joint"),
+    BidsColumn::of_unit("force", "N", "The greatest contact force since the sample before"),
+    BidsColumn::of_unit("hand_x", "m", "The middle of the participant's hand, in the frame of the arm's base"),
+    BidsColumn::of_unit("hand_y", "m", "The same, y"),
+    BidsColumn::of_unit("hand_z", "m", "The same, z"),
+    BidsColumn::of_unit("hand_distance", "m", "Distance of the participant's hand from the arm"),
+    BidsColumn::new("seq", "Number of the sample in the log"),
+];
+
+/// The samples of gaze and arm, and what the tracker found.
+#[derive(Debug, Default)]
+pub(super) struct SampleRows {
+    gaze: Vec<(SessionTime, String)>,
+    eye_events: Vec<(SessionTime, String)>,
+    arm: Vec<(SessionTime, String)>,
+}
+
+impl SampleRows {
+    pub(super) fn note_gaze(&mut self, stamped: &Stamped, sample: &GazeSample) {
+        let taken = sample.taken_ns.unwrap_or(stamped.time);
+        let device = or_nothing(sample.device_ns.map(|ns| seconds(SessionTime(ns))));
+        let (x, y, confidence) = (sample.x.to_string(), sample.y.to_string(), sample.confidence.to_string());
+        let cells = [seconds(taken), x, y, confidence, seconds(stamped.time), device, stamped.seq.to_string()];
+        self.gaze.push((taken, tsv::line(cells)));
+    }
+
+    pub(super) fn note_arm(&mut self, stamped: &Stamped, sample: &ArmSample) {
+        let joints = sample.joints.iter().map(f64::to_string);
+        let hand = sample.hand_m.iter().map(f64::to_string);
+        let cells = [seconds(stamped.time), event_cells::name(&sample.phase)].into_iter().chain(joints);
+        let cells = cells.chain([sample.force_n.to_string()]).chain(hand);
+        let cells = cells.chain([sample.hand_away_m.to_string(), stamped.seq.to_string()]);
+        self.arm.push((stamped.time, tsv::line(cells)));
+    }
+
+    /// Notes what the tracker found; `false` for everything else that it tells.
+    pub(super) fn note_found(&mut self, stamped: &Stamped, event: &TrackerEvent) -> bool {
+        let (onset, cells) = match event {
+            TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, began_ns, .. } => {
+                let [x, y] = [at.map(|at| at[0]), at.map(|at| at[1])].map(or_nothing);
+                let duration = (duration_ms / 1000.0).to_string();
+                let numbers = [dispersion_deg.to_string(), confidence.to_string()];
+                let [dispersion, confidence] = numbers;
+                (*began_ns, [duration, "fixation".to_string(), x, y, dispersion, confidence])
+            }
+            TrackerEvent::Blink { closed, confidence, taken_ns, .. } => {
+                let kind = if *closed { "eyes_closed" } else { "eyes_opened" }.to_string();
+                let none = || tsv::NOTHING.to_string();
+                (*taken_ns, [none(), kind, none(), none(), none(), confidence.to_string()])
+            }
+            _ => return false,
+        };
+        let cells = [seconds(onset)].into_iter().chain(cells).chain([stamped.seq.to_string()]);
+        self.eye_events.push((onset, tsv::line(cells)));
+        true
+    }
+
+    pub(super) fn has_gaze(&self) -> bool {
+        !self.gaze.is_empty()
+    }
+
+    /// Numbers of samples of gaze, of what the tracker found, and of samples of the arm.
+    pub(super) fn counts(&self) -> [u64; 3] {
+        [&self.gaze, &self.eye_events, &self.arm].map(|rows| rows.len() as u64)
+    }
+
+    /// The tables with their sidecars. What the tracker found stands in the events where there is no gaze.
+    pub(super) fn into_files(mut self, session: &Session, about: &ViewingFacts, task: &TaskFacts) -> Vec<BidsFile> {
+        self.gaze.sort_by_key(|(time, _)| *time);
+        self.eye_events.sort_by_key(|(time, _)| *time);
+        let mut files = Vec::new();
+        if !self.gaze.is_empty() {
+            let recording = if about.is_pointer { "recording-pointer" } else { "recording-eye1" };
+            let mut sidecar = about.sidecar(session);
+            task.tell(&mut sidecar);
+            add_table(&mut sidecar, &self.gaze, &GAZE);
+            files.extend(pair(&format!("{recording}_physio"), sidecar, &self.gaze));
+            if !self.eye_events.is_empty() {
+                let mut sidecar = tsv::described(&EYE_EVENTS);
+                task.tell(&mut sidecar);
+                sidecar.insert("Columns".to_string(), json!(tsv::names(&EYE_EVENTS)));
+                sidecar.insert("Description".to_string(), json!("Fixations and blinks, as the eye tracker found them"));
+                sidecar.insert("OnsetSource".to_string(), json!("timestamp"));
+                files.extend(pair(&format!("{recording}_physioevents"), sidecar, &self.eye_events));
+            }
+        }
+        if !self.arm.is_empty() {
+            let mut sidecar = Map::new();
+            task.tell(&mut sidecar);
+            add_table(&mut sidecar, &self.arm, &ARM);
+            let told = "Motion of the robot's arm, which the participant sees; sampled while it moves";
+            sidecar.insert("Description".to_string(), json!(told));
+            files.extend(pair("recording-arm_stim", sidecar, &self.arm));
+        }
+        files
+    }
+}
+
+/// What is known of the participant's view of the display, and of its gaze.
+#[derive(Clone, Debug)]
+pub(super) struct ViewingFacts {
+    /// Gaze is the place of a mouse pointer, not of an eye.
+    pub is_pointer: bool,
+    /// Size of the display's page in pixels.
+    pub resolution: Option<[u32; 2]>,
+    /// How often the accuracy of gaze was measured.
+    pub gaze_checks: u64,
+}
+
+impl ViewingFacts {
+    /// The display, as the sidecar of events describes it.
+    pub(super) fn presentation(&self, session: &Session) -> Value {
+        let mut display = json!({
+            "ScreenDistance": session.spec.tracker.distance_m,
+            "ScreenOrigin": ["top", "left"],
+            "ScreenSize": session.kitchen.display_m,
+            "SoftwareName": "tomcom",
+        });
+        if let Some(resolution) = self.resolution {
+            display["ScreenResolution"] = json!(resolution);
+        }
+        display
+    }
+
+    fn sidecar(&self, session: &Session) -> Map<String, Value> {
+        let mut about = Map::new();
+        let mut tell = |key: &str, value: Value| about.insert(key.to_string(), value);
+        if self.is_pointer {
+            tell("PhysioType", json!("generic"));
+            tell("Description", json!("Place of the mouse pointer on the display, which stands in for gaze"));
+            return about;
+        }
+        tell("PhysioType", json!("eyetrack"));
+        tell("RecordedEye", json!("cyclopean"));
+        // Coordinates on a screen take its size in pixels, which only a connected display tells.
+        if self.resolution.is_some() {
+            tell("SampleCoordinateSystem", json!("gaze-on-screen"));
+        } else {
+            let [width, height] = session.kitchen.display_m;
+            tell("SampleCoordinateSystem", json!("custom"));
+            let told = format!(
+                "Fractions of the display's width and height from its upper left corner, y downwards; the display is {width} m wide and \
+                 {height} m high"
+            );
+            tell("SampleCoordinateSystemDescription", json!(told));
+        }
+        match session.spec.participant.gaze {
+            GazeSource::Pupil => _ = tell("Manufacturer", json!("Pupil Labs")),
+            GazeSource::Simulated => _ = tell("ManufacturersModelName", json!("simulated eyes of tomcom")),
+            _ => {}
+        }
+        tell("CalibrationCount", json!(self.gaze_checks));
+        if let Some(accepted) = &session.calibrated {
+            let found = &accepted.found;
+            tell("AverageCalibrationError", json!(found.accuracy_deg));
+            tell("AverageCalibrationErrorCorrected", json!(found.corrected_deg));
+            tell("GazeOffset", json!(found.offset));
+        }
+        about
+    }
+}
+
+/// What a sidecar says of the samples: rate, first time, columns.
+fn add_table(sidecar: &mut Map<String, Value>, rows: &[(SessionTime, String)], columns: &[BidsColumn]) {
+    sidecar.insert("SamplingFrequency".to_string(), json!(rate_hz(rows)));
+    sidecar.insert("StartTime".to_string(), json!(rows.first().map_or(0.0, |(time, _)| time.as_secs_f64())));
+    sidecar.insert("Columns".to_string(), json!(tsv::names(columns)));
+    sidecar.extend(tsv::described(columns));
+}
+
+/// Samples a second, where they follow each other; 0 where no two do.
+fn rate_hz(rows: &[(SessionTime, String)]) -> f64 {
+    let gaps = rows.windows(2).map(|pair| pair[1].0.secs_since(pair[0].0)).filter(|gap| *gap < GAP_S);
+    let (count, sum) = gaps.fold((0.0, 0.0), |(count, sum), gap| (count + 1.0, sum + gap));
+    if sum > 0.0 { (1000.0 * count / sum).round() / 1000.0 } else { 0.0 }
+}
+
+/// A compressed table, which has no line with the names of columns, and its sidecar.
+fn pair(name: &str, sidecar: Map<String, Value>, rows: &[(SessionTime, String)]) -> [BidsFile; 2] {
+    let text: String = rows.iter().map(|(_, line)| line.as_str()).collect();
+    [BidsFile::new(format!("{name}.tsv.gz"), text), BidsFile::json(format!("{name}.json"), &sidecar.into())]
+}

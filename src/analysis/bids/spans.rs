@@ -1,0 +1,129 @@
+//! How long events last: what one event begins, a later one ends.
+
+use std::collections::BTreeMap;
+
+use crate::base::time::SessionTime;
+use crate::kitchen::Agent;
+use crate::session::accuracy_check::CalibrationEvent;
+use crate::session::event::Event;
+use crate::session::protocol::ProtocolEvent;
+use crate::session::tracker::TrackerEvent;
+use crate::session::wall_display::DisplayEvent;
+
+/// Something that goes on for a time.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Span {
+    Trial,
+    Pause,
+    Phase,
+    Order(String),
+    RobotPress,
+    RobotIdle,
+    RobotStop,
+    RobotHold,
+    Safety,
+    Signal,
+    Offer,
+    Target,
+    TrackerLoss,
+    DisplayUnseen,
+    DisplayLoss,
+    Unfocused,
+    EyesClosed,
+}
+
+/// What goes on now, by the rows of the events that began it.
+#[derive(Debug, Default)]
+pub(super) struct OpenSpans(BTreeMap<Span, (usize, SessionTime)>);
+
+impl OpenSpans {
+    /// Notes an event that stands in this row: its duration so far (nothing for what is not over), and what it ends, by the row that
+    /// began it, with how long it lasted.
+    pub(super) fn note(
+        &mut self,
+        row: usize,
+        time: SessionTime,
+        event: &Event,
+    ) -> (Option<SessionTime>, Vec<(usize, SessionTime)>) {
+        let (begins, ends) = (begun(event), ended(event));
+        let is_over = |span: &Span| match event {
+            Event::SessionEnded => true,
+            Event::TrialEnded { .. } | Event::TrialAborted { .. } => is_of_trial(span),
+            _ => ends.contains(span) || begins.as_ref() == Some(span),
+        };
+        let over: Vec<(usize, SessionTime)> =
+            self.0.iter().filter(|(span, _)| is_over(span)).map(|(_, (row, since))| (*row, time - *since)).collect();
+        self.0.retain(|span, _| !is_over(span));
+        match begins {
+            Some(span) => {
+                self.0.insert(span, (row, time));
+                (None, over)
+            }
+            None => (Some(SessionTime::ZERO), over),
+        }
+    }
+}
+
+/// Whether it cannot go on when the trial is over.
+fn is_of_trial(span: &Span) -> bool {
+    matches!(
+        span,
+        Span::Trial
+            | Span::Pause
+            | Span::Order(_)
+            | Span::RobotPress
+            | Span::RobotIdle
+            | Span::RobotStop
+            | Span::RobotHold
+            | Span::Signal
+            | Span::Offer
+    )
+}
+
+/// What an event begins.
+fn begun(event: &Event) -> Option<Span> {
+    Some(match event {
+        Event::TrialStarted => Span::Trial,
+        Event::TrialPaused => Span::Pause,
+        Event::Protocol(ProtocolEvent::PhaseStarted { .. }) => Span::Phase,
+        Event::OrderShown { order, .. } => Span::Order(order.clone()),
+        Event::RobotIntends { .. } => Span::RobotPress,
+        Event::RobotIdles { .. } => Span::RobotIdle,
+        Event::RobotStopped => Span::RobotStop,
+        Event::RobotHeld { .. } => Span::RobotHold,
+        Event::RobotSafety { .. } => Span::Safety,
+        Event::SignalShown { .. } => Span::Signal,
+        Event::OfferOpened(_) => Span::Offer,
+        Event::Calibration(CalibrationEvent::TargetShown { .. }) => Span::Target,
+        Event::Tracker(TrackerEvent::Lost { .. }) => Span::TrackerLoss,
+        Event::Tracker(TrackerEvent::DisplayLost | TrackerEvent::OtherSurfaces { .. }) => Span::DisplayUnseen,
+        Event::Tracker(TrackerEvent::Blink { closed: true, .. }) => Span::EyesClosed,
+        Event::Display(DisplayEvent::Lost) => Span::DisplayLoss,
+        Event::FocusLost => Span::Unfocused,
+        _ => return None,
+    })
+}
+
+/// What an event ends, besides what of the same kind goes on when it begins something.
+fn ended(event: &Event) -> Vec<Span> {
+    match event {
+        Event::TrialResumed => vec![Span::Pause],
+        Event::OrderCleared { order } => vec![Span::Order(order.clone())],
+        Event::Press { agent: Agent::Robot, .. } | Event::RobotAborts { .. } => vec![Span::RobotPress],
+        Event::RobotIntends { .. } => vec![Span::RobotIdle],
+        Event::RobotIdles { .. } => vec![Span::RobotPress],
+        Event::RobotResumed => vec![Span::RobotStop],
+        Event::RobotReleased { .. } => vec![Span::RobotHold],
+        Event::SignalEnded { .. } => vec![Span::Signal],
+        Event::OfferClosed { .. } => vec![Span::Offer],
+        Event::Calibration(
+            CalibrationEvent::TargetsHidden | CalibrationEvent::Dismissed | CalibrationEvent::Begun { .. },
+        ) => vec![Span::Target],
+        Event::Tracker(TrackerEvent::Connected { .. }) => vec![Span::TrackerLoss],
+        Event::Tracker(TrackerEvent::DisplayFound) => vec![Span::DisplayUnseen],
+        Event::Tracker(TrackerEvent::Blink { closed: false, .. }) => vec![Span::EyesClosed],
+        Event::Display(DisplayEvent::Connected { .. }) => vec![Span::DisplayLoss],
+        Event::FocusRegained => vec![Span::Unfocused],
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,236 @@
+//! Exports recordings as a BIDS data set.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::standing;
+use crate::analysis::bids::{
+    BidsFile, Labels, ParticipantRow, Phenotypes, PressOutcome, RecordingTables, SessionRow, TableCounts,
+    dataset_files, letters_and_digits, session_label, sessions_files,
+};
+use crate::base::words::count;
+use crate::edge::bids_tree::BidsTree;
+use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::log::{LogEnding, LogReader, at_line};
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{Agent, Change, Kitchen};
+use crate::measures::errors::PressJudge;
+use crate::session::event::Event;
+use crate::session::protocol::ProtocolEvent;
+use crate::session::settings::ParticipantKind;
+use crate::session::{Header, apply};
+
+/// What was exported.
+#[derive(Clone, Debug, Serialize)]
+pub struct BidsSummary {
+    /// The folder of the tree.
+    pub folder: PathBuf,
+    /// Codes that are no labels, with the labels that they got.
+    pub changed_codes: Vec<(String, String)>,
+    /// The recordings with their places in the tree.
+    pub recordings: Vec<BidsRecording>,
+    /// Tables of questionnaires.
+    pub questionnaires: usize,
+    /// Whether words that somebody typed were exported.
+    pub words: bool,
+}
+
+/// An exported recording.
+#[derive(Clone, Debug, Serialize)]
+pub struct BidsRecording {
+    /// The recording.
+    pub recording: PathBuf,
+    /// Where its files are in the tree, up to what their names differ by.
+    pub place: String,
+    /// Rows of its tables.
+    pub rows: TableCounts,
+}
+
+/// A recording with its place in the tree, before it is read.
+struct Planned {
+    recording: PathBuf,
+    header: Header,
+    label: String,
+    session: String,
+}
+
+/// Kitchen and cost to go of the last recording, which the next one often shares.
+type KnownCost = Option<(Arc<Kitchen>, CostToGo)>;
+
+/// Exports these recordings into a new folder. `with_words`: what wizards and participants typed is exported, too. `done` is called after
+/// each recording.
+///
+/// # Errors
+/// A recording cannot be read or is still being written, or the tree cannot be written.
+pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
+    let headers = recordings.iter().map(|path| header(path)).collect::<FileResult<Vec<Header>>>()?;
+    let codes = headers.iter().map(|header| header.session.participant.code.as_str());
+    let labels = Labels::from_names(codes);
+    let planned = places(recordings, headers, &labels);
+    let tree = BidsTree::create(folder)?;
+    let (mut cost, mut phenotypes) = (None, Phenotypes::default());
+    let mut sessions: BTreeMap<String, Vec<SessionRow>> = BTreeMap::new();
+    let mut told = Vec::new();
+    for one in &planned {
+        let (files, row, counts) = read(one, with_words, &mut cost, &mut phenotypes)?;
+        let task = letters_and_digits(&row.1);
+        let (sub, ses) = (format!("sub-{}", one.label), format!("ses-{}", one.session));
+        let place = format!("{sub}/{ses}/beh/{sub}_{ses}_task-{task}");
+        for file in files {
+            tree.write(&BidsFile { name: format!("{place}_{}", file.name), ..file })?;
+        }
+        sessions.entry(one.label.clone()).or_default().push(row.0);
+        told.push(BidsRecording { recording: one.recording.clone(), place, rows: counts });
+        done();
+    }
+    for (label, rows) in &sessions {
+        sessions_files(label, rows).iter().try_for_each(|file| tree.write(file))?;
+    }
+    let asked = phenotypes.files(with_words);
+    let plans: BTreeSet<String> =
+        planned.iter().filter_map(|one| Some(one.header.session.step.as_ref()?.plan.clone())).collect();
+    let plans: Vec<String> = plans.into_iter().collect();
+    let root = dataset_files(&plans, &participants(&planned), with_words);
+    asked.iter().chain(&root).try_for_each(|file| tree.write(file))?;
+    Ok(BidsSummary {
+        folder: folder.to_path_buf(),
+        changed_codes: labels.changed(),
+        recordings: told,
+        questionnaires: asked.len() / 2,
+        words: with_words,
+    })
+}
+
+/// The header of a recording that nobody is writing.
+fn header(recording: &Path) -> FileResult<Header> {
+    let log = LogReader::open(recording)?;
+    if log.ending() == LogEnding::Running {
+        let remedy = "a recording whose session is over".to_string();
+        return Err(FileError::from_finding(recording, "a recording that is still being written".to_string(), remedy));
+    }
+    Ok(log.header)
+}
+
+/// The places of recordings in the tree: participants by their labels, the recordings of each by plan, date and name.
+fn places(recordings: &[PathBuf], headers: Vec<Header>, labels: &Labels) -> Vec<Planned> {
+    let mut all: Vec<(&PathBuf, Header)> = recordings.iter().zip(headers).collect();
+    all.sort_by_cached_key(|(path, header)| {
+        let step = header.session.step.as_ref().map(|step| (step.plan.clone(), step.period, step.attempt));
+        (header.session.participant.code.clone(), step, header.started.clone(), (*path).clone())
+    });
+    let mut taken: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    let place = |(path, header): (&PathBuf, Header)| {
+        let code = &header.session.participant.code;
+        let label = labels.label(code).unwrap_or(code).to_string();
+        let session = session_label(header.session.step.as_ref(), taken.entry(label.clone()).or_default());
+        Planned { recording: path.clone(), header, label, session }
+    };
+    all.into_iter().map(place).collect()
+}
+
+/// Reads a recording: its files, its row among the sessions with the name of its kitchen, the numbers of rows.
+fn read(
+    one: &Planned,
+    with_words: bool,
+    cost: &mut KnownCost,
+    phenotypes: &mut Phenotypes,
+) -> FileResult<(Vec<BidsFile>, (SessionRow, String), TableCounts)> {
+    let mut log = LogReader::open(&one.recording)?;
+    let mut session = log.session();
+    let kitchen = session.kitchen.clone();
+    if cost.as_ref().is_none_or(|(known, _)| **known != *kitchen) {
+        *cost = Some((kitchen.clone(), CostToGo::new(kitchen.clone())));
+    }
+    let (mut judge, mut tables) = (PressJudge::new(kitchen.clone()), RecordingTables::new(&session, with_words));
+    while let Some(line) = log.next_line()? {
+        let wrong =
+            |error: apply::ApplyError| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy);
+        let change = apply(&mut session, &line.stamped).map_err(wrong)?.change;
+        let outcome = match (change, &mut *cost) {
+            (Change::Press { press, .. }, Some((_, cost))) if press.agent == Agent::Human => {
+                let error = judge.human_pressed(cost, line.stamped.time, &press).error;
+                Some(PressOutcome { effective: press.effective, error: Some(error) })
+            }
+            (Change::Press { press, .. }, _) => {
+                judge.others_changed(line.stamped.time, press.before, press.after);
+                Some(PressOutcome { effective: press.effective, error: None })
+            }
+            (Change::UncountedPress { .. }, _) => Some(PressOutcome::default()),
+            (Change::Correction { before, after, .. }, _) => {
+                judge.others_changed(line.stamped.time, before, after);
+                None
+            }
+            _ => None,
+        };
+        tables.note(&line.stamped, &session, outcome);
+        if matches!(line.stamped.event, Event::Protocol(ProtocolEvent::AnswersConfirmed)) {
+            phenotypes.note(&one.label, &one.session, &session);
+        }
+    }
+    let counts = standing::exclusion_status(&session, &log)?.counts();
+    let is_complete = log.ending() == LogEnding::Closed;
+    let name = one.recording.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let labels = (one.session.as_str(), name.as_str());
+    let row = SessionRow::new(labels, &one.header, &session, tables.ended(), [is_complete, counts]);
+    let (files, rows) = tables.into_files(&session);
+    Ok((files, (row, kitchen.name.clone()), rows))
+}
+
+fn participants(planned: &[Planned]) -> Vec<ParticipantRow> {
+    let mut rows: Vec<ParticipantRow> = Vec::new();
+    for one in planned {
+        let spec = &one.header.session;
+        match rows.iter_mut().find(|row| row.label == one.label) {
+            Some(row) => row.recordings += 1,
+            None => rows.push(ParticipantRow {
+                label: one.label.clone(),
+                code: spec.participant.code.clone(),
+                kind: match spec.participant.kind {
+                    ParticipantKind::Simulated => "simulated",
+                    ParticipantKind::Keyboard => "keyboard",
+                    ParticipantKind::Display => "display",
+                }
+                .to_string(),
+                group: spec.step.as_ref().map(|step| step.group.clone()),
+                recordings: 1,
+            }),
+        }
+    }
+    rows
+}
+
+/// What was exported, for people.
+pub fn describe(summary: &BidsSummary) -> String {
+    let rows = |of: fn(&TableCounts) -> u64| summary.recordings.iter().map(|one| of(&one.rows)).sum::<u64>();
+    let line = |one: &BidsRecording| format!("  {} from {}\n", one.place, one.recording.display());
+    let recordings: String = summary.recordings.iter().map(line).collect();
+    let changed = summary.changed_codes.iter();
+    let line = |(code, label): &(String, String)| {
+        format!(
+            "the code {code} is sub-{label}: labels have letters and digits only, and differ by more than capitals\n"
+        )
+    };
+    let changed: String = changed.map(line).collect();
+    let left = rows(|rows| rows.words_left_out);
+    let words = match left {
+        0 => String::new(),
+        left => format!(
+            "left out: {} that somebody typed (--words exports them)\n",
+            count(left, "note, reason or answer in words", "notes, reasons and answers in words")
+        ),
+    };
+    format!(
+        "{}: {}\n{recordings}rows: {} events, {} gaze, {} fixations and blinks, {} arm, {} beliefs; {}\n{changed}{words}",
+        summary.folder.display(),
+        count(summary.recordings.len() as u64, "recording", "recordings"),
+        rows(|rows| rows.events),
+        rows(|rows| rows.gaze),
+        rows(|rows| rows.eye_events),
+        rows(|rows| rows.arm),
+        rows(|rows| rows.beliefs),
+        count(summary.questionnaires as u64, "table of questionnaires", "tables of questionnaires"),
+    )
+}

@@ -1,0 +1,148 @@
+//! Recordings as a BIDS data set: every event has a row, durations are those of the log, and no two codes become one label.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use tomcom::analysis::bids::{LEVELS, Labels, session_label};
+use tomcom::run::bids_export::{BidsSummary, describe, export};
+
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bids").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(folder.parent().expect("a folder")).expect("the folder of tests");
+    folder
+}
+
+fn golden(names: &[&str], out: &Path, with_words: bool) -> BidsSummary {
+    let logs: Vec<PathBuf> = names.iter().map(|name| Path::new("tests/golden").join(format!("{name}.jsonl"))).collect();
+    export(&logs, out, with_words, || ()).expect("golden recordings are exported")
+}
+
+/// The rows of a table by their column.
+fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
+    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    let mut lines = text.lines().map(|line| line.split('\t').map(str::to_string).collect::<Vec<String>>());
+    let names = lines.next().expect("names of columns");
+    let row = |cells: Vec<String>| {
+        assert_eq!(cells.len(), names.len(), "{}: {cells:?}", path.display());
+        names.iter().cloned().zip(cells).collect()
+    };
+    lines.map(row).collect()
+}
+
+fn log(name: &str) -> Vec<Value> {
+    let text = fs::read_to_string(format!("tests/golden/{name}.jsonl")).expect("a golden recording");
+    text.lines().skip(1).map(|line| serde_json::from_str(line).expect("an event")).collect()
+}
+
+#[test]
+fn every_event_of_the_golden_recordings_has_its_row() {
+    let names = ["format-1-hand", "format-1-people", "format-1-simulated", "format-2-offers"];
+    let out = folder("rows");
+    let summary = golden(&names, &out, false);
+    assert_eq!(summary.recordings.len(), names.len());
+    let known: BTreeSet<&str> = LEVELS.iter().map(|(kind, _)| *kind).collect();
+    for one in &summary.recordings {
+        let name = one.recording.file_stem().expect("a name").to_string_lossy().into_owned();
+        let (events, counts) = (log(&name), one.rows);
+        let all = counts.events + counts.gaze + counts.eye_events + counts.arm;
+        assert_eq!(all, events.len() as u64, "{name}: {counts:?}");
+        for row in rows(&out.join(format!("{}_events.tsv", one.place))) {
+            let seq: usize = row["seq"].parse().expect("a number");
+            assert_eq!(events[seq]["kind"], row["trial_type"].as_str());
+            assert!(known.contains(row["trial_type"].as_str()), "{} has no meaning", row["trial_type"]);
+            let time: u64 = row["onset"].replace('.', "").parse().expect("nanoseconds");
+            assert_eq!(events[seq]["t_ns"], time);
+        }
+    }
+    let notes = log("format-1-hand").iter().filter(|event| event["kind"] == "marker").count();
+    assert!(
+        describe(&summary).contains(&format!("left out: {notes} notes, reasons and answers")),
+        "{}",
+        describe(&summary)
+    );
+}
+
+#[test]
+fn every_kind_of_event_but_samples_has_a_meaning() {
+    let source = fs::read_to_string("src/session/event.rs").expect("the events");
+    let (_, names) = source.split_once("pub fn kind(&self)").expect("the names of events");
+    let (names, _) = names.split_once("\n    }\n").expect("their end");
+    let names: BTreeSet<&str> = names.split("=> \"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    let meant: BTreeSet<&str> = LEVELS.iter().map(|(kind, _)| *kind).collect();
+    let missing: Vec<&&str> = names.symmetric_difference(&meant).collect();
+    assert_eq!(missing, [&"gaze", &"robot_moves"]);
+}
+
+#[test]
+fn events_last_until_what_they_begin_is_over() {
+    let (name, out) = ("format-1-hand", folder("durations"));
+    let summary = golden(&[name], &out, false);
+    let (events, rows) = (log(name), rows(&out.join(format!("{}_events.tsv", summary.recordings[0].place))));
+    let time = |event: &Value| event["t_ns"].as_u64().expect("a time");
+    for (begins, ends) in [
+        ("trial_started", &["trial_ended"][..]),
+        ("trial_paused", &["trial_resumed", "trial_ended"]),
+        ("robot_stopped", &["robot_resumed", "trial_ended"]),
+        ("signal_shown", &["signal_ended", "signal_shown", "trial_ended"]),
+    ] {
+        let begun: Vec<&BTreeMap<String, String>> = rows.iter().filter(|row| row["trial_type"] == begins).collect();
+        assert!(!begun.is_empty(), "{begins}");
+        for row in begun {
+            let seq: usize = row["seq"].parse().expect("a number");
+            let over =
+                events[seq + 1..].iter().find(|event| ends.iter().any(|end| event["kind"] == *end)).expect("an end");
+            let lasted = time(over) - time(&events[seq]);
+            assert_eq!(row["duration"], format!("{}.{:09}", lasted / 1_000_000_000, lasted % 1_000_000_000), "{row:?}");
+        }
+    }
+    assert!(rows.iter().filter(|row| row["trial_type"] == "press").all(|row| row["duration"] == "0"));
+}
+
+#[test]
+fn what_was_typed_is_exported_only_if_it_is_asked_for() {
+    let name = "format-1-hand";
+    let note = log(name).iter().find(|event| event["kind"] == "marker").expect("a note")["note"].clone();
+    let note = note.as_str().expect("words").split_whitespace().collect::<Vec<&str>>().join(" ");
+    let of = |with_words: bool| {
+        let out = folder(if with_words { "typed" } else { "not-typed" });
+        let summary = golden(&[name], &out, with_words);
+        rows(&out.join(format!("{}_events.tsv", summary.recordings[0].place)))
+    };
+    assert!(of(false).iter().all(|row| !row.contains_key("words")));
+    assert!(of(true).iter().any(|row| row["words"].contains(&note)), "{note}");
+}
+
+#[test]
+fn a_folder_with_something_in_it_is_refused() {
+    let out = folder("full");
+    golden(&["format-1-people"], &out, false);
+    let error =
+        export(&[PathBuf::from("tests/golden/format-1-people.jsonl")], &out, false, || ()).expect_err("refused");
+    assert!(error.to_string().contains("not empty"), "{error}");
+}
+
+#[test]
+fn no_two_codes_have_one_label_and_a_changed_one_is_told() {
+    let codes = ["P07", "p07", "P-07", "P_07", "A1", "-", "_", "P07x2"];
+    let labels = Labels::from_names(codes);
+    let made: BTreeSet<String> =
+        codes.iter().map(|code| labels.label(code).expect("a label").to_ascii_lowercase()).collect();
+    assert_eq!(made.len(), codes.len(), "{labels:?}");
+    assert!(made.iter().all(|label| label.chars().all(|c| c.is_ascii_alphanumeric())), "{labels:?}");
+    assert_eq!(
+        (labels.label("P07"), labels.label("A1"), labels.label("P07x2")),
+        (Some("P07"), Some("A1"), Some("P07x2"))
+    );
+    let changed: Vec<String> = labels.changed().into_iter().map(|(code, _)| code).collect();
+    assert_eq!(changed, ["-", "P-07", "P_07", "_", "p07"]);
+}
+
+#[test]
+fn recordings_outside_of_a_plan_are_counted() {
+    let mut taken = BTreeSet::new();
+    let labels: Vec<String> = (0..3).map(|_| session_label(None, &mut taken)).collect();
+    assert_eq!(labels, ["01", "02", "03"]);
+}

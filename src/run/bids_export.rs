@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::standing;
 use crate::analysis::bids::{
-    BidsFile, Labels, ParticipantRow, Phenotypes, PressOutcome, RecordingTables, SessionRow, TableCounts,
+    BidsFile, BidsParticipant, Labels, Phenotypes, PressOutcome, RecordingTables, SessionRow, TableCounts,
     dataset_files, letters_and_digits, session_label, sessions_files,
 };
 use crate::base::words::count;
@@ -66,10 +66,10 @@ type KnownCost = Option<(Arc<Kitchen>, CostToGo)>;
 /// # Errors
 /// A recording cannot be read or is still being written, or the tree cannot be written.
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
-    let headers = recordings.iter().map(|path| header(path)).collect::<FileResult<Vec<Header>>>()?;
-    let codes = headers.iter().map(|header| header.session.participant.code.as_str());
-    let labels = Labels::from_names(codes);
-    let planned = places(recordings, headers, &labels);
+    let named = recordings.iter().map(|path| Ok((path.clone(), header(path)?))).collect::<FileResult<Vec<_>>>()?;
+    let whole = without_parts(named);
+    let labels = Labels::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
+    let planned = places(whole, &labels);
     let tree = BidsTree::create(folder)?;
     let (mut cost, mut phenotypes) = (None, Phenotypes::default());
     let mut sessions: BTreeMap<String, Vec<SessionRow>> = BTreeMap::new();
@@ -114,19 +114,30 @@ fn header(recording: &Path) -> FileResult<Header> {
     Ok(log.header)
 }
 
+/// The recordings, each once, without the parts that others of them continue: a later part is read with all parts before it.
+fn without_parts(named: Vec<(PathBuf, Header)>) -> Vec<(PathBuf, Header)> {
+    let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    let before = |(path, header): &(PathBuf, Header)| {
+        let folder = if path.is_dir() { place(path) } else { place(path).parent()?.to_path_buf() };
+        Some(folder.parent()?.join(&header.continues.as_ref()?.recording))
+    };
+    let continued: Vec<PathBuf> = named.iter().filter_map(before).collect();
+    let mut seen = BTreeSet::new();
+    named.into_iter().filter(|(path, _)| !continued.contains(&place(path)) && seen.insert(place(path))).collect()
+}
+
 /// The places of recordings in the tree: participants by their labels, the recordings of each by plan, date and name.
-fn places(recordings: &[PathBuf], headers: Vec<Header>, labels: &Labels) -> Vec<Planned> {
-    let mut all: Vec<(&PathBuf, Header)> = recordings.iter().zip(headers).collect();
+fn places(mut all: Vec<(PathBuf, Header)>, labels: &Labels) -> Vec<Planned> {
     all.sort_by_cached_key(|(path, header)| {
         let step = header.session.step.as_ref().map(|step| (step.plan.clone(), step.period, step.attempt));
-        (header.session.participant.code.clone(), step, header.started.clone(), (*path).clone())
+        (header.session.participant.code.clone(), step, header.started.clone(), path.clone())
     });
     let mut taken: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    let place = |(path, header): (&PathBuf, Header)| {
+    let place = |(recording, header): (PathBuf, Header)| {
         let code = &header.session.participant.code;
         let label = labels.label(code).unwrap_or(code).to_string();
         let session = session_label(header.session.step.as_ref(), taken.entry(label.clone()).or_default());
-        Planned { recording: path.clone(), header, label, session }
+        Planned { recording, header, label, session }
     };
     all.into_iter().map(place).collect()
 }
@@ -179,13 +190,13 @@ fn read(
     Ok((files, (row, kitchen.name.clone()), rows))
 }
 
-fn participants(planned: &[Planned]) -> Vec<ParticipantRow> {
-    let mut rows: Vec<ParticipantRow> = Vec::new();
+fn participants(planned: &[Planned]) -> Vec<BidsParticipant> {
+    let mut rows: Vec<BidsParticipant> = Vec::new();
     for one in planned {
         let spec = &one.header.session;
         match rows.iter_mut().find(|row| row.label == one.label) {
             Some(row) => row.recordings += 1,
-            None => rows.push(ParticipantRow {
+            None => rows.push(BidsParticipant {
                 label: one.label.clone(),
                 code: spec.participant.code.clone(),
                 kind: match spec.participant.kind {

@@ -111,6 +111,20 @@ def add_person(recording, answers):
     write(recording, [header, *events])
 
 
+def split(recording):
+    """The same recording in two parts: the first one cut, the second one continues it."""
+    text = (recording / "events.jsonl").read_text().splitlines()
+    at = len(text) // 2
+    folders = [recording.parent.parent / "parted" / name for name in ("cut", "cut-part2")]
+    for folder in folders:
+        folder.mkdir(parents=True)
+    begins = json.loads(text[at - 1])
+    header = json.loads(text[0]) | {"continues": {"recording": "cut", "events": begins["seq"] + 1, "t_ns": begins["t_ns"]}}
+    (folders[0] / "events.jsonl").write_text("\n".join(text[:at]) + "\n")
+    (folders[1] / "events.jsonl").write_text("\n".join([json.dumps(header), *text[at:]]) + "\n")
+    return folders
+
+
 def validate(tree):
     """Errors and warnings by what they are about: a field, or else their code."""
     done = subprocess.run([VALIDATOR, tree, "--format", "json", "--max-rows", "-1"], capture_output=True, text=True)
@@ -252,6 +266,11 @@ def main(tomcom, folder):
     assert len(typed_in(folder / "typed")) == 2, "in the events and the questionnaire"
     assert not validate(folder / "typed")["error"]
     print("labels: three codes alike are three participants; what was typed is left out unless --words asks for it", flush=True)
+
+    first, second = split(planned[1])
+    told_parts = json.loads(run(tomcom, "export", first, second, second, "--bids", folder / "parts", "--format", "json"))["bids"]
+    [one] = told_parts["recordings"]
+    assert one["rows"]["events"] + one["rows"]["gaze"] == len(lines(planned[1])) - 1, "a part is read with those before it, and once"
 
     # Whether the validator would have seen it.
     table_of = tree / (told["recordings"][0]["place"] + "_events.tsv")

@@ -31,7 +31,7 @@ const COLUMNS: [BidsColumn; 5] = [
 
 /// A participant.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ParticipantRow {
+pub struct BidsParticipant {
     /// The label in the tree.
     pub label: String,
     /// The code in the recordings.
@@ -45,7 +45,7 @@ pub struct ParticipantRow {
 }
 
 /// The files at the root: the description of the data set, its participants, a text to begin with. `plans`: the names of the studies.
-pub fn dataset_files(plans: &[String], participants: &[ParticipantRow], with_words: bool) -> Vec<BidsFile> {
+pub fn dataset_files(plans: &[String], participants: &[BidsParticipant], with_words: bool) -> Vec<BidsFile> {
     let name = if plans.is_empty() { "tomcom recordings".to_string() } else { plans.join(", ") };
     let description = json!({
         "Name": name,
@@ -57,7 +57,7 @@ pub fn dataset_files(plans: &[String], participants: &[ParticipantRow], with_wor
             "Description": "tomcom export --bids",
         }],
     });
-    let row = |one: &ParticipantRow| {
+    let row = |one: &BidsParticipant| {
         let label = format!("sub-{}", one.label);
         let group = or_nothing(one.group.as_deref());
         tsv::line([label, one.code.clone(), one.kind.clone(), group, one.recordings.to_string()])

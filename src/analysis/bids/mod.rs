@@ -18,7 +18,7 @@ mod spans;
 mod tsv;
 
 pub use self::dataset::{
-    CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS_NAME, PROGRAM_NAME, ParticipantRow, dataset_files,
+    BidsParticipant, CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS_NAME, PROGRAM_NAME, dataset_files,
 };
 pub use self::event_levels::LEVELS;
 pub use self::labels::{Labels, letters_and_digits, session_label};

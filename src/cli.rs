@@ -8,6 +8,11 @@ mod estimates;
 mod exports;
 mod failure;
 mod list;
+#[cfg(feature = "mcap")]
+mod mcap_exports;
+#[cfg(not(feature = "mcap"))]
+#[path = "cli/without_mcap.rs"]
+mod mcap_exports;
 mod operate;
 mod output;
 #[cfg(feature = "rerun")]

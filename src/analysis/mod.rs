@@ -16,6 +16,8 @@ pub mod exclusion_status;
 #[cfg(feature = "cli")]
 pub mod fitting;
 pub mod follower;
+#[cfg(feature = "mcap")]
+pub mod foxglove;
 pub mod gaze_summary;
 pub mod kitchen_summary;
 pub mod lesson_report;

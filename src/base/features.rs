@@ -9,6 +9,8 @@ pub enum Feature {
     Console,
     /// The server of the participant's display.
     Display,
+    /// Recordings as MCAP.
+    Mcap,
     /// The arm that presses buttons in a physics simulation, and its kinematics.
     Physics,
     /// Streams for Rerun's viewers.
@@ -17,13 +19,14 @@ pub enum Feature {
 
 impl Feature {
     /// All optional parts.
-    pub const ALL: [Feature; 4] = [Feature::Console, Feature::Display, Feature::Physics, Feature::Rerun];
+    pub const ALL: [Feature; 5] = [Feature::Console, Feature::Display, Feature::Mcap, Feature::Physics, Feature::Rerun];
 
     /// Whether this build contains the part.
     pub const fn is_built(self) -> bool {
         match self {
             Feature::Console => cfg!(feature = "console"),
             Feature::Display => cfg!(feature = "display"),
+            Feature::Mcap => cfg!(feature = "mcap"),
             Feature::Physics => cfg!(feature = "physics"),
             Feature::Rerun => cfg!(feature = "rerun"),
         }
@@ -34,6 +37,7 @@ impl Feature {
         match self {
             Feature::Console => "console",
             Feature::Display => "display",
+            Feature::Mcap => "mcap",
             Feature::Physics => "physics",
             Feature::Rerun => "rerun",
         }
@@ -44,6 +48,7 @@ impl Feature {
         match self {
             Feature::Console => "no session can be run or looked at in the terminal",
             Feature::Display => "the participant's display cannot be served",
+            Feature::Mcap => "no recording is exported as MCAP",
             Feature::Physics => "the arm cannot be simulated, and nothing checks that it reaches its buttons",
             Feature::Rerun => "no stream for Rerun's viewers is written or served",
         }
@@ -63,6 +68,7 @@ impl fmt::Display for Feature {
         formatter.write_str(match self {
             Feature::Console => "the console",
             Feature::Display => "the participant's display",
+            Feature::Mcap => "MCAP",
             Feature::Physics => "physics",
             Feature::Rerun => "Rerun",
         })

@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
+use serde_json::Value;
 
 use super::failure::Failure;
 use super::list::exists;
+use super::mcap_exports;
 use super::output::{OutputFormat, print, progress};
 use crate::edge::recordings;
 use crate::run::bids_export::{self, BidsSummary};
@@ -14,17 +16,22 @@ use crate::run::bids_export::{self, BidsSummary};
 /// Exports recordings for other programs.
 ///
 /// As a BIDS data set (Brain Imaging Data Structure, 1.10 and later): a session for each recording with its events, gaze as eye-tracking
-/// recording, questionnaires as phenotype. The recordings stay as they are.
+/// recording, questionnaires as phenotype. As MCAP, for robotics tools: joints, frames and log in Foxglove's types, gaze, beliefs and
+/// events. The logs stay as they are.
 #[derive(Debug, Args)]
 #[command(after_help = "Labels of participants are the letters and digits of their codes; what is changed is told.\n\
-                  Example: tomcom export sessions --bids ../bids\nMore: docs/exports.md")]
+                  Examples: tomcom export sessions --bids ../bids\n          \
+                  tomcom export sessions/2026-03-14-P07-1 --mcap\nMore: docs/exports.md")]
 pub(super) struct ExportArgs {
     /// Folders of recordings, or recordings.
     #[arg(value_name = "RECORDING", default_value = "sessions")]
     recordings: Vec<PathBuf>,
     /// Write a BIDS data set into this folder, which is made, or is empty.
-    #[arg(long, value_name = "DIR", required = true)]
+    #[arg(long, value_name = "DIR", required_unless_present = "mcap")]
     bids: Option<PathBuf>,
+    /// Write recording.mcap into the folder of each recording.
+    #[arg(long)]
+    mcap: bool,
     /// With --bids: export also what wizards and participants typed (notes, reasons, answers in words), in which names may stand.
     #[arg(long, requires = "bids")]
     words: bool,
@@ -38,6 +45,8 @@ pub(super) struct ExportArgs {
 struct ExportSummary {
     /// The BIDS data set.
     bids: Option<BidsSummary>,
+    /// The MCAPs with their messages.
+    mcap: Option<Value>,
 }
 
 /// `tomcom export`.
@@ -49,8 +58,14 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), Failure> {
         bids = Some(bids_export::export(&recordings, folder, args.words, || bar.inc(1))?);
         bar.finish_and_clear();
     }
-    let text = bids.as_ref().map(bids_export::describe).unwrap_or_default();
-    print(args.format, &ExportSummary { bids }, || text)
+    let mut text = bids.as_ref().map(bids_export::describe).unwrap_or_default();
+    let mut files = None;
+    if args.mcap {
+        let (messages, told) = mcap_exports::export(&recordings)?;
+        files = Some(messages);
+        text += &told;
+    }
+    print(args.format, &ExportSummary { bids, mcap: files }, || text)
 }
 
 /// The recordings that are meant by paths, each once.

@@ -23,6 +23,8 @@ mod host_name;
 pub mod key_file;
 pub mod language;
 pub mod log;
+#[cfg(feature = "mcap")]
+pub mod mcap_file;
 pub mod near_path;
 pub mod overwrite;
 pub mod parse;

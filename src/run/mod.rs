@@ -28,6 +28,8 @@ pub mod headless;
 pub mod leaving;
 #[cfg(feature = "cli")]
 pub mod live;
+#[cfg(all(feature = "cli", feature = "mcap"))]
+pub mod mcap_export;
 #[cfg(all(feature = "cli", feature = "rerun"))]
 pub mod open_viewer;
 #[cfg(feature = "cli")]

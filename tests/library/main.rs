@@ -18,6 +18,7 @@ mod gaze_senders;
 mod inference;
 mod kitchen;
 mod malformed_requests;
+mod mcap_export;
 mod measures;
 mod oracle;
 mod participant;

@@ -10,7 +10,7 @@ use super::subject::ForgetSubject;
 use crate::edge::bids_tree;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::consensus_file::CONSENSUS_NAME;
-use crate::edge::log::{EXCLUSION_NAME, LOCK_NAME, LOG_NAME, RRD_NAME, SETTINGS_NAME, is_damaged_log};
+use crate::edge::log::{EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME, is_damaged_log};
 use crate::edge::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
 use crate::session::settings::is_code;
 
@@ -192,7 +192,8 @@ fn is_of_recording(path: &Path) -> bool {
     let name = name.strip_suffix(".new").unwrap_or(name);
     let is_code_file = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv")).is_some_and(is_code);
     let seal = name.strip_suffix(".toml").unwrap_or_default();
-    let names = [LOG_NAME, SETTINGS_NAME, RRD_NAME, EXCLUSION_NAME, CONSENSUS_NAME, RESCUE_NOTE_NAME, LOCK_NAME];
+    let names =
+        [LOG_NAME, SETTINGS_NAME, RRD_NAME, MCAP_NAME, EXCLUSION_NAME, CONSENSUS_NAME, RESCUE_NOTE_NAME, LOCK_NAME];
     is_code_file || is_damaged_log(name) || names.contains(&name) || seal == RRD_NAME
 }
 

@@ -30,6 +30,8 @@ const DAMAGED: &str = ".damaged";
 pub const SETTINGS_NAME: &str = "session.toml";
 /// The name of the stream in the folder of a recording.
 pub const RRD_NAME: &str = "recording.rrd";
+/// The name of the MCAP in the folder of a recording.
+pub const MCAP_NAME: &str = "recording.mcap";
 
 /// Why a recording is not written, or not on.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]

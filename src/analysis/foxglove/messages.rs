@@ -1,0 +1,177 @@
+//! The messages of an event.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Map, Value, json};
+
+use super::channels::MessageChannel;
+use crate::analysis::event_lines;
+use crate::analysis::follower::Follower;
+use crate::arm::kinematics::Arm;
+use crate::base::time::SessionTime;
+use crate::robot::moment::ArmSample;
+use crate::session::Stamped;
+use crate::session::event::Event;
+
+/// The frame of the arm's base.
+const BASE: &str = "base_link";
+/// The joints in the arm's URDF, from the base on.
+pub const JOINT_NAMES: [&str; 6] = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"];
+/// Levels of Foxglove's log.
+const INFO: u8 = 2;
+const WARNING: u8 = 3;
+
+/// A message on a channel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelMessage {
+    /// The channel.
+    pub channel: MessageChannel,
+    /// Session time at which the event was recorded.
+    pub logged: SessionTime,
+    /// Session time at which it happened: of gaze, when the sample was taken.
+    pub published: SessionTime,
+    /// The message.
+    pub content: Value,
+}
+
+/// Makes messages from events.
+#[derive(Debug)]
+pub struct MessageMaker {
+    arm: Arm,
+}
+
+impl Default for MessageMaker {
+    fn default() -> MessageMaker {
+        MessageMaker { arm: Arm::ur5() }
+    }
+}
+
+impl MessageMaker {
+    /// The messages of an event that was just applied.
+    pub fn messages(&self, stamped: &Stamped, follower: &Follower) -> Vec<ChannelMessage> {
+        let now = stamped.time;
+        let message = |channel, content| ChannelMessage { channel, logged: now, published: now, content };
+        match &stamped.event {
+            Event::Gaze(sample) => {
+                let taken = sample.taken_ns.unwrap_or(now);
+                let mut content = json!({
+                    "timestamp": time(taken), "seq": stamped.seq, "x": sample.x, "y": sample.y, "confidence": sample.confidence,
+                });
+                if let Some(device_ns) = sample.device_ns {
+                    content["device_ns"] = json!(device_ns);
+                }
+                let logged = message(MessageChannel::Gaze, content);
+                vec![ChannelMessage { published: taken, ..logged }]
+            }
+            Event::RobotMoves(sample) => {
+                self.moves(now, sample).map(|(channel, content)| message(channel, content)).into()
+            }
+            _ => {
+                let mut all = vec![message(MessageChannel::Events, event(stamped))];
+                all.extend(beliefs(stamped).map(|content| message(MessageChannel::Beliefs, content)));
+                all.extend(words(stamped, follower).map(|content| message(MessageChannel::Log, content)));
+                all
+            }
+        }
+    }
+
+    /// Joints, frames and the arm's work of a sample.
+    fn moves(&self, now: SessionTime, sample: &ArmSample) -> [(MessageChannel, Value); 3] {
+        let joint = |(name, angle): (&&str, &f64)| json!({ "name": name, "position": angle });
+        let joints: Vec<Value> = JOINT_NAMES.iter().zip(&sample.joints).map(joint).collect();
+        let links = self.arm.links.iter().zip(self.arm.forward(&sample.joints)).skip(1);
+        let mut frames: Vec<Value> = links
+            .map(|(link, place)| {
+                let (at, turned) = (place.translation.vector, place.rotation);
+                frame(now, &link.name, [at.x, at.y, at.z], [turned.i, turned.j, turned.k, turned.w])
+            })
+            .collect();
+        frames.push(frame(now, "hand", sample.hand_m, [0.0, 0.0, 0.0, 1.0]));
+        let arm = json!({
+            "timestamp": time(now), "phase": sample.phase, "force_n": sample.force_n, "hand_away_m": sample.hand_away_m,
+        });
+        [
+            (MessageChannel::Joints, json!({ "timestamp": time(now), "joints": joints })),
+            (MessageChannel::Frames, json!({ "transforms": frames })),
+            (MessageChannel::Arm, arm),
+        ]
+    }
+}
+
+fn frame(now: SessionTime, name: &str, [x, y, z]: [f64; 3], [i, j, k, w]: [f64; 4]) -> Value {
+    json!({
+        "timestamp": time(now),
+        "parent_frame_id": BASE,
+        "child_frame_id": name,
+        "translation": { "x": x, "y": y, "z": z },
+        "rotation": { "x": i, "y": j, "z": k, "w": w },
+    })
+}
+
+fn time(time: SessionTime) -> Value {
+    json!({ "sec": time.0 / 1_000_000_000, "nsec": time.0 % 1_000_000_000 })
+}
+
+/// An event as the log has it.
+fn event(stamped: &Stamped) -> Value {
+    let mut fields = match serde_json::to_value(&stamped.event) {
+        Ok(Value::Object(fields)) => fields,
+        _ => Map::new(),
+    };
+    fields.remove("kind");
+    json!({ "timestamp": time(stamped.time), "seq": stamped.seq, "kind": stamped.event.kind(), "event": fields })
+}
+
+/// What was believed, of the two kinds of events that tell it.
+fn beliefs(stamped: &Stamped) -> Option<Value> {
+    let values = |values: &BTreeMap<String, f64>| -> Vec<Value> {
+        values.iter().map(|(value, p)| json!({ "value": value, "p": p })).collect()
+    };
+    let (source, press, aspects): (&str, Option<u64>, Vec<Value>) = match &stamped.event {
+        Event::ParticipantBelieves(belief) => {
+            let about = belief.aspects.iter().map(|about| {
+                json!({
+                    "aspect": about.aspect, "believes": about.believes, "p_truth": about.p_truth, "values": values(&about.values),
+                })
+            });
+            ("participant", None, about.collect())
+        }
+        Event::BeliefEstimated(estimate) => {
+            let about = estimate.aspects.iter().map(|about| {
+                json!({
+                    "aspect": about.aspect, "believes": about.believes, "p_truth": about.p_truth, "precision": about.precision,
+                    "values": values(&about.values),
+                })
+            });
+            ("estimate", Some(estimate.press), about.collect())
+        }
+        _ => return None,
+    };
+    let mut content =
+        json!({ "timestamp": time(stamped.time), "seq": stamped.seq, "source": source, "aspects": aspects });
+    if let Some(press) = press {
+        content["press"] = json!(press);
+    }
+    Some(content)
+}
+
+/// What happened, in words.
+fn words(stamped: &Stamped, follower: &Follower) -> Option<Value> {
+    let line = event_lines::line(stamped, follower)?;
+    let is_error = || follower.judged.last().is_some_and(|press| press.seq == stamped.seq && press.verdict.error);
+    let level = match &stamped.event {
+        Event::Press { .. } if is_error() => WARNING,
+        Event::TrialAborted { .. } | Event::RobotTouched { .. } | Event::ClockJumped { .. } | Event::FocusLost => {
+            WARNING
+        }
+        _ => INFO,
+    };
+    Some(json!({
+        "timestamp": time(stamped.time),
+        "level": level,
+        "message": line.trim(),
+        "name": stamped.event.kind(),
+        "file": "events.jsonl",
+        "line": stamped.seq,
+    }))
+}

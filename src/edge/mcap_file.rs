@@ -1,0 +1,94 @@
+//! Writes a recording as MCAP, the container format of robotics tools.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{McapError, WriteOptions, Writer};
+
+use super::log::MCAP_NAME;
+use super::overwrite;
+use crate::analysis::foxglove::{ChannelMessage, MessageChannel};
+
+/// What every MCAP begins with.
+const BEGINS: &[u8] = b"\x89MCAP0\r\n";
+/// What the file's header says wrote it.
+const LIBRARY: &str = "tomcom";
+/// Ending of the name of a file that is being written.
+const BEGUN: &str = ".new";
+/// How the messages and their schemas are encoded.
+const ENCODING: &str = "json";
+const SCHEMA_ENCODING: &str = "jsonschema";
+
+/// A file that is being written. It gets its name when it is whole.
+pub struct McapFile {
+    writer: Writer<BufWriter<File>>,
+    /// Numbers of the channels in the file, and of their messages so far.
+    channels: BTreeMap<MessageChannel, (u16, u32)>,
+    begun: PathBuf,
+    path: PathBuf,
+}
+
+impl McapFile {
+    /// Begins the file of the recording in this folder, with these words about it. One that this program wrote is replaced.
+    ///
+    /// # Errors
+    /// A file of somebody else has its name, or it cannot be written.
+    pub fn create(folder: &Path, about: BTreeMap<String, String>) -> io::Result<McapFile> {
+        let path = folder.join(MCAP_NAME);
+        let is_own = |head: &[u8]| {
+            let written = LIBRARY.as_bytes();
+            head.starts_with(BEGINS) && head.windows(written.len()).take(256).any(|part| part == written)
+        };
+        overwrite::check(&path, "an MCAP", is_own)?;
+        let begun = folder.join(format!("{MCAP_NAME}{BEGUN}"));
+        let options = WriteOptions::new().library(format!("{LIBRARY} {}", env!("CARGO_PKG_VERSION"))).compression(None);
+        let mut writer = options.create(BufWriter::new(File::create(&begun)?)).map_err(reason)?;
+        let mut channels = BTreeMap::new();
+        for channel in MessageChannel::ALL {
+            let schema = format!("{:#}", channel.schema());
+            let schema =
+                writer.add_schema(channel.schema_name(), SCHEMA_ENCODING, schema.as_bytes()).map_err(reason)?;
+            let number = writer.add_channel(schema, channel.topic(), ENCODING, &BTreeMap::new()).map_err(reason)?;
+            channels.insert(channel, (number, 0));
+        }
+        writer.write_metadata(&Metadata { name: LIBRARY.to_string(), metadata: about }).map_err(reason)?;
+        Ok(McapFile { writer, channels, begun, path })
+    }
+
+    /// Writes a message.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write(&mut self, message: &ChannelMessage) -> io::Result<()> {
+        let Some((channel, sequence)) = self.channels.get_mut(&message.channel) else { return Ok(()) };
+        let header = MessageHeader {
+            channel_id: *channel,
+            sequence: *sequence,
+            log_time: message.logged.0,
+            publish_time: message.published.0,
+        };
+        *sequence += 1;
+        self.writer.write_to_known_channel(&header, message.content.to_string().as_bytes()).map_err(reason)
+    }
+
+    /// Ends the file and gives it its name; its path, and the numbers of messages by channel.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn finish(mut self) -> io::Result<(PathBuf, BTreeMap<&'static str, u32>)> {
+        self.writer.finish().map_err(reason)?;
+        fs::rename(&self.begun, &self.path)?;
+        let counts = self.channels.iter().map(|(channel, (_, messages))| (channel.topic(), *messages)).collect();
+        Ok((self.path.clone(), counts))
+    }
+}
+
+fn reason(error: McapError) -> io::Error {
+    match error {
+        McapError::Io(reason) => reason,
+        error => io::Error::other(error),
+    }
+}

@@ -1,0 +1,90 @@
+//! Exports recordings as MCAP, each beside its log.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use crate::analysis::follower::Follower;
+use crate::analysis::foxglove::MessageMaker;
+use crate::base::words::count;
+use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::log::{LOG_NAME, LogEnding, LogReader, at_line};
+use crate::edge::mcap_file::McapFile;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::Header;
+
+/// An exported recording.
+#[derive(Clone, Debug, Serialize)]
+pub struct McapSummary {
+    /// The file.
+    pub file: PathBuf,
+    /// Numbers of messages by channel.
+    pub messages: BTreeMap<&'static str, u32>,
+}
+
+/// Exports a recording into its folder.
+///
+/// # Errors
+/// It cannot be read, is still being written, is no folder of a recording, or the file cannot be written.
+pub fn export(recording: &Path) -> FileResult<McapSummary> {
+    let mut log = LogReader::open(recording)?;
+    let wrong =
+        |found: &str, remedy: &str| Err(FileError::from_finding(recording, found.to_string(), remedy.to_string()));
+    if log.ending() == LogEnding::Running {
+        return wrong("a recording that is still being written", "a recording whose session is over");
+    }
+    if !log.path().ends_with(LOG_NAME) {
+        return wrong("a log by another name", "the folder of a recording, into which its MCAP is written");
+    }
+    let folder = log.folder().to_path_buf();
+    let unwritable =
+        |reason: io::Error| FileError::unreadable(&folder, reason, "a folder of the recording that can be written to");
+    let mut file = McapFile::create(&folder, about(&folder, &log.header)).map_err(unwritable)?;
+    let session = log.session();
+    let cost = CostToGo::new(session.kitchen.clone());
+    let (mut follower, maker) = (Follower::new(session, cost), MessageMaker::default());
+    while let Some(line) = log.next_line()? {
+        follower
+            .apply(&line.stamped)
+            .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
+        maker
+            .messages(&line.stamped, &follower)
+            .iter()
+            .try_for_each(|message| file.write(message))
+            .map_err(unwritable)?;
+    }
+    let (file, messages) = file.finish().map_err(unwritable)?;
+    Ok(McapSummary { file, messages })
+}
+
+/// What the file says of the recording. Its times are session times; `started` is the wall clock at the beginning.
+fn about(folder: &Path, header: &Header) -> BTreeMap<String, String> {
+    let spec = &header.session;
+    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let mut about = BTreeMap::from([
+        ("recording".to_string(), name),
+        ("participant".to_string(), spec.participant.code.clone()),
+        ("condition".to_string(), spec.trial.condition.name().to_string()),
+        ("trial".to_string(), header.trial.to_string()),
+        ("program".to_string(), header.program.clone()),
+        ("log_version".to_string(), header.version.to_string()),
+        ("times".to_string(), "session time: nanoseconds since the beginning of the recording".to_string()),
+    ]);
+    if let Some(started) = header.started.as_ref().filter(|_| header.continues.is_none()) {
+        about.insert("started".to_string(), started.clone());
+    }
+    about
+}
+
+/// What was exported, for people.
+pub fn describe(summaries: &[McapSummary]) -> String {
+    let line = |one: &McapSummary| {
+        let messages = one.messages.iter().filter(|(_, messages)| **messages > 0);
+        let messages: Vec<String> = messages.map(|(topic, messages)| format!("{topic} {messages}")).collect();
+        format!("  {}: {}\n", one.file.display(), messages.join(", "))
+    };
+    let lines: String = summaries.iter().map(line).collect();
+    format!("{}:\n{lines}", count(summaries.len() as u64, "MCAP", "MCAPs"))
+}

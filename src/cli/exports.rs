@@ -27,7 +27,7 @@ pub(super) struct ExportArgs {
     #[arg(value_name = "RECORDING", default_value = "sessions")]
     recordings: Vec<PathBuf>,
     /// Write a BIDS data set into this folder, which is made, or is empty.
-    #[arg(long, value_name = "DIR", required_unless_present = "mcap")]
+    #[arg(long, value_name = "DIR")]
     bids: Option<PathBuf>,
     /// Write recording.mcap into the folder of each recording.
     #[arg(long)]

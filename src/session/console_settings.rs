@@ -94,3 +94,23 @@ pub enum Visibility {
     /// Kitchen, gaze, estimated belief and recommendations.
     Recommendation,
 }
+
+impl Visibility {
+    /// Name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Visibility::State => "state",
+            Visibility::Belief => "belief",
+            Visibility::Recommendation => "recommendation",
+        }
+    }
+
+    /// What the wizard sees, in words.
+    pub fn title(self) -> &'static str {
+        match self {
+            Visibility::State => "kitchen and gaze",
+            Visibility::Belief => "kitchen, gaze and the estimated belief",
+            Visibility::Recommendation => "kitchen, gaze, the estimated belief and the assistant's recommendation",
+        }
+    }
+}

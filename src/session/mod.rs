@@ -54,6 +54,7 @@ mod session_state;
 mod setting_checks;
 pub mod settings;
 pub mod stream_settings;
+pub mod study_arm;
 mod timeline_entry;
 pub mod timers;
 pub mod tracker;

@@ -1,9 +1,12 @@
 //! Preflight checks of participant, gaze, eye tracker and disk space.
 
+use super::condition::Condition;
+use super::console_settings::Visibility;
 use super::gaze_samples::faults;
 use super::participant_settings::{GazeSource, ParticipantKind};
 pub use super::preflight_check::{PreflightCheck, PreflightVerdict};
 use super::session_state::Session;
+use super::study_arm::StudyArm;
 use super::tracker::TrackerConnection;
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
@@ -34,7 +37,25 @@ pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     PreflightCheck::new("free space", verdict, format!("{} MB", free / 1_000_000), remedy)
 }
 
-/// Checks participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a gaze accuracy check.
+/// What a plan's condition is, and whether the settings are those of its arm; `None` outside of plans.
+fn condition(session: &Session) -> Option<PreflightCheck> {
+    let spec = &session.spec;
+    let planned = spec.step.as_ref()?.arm?;
+    let sees_advice = session.unblinded || spec.console.visibility == Visibility::Recommendation;
+    let arm = StudyArm::from_settings(spec.trial.condition, spec.assistant.concept, sees_advice);
+    let sees = match spec.trial.condition {
+        Condition::Wizard => format!(", who sees {}", spec.console.visibility.title()),
+        Condition::None | Condition::Assistant => String::new(),
+    };
+    if arm == planned {
+        return Some(PreflightCheck::ok("condition", format!("{}{sees}", arm.title())));
+    }
+    let found = format!("{}{sees}; planned: {}", arm.title(), planned.title());
+    let remedy = "what the wizard sees is part of the condition: start the trial anew with the plan's settings";
+    Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
+}
+
+/// Checks condition, participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a gaze accuracy check.
 pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec<PreflightCheck> {
     let spec = &session.spec.participant;
     let who = match spec.kind {
@@ -42,7 +63,8 @@ pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec
         ParticipantKind::Keyboard => "at this keyboard",
         ParticipantKind::Display => "at the wall display",
     };
-    let mut checks = vec![PreflightCheck::ok("participant", format!("{}, {who}", spec.code))];
+    let mut checks: Vec<PreflightCheck> = condition(session).into_iter().collect();
+    checks.push(PreflightCheck::ok("participant", format!("{}, {who}", spec.code)));
     match spec.gaze {
         GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated: it comes with the trial")),
         GazeSource::None => checks.push(PreflightCheck::ok("gaze", "none is asked for")),

@@ -101,6 +101,9 @@ impl SessionSpec {
     fn check_rules(&self) -> Result<(), SettingError> {
         if let Some(plan) = &self.plan {
             plan.check()?;
+            if self.wizard.kind == WizardKind::Person {
+                plan.check_visibility(self.console.visibility)?;
+            }
         }
         let code = &self.participant.code;
         if !is_code(code) {

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::trial_statistics::{QuestionnaireAnswer, Trial, mean};
 use crate::session::plan::ItemKind;
-use crate::session::settings::Condition;
+use crate::session::study_arm::StudyArm;
 
 /// Acceptance of the assistance: each participant's mean answer to the items about acceptance after assisted trials, from 0 (none)
 /// to 1 (full). Answers to items in which agreement means rejection are reversed.
@@ -42,7 +42,7 @@ pub struct ItemSummary {
     /// How the item is answered.
     pub kind: ItemKind,
     /// The condition of the trial before; `None` for items that were asked before the trials.
-    pub condition: Option<Condition>,
+    pub condition: Option<StudyArm>,
     /// Number of points of the scale, if it is one.
     pub points: Option<u8>,
     /// Number of answers at each scale point, from 1, or with each option in their order.
@@ -63,7 +63,7 @@ pub struct ScoreSummary {
     /// The questionnaire's name.
     pub questionnaire: String,
     /// The condition of the trial before; `None` if it was asked before the trials.
-    pub condition: Option<Condition>,
+    pub condition: Option<StudyArm>,
     /// The score of each occasion on which every item was answered.
     pub scores: Vec<f64>,
     /// Mean of the scores.
@@ -73,8 +73,8 @@ pub struct ScoreSummary {
 }
 
 /// The condition after which an answer was given; `None` before the trials.
-fn asked_after(trial: &Trial, answered: &QuestionnaireAnswer) -> Option<Condition> {
-    (!answered.before).then_some(trial.condition)
+fn asked_after(trial: &Trial, answered: &QuestionnaireAnswer) -> Option<StudyArm> {
+    (!answered.before).then_some(trial.study_arm)
 }
 
 /// Scores of all questionnaires by condition, in order of occurrence.
@@ -156,7 +156,7 @@ pub(super) fn items(trials: &[&Trial]) -> Vec<ItemSummary> {
 }
 
 impl ItemSummary {
-    fn without_answers(answered: &QuestionnaireAnswer, condition: Option<Condition>) -> ItemSummary {
+    fn without_answers(answered: &QuestionnaireAnswer, condition: Option<StudyArm>) -> ItemSummary {
         let choices = answered.points.map_or(answered.options.len(), usize::from);
         ItemSummary {
             questionnaire: answered.questionnaire.clone(),

@@ -11,7 +11,7 @@ use super::trial_statistics::{Trial, mean};
 use crate::analysis::probe_figures::ProbeFigures;
 use crate::communication::concept::ConceptName;
 use crate::measures::detection::CalibrationBin;
-use crate::session::settings::Condition;
+use crate::session::study_arm::StudyArm;
 
 /// Chart of errors by condition and participant (paper's figure, top left); lines join a participant's two trials, means are black.
 pub fn errors_by_condition(trials: &[Trial]) -> Option<Markup> {
@@ -105,7 +105,7 @@ const LONGEST_BAR: usize = 12;
 
 /// Chart of the number of error sequences per trial by length and condition.
 pub fn sequence_lengths(conditions: &[StudyConditionSummary]) -> Option<Markup> {
-    let assisted = |one: &&StudyConditionSummary| one.condition != Condition::None;
+    let assisted = |one: &&StudyConditionSummary| one.condition != StudyArm::None;
     let per_trial = |is: &dyn Fn(&&StudyConditionSummary) -> bool| -> Vec<f64> {
         let found: Vec<&StudyConditionSummary> = conditions.iter().filter(is).collect();
         let trials: u64 = found.iter().map(|one| one.trials).sum();

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec, Visibility};
+use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec};
 use crate::session::{Header, Session};
 use crate::wizard::settings::{WizardKind, WizardSpec};
 
@@ -47,7 +47,7 @@ impl Facts {
         }
         if spec.trial.condition == Condition::Wizard {
             match spec.wizard.kind {
-                WizardKind::Person => is("wizard saw", visibility(spec.console.visibility).to_string()),
+                WizardKind::Person => is("wizard saw", spec.console.visibility.title().to_string()),
                 WizardKind::Scripted => is("scripted wizard", script(&spec.wizard)),
             }
             if session.unblinded {
@@ -142,13 +142,5 @@ fn participant_kind(kind: ParticipantKind) -> &'static str {
         ParticipantKind::Simulated => "simulated",
         ParticipantKind::Keyboard => "people at the console's keyboard",
         ParticipantKind::Display => "people at the wall display",
-    }
-}
-
-fn visibility(visibility: Visibility) -> &'static str {
-    match visibility {
-        Visibility::State => "kitchen and gaze",
-        Visibility::Belief => "kitchen, gaze and the estimated belief",
-        Visibility::Recommendation => "kitchen, gaze, the estimated belief and the assistant's recommendation",
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
+use super::arm_comparison::{ArmComparison, compare_arms};
 use super::arm_group::{ArmGroup, by_arm};
 use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
 use super::facts::Facts;
@@ -27,6 +28,7 @@ use crate::measures::matching::{MatchCounts, Similarity, WINDOW};
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::event::EndReason;
 use crate::session::settings::{Condition, ParticipantKind};
+use crate::session::study_arm::StudyArm;
 
 /// Seed of sampled permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.
 const SEED: u64 = 1;
@@ -59,6 +61,8 @@ pub struct StudySummary {
     pub permutation_p: Option<f64>,
     /// Effects of assistance on all compared measures, the first of them in full.
     pub effects: Vec<AssistanceEffect>,
+    /// Comparison of the arms by the plan's primary outcome; null unless participants have trials in different arms.
+    pub arms: Option<ArmComparison>,
     /// The receiver operating characteristic of each concept.
     pub roc: Vec<Roc>,
     /// Concepts that acted by themselves on the same simulated trials; empty unless several arms share trials.
@@ -113,8 +117,8 @@ pub struct StudySummary {
 /// Summary of the trials in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyConditionSummary {
-    /// Who sends signals.
-    pub condition: Condition,
+    /// Who sends signals, by which concept, and whether a wizard sees advice.
+    pub condition: StudyArm,
     /// Number of trials.
     pub trials: u64,
     /// Sums and means over these trials.
@@ -203,6 +207,7 @@ impl StudySummary {
             pearson: effects[0].pearson,
             permutation_p: effects[0].permutation_p,
             effects,
+            arms: compare_arms(&counting),
             live: live_arms(&counting, &comparison.concepts),
             roc: comparison.concepts,
             roc_beliefs_from: least_reliable(counting.iter().filter(|trial| !trial.swept.is_empty())),
@@ -272,8 +277,8 @@ fn title(facts: &Facts, trials: &[Trial], simulated: bool) -> String {
 }
 
 fn conditions(trials: &[&Trial]) -> Vec<StudyConditionSummary> {
-    let of = |condition: Condition| {
-        let trials: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.condition == condition).collect();
+    let of = |condition: StudyArm| {
+        let trials: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.study_arm == condition).collect();
         let lengths = || trials.iter().filter_map(|trial| trial.beliefs.as_ref()).flat_map(|one| one.lengths.iter());
         let mut sequence_lengths = vec![0; lengths().copied().max().unwrap_or(0) as usize];
         lengths().for_each(|&length| sequence_lengths[length as usize - 1] += 1);
@@ -288,7 +293,7 @@ fn conditions(trials: &[&Trial]) -> Vec<StudyConditionSummary> {
             sequence_lengths,
         })
     };
-    [Condition::None, Condition::Wizard, Condition::Assistant].into_iter().filter_map(of).collect()
+    StudyArm::ALL.into_iter().filter_map(of).collect()
 }
 
 /// Compares concepts over the trials in which they were evaluated; trials are grouped by participant.

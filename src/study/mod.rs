@@ -8,14 +8,18 @@
 //!
 //! - [`trial_statistics`] keeps the statistics of each trial, [`trial_totals`] sums them up; [`figures`] summarizes them with [`effect`], [`roc`] and
 //!   [`statistics`].
+//! - [`arm_comparison`] compares any number of arms, by a [linear mixed model](linear_mixed_model) and a
+//!   [negative binomial one](negative_binomial_model).
 //! - [`tables`] declares the tables: the source of a row, and each [column](mod@column) with name, unit, meaning and value. Header lines,
 //!   rows and [`dictionary`] are generated. A measure that is compared between assisted and unassisted trials is declared as such
 //!   in the table of trials ([`tables::trials`]); its columns in the table of participants and its line in the report are
 //!   generated.
-//! - [`report`] builds the page, with [`charts`].
+//! - [`report`] builds the page, with [`charts`] and [`arm_chart`].
 
 pub mod acceptance;
 pub mod acting_arm;
+pub mod arm_chart;
+pub mod arm_comparison;
 pub mod arm_group;
 pub mod belief_trace;
 pub mod charts;
@@ -26,7 +30,9 @@ pub mod effect;
 pub mod facts;
 pub mod figures;
 pub mod known_beliefs;
+pub mod linear_mixed_model;
 pub mod live_arms;
+pub mod negative_binomial_model;
 pub mod prevention;
 pub mod rater_episodes;
 pub mod report;

@@ -15,8 +15,9 @@ use crate::measures::matching::CommunicationEvent;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::answer_value::AnswerValue;
 use crate::session::event::EndReason;
-use crate::session::plan::{ItemKind, ItemOption};
-use crate::session::settings::{ArmKind, Condition, ParticipantKind};
+use crate::session::plan::{ItemKind, ItemOption, StudyAims};
+use crate::session::settings::{ArmKind, Condition, ParticipantKind, Visibility};
+use crate::session::study_arm::StudyArm;
 use crate::session::wall_display::DisplayedArm;
 
 /// Statistics of one trial.
@@ -40,6 +41,14 @@ pub struct Trial {
     pub is_planned: bool,
     /// Who could send signals.
     pub condition: Condition,
+    /// The arm of the trial, by what was done in it.
+    pub study_arm: StudyArm,
+    /// The arm that the plan gave to it, if it belongs to a plan that has arms.
+    pub planned_arm: Option<StudyArm>,
+    /// What the study asks, by its plan.
+    pub aims: Option<StudyAims>,
+    /// What the wizard was allowed to see.
+    pub wizard_sees: Visibility,
     /// Who sent the signals by itself; `None` for DEV.
     pub acting: Option<ActingArm>,
     /// Reason for excluding the trial; `None` if it counts.
@@ -195,6 +204,13 @@ impl Trial {
     /// Mean seconds to recover from an error sequence.
     pub fn recovery_s(&self) -> Option<f64> {
         mean(self.beliefs.as_ref()?.recovery_s.iter().copied())
+    }
+
+    /// Why the trial is not of the arm that the plan gave to it, in words; `None` if it is.
+    pub fn misfit(&self) -> Option<String> {
+        let planned = self.planned_arm.filter(|planned| *planned != self.study_arm)?;
+        let (planned, done) = (planned.title(), self.study_arm.title());
+        Some(format!("planned: {planned}; done: {done}, in which the wizard saw {}", self.wizard_sees.title()))
     }
 
     /// Whether signals are sent in the trial.

@@ -35,6 +35,7 @@ use crate::run::standing::exclusion_status;
 use crate::session::apply::ApplyError;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::{Condition, ParticipantKind, Visibility};
+use crate::session::study_arm::StudyArm;
 use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEvent};
 use crate::study::acting_arm::ActingArm;
 use crate::study::belief_trace::BeliefTrace;
@@ -338,6 +339,10 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         period: step.and_then(|step| step.period),
         is_planned: step.is_some(),
         condition: spec.trial.condition,
+        study_arm: StudyArm::from_settings(spec.trial.condition, spec.assistant.concept, saw_advice(session)),
+        planned_arm: step.and_then(|step| step.arm),
+        aims: step.map(|step| step.aims),
+        wizard_sees: spec.console.visibility,
         acting: ActingArm::from_settings(spec.trial.condition, spec.assistant.concept, spec.assistant.price()),
         left_out,
         ended: None,

@@ -5,6 +5,7 @@ use crate::base::words::count;
 use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::matching::{MatchShares, Similarity};
 use crate::session::event::EndReason;
+use crate::study::arm_comparison::ArmComparison;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
 use crate::study::live_arms::LiveArm;
@@ -79,7 +80,7 @@ pub fn describe(figures: &StudySummary) -> String {
     }
     for one in &figures.conditions {
         text += &format!(
-            "  {:<10}{:>4} trials, errors {} of the human's presses, {} per sequence, {} s per order\n",
+            "  {:<14}{:>4} trials, errors {} of the human's presses, {} per sequence, {} s per order\n",
             one.condition.name(),
             one.trials,
             percent(one.totals.error_rate_human),
@@ -88,6 +89,7 @@ pub fn describe(figures: &StudySummary) -> String {
         );
     }
     text += &figures.effects.first().map_or(String::new(), of_effect);
+    text += &figures.arms.as_ref().map_or(String::new(), of_arms);
     if figures.roc.iter().any(|roc| !roc.points.is_empty()) {
         let heads: Vec<String> = EQUAL_SIGNALS.iter().map(|signals| format!("{signals:>6}")).collect();
         text += &format!(
@@ -184,4 +186,38 @@ fn of_effect(effect: &AssistanceEffect) -> String {
         "effect of assistance: F({:.0}, {:.0}) = {:.2}, p = {:.4}; r = {:.2}; permutation p = {p}{reduction}\n",
         test.df[0], test.df[1], test.f, test.p, pearson.r
     )
+}
+
+/// The contrasts of the primary outcome between arms.
+fn of_arms(found: &ArmComparison) -> String {
+    let mut text = format!(
+        "{} per press of the human, by condition (linear mixed model of {} trials of {}):\n",
+        found.outcome.title(),
+        found.trials,
+        count(found.participants as u64, "participant", "participants")
+    );
+    for one in &found.contrasts {
+        let [low, high] = one.interval;
+        text += &format!(
+            "  {} to {}: ratio {:.2} ({low:.2} to {high:.2}), t({:.1}) = {:.2}, p = {:.3}, corrected {:.3}\n",
+            one.arm.name(),
+            one.against.name(),
+            one.ratio,
+            one.contrast.df,
+            one.contrast.t,
+            one.contrast.p,
+            one.p_holm
+        );
+    }
+    for one in &found.non_inferiority {
+        let verdict = if one.holds { "not worse than" } else { "not shown to be not worse than" };
+        text += &format!(
+            "  {} is {verdict} {}: upper end {:.2}, margin {:.2}\n",
+            one.arm.name(),
+            one.against.name(),
+            one.upper,
+            one.margin
+        );
+    }
+    text
 }

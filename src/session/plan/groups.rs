@@ -1,8 +1,8 @@
-//! Starting groups: the possible orders of the conditions.
+//! Starting groups: the orders in which conditions are tried, balanced for what one trial leaves to the next.
 
 use serde::Serialize;
 
-use crate::session::condition::Condition;
+use crate::session::study_arm::StudyArm;
 
 /// A starting group: an order of the conditions.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -10,21 +10,23 @@ pub struct StartingGroup {
     /// "AB": the first condition of the plan comes first.
     pub name: String,
     /// The condition of each trial.
-    pub conditions: Vec<Condition>,
+    pub conditions: Vec<StudyArm>,
 }
 
-/// Every order of `count` conditions, as indices; the plan's own order first.
-pub fn groups(count: usize) -> Vec<Vec<usize>> {
+/// The orders of a Williams design (Williams 1949) for `count` conditions, as indices, the plan's own order first where it is one of
+/// them: every condition stands equally often in every place, and directly after every other one. An odd number of conditions needs
+/// twice as many orders.
+pub fn orders(count: usize) -> Vec<Vec<usize>> {
     if count == 0 {
         return vec![Vec::new()];
     }
-    let mut all = Vec::new();
-    for shorter in groups(count - 1) {
-        for place in (0..count).rev() {
-            let mut order = shorter.clone();
-            order.insert(place, count - 1);
-            all.push(order);
-        }
+    // 0, 1, n-1, 2, n-2, ...: the steps between neighbours are all different modulo n.
+    let first = |place: usize| if place % 2 == 1 { place.div_ceil(2) } else { (count - place / 2) % count };
+    let mut all: Vec<Vec<usize>> =
+        (0..count).map(|shift| (0..count).map(|place| (first(place) + shift) % count).collect()).collect();
+    if count % 2 == 1 && count > 1 {
+        let mirrored: Vec<Vec<usize>> = all.iter().map(|order| order.iter().rev().copied().collect()).collect();
+        all.extend(mirrored);
     }
     all.sort();
     all

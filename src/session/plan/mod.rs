@@ -7,7 +7,7 @@
 //!
 //! The files from the ground up: `groups`, `plan_spec` (the `[plan]` of a session file), `starting_groups` (who is in which
 //! group), `item_form` (how items are answered), `questionnaire` and `questionnaire_checks` (its file), `tutorial`, `step` (one recording),
-//! `planned_study` (all of them), `progress` (how far it is).
+//! `study_aims` (what the study asks), `planned_study` (all of them), `progress` (how far it is).
 
 mod groups;
 mod item_form;
@@ -18,13 +18,15 @@ mod questionnaire;
 mod questionnaire_checks;
 mod starting_groups;
 mod step;
+mod study_aims;
 mod tutorial;
 
-pub use groups::{StartingGroup, groups};
+pub use groups::{StartingGroup, orders};
 pub use item_form::{ItemForm, ItemKind, ItemOption, SLIDER_END, Scale};
 pub use plan_spec::{FamiliarisationSpec, Participants, PlanSpec, QuestionnaireSpec};
 pub use planned_study::{Slot, Study, WantedRecording};
 pub use progress::{NextRecording, PlanRecording, Progress, RecordingOutcome, SlotProgress};
 pub use questionnaire::{Item, Questionnaire, ScoreRule};
 pub use step::{Criterion, PhaseSpec, StepSpec};
+pub use study_aims::{PrimaryOutcome, StudyAims};
 pub use tutorial::{Tutorial, TutorialStep, TutorialStepKind, TutorialTarget};

@@ -2,14 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::groups::groups;
-use crate::session::condition::Condition;
+use super::groups::orders;
+use super::study_aims::StudyAims;
+use crate::session::console_settings::Visibility;
 use crate::session::setting_checks::{SettingError, is_code};
+use crate::session::study_arm::StudyArm;
 use crate::session::wall_display::Answering;
 
-/// Largest number of conditions: the analysis compares one assisted with one unassisted trial of a participant. With a third condition
-/// it would drop a trial of everybody and pool wizard and assistant.
-const MAX_CONDITIONS: usize = 2;
+/// Largest number of conditions: more trials tire a participant.
+const MAX_CONDITIONS: usize = 5;
 
 /// The `[plan]` of a session file: participants, conditions, and the phases around the trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,8 +20,11 @@ pub struct PlanSpec {
     pub name: String,
     /// Who takes part.
     pub participants: Participants,
-    /// Conditions; each participant has one trial in each, in counterbalanced order.
-    pub conditions: Vec<Condition>,
+    /// Conditions, by their arms; each participant has one trial in each, in counterbalanced order.
+    pub conditions: Vec<StudyArm>,
+    /// What the analysis compares first between the conditions, and what counts as not worse.
+    #[serde(default, skip_serializing_if = "StudyAims::are_default")]
+    pub aims: StudyAims,
     /// Size of a permuted block, in participants; by default each order of the conditions occurs twice in a block.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub block: Option<u32>,
@@ -74,8 +78,8 @@ pub enum Participants {
 #[serde(deny_unknown_fields)]
 pub struct FamiliarisationSpec {
     /// Who may send signals during the practice.
-    #[serde(default = "unassisted")]
-    pub condition: Condition,
+    #[serde(default)]
+    pub condition: StudyArm,
     /// End of the practice: presses of both agents, unless time or orders end it earlier.
     pub presses: u32,
     /// The practice ends after this time on the trial's clock, in seconds.
@@ -85,10 +89,6 @@ pub struct FamiliarisationSpec {
     /// Criterion: largest share of errors among the human's presses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_rate: Option<f64>,
-}
-
-fn unassisted() -> Condition {
-    Condition::None
 }
 
 /// A questionnaire with the trials after which it is asked.
@@ -144,15 +144,18 @@ impl PlanSpec {
         let twice = |index: usize| self.conditions[..index].contains(&self.conditions[index]);
         if self.conditions.is_empty() || self.conditions.len() > MAX_CONDITIONS {
             let found = format!("{} conditions", self.conditions.len());
-            let remedy = "one or two conditions, such as [\"none\", \"wizard\"]: the analysis of a study compares two, and would pool \
-                          or drop the others";
+            let remedy = "one to five conditions, such as [\"none\", \"wizard\", \"tom-com\"]";
             return wrong("plan.conditions", found, remedy);
+        }
+        if self.conditions.contains(&StudyArm::Dev) {
+            let remedy = "\"tom-com\" or \"tom\": what DEV proposes is not shown on the display";
+            return wrong("plan.conditions", "the condition \"dev\"".to_string(), remedy);
         }
         if let Some(index) = (0..self.conditions.len()).find(|&index| twice(index)) {
             let found = format!("the condition \"{}\" twice", self.conditions[index].name());
             return wrong("plan.conditions", found, "different conditions: each participant has one trial in each");
         }
-        let orders = groups(self.conditions.len()).len() as u32;
+        let orders = orders(self.conditions.len()).len() as u32;
         if let Some(block) = self.block.filter(|&block| block == 0 || block % orders != 0) {
             let found = format!("block = {block}, with {orders} orders of the conditions");
             return wrong("plan.block", found, "a multiple of the number of orders, so that each comes equally often");
@@ -164,6 +167,22 @@ impl PlanSpec {
             }
         }
         Ok(())
+    }
+
+    /// Checks that the arms fit what the wizard sees in the session.
+    ///
+    /// # Errors
+    /// The plan has a wizard without advice, and the settings show recommendations.
+    pub fn check_visibility(&self, visibility: Visibility) -> Result<(), SettingError> {
+        let practice = self.familiarisation.iter().map(|practice| practice.condition);
+        let is_blind = self.conditions.iter().copied().chain(practice).any(|arm| arm == StudyArm::Wizard);
+        if !is_blind || visibility < Visibility::Recommendation {
+            return Ok(());
+        }
+        let found = "the wizard sees recommendations, in a plan with the condition \"wizard\"".to_string();
+        let remedy = "visibility = \"state\" or \"belief\", or the condition \"wizard+advice\": what the wizard sees is part of the \
+                      condition";
+        Err(SettingError::new("console.visibility", found, remedy))
     }
 
     fn check_participants(&self) -> Result<(), SettingError> {

@@ -8,10 +8,11 @@ use super::questionnaire::Questionnaire;
 use super::step::{Criterion, PhaseSpec, StepSpec};
 use super::tutorial::Tutorial;
 use crate::base::rng::mix;
-use crate::session::condition::Condition;
+use crate::communication::settings::Shadow;
 use crate::session::protocol_event::ProtocolEvent;
-use crate::session::settings::{ConsoleSpec, ParticipantKind, ParticipantSpec, SessionSpec};
+use crate::session::settings::{ConsoleSpec, ParticipantKind, ParticipantSpec, SessionSpec, Visibility};
 use crate::session::stream_settings::RerunSpec;
+use crate::session::study_arm::StudyArm;
 use crate::session::tracker::TrackerSpec;
 use crate::session::wall_display::{Answering, DisplaySpec};
 
@@ -20,8 +21,8 @@ use crate::session::wall_display::{Answering, DisplaySpec};
 pub struct Slot {
     /// Number of the trial, from 1; `None` for the familiarisation.
     pub period: Option<u32>,
-    /// Who may send signals in it.
-    pub condition: Condition,
+    /// Its arm.
+    pub condition: StudyArm,
 }
 
 /// A study plan with its session settings and questionnaires.
@@ -100,7 +101,7 @@ impl Study {
         let slot = slots[wanted.slot];
         let mut spec = self.session.clone();
         spec.participant.code = self.plan.code(wanted.participant);
-        spec.trial.condition = slot.condition;
+        set_arm(&mut spec, slot.condition);
         let practice = self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none());
         if let Some(practice) = practice {
             spec.trial.presses = practice.presses;
@@ -114,6 +115,8 @@ impl Study {
             group: self.group(wanted.participant).name,
             period: slot.period,
             periods: self.plan.conditions.len() as u32,
+            arm: Some(slot.condition),
+            aims: self.plan.aims,
             attempt: wanted.attempt,
             criterion: practice.map(|it| Criterion { orders: it.orders, error_rate: it.error_rate }),
             phases: self.phases(slot, wanted),
@@ -128,8 +131,11 @@ impl Study {
         let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
         let (mut spec, trial) = self.settings(WantedRecording { participant, slot, attempt: 1, instructed: true });
         spec.trial.condition = spec.unattended(spec.trial.condition);
+        let arm = StudyArm::from_settings(spec.trial.condition, spec.assistant.concept, false);
         if let Some(step) = &mut spec.step {
             step.phases = vec![PhaseSpec::Trial];
+            // No person sees advice in it.
+            step.arm = Some(arm);
         }
         (spec, trial)
     }
@@ -146,6 +152,8 @@ impl Study {
             group: String::new(),
             period: None,
             periods: 0,
+            arm: None,
+            aims: self.plan.aims,
             attempt: 1,
             criterion: None,
             phases,
@@ -173,12 +181,24 @@ impl Study {
         phases.extend(before.map(|questionnaire| PhaseSpec::Questionnaire { questionnaire }));
         phases.push(PhaseSpec::Trial);
         let after = asked().filter(|(when, _)| when.is_asked_after(period));
-        let after = after.filter_map(|(_, asked)| asked.after(slot.condition));
+        let after = after.filter_map(|(_, asked)| asked.after(slot.condition.condition()));
         phases.extend(after.map(|questionnaire| PhaseSpec::Questionnaire { questionnaire }));
         if period as usize == self.plan.conditions.len() && !self.plan.debriefing.is_empty() {
             phases.push(PhaseSpec::Debriefing { steps: self.plan.debriefing.clone() });
         }
         phases
+    }
+}
+
+/// Gives a trial the settings of its arm.
+fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
+    spec.trial.condition = arm.condition();
+    if let Some(concept) = arm.concept() {
+        spec.assistant.concept = concept;
+    }
+    if arm == StudyArm::WizardWithAdvice {
+        spec.console.visibility = Visibility::Recommendation;
+        spec.assistant.shadow = Shadow::On;
     }
 }
 

@@ -3,14 +3,14 @@
 
 use rand::RngExt;
 
-use super::groups::{StartingGroup, groups};
+use super::groups::{StartingGroup, orders};
 use super::plan_spec::PlanSpec;
 use crate::base::rng::stream;
 
 impl PlanSpec {
     /// The group of the participant with this index: a function of plan and seed alone.
     pub fn group(&self, seed: u64, participant: usize) -> StartingGroup {
-        let orders = groups(self.conditions.len());
+        let orders = orders(self.conditions.len());
         let block = self.block.map_or(2 * orders.len(), |block| block as usize);
         let mut places: Vec<usize> = (0..block).map(|place| place % orders.len()).collect();
         let mut random = stream(seed, "groups", (participant / block) as u64);

@@ -3,8 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::questionnaire::Questionnaire;
+use super::study_aims::StudyAims;
 use super::tutorial::Tutorial;
 use crate::session::protocol_event::StudyPhase;
+use crate::session::study_arm::StudyArm;
 
 /// Position of a recording in its plan, and its phases; part of the settings of every recording of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +25,12 @@ pub struct StepSpec {
     pub period: Option<u32>,
     /// Number of trials per participant.
     pub periods: u32,
+    /// The arm that the plan gives to the trial; absent in recordings from before plans had arms.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub arm: Option<StudyArm>,
+    /// What the study asks, if it is not the default.
+    #[serde(default, skip_serializing_if = "StudyAims::are_default")]
+    pub aims: StudyAims,
     /// Number of the attempt, from 1.
     pub attempt: u32,
     /// Criterion of the familiarisation.

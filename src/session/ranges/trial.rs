@@ -111,7 +111,13 @@ pub(super) const RANGES: [NumberRange; 48] = [
     NumberRange::real("plan.familiarisation.seconds", [0.1, DAY_S], SECONDS, LONGEST).recorded(ABOVE_0),
     NumberRange::whole("plan.familiarisation.orders", [1.0, COUNT], "orders", "0 would be no criterion"),
     NumberRange::real("plan.familiarisation.error_rate", [0.0, 1.0], "", "it is a share of presses"),
-    NumberRange::whole("plan.questionnaire.after", [1.0, 2.0], "", "participants have one or two trials"),
+    NumberRange::whole("plan.questionnaire.after", [1.0, 5.0], "", "participants have one to five trials"),
+    NumberRange::real(
+        "plan.aims.margin",
+        [1.01, 10.0],
+        "",
+        "it is a ratio of rates above 1: how much worse is not worse",
+    ),
 ];
 
 pub(super) const OF_ITEMS: [NumberRange; 6] = [

@@ -3,8 +3,8 @@
 use maud::{Markup, Render, html};
 
 use super::elements::{
-    Captions, PageColumn, UNKNOWN, cells, condition, keys, nothing, number, p_sentence, p_value, percent, range,
-    scroll, section, with_interval,
+    Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, p_sentence, p_value, percent, range, scroll, section,
+    with_interval,
 };
 use crate::study::charts;
 use crate::study::effect::AssistanceEffect;
@@ -48,7 +48,7 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
 
 fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let columns: [PageColumn<StudyConditionSummary>; 15] = [
-        ("condition", |one| condition(one.condition).render()),
+        ("condition", |one| one.condition.title().render()),
         ("trials", |one| one.trials.render()),
         ("errors", |one| one.totals.errors.render()),
         ("errors per trial", |one| number(one.mean_errors, 1).render()),

@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, Render, html};
 
-use crate::session::settings::{ArmKind, Condition};
+use crate::session::settings::ArmKind;
 use crate::study::svg::minus;
 
 /// Text in place of an unknown value: a dash.
@@ -155,15 +155,6 @@ pub(super) fn range([low, high]: [f64; 2], digits: usize) -> String {
 
 pub(super) fn count(value: Option<u64>) -> String {
     value.map_or(UNKNOWN.to_string(), |value| value.to_string())
-}
-
-/// Name of a condition in the report.
-pub(super) fn condition(condition: Condition) -> &'static str {
-    match condition {
-        Condition::None => "unassisted",
-        Condition::Wizard => "wizard",
-        Condition::Assistant => "assistant",
-    }
 }
 
 /// Name of a kind of robot arm in the report.

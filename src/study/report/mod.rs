@@ -1,5 +1,6 @@
 //! The report: one self-contained HTML page for screen and print.
 
+mod arm_section;
 mod assistance;
 mod awareness;
 mod concept_comparison;
@@ -29,6 +30,7 @@ pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[T
         results::beside_the_paper(captions, figures),
         assistance::assistance(captions, figures, trials),
         awareness::awareness(captions, figures),
+        arm_section::arms(captions, figures, trials),
         concept_comparison::concepts(captions, figures),
         results::similarity(captions, figures),
         robot_counts::robot(captions, figures),

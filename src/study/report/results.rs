@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::elements::{Captions, UNKNOWN, cells, condition, count, nothing, number, p_value, percent, scroll, section};
+use super::elements::{Captions, UNKNOWN, cells, count, nothing, number, p_value, percent, scroll, section};
 use crate::analysis::offer_summary::{OfferDurations, OfferSummary};
 use crate::base::words;
 use crate::communication::offer::OfferEnd;
@@ -10,7 +10,7 @@ use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::matching::MatchShares;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::plan::ItemKind;
-use crate::session::settings::Condition;
+use crate::session::study_arm::StudyArm;
 use crate::study::figures::StudySummary;
 
 /// Table with this study's results beside the paper's.
@@ -200,8 +200,8 @@ pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup 
 }
 
 /// What a group of answers follows: the condition of a trial, or nothing.
-fn asked_after(after: Option<Condition>) -> String {
-    after.map_or_else(|| "before the trials".to_string(), |after| condition(after).to_string())
+fn asked_after(after: Option<StudyArm>) -> String {
+    after.map_or_else(|| "before the trials".to_string(), |after| after.title().to_string())
 }
 
 /// Answers by item. Words are only counted: they can tell who wrote them, and stand in the table.

@@ -2,7 +2,7 @@
 
 use maud::{Markup, Render, html};
 
-use super::elements::{Captions, PageColumn, UNKNOWN, cells, condition, count, number, p_sentence, percent, section};
+use super::elements::{Captions, PageColumn, UNKNOWN, cells, count, number, p_sentence, percent, section};
 use crate::base::words;
 use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::cause_codes::Agreement;
@@ -118,7 +118,7 @@ fn counting(captions: &mut Captions, trials: &[Trial]) -> Markup {
         ("participant", |trial| trial.participant.render()),
         ("group", |trial| trial.group.as_deref().unwrap_or(UNKNOWN).render()),
         ("trial", |trial| count(trial.period.map(u64::from)).render()),
-        ("condition", |trial| condition(trial.condition).render()),
+        ("condition", |trial| trial.study_arm.title().render()),
         ("ended by", |trial| trial.ended.map_or(UNKNOWN, EndReason::name).render()),
         ("presses, human", |trial| trial.human_presses.render()),
         ("robot", |trial| trial.robot_presses.render()),

@@ -5,6 +5,7 @@ use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::robot::AbortReason;
 use crate::session::event::EndReason;
+use crate::session::study_arm::StudyArm;
 use crate::session::wall_display::DisplayedArm;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::effect::StudyMeasure;
@@ -90,6 +91,7 @@ fn declared() -> impl Iterator<Item = TrialColumn> {
         .chain(shown())
         .chain(false_beliefs())
         .chain(probed())
+        .chain(arms())
 }
 
 fn plain(
@@ -409,5 +411,25 @@ fn probed() -> Vec<TrialColumn> {
             |t| t.probes.as_ref().map(|probes| probes.counted().count() as u64).into(),
         ),
         Compared(PROBES_WRONG),
+    ]
+}
+
+fn arms() -> Vec<TrialColumn> {
+    vec![
+        plain(
+            "study_arm",
+            "",
+            "arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), tom-com, tom or dev",
+            |t| t.study_arm.name().into(),
+        ),
+        plain("planned_arm", "", "arm that the plan gave to the trial; empty without a plan", |t| {
+            t.planned_arm.map(StudyArm::name).into()
+        }),
+        plain(
+            "wizard_sees",
+            "",
+            "what the console may show: state (kitchen and gaze), belief (also the estimate) or recommendation (also advice)",
+            |t| t.wizard_sees.name().into(),
+        ),
     ]
 }

@@ -6,7 +6,7 @@ use std::fs;
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::kitchen::DishId;
 use tomcom::session::orders::OrderList;
-use tomcom::session::plan::{Item, Participants, Study, WantedRecording};
+use tomcom::session::plan::{Item, Participants, Study, WantedRecording, orders as orders_of_conditions};
 use tomcom::session::settings::{ArmKind, ParticipantKind, ThemeChoice, Visibility};
 use tomcom::session::wall_display::DisplayedArm;
 
@@ -82,6 +82,26 @@ fn the_groups_are_balanced_in_every_block_and_belong_to_plan_and_seed() {
     assert!((2..6).any(|seed| names(seed, 12) != names(1, 12)), "another seed, other groups");
 }
 
+/// Williams (1949): of any two conditions each follows the other directly in as many orders, and each stands in every place equally often.
+#[test]
+fn the_orders_of_conditions_are_balanced_for_what_a_trial_leaves_to_the_next() {
+    for (count, number) in [(1, 1), (2, 2), (3, 6), (4, 4), (5, 10)] {
+        let orders = orders_of_conditions(count);
+        assert_eq!(orders.len(), number, "{count} conditions");
+        let (mut places, mut pairs) = (BTreeMap::new(), BTreeMap::new());
+        for order in &orders {
+            for (place, &condition) in order.iter().enumerate() {
+                *places.entry((place, condition)).or_insert(0) += 1;
+            }
+            order.windows(2).for_each(|pair| *pairs.entry((pair[0], pair[1])).or_insert(0) += 1);
+        }
+        assert_eq!(places.len(), count * count, "{orders:?}");
+        assert!(places.values().all(|&times| times == number / count), "{orders:?}");
+        assert_eq!(pairs.len(), count * (count - 1), "{orders:?}");
+        assert!(pairs.values().all(|&times| times == number / count), "{orders:?}");
+    }
+}
+
 /// The first `count` orders of a recording of the plan.
 fn orders(study: &Study, wanted: WantedRecording, menu: usize, count: usize) -> Vec<DishId> {
     let (spec, trial) = study.settings(wanted);
@@ -123,17 +143,18 @@ fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
 fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
     let digest = |change: fn(&mut SessionFiles)| study(change).digest;
     let original = digest(|_| ());
-    let others: [NamedChange; 12] = [
+    let others: [NamedChange; 13] = [
         ("presses", |files| files.spec.trial.presses += 1),
         ("arm", |files| files.spec.robot.arm = ArmKind::Timed),
         ("signals", |files| files.spec.signals.shown_s += 1.0),
         ("cost", |files| files.spec.assistant.cost_of_communication += 0.1),
-        ("what the wizard sees", |files| files.spec.console.visibility = Visibility::Recommendation),
+        ("what the wizard sees", |files| files.spec.console.visibility = Visibility::Belief),
         ("human model", |files| files.spec.human.decision.tau += 0.1),
         ("display", |files| files.spec.display.intention = true),
         ("reasons of presses without effect", |files| files.spec.display.reasons = Some(false)),
         ("the robot on the display", |files| files.spec.display.arm = Some(DisplayedArm::Arm)),
         ("seed", |files| files.spec.seed += 1),
+        ("aims", |files| files.spec.plan.as_mut().expect("a plan").aims.margin += 0.1),
         ("layout", |files| files.kitchen.layout.text.push('\n')),
         ("recipes", |files| files.kitchen.recipes.text.push('\n')),
     ];

@@ -16,7 +16,7 @@ use tomcom::run::verify::verify;
 use tomcom::session::event::EndReason;
 use tomcom::session::plan::{NextRecording, PhaseSpec, Progress, RecordingOutcome, WantedRecording};
 use tomcom::session::protocol::ProtocolEvent;
-use tomcom::session::settings::Condition;
+use tomcom::session::study_arm::StudyArm;
 use tomcom::session::wall_display::Answering;
 use tomcom::session::{Event, Header, Phase};
 
@@ -151,7 +151,7 @@ fn what_happens_around_a_trial_keeps_its_order() {
 fn items_are_answered_back_and_forth_and_confirmed() {
     // Of P01, the trial with signals has the items about them.
     let study = study(|_| ());
-    let slot = study.slots(0).iter().position(|slot| slot.condition == Condition::Wizard).expect("one");
+    let slot = study.slots(0).iter().position(|slot| slot.condition == StudyArm::Wizard).expect("one");
     let out = folder("items");
     let mut run = Run::new(&out, wanted(slot, true));
     run.next_phase();

@@ -43,11 +43,15 @@ fn every_setting() -> toml::Table {
         least_questions = 1
         most_questions = 8
         least_inclusion = 0.01
+        [console]
+        visibility = "state"
         [plan]
         name = "all"
         participants = 2
         conditions = ["none", "wizard"]
         block = 2
+        [plan.aims]
+        margin = 1.3
         [plan.familiarisation]
         presses = 10
         seconds = 60.0

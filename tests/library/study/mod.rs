@@ -1,5 +1,6 @@
 //! The study: statistics, what concepts would have prevented, tables and report.
 
+mod arms;
 mod effect;
 mod live_arms;
 mod prevention;
@@ -15,7 +16,8 @@ use tomcom::communication::concept::ConceptName;
 use tomcom::measures::belief_basis::BeliefBasis;
 use tomcom::measures::cause_kinds::CauseKindCounts;
 use tomcom::session::event::EndReason;
-use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
+use tomcom::session::settings::{ArmKind, Condition, ParticipantKind, Visibility};
+use tomcom::session::study_arm::StudyArm;
 use tomcom::study::acting_arm::ActingArm;
 use tomcom::study::robot_tally::RobotSummary;
 use tomcom::study::trial_statistics::{BeliefErrors, Trial, arrange};
@@ -42,6 +44,10 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         period: Some(period),
         is_planned: true,
         condition,
+        study_arm: StudyArm::from_settings(condition, ConceptName::TomCom, false),
+        planned_arm: None,
+        aims: None,
+        wizard_sees: Visibility::State,
         acting: ActingArm::from_settings(condition, ConceptName::TomCom, 1.5),
         left_out: None,
         ended: Some(EndReason::Presses),

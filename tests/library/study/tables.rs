@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use tomcom::edge::export::ExportFolder;
 use tomcom::run::study::reading::{self, AnalysisScope, RecordingAnalysis};
 use tomcom::session::settings::Condition;
+use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::{Column, Table, TableCell, TableRow};
 use tomcom::study::dictionary::{DictionaryRow, columns, dictionary};
 use tomcom::study::tables::participants::participants;
@@ -79,6 +80,7 @@ fn pair() -> [Trial; 2] {
         participant: "P01".to_string(),
         period: Some(2),
         condition: Condition::Wizard,
+        study_arm: StudyArm::Wizard,
         left_out: None,
         order_s: Some(20.0),
         presses_per_order: Some(16.5),
@@ -89,6 +91,7 @@ fn pair() -> [Trial; 2] {
         recording: "before".to_string(),
         period: Some(1),
         condition: Condition::None,
+        study_arm: StudyArm::None,
         errors: second.errors * 2,
         order_s: Some(31.25),
         ..second.clone()

@@ -1,0 +1,49 @@
+//! What a study asks: its primary outcome, and what counts as not worse.
+
+use serde::{Deserialize, Serialize};
+
+/// The aims of a study, which are set before it begins.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct StudyAims {
+    /// What the analysis compares first between the conditions.
+    pub outcome: PrimaryOutcome,
+    /// Margin of non-inferiority: the assistant is not worse than the wizard if the ratio of their rates is below it.
+    pub margin: f64,
+}
+
+impl Default for StudyAims {
+    fn default() -> Self {
+        StudyAims { outcome: PrimaryOutcome::Errors, margin: 1.25 }
+    }
+}
+
+impl StudyAims {
+    pub(super) fn are_default(&self) -> bool {
+        *self == StudyAims::default()
+    }
+}
+
+/// The primary outcome of a study: a number of events in a trial, compared as a rate per press of the human.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PrimaryOutcome {
+    /// Errors of the human.
+    #[default]
+    Errors,
+    /// Errors that a false belief caused; of people they are known from two raters' codes.
+    BeliefRelatedErrors,
+    /// Sequences of related errors; of people they are known from two raters' codes.
+    Sequences,
+}
+
+impl PrimaryOutcome {
+    /// Name in texts.
+    pub fn title(self) -> &'static str {
+        match self {
+            PrimaryOutcome::Errors => "errors",
+            PrimaryOutcome::BeliefRelatedErrors => "belief related errors",
+            PrimaryOutcome::Sequences => "sequences of related errors",
+        }
+    }
+}

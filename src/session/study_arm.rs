@@ -1,0 +1,87 @@
+//! The arms of a study: who sends signals by which concept, and what the wizard sees.
+
+use serde::{Deserialize, Serialize};
+
+use super::condition::Condition;
+use crate::communication::concept::ConceptName;
+
+/// An arm of a study. A wizard who sees the assistant's recommendations is another arm than one who does not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StudyArm {
+    /// Nobody sends signals (unassisted).
+    #[default]
+    None,
+    /// The wizard sends signals and does not see the assistant's recommendations, as in the paper.
+    Wizard,
+    /// The wizard sends signals and sees the estimated belief and the recommendations.
+    #[serde(rename = "wizard+advice")]
+    WizardWithAdvice,
+    /// The assistant sends signals: theory of mind with communication planning.
+    TomCom,
+    /// The assistant sends signals: theory of mind without planning.
+    Tom,
+    /// The assistant proposes the next presses after an error.
+    Dev,
+}
+
+impl StudyArm {
+    /// All arms, in the order of tables.
+    pub const ALL: [StudyArm; 6] =
+        [StudyArm::None, StudyArm::Wizard, StudyArm::WizardWithAdvice, StudyArm::TomCom, StudyArm::Tom, StudyArm::Dev];
+
+    /// Name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            StudyArm::None => "none",
+            StudyArm::Wizard => "wizard",
+            StudyArm::WizardWithAdvice => "wizard+advice",
+            StudyArm::TomCom => "tom-com",
+            StudyArm::Tom => "tom",
+            StudyArm::Dev => "dev",
+        }
+    }
+
+    /// Name in texts.
+    pub fn title(self) -> &'static str {
+        match self {
+            StudyArm::None => "unassisted",
+            StudyArm::Wizard => "wizard",
+            StudyArm::WizardWithAdvice => "wizard with advice",
+            StudyArm::TomCom => "ToM-Com",
+            StudyArm::Tom => "ToM",
+            StudyArm::Dev => "DEV",
+        }
+    }
+
+    /// Who sends signals in it.
+    pub fn condition(self) -> Condition {
+        match self {
+            StudyArm::None => Condition::None,
+            StudyArm::Wizard | StudyArm::WizardWithAdvice => Condition::Wizard,
+            StudyArm::TomCom | StudyArm::Tom | StudyArm::Dev => Condition::Assistant,
+        }
+    }
+
+    /// The concept that acts in it, if one does.
+    pub fn concept(self) -> Option<ConceptName> {
+        match self {
+            StudyArm::None | StudyArm::Wizard | StudyArm::WizardWithAdvice => None,
+            StudyArm::TomCom => Some(ConceptName::TomCom),
+            StudyArm::Tom => Some(ConceptName::Tom),
+            StudyArm::Dev => Some(ConceptName::Dev),
+        }
+    }
+
+    /// The arm of a trial in which so and so sends signals; `saw_advice`: a person who was the wizard saw the assistant's recommendations.
+    pub fn from_settings(condition: Condition, concept: ConceptName, saw_advice: bool) -> StudyArm {
+        match (condition, concept) {
+            (Condition::None, _) | (Condition::Assistant, ConceptName::None) => StudyArm::None,
+            (Condition::Wizard, _) if saw_advice => StudyArm::WizardWithAdvice,
+            (Condition::Wizard, _) => StudyArm::Wizard,
+            (Condition::Assistant, ConceptName::TomCom) => StudyArm::TomCom,
+            (Condition::Assistant, ConceptName::Tom) => StudyArm::Tom,
+            (Condition::Assistant, ConceptName::Dev) => StudyArm::Dev,
+        }
+    }
+}

@@ -1,0 +1,288 @@
+//! A linear mixed model with one random intercept per participant, by restricted maximum likelihood (REML), with Satterthwaite's degrees
+//! of freedom: y = X beta + Z b + e, b ~ N(0, v_b), e ~ N(0, v).
+//!
+//! The criterion is profiled over the ratio of the variances (Bates et al. 2015, Journal of Statistical Software 67, section 3), so that the
+//! search has one dimension. Degrees of freedom follow from the observed information of the two variances (Kuznetsova, Brockhoff and
+//! Christensen 2017, Journal of Statistical Software 82, section 2); where the participants' variance is estimated as zero, they are those of the
+//! residuals. `tests/outside/arms.py` compares everything with statsmodels and, where they are installed, with lme4 and lmerTest.
+
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Ratios of variances, as logarithms, between which the minimum is searched; below, participants do not differ.
+const LOG_RATIO: [f64; 2] = [-14.0, 14.0];
+/// Number of places at which the criterion is looked at before the search.
+const GRID: usize = 57;
+/// The search ends when the logarithm of the ratio is known this well.
+const PRECISION: f64 = 1e-11;
+
+/// One measurement: whose it is, its fixed effects, and its value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// Index of the participant.
+    pub participant: usize,
+    /// The row of the design matrix.
+    pub effects: Vec<f64>,
+    /// The measured value.
+    pub value: f64,
+}
+
+/// A fitted model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinearMixedModel {
+    /// Estimates of the fixed effects.
+    pub estimates: DVector<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+    /// Variance between participants.
+    pub between: f64,
+    /// Variance of the residuals.
+    pub within: f64,
+    /// V^-1 X, of one row per measurement.
+    weighted: DMatrix<f64>,
+    /// Participants' indices, by measurement.
+    participants: Vec<usize>,
+    /// Covariance of the estimates of the two variances; `None` where the variance between participants is zero.
+    variances: Option<[[f64; 2]; 2]>,
+}
+
+/// A linear combination of fixed effects, with its test against zero.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Contrast {
+    /// The estimate.
+    pub estimate: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// Satterthwaite's degrees of freedom.
+    pub df: f64,
+    /// The estimate in standard errors.
+    pub t: f64,
+    /// Two-sided p.
+    pub p: f64,
+}
+
+impl Contrast {
+    /// The interval of this level, 0 to 1.
+    pub fn interval(&self, level: f64) -> [f64; 2] {
+        let quantile = StudentsT::new(0.0, 1.0, self.df).map_or(f64::NAN, |t| t.inverse_cdf(0.5 + level / 2.0));
+        let half = quantile * self.standard_error;
+        [self.estimate - half, self.estimate + half]
+    }
+
+    /// One-sided p that the estimate is below `bound`.
+    pub fn p_below(&self, bound: f64) -> f64 {
+        let t = (self.estimate - bound) / self.standard_error;
+        StudentsT::new(0.0, 1.0, self.df).map_or(f64::NAN, |distribution| distribution.cdf(t))
+    }
+}
+
+/// Sums over the measurements, from which the criterion follows for every ratio of variances.
+struct Sums {
+    /// Number of measurements.
+    n: f64,
+    xx: DMatrix<f64>,
+    xy: DVector<f64>,
+    yy: f64,
+    /// Of each participant: number of measurements, and sums of effects and values.
+    groups: Vec<(f64, DVector<f64>, f64)>,
+}
+
+/// The generalised least squares for one ratio of variances.
+struct Solution {
+    estimates: DVector<f64>,
+    /// (X' W^-1 X)^-1, W = V / v.
+    inverse: DMatrix<f64>,
+    /// Variance of the residuals.
+    within: f64,
+    /// The REML criterion, up to a constant.
+    deviance: f64,
+}
+
+impl Sums {
+    fn new(measurements: &[Measurement]) -> Sums {
+        let effects = measurements.first().map_or(0, |one| one.effects.len());
+        let count = measurements.iter().map(|one| one.participant + 1).max().unwrap_or(0);
+        let mut sums = Sums {
+            n: measurements.len() as f64,
+            xx: DMatrix::zeros(effects, effects),
+            xy: DVector::zeros(effects),
+            yy: 0.0,
+            groups: vec![(0.0, DVector::zeros(effects), 0.0); count],
+        };
+        for one in measurements {
+            let x = DVector::from_column_slice(&one.effects);
+            sums.xx += &x * x.transpose();
+            sums.xy += &x * one.value;
+            sums.yy += one.value * one.value;
+            let group = &mut sums.groups[one.participant];
+            group.0 += 1.0;
+            group.1 += &x;
+            group.2 += one.value;
+        }
+        sums
+    }
+
+    /// W^-1 takes from each participant's block gamma / (1 + n gamma) times its sums.
+    fn solve(&self, ratio: f64) -> Option<Solution> {
+        let (mut xx, mut xy, mut yy, mut log_det) = (self.xx.clone(), self.xy.clone(), self.yy, 0.0);
+        for (n, x, y) in &self.groups {
+            let shrink = ratio / (1.0 + n * ratio);
+            xx -= x * x.transpose() * shrink;
+            xy -= x * (shrink * y);
+            yy -= shrink * y * y;
+            log_det += (n * ratio).ln_1p();
+        }
+        let factor = xx.cholesky()?;
+        let estimates = factor.solve(&xy);
+        let df = self.n - xy.len() as f64;
+        let within = (yy - estimates.dot(&xy)) / df;
+        // Values that the fixed effects explain wholly have no variance to compare with.
+        let is_noise = within > 1e-12 * (self.yy / self.n).max(f64::MIN_POSITIVE);
+        let deviance = df * within.ln() + log_det + 2.0 * factor.l().diagonal().map(f64::ln).sum();
+        is_noise.then(|| Solution { estimates, inverse: factor.inverse(), within, deviance })
+    }
+
+    /// The ratio of variances with the least criterion; zero at the border.
+    fn best_ratio(&self) -> Option<f64> {
+        let at = |log_ratio: f64| self.solve(log_ratio.exp()).map_or(f64::INFINITY, |found| found.deviance);
+        let step = (LOG_RATIO[1] - LOG_RATIO[0]) / (GRID - 1) as f64;
+        let places: Vec<f64> = (0..GRID).map(|index| LOG_RATIO[0] + step * index as f64).collect();
+        let best = places.iter().copied().min_by(|a, b| at(*a).total_cmp(&at(*b)))?;
+        let found = golden_section(at, best - step, best + step);
+        let border = self.solve(0.0)?.deviance;
+        Some(if border <= at(found) { 0.0 } else { found.exp() })
+    }
+}
+
+/// The least value of a function with one minimum between `low` and `high`.
+fn golden_section(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+    let share = (5.0_f64.sqrt() - 1.0) / 2.0;
+    let (mut a, mut b) = (high - share * (high - low), low + share * (high - low));
+    let (mut at_a, mut at_b) = (value(a), value(b));
+    while high - low > PRECISION {
+        if at_a <= at_b {
+            (high, b, at_b) = (b, a, at_a);
+            a = high - share * (high - low);
+            at_a = value(a);
+        } else {
+            (low, a, at_a) = (a, b, at_b);
+            b = low + share * (high - low);
+            at_b = value(b);
+        }
+    }
+    (low + high) / 2.0
+}
+
+impl LinearMixedModel {
+    /// Fits the model; `None` if the fixed effects cannot be told apart, or nothing is left to estimate the variances from.
+    pub fn fit(measurements: &[Measurement]) -> Option<LinearMixedModel> {
+        let effects = measurements.first()?.effects.len();
+        let sums = Sums::new(measurements);
+        let has_freedom = measurements.len() > effects;
+        let is_determined = sums.xx.clone().symmetric_eigenvalues().min() > 1e-9 * sums.n;
+        if !has_freedom || !is_determined {
+            return None;
+        }
+        let ratio = sums.best_ratio()?;
+        let Solution { estimates, inverse, within, .. } = sums.solve(ratio)?;
+        let covariance = inverse * within;
+        let participants: Vec<usize> = measurements.iter().map(|one| one.participant).collect();
+        let rows: Vec<f64> = measurements.iter().flat_map(|one| one.effects.iter().copied()).collect();
+        let x = DMatrix::from_row_slice(measurements.len(), effects, &rows);
+        let inverse_v = |column: &DMatrix<f64>| weigh(column, &participants, &sums, ratio) / within;
+        let weighted = inverse_v(&x);
+        let variances = (ratio > 0.0).then(|| {
+            let n = measurements.len();
+            let p = inverse_v(&DMatrix::identity(n, n)) - &weighted * &covariance * weighted.transpose();
+            let y = DVector::from_iterator(n, measurements.iter().map(|one| one.value));
+            covariance_of_variances(&p, &y, &participants)
+        });
+        let variances = match variances {
+            Some(found) => Some(found?),
+            None => None,
+        };
+        Some(LinearMixedModel {
+            estimates,
+            covariance,
+            between: ratio * within,
+            within,
+            weighted,
+            participants,
+            variances,
+        })
+    }
+
+    /// The linear combination of fixed effects with these weights.
+    pub fn contrast(&self, weights: &[f64]) -> Option<Contrast> {
+        let weights = DVector::from_column_slice(weights);
+        let estimate = weights.dot(&self.estimates);
+        let variance = weights.dot(&(&self.covariance * &weights));
+        let standard_error = variance.sqrt();
+        let df = self.degrees_of_freedom(&weights, variance);
+        let t = estimate / standard_error;
+        let p = 2.0 * StudentsT::new(0.0, 1.0, df).ok()?.sf(t.abs());
+        Some(Contrast { estimate, standard_error, df, t, p })
+    }
+
+    /// 2 v^2 / Var(v), with the variance of v by the delta method.
+    fn degrees_of_freedom(&self, weights: &DVector<f64>, variance: f64) -> f64 {
+        let Some(variances) = self.variances else {
+            return (self.participants.len() - weights.len()) as f64;
+        };
+        // dC/dv_k = C X' V^-1 G_k V^-1 X C; G is ZZ' for the participants, and the identity for the residuals.
+        let u = &self.weighted * (&self.covariance * weights);
+        let slope = [sums_by_participant(&u, &self.participants).norm_squared(), u.norm_squared()];
+        let of_variance: f64 = (0..2).flat_map(|k| (0..2).map(move |l| slope[k] * slope[l] * variances[k][l])).sum();
+        2.0 * variance * variance / of_variance
+    }
+}
+
+/// W^-1 times a matrix.
+fn weigh(matrix: &DMatrix<f64>, participants: &[usize], sums: &Sums, ratio: f64) -> DMatrix<f64> {
+    let mut totals = DMatrix::<f64>::zeros(sums.groups.len(), matrix.ncols());
+    for (row, &participant) in participants.iter().enumerate() {
+        let sum = totals.row(participant) + matrix.row(row);
+        totals.set_row(participant, &sum);
+    }
+    let mut weighed = matrix.clone();
+    for (row, &participant) in participants.iter().enumerate() {
+        let shrink = ratio / (1.0 + sums.groups[participant].0 * ratio);
+        let rest = matrix.row(row) - totals.row(participant) * shrink;
+        weighed.set_row(row, &rest);
+    }
+    weighed
+}
+
+fn sums_by_participant(values: &DVector<f64>, participants: &[usize]) -> DVector<f64> {
+    let count = participants.iter().map(|participant| participant + 1).max().unwrap_or(0);
+    let mut sums = DVector::zeros(count);
+    for (value, &participant) in values.iter().zip(participants) {
+        sums[participant] += value;
+    }
+    sums
+}
+
+/// The inverse of the observed information of (v_b, v): I_kl = y'P G_k P G_l P y - tr(P G_k P G_l) / 2.
+fn covariance_of_variances(p: &DMatrix<f64>, y: &DVector<f64>, participants: &[usize]) -> Option<[[f64; 2]; 2]> {
+    let r = p * y;
+    let sums = sums_by_participant(&r, participants);
+    // G_k P y: each participant's sum at each of its measurements, and P y itself.
+    let g = [DVector::from_iterator(r.len(), participants.iter().map(|&participant| sums[participant])), r.clone()];
+    let count = sums.len();
+    let mut by_row = DMatrix::<f64>::zeros(count, r.len());
+    for (row, &participant) in participants.iter().enumerate() {
+        let sum = by_row.row(participant) + p.row(row);
+        by_row.set_row(participant, &sum);
+    }
+    let mut both = DMatrix::<f64>::zeros(count, count);
+    for (column, &participant) in participants.iter().enumerate() {
+        let sum = both.column(participant) + by_row.column(column);
+        both.set_column(participant, &sum);
+    }
+    let traces = [[both.norm_squared(), by_row.norm_squared()], [by_row.norm_squared(), p.norm_squared()]];
+    let information = |k: usize, l: usize| g[k].dot(&(p * &g[l])) - traces[k][l] / 2.0;
+    let [a, b, d] = [information(0, 0), information(0, 1), information(1, 1)];
+    let determinant = a * d - b * b;
+    (determinant > 0.0 && a > 0.0).then(|| [[d / determinant, -b / determinant], [-b / determinant, a / determinant]])
+}

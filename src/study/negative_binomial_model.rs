@@ -1,0 +1,243 @@
+//! A mixed negative binomial model of counts: y ~ NB(mu, size), log mu = log exposure + X beta + b, b ~ N(0, v_b) per participant; variance
+//! mu + mu^2 / size. Errors come in runs, so that their variance exceeds the mean.
+//!
+//! Maximum likelihood with Laplace's approximation of the integral over b (Brooks et al. 2017, The R Journal 9, section 2), by Newton's method
+//! with numeric derivatives. Tests are Wald's z tests. `tests/outside/arms.py` compares it with glmmTMB where that is installed, and the
+//! likelihood with numeric integration.
+
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::function::gamma::ln_gamma;
+
+/// Bounds of the logarithms of the participants' standard deviation, and of the size; at them participants do not differ, or counts are
+/// Poisson's.
+const LOG_SD: [f64; 2] = [-7.0, 3.0];
+const LOG_SIZE: [f64; 2] = [-5.0, 12.0];
+/// Step of numeric derivatives.
+const STEP: f64 = 1e-4;
+/// Newton's method ends when a step gains less than this, in nats.
+const GAIN: f64 = 1e-10;
+/// Largest number of its steps.
+const MOST_STEPS: usize = 200;
+
+/// The count of one trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrialCount {
+    /// Index of the participant.
+    pub participant: usize,
+    /// The row of the design matrix.
+    pub effects: Vec<f64>,
+    /// The counted events.
+    pub count: u64,
+    /// What the events are counted over, such as presses; above 0.
+    pub exposure: f64,
+}
+
+/// A fitted model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NegativeBinomialModel {
+    /// Estimates of the fixed effects, on the scale of logarithms.
+    pub estimates: Vec<f64>,
+    /// Their covariance.
+    pub covariance: DMatrix<f64>,
+    /// Standard deviation between participants, on the scale of logarithms; 0 where they do not differ.
+    pub between_sd: f64,
+    /// The size: variance is mu + mu^2 / size; infinite where counts are Poisson's.
+    pub size: f64,
+    /// The log likelihood, in nats.
+    pub log_likelihood: f64,
+}
+
+/// A linear combination of fixed effects, with Wald's test against zero.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WaldContrast {
+    /// The estimate, on the scale of logarithms.
+    pub estimate: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+    /// The estimate in standard errors.
+    pub z: f64,
+    /// Two-sided p.
+    pub p: f64,
+}
+
+impl NegativeBinomialModel {
+    /// Fits the model; `None` if the fixed effects cannot be told apart, or the search does not converge.
+    pub fn fit(trials: &[TrialCount]) -> Option<NegativeBinomialModel> {
+        let effects = trials.first()?.effects.len();
+        let rows: Vec<f64> = trials.iter().flat_map(|one| one.effects.iter().copied()).collect();
+        let x = DMatrix::from_row_slice(trials.len(), effects, &rows);
+        let is_determined = (x.transpose() * &x).symmetric_eigenvalues().min() > 1e-9 * trials.len() as f64;
+        let total: u64 = trials.iter().map(|one| one.count).sum();
+        if trials.len() <= effects || !is_determined || total == 0 {
+            return None;
+        }
+        // Least squares of the logarithms are near enough to start from.
+        let logs = trials.iter().map(|one| ((one.count as f64 + 0.5) / one.exposure).ln());
+        let logs = DVector::from_iterator(trials.len(), logs);
+        let start = (x.transpose() * &x).cholesky()?.solve(&(x.transpose() * logs));
+        let mut at: Vec<f64> = start.iter().copied().chain([-1.0, 2.0]).collect();
+        let likelihood = |at: &[f64]| log_likelihood(trials, effects, at);
+        let free = climb(&likelihood, &mut at)?;
+        let (_, hessian) = derivatives(&likelihood, &at, &free);
+        // What lies at a bound is held there.
+        let covariance = (-hessian).cholesky()?.inverse().view((0, 0), (effects, effects)).into_owned();
+        let [log_sd, log_size] = [at[effects], at[effects + 1]];
+        Some(NegativeBinomialModel {
+            estimates: at[..effects].to_vec(),
+            covariance,
+            between_sd: if log_sd <= LOG_SD[0] { 0.0 } else { log_sd.exp() },
+            size: if log_size >= LOG_SIZE[1] { f64::INFINITY } else { log_size.exp() },
+            log_likelihood: likelihood(&at),
+        })
+    }
+
+    /// The linear combination of fixed effects with these weights.
+    pub fn contrast(&self, weights: &[f64]) -> Option<WaldContrast> {
+        let weights = DVector::from_column_slice(weights);
+        let estimate = weights.iter().zip(&self.estimates).map(|(weight, effect)| weight * effect).sum::<f64>();
+        let standard_error = weights.dot(&(&self.covariance * &weights)).sqrt();
+        let z = estimate / standard_error;
+        let p = 2.0 * Normal::new(0.0, 1.0).ok()?.sf(z.abs());
+        (standard_error > 0.0).then_some(WaldContrast { estimate, standard_error, z, p })
+    }
+}
+
+/// The log likelihood of fixed effects, log standard deviation and log size; participants are integrated out by Laplace's method.
+fn log_likelihood(trials: &[TrialCount], effects: usize, at: &[f64]) -> f64 {
+    let (beta, sd, size) = (&at[..effects], at[effects].exp(), at[effects + 1].exp());
+    let participants = trials.iter().map(|one| one.participant + 1).max().unwrap_or(0);
+    let linear: Vec<f64> = trials
+        .iter()
+        .map(|one| one.exposure.ln() + one.effects.iter().zip(beta).map(|(effect, beta)| effect * beta).sum::<f64>())
+        .collect();
+    let of_participant = |participant: usize| {
+        let own = || trials.iter().zip(&linear).filter(|(one, _)| one.participant == participant);
+        if own().next().is_none() {
+            return 0.0;
+        }
+        // h(u) = sum log f(y | linear + sd u) - u^2 / 2 is concave; u is standard normal.
+        let slopes = |u: f64| {
+            own().fold((-u, -1.0), |(first, second), (one, linear)| {
+                let (mu, y) = ((linear + sd * u).exp(), one.count as f64);
+                let share = mu / (size + mu);
+                (first + sd * (y - (y + size) * share), second - sd * sd * (y + size) * share * (1.0 - share))
+            })
+        };
+        let mut u = 0.0_f64;
+        for _ in 0..50 {
+            let (first, second) = slopes(u);
+            let step = (first / second).clamp(-2.0, 2.0);
+            u -= step;
+            if step.abs() < 1e-12 {
+                break;
+            }
+        }
+        let (_, second) = slopes(u);
+        let value: f64 = own().map(|(one, linear)| log_pmf(one.count as f64, linear + sd * u, size)).sum();
+        value - u * u / 2.0 - (-second).ln() / 2.0
+    };
+    (0..participants).map(of_participant).sum()
+}
+
+/// log of the negative binomial probability of `y` with mean exp(`log_mu`).
+fn log_pmf(y: f64, log_mu: f64, size: f64) -> f64 {
+    let mu = log_mu.exp();
+    let log_share = log_mu - (size + mu).ln();
+    ln_gamma(y + size) - ln_gamma(size) - ln_gamma(y + 1.0) - size * (mu / size).ln_1p() + y * log_share
+}
+
+/// Climbs to the maximum within bounds; the indices of the variables that are not at a bound, `None` without convergence.
+fn climb(value: &impl Fn(&[f64]) -> f64, at: &mut [f64]) -> Option<Vec<usize>> {
+    let effects = at.len() - 2;
+    let bounds = [LOG_SD, LOG_SIZE];
+    let mut now = value(at);
+    for _ in 0..MOST_STEPS {
+        let (gradient, hessian) = derivatives(value, at, &(0..at.len()).collect::<Vec<_>>());
+        // A variable at a bound stays there while the slope points beyond it.
+        let is_held = |index: usize| {
+            let Some([low, high]) = index.checked_sub(effects).map(|index| bounds[index]) else { return false };
+            (at[index] <= low && gradient[index] <= 0.0) || (at[index] >= high && gradient[index] >= 0.0)
+        };
+        let free: Vec<usize> = (0..at.len()).filter(|&index| !is_held(index)).collect();
+        let slope = DVector::from_iterator(free.len(), free.iter().map(|&index| gradient[index]));
+        let curvature = DMatrix::from_fn(free.len(), free.len(), |row, column| -hessian[(free[row], free[column])]);
+        let step = ascent_step(curvature, &slope)?;
+        let (gain, next) = longest_gain(value, at, &free, &step, now, effects, bounds);
+        let is_over = gain < GAIN;
+        if gain > 0.0 {
+            at.copy_from_slice(&next);
+            now += gain;
+        }
+        if is_over {
+            return Some(free);
+        }
+    }
+    None
+}
+
+/// Newton's step; where the function is not concave, one with its diagonal raised until it is.
+fn ascent_step(curvature: DMatrix<f64>, slope: &DVector<f64>) -> Option<DVector<f64>> {
+    let size = curvature.nrows();
+    let mut raise = 0.0;
+    for _ in 0..40 {
+        let raised = &curvature + DMatrix::identity(size, size) * raise;
+        if let Some(factor) = raised.cholesky() {
+            return Some(factor.solve(slope));
+        }
+        raise = (raise * 4.0_f64).max(1e-3);
+    }
+    None
+}
+
+/// The longest of the step's halves that gains something: how much, and where it ends.
+fn longest_gain(
+    value: &impl Fn(&[f64]) -> f64,
+    at: &[f64],
+    free: &[usize],
+    step: &DVector<f64>,
+    now: f64,
+    effects: usize,
+    bounds: [[f64; 2]; 2],
+) -> (f64, Vec<f64>) {
+    let mut length = 1.0;
+    for _ in 0..40 {
+        let mut next = at.to_vec();
+        for (place, &index) in free.iter().enumerate() {
+            next[index] += length * step[place].clamp(-3.0, 3.0);
+            if let Some([low, high]) = index.checked_sub(effects).map(|index| bounds[index]) {
+                next[index] = next[index].clamp(low, high);
+            }
+        }
+        let gain = value(&next) - now;
+        if gain > 0.0 {
+            return (gain, next);
+        }
+        length /= 2.0;
+    }
+    (0.0, at.to_vec())
+}
+
+/// Gradient and matrix of second derivatives in these variables, by central differences.
+fn derivatives(value: &impl Fn(&[f64]) -> f64, at: &[f64], free: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
+    let moved = |moves: &[(usize, f64)]| {
+        let mut next = at.to_vec();
+        moves.iter().for_each(|&(index, by)| next[index] += by);
+        value(&next)
+    };
+    let (count, middle) = (free.len(), value(at));
+    let (mut gradient, mut hessian) = (DVector::zeros(count), DMatrix::zeros(count, count));
+    for (row, &i) in free.iter().enumerate() {
+        let (up, down) = (moved(&[(i, STEP)]), moved(&[(i, -STEP)]));
+        gradient[row] = (up - down) / (2.0 * STEP);
+        hessian[(row, row)] = (up - 2.0 * middle + down) / (STEP * STEP);
+        for (column, &j) in free.iter().enumerate().take(row) {
+            let [a, b, c, d] = [(STEP, STEP), (STEP, -STEP), (-STEP, STEP), (-STEP, -STEP)]
+                .map(|(of_i, of_j)| moved(&[(i, of_i), (j, of_j)]));
+            let mixed = (a - b - c + d) / (4.0 * STEP * STEP);
+            (hessian[(row, column)], hessian[(column, row)]) = (mixed, mixed);
+        }
+    }
+    (gradient, hessian)
+}

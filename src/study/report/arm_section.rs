@@ -1,0 +1,123 @@
+//! Report section that compares the arms of a study.
+
+use maud::{Markup, Render, html};
+
+use super::elements::{Captions, PageColumn, nothing, number, p_value, scroll, section, with_interval};
+use crate::study::arm_chart;
+use crate::study::arm_comparison::{ArmComparison, ArmContrast, ArmOutcome, NonInferiority};
+use crate::study::figures::StudySummary;
+use crate::study::trial_statistics::Trial;
+
+/// Section with the arms' rates, their contrasts, and whether the assistant is not worse than the wizard.
+pub(super) fn arms(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
+    let misfits: Vec<(&Trial, String)> =
+        trials.iter().filter(|trial| trial.counts()).filter_map(|trial| Some((trial, trial.misfit()?))).collect();
+    let content = html! {
+        @for (trial, misfit) in &misfits {
+            p class="warning" { "Condition and what the wizard saw do not fit: " (trial.recording) ": " (misfit) "." } "\n"
+        }
+        @if let Some(found) = &figures.arms { (comparison(captions, found)) }
+    };
+    let has_content = !misfits.is_empty() || figures.arms.is_some();
+    section("How do the conditions compare?", if has_content { content } else { nothing() })
+}
+
+fn comparison(captions: &mut Captions, found: &ArmComparison) -> Markup {
+    let outcome = found.outcome.title();
+    let [between, within] = found.standard_deviations;
+    html! {
+        p {
+            "Primary outcome: " (outcome) " per press of the human, in " (found.trials) " trials of " (found.participants)
+            " participants. Linear mixed model of log((count\u{a0}+\u{a0}0.5)\u{a0}/\u{a0}presses): participant random, condition and trial \
+            number fixed; REML, Satterthwaite\u{2019}s degrees of freedom. Standard deviations of the logarithms: "
+            (number(Some(between), 2)) " between participants, " (number(Some(within), 2)) " within."
+        }
+        "\n"
+        (scroll(rates(captions, found)))
+        div class="figures" {
+            (captions.figure(arm_chart::ratios(&found.contrasts), "Ratio of the rates of two conditions, with its interval of 95 %. Below \
+                1 the first one has fewer."))
+        }
+        "\n"
+        (scroll(contrasts(captions, found)))
+        @for one in &found.non_inferiority { (in_words(one, outcome)) }
+        @if found.arms.len() > 2 && found.with_carry_over.is_empty() {
+            p class="note" { "The effect of the condition before (carry-over) cannot be estimated from these trials." } "\n"
+        }
+    }
+}
+
+fn rates(captions: &mut Captions, found: &ArmComparison) -> Markup {
+    let columns: [PageColumn<ArmOutcome>; 5] = [
+        ("condition", |one| one.arm.title().render()),
+        ("trials", |one| one.trials.render()),
+        ("events", |one| one.events.render()),
+        ("presses of the human", |one| one.presses.render()),
+        ("per 100 presses", |one| number(Some(one.per_100()), 2).render()),
+    ];
+    let caption = format!("Events ({}) by condition, all trials of a condition pooled.", found.outcome.title());
+    captions.table_of_columns(&caption, &columns, found.arms.iter())
+}
+
+/// A contrast of the primary model with those of the two others.
+struct ContrastRow<'a> {
+    own: &'a ArmContrast,
+    carried: Option<&'a ArmContrast>,
+    of_counts: Option<(f64, f64)>,
+}
+
+fn contrasts(captions: &mut Captions, found: &ArmComparison) -> Markup {
+    let counts = || found.negative_binomial.iter().flat_map(|model| &model.contrasts);
+    let rows: Vec<ContrastRow> = found
+        .contrasts
+        .iter()
+        .map(|own| ContrastRow {
+            own,
+            carried: found.with_carry_over.iter().find(|other| (other.arm, other.against) == (own.arm, own.against)),
+            of_counts: counts()
+                .find(|other| (other.arm, other.against) == (own.arm, own.against))
+                .map(|other| (other.ratio, other.p_holm)),
+        })
+        .collect();
+    let columns: [PageColumn<ContrastRow>; 8] = [
+        ("condition", |row| row.own.arm.title().render()),
+        ("against", |row| row.own.against.title().render()),
+        ("ratio of rates", |row| with_interval(Some(row.own.ratio), Some(row.own.interval), 2)),
+        ("t (degrees of freedom)", |row| {
+            format!("{} ({})", number(Some(row.own.contrast.t), 2), number(Some(row.own.contrast.df), 1)).render()
+        }),
+        ("p", |row| p_value(Some(row.own.contrast.p)).render()),
+        ("p, Holm", |row| p_value(Some(row.own.p_holm)).render()),
+        ("negative binomial: ratio, p (Holm)", |row| {
+            row.of_counts
+                .map_or_else(
+                    || number(None, 2),
+                    |(ratio, p)| format!("{}, {}", number(Some(ratio), 2), p_value(Some(p))),
+                )
+                .render()
+        }),
+        ("with carry-over: ratio, p (Holm)", |row| {
+            row.carried
+                .map_or_else(
+                    || number(None, 2),
+                    |one| format!("{}, {}", number(Some(one.ratio), 2), p_value(Some(one.p_holm))),
+                )
+                .render()
+        }),
+    ];
+    let caption = "Contrasts of the primary model, and beside them those of a mixed negative binomial model (log presses as offset) and of \
+                   the primary model with the effect of the condition before. Holm: corrected over all contrasts of a model.";
+    captions.table_of_columns(caption, &columns, rows.iter())
+}
+
+fn in_words(one: &NonInferiority, outcome: &str) -> Markup {
+    let verdict = if one.holds { "is not worse than" } else { "is not shown to be not worse than" };
+    html! {
+        p {
+            (one.arm.title()) " " (verdict) " the " (one.against.title()) ": ratio of " (outcome) " " (number(Some(one.ratio), 2))
+            ", upper end of the one-sided interval of 97.5 % " (number(Some(one.upper), 2)) ", margin "
+            (number(Some(one.margin), 2)) " (p\u{a0}=\u{a0}" (p_value(Some(one.p))) ")."
+        }
+        "\n"
+    }
+}

@@ -1,0 +1,245 @@
+//! The comparison of any number of arms, held against published examples and against what was put into simulated counts.
+
+use rand::RngExt;
+use rand_distr::{Distribution, Gamma, Normal, Poisson};
+use tomcom::base::rng::stream;
+use tomcom::session::settings::Condition;
+use tomcom::session::study_arm::StudyArm;
+use tomcom::study::arm_comparison::{compare_arms, holm};
+use tomcom::study::linear_mixed_model::{LinearMixedModel, Measurement};
+use tomcom::study::negative_binomial_model::{NegativeBinomialModel, TrialCount};
+use tomcom::study::trial_statistics::Trial;
+
+use super::trial;
+
+fn is_close(found: f64, wanted: f64, within: f64) {
+    assert!((found - wanted).abs() <= within * wanted.abs().max(1e-12), "{found} instead of {wanted}");
+}
+
+/// Yield of dyestuff from six batches (Davies and Goldsmith 1972, table 6.1), with the estimates of lme4 1.1-31 and lmerTest 3.1-3.
+#[test]
+fn the_linear_model_finds_the_variances_of_the_dyestuff_batches() {
+    const YIELD: [[f64; 5]; 6] = [
+        [1545.0, 1440.0, 1440.0, 1520.0, 1580.0],
+        [1540.0, 1555.0, 1490.0, 1560.0, 1495.0],
+        [1595.0, 1550.0, 1605.0, 1510.0, 1560.0],
+        [1445.0, 1440.0, 1595.0, 1465.0, 1545.0],
+        [1595.0, 1630.0, 1515.0, 1635.0, 1625.0],
+        [1520.0, 1455.0, 1450.0, 1480.0, 1445.0],
+    ];
+    let rows = YIELD.iter().enumerate().flat_map(|(participant, values)| {
+        values.iter().map(move |&value| Measurement { participant, effects: vec![1.0], value })
+    });
+    let model = LinearMixedModel::fit(&rows.collect::<Vec<_>>()).expect("a fit");
+    is_close(model.between, 1764.05, 1e-6);
+    is_close(model.within, 2451.25, 1e-6);
+    let mean = model.contrast(&[1.0]).expect("the mean");
+    is_close(mean.estimate, 1527.5, 1e-9);
+    is_close(mean.standard_error, 19.383_412_18, 1e-6);
+    is_close(mean.df, 5.0, 1e-5);
+}
+
+/// Cases of contagious bovine pleuropneumonia in fifteen herds over four periods (Lesnoff et al. 2004): herd, cases, animals, period.
+const CATTLE: [[u64; 4]; 56] = [
+    [1, 2, 14, 1],
+    [1, 3, 12, 2],
+    [1, 4, 9, 3],
+    [1, 0, 5, 4],
+    [2, 3, 22, 1],
+    [2, 1, 18, 2],
+    [2, 1, 21, 3],
+    [3, 8, 22, 1],
+    [3, 2, 16, 2],
+    [3, 0, 16, 3],
+    [3, 2, 20, 4],
+    [4, 2, 10, 1],
+    [4, 0, 10, 2],
+    [4, 2, 9, 3],
+    [4, 0, 6, 4],
+    [5, 5, 18, 1],
+    [5, 0, 25, 2],
+    [5, 0, 24, 3],
+    [5, 1, 4, 4],
+    [6, 3, 17, 1],
+    [6, 0, 17, 2],
+    [6, 0, 18, 3],
+    [6, 1, 20, 4],
+    [7, 8, 16, 1],
+    [7, 1, 10, 2],
+    [7, 3, 9, 3],
+    [7, 0, 5, 4],
+    [8, 12, 34, 1],
+    [9, 2, 9, 1],
+    [9, 0, 6, 2],
+    [9, 0, 8, 3],
+    [9, 0, 6, 4],
+    [10, 1, 22, 1],
+    [10, 1, 22, 2],
+    [10, 0, 18, 3],
+    [10, 2, 22, 4],
+    [11, 0, 25, 1],
+    [11, 5, 27, 2],
+    [11, 3, 22, 3],
+    [11, 1, 22, 4],
+    [12, 2, 10, 1],
+    [12, 1, 8, 2],
+    [12, 0, 6, 3],
+    [12, 0, 5, 4],
+    [13, 1, 21, 1],
+    [13, 2, 24, 2],
+    [13, 0, 19, 3],
+    [13, 0, 23, 4],
+    [14, 11, 19, 1],
+    [14, 0, 2, 2],
+    [14, 0, 3, 3],
+    [14, 0, 2, 4],
+    [15, 1, 19, 1],
+    [15, 1, 15, 2],
+    [15, 1, 15, 3],
+    [15, 0, 15, 4],
+];
+
+fn effects(period: u64) -> Vec<f64> {
+    let is = |holds: bool| f64::from(u8::from(holds));
+    vec![1.0, is(period == 2), is(period == 3), is(period == 4)]
+}
+
+#[test]
+fn both_models_agree_with_lmertest_and_glmmtmb_on_herds_of_unequal_size() {
+    let rows = CATTLE.map(|[herd, cases, animals, period]| Measurement {
+        participant: herd as usize - 1,
+        effects: effects(period),
+        value: ((cases as f64 + 0.5) / animals as f64).ln(),
+    });
+    let model = LinearMixedModel::fit(&rows).expect("a fit");
+    is_close(model.between, 0.143_495_999_1, 1e-4);
+    is_close(model.within, 0.640_833_436_0, 1e-4);
+    // Estimate, standard error, degrees of freedom, p.
+    let wanted = [
+        [-1.682_833_127_7, 0.228_667_070_2, 47.606_835_71, 2.171_784e-9],
+        [-0.614_735_772_2, 0.298_419_746_8, 39.647_369_30, 4.600_787_3e-2],
+        [-0.800_343_234_3, 0.298_419_746_8, 39.647_369_30, 1.061_775_7e-2],
+        [-0.697_670_731_6, 0.305_036_112_3, 40.106_997_98, 2.753_794_2e-2],
+    ];
+    for (index, [estimate, standard_error, df, p]) in wanted.into_iter().enumerate() {
+        let weights: Vec<f64> = (0..4).map(|other| f64::from(u8::from(other == index))).collect();
+        let found = model.contrast(&weights).expect("a contrast");
+        assert!((found.estimate - estimate).abs() < 1e-3 * standard_error, "{index}: {found:?}");
+        is_close(found.standard_error, standard_error, 1e-3);
+        is_close(found.df, df, 1e-3);
+        assert!((found.p - p).abs() < 1e-3 * p.max(1e-3), "{index}: {found:?}");
+    }
+    let counts = CATTLE.map(|[herd, count, animals, period]| TrialCount {
+        participant: herd as usize - 1,
+        effects: effects(period),
+        count,
+        exposure: animals as f64,
+    });
+    let model = NegativeBinomialModel::fit(&counts).expect("a fit");
+    is_close(model.log_likelihood, -87.407_068_596_5, 1e-6);
+    is_close(model.between_sd, 0.196_765_355_6, 5e-3);
+    is_close(model.size, 2.247_871_7, 5e-3);
+    let wanted = [
+        [-1.532_737_687, 0.234_154_561_5],
+        [-1.003_214_538, 0.385_756_291_6],
+        [-1.036_679_563, 0.398_481_314_2],
+        [-1.579_245_045, 0.498_993_049_9],
+    ];
+    for (index, [estimate, standard_error]) in wanted.into_iter().enumerate() {
+        let weights: Vec<f64> = (0..4).map(|other| f64::from(u8::from(other == index))).collect();
+        let found = model.contrast(&weights).expect("a contrast");
+        assert!((found.estimate - estimate).abs() < 1e-3 * standard_error, "{index}: {found:?}");
+        is_close(found.standard_error, standard_error, 1e-3);
+    }
+}
+
+/// The example of Holm's correction: four tests, of which the two least p values stay below .05.
+#[test]
+fn holms_correction_keeps_the_order_and_never_exceeds_one() {
+    let found = holm(&[0.01, 0.04, 0.03, 0.005]);
+    for (found, wanted) in found.into_iter().zip([0.03, 0.06, 0.06, 0.02]) {
+        is_close(found, wanted, 1e-12);
+    }
+    assert_eq!(holm(&[0.9, 0.8]), [1.0, 1.0]);
+    assert_eq!(holm(&[]), Vec::<f64>::new());
+}
+
+/// A study whose participants differ, get better from trial to trial, and err in runs; the arms' rates are multiplied by `ratios`.
+fn simulated(arms: &[StudyArm], ratios: &[f64], participants: usize, seed: u64) -> Vec<Trial> {
+    let mut random = stream(seed, "study of arms", 0);
+    let talent = Normal::new(0.0, 0.3).expect("a spread");
+    let runs = Gamma::new(6.0, 1.0 / 6.0).expect("a shape");
+    let mut trials = Vec::new();
+    for participant in 0..participants {
+        let own = f64::exp(talent.sample(&mut random));
+        let start = random.random_range(0..arms.len());
+        for period in 0..arms.len() {
+            let index = (period + start) % arms.len();
+            let presses = random.random_range(120..180);
+            let rate = 0.12 * own * ratios[index] * 0.9_f64.powi(period as i32);
+            let mean = rate * presses as f64 * runs.sample(&mut random);
+            let errors = Poisson::new(mean).expect("a mean").sample(&mut random) as u64;
+            trials.push(Trial {
+                participant: format!("P{participant:02}"),
+                period: Some(period as u32 + 1),
+                study_arm: arms[index],
+                condition: arms[index].condition(),
+                human_presses: presses,
+                errors,
+                ..trial("", 1, Condition::None, 0)
+            });
+        }
+    }
+    trials
+}
+
+const FOUR: [StudyArm; 4] = [StudyArm::None, StudyArm::Wizard, StudyArm::TomCom, StudyArm::Tom];
+
+#[test]
+fn the_rates_that_were_put_in_come_out() {
+    let trials = simulated(&FOUR, &[1.0, 0.6, 0.6, 0.8], 200, 1);
+    let found = compare_arms(&trials.iter().collect::<Vec<_>>()).expect("a comparison");
+    assert_eq!((found.participants, found.trials), (200, 800));
+    let pairs: Vec<(StudyArm, StudyArm)> = found.contrasts.iter().map(|one| (one.arm, one.against)).collect();
+    let [none, wizard, com, tom] = FOUR;
+    assert_eq!(pairs, [(wizard, none), (com, none), (tom, none), (com, wizard), (tom, wizard)]);
+    for (one, wanted) in found.contrasts.iter().zip([0.6, 0.6, 0.8, 1.0, 0.8 / 0.6]) {
+        assert!(one.interval[0] < wanted && wanted < one.interval[1], "{one:?} instead of {wanted}");
+        assert!(one.p_holm >= one.contrast.p);
+    }
+    let counts = found.negative_binomial.expect("a model of counts");
+    for (one, wanted) in counts.contrasts.iter().zip([0.6, 0.6, 0.8, 1.0, 0.8 / 0.6]) {
+        let distance = (one.contrast.estimate - f64::ln(wanted)).abs() / one.contrast.standard_error;
+        assert!(distance < 3.0, "{one:?} instead of {wanted}");
+    }
+    is_close(counts.between_sd, 0.3, 0.25);
+    assert_eq!(found.with_carry_over.len(), 5);
+    let holds: Vec<bool> = found.non_inferiority.iter().map(|one| one.holds).collect();
+    assert_eq!(holds, [true, false], "the assistant as good as the wizard, and the one that is worse by a third");
+}
+
+/// Without any effect, about one study in twenty finds one. The interval is that of 500 studies.
+#[test]
+fn without_an_effect_the_primary_test_finds_one_in_twenty() {
+    let [mut primary, mut counts] = [0, 0];
+    for seed in 0..500 {
+        let trials = simulated(&FOUR[..2], &[1.0, 1.0], 14, 1000 + seed);
+        let Some(found) = compare_arms(&trials.iter().collect::<Vec<_>>()) else { continue };
+        primary += usize::from(found.contrasts[0].contrast.p < 0.05);
+        counts += usize::from(found.negative_binomial.is_some_and(|model| model.contrasts[0].contrast.p < 0.05));
+    }
+    let rates = [primary, counts].map(|found| found as f64 / 500.0);
+    assert!((0.035..=0.065).contains(&rates[0]), "primary {}, negative binomial {}", rates[0], rates[1]);
+}
+
+#[test]
+fn a_repeated_trial_counts_once_and_one_arm_is_no_comparison() {
+    let mut trials = simulated(&FOUR[..2], &[1.0, 0.5], 6, 3);
+    let all = |trials: &[Trial]| compare_arms(&trials.iter().collect::<Vec<_>>());
+    let before = all(&trials).expect("a comparison");
+    let spoilt = Trial { errors: 90, ..trials[0].clone() };
+    trials.insert(0, spoilt);
+    assert_eq!(all(&trials), Some(before), "the last attempt at a trial counts");
+    let alone = simulated(&FOUR[..1], &[1.0], 6, 3);
+    assert_eq!(all(&alone), None);
+}

@@ -17,7 +17,7 @@ const LONGEST: &str = "no trial is longer than a day";
 /// What 32 bits hold: as much as no limit at all.
 const COUNT: f64 = 4_294_967_295.0;
 
-pub(super) const RANGES: [NumberRange; 48] = [
+pub(super) const RANGES: [NumberRange; 49] = [
     NumberRange::whole("seed", [0.0, 9_007_199_254_740_991.0], "", "every reader of JSON has these numbers exactly")
         .recorded(ANY),
     NumberRange::whole("trial.presses", [1.0, COUNT], "presses", "the largest numbers are as good as no limit"),

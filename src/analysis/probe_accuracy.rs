@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::probe_record::{ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial, weighted_share};
 use super::trial_bootstrap::interval_where_known;
-use crate::session::settings::Condition;
+use crate::session::study_arm::StudyArm;
 
 /// What the rows of a table of accuracies are formed by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -69,16 +69,11 @@ fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(AccuracyGroupi
         ProbedKind::Recipe => 1,
         _ => 2,
     };
-    let condition = match trial.condition {
-        Condition::None => 0,
-        Condition::Wizard => 1,
-        Condition::Assistant => 2,
-    };
     let choice = ["drawn without the estimate", "drawn with the estimate"][usize::from(question.uses_estimate)];
     let mut groups = vec![
         (AccuracyGrouping::Kind, kind, question.kind.words().to_string()),
         (AccuracyGrouping::Aspect, 0, question.aspect.clone()),
-        (AccuracyGrouping::Condition, condition, trial.condition.name().to_string()),
+        (AccuracyGrouping::Condition, trial.study_arm as usize, trial.study_arm.name().to_string()),
         (AccuracyGrouping::Choice, usize::from(question.uses_estimate), choice.to_string()),
     ];
     if let Some((frozen, changed_unseen)) =
@@ -161,7 +156,7 @@ pub fn accuracy(
 /// The effect of assistance on accuracy, within participants; `None` without a participant who has answers in both.
 pub fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<AwarenessEffect> {
     let share = |trials: &[&ProbedTrial], assisted: bool| {
-        let of = trials.iter().filter(|trial| (trial.condition != Condition::None) == assisted);
+        let of = trials.iter().filter(|trial| (trial.study_arm != StudyArm::None) == assisted);
         let answers = of.flat_map(|trial| trial.counted());
         weighted_share(answers.filter_map(|one| Some((one.weight(), !one.is_wrong()?))))
     };

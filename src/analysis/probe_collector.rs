@@ -177,9 +177,8 @@ impl ProbeCollector {
     /// The probes of the recording, whose last event has been noted.
     pub fn finish(mut self, session: &Session) -> ProbedTrial {
         self.close();
-        let condition = session.spec.trial.condition;
         let ProbeCollector { begun, dropped, skipped, questions, .. } = self;
-        ProbedTrial { condition, begun, dropped, skipped, questions }
+        ProbedTrial { study_arm: session.study_arm(), begun, dropped, skipped, questions }
     }
 }
 

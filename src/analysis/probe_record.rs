@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::measures::sequences::FALSE_BELOW;
 use crate::session::probes::ProbeOrigin;
-use crate::session::settings::Condition;
+use crate::session::study_arm::StudyArm;
 
 /// What a question was about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -166,8 +166,8 @@ impl ProbedQuestion {
 /// The probes of one trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbedTrial {
-    /// Who could send signals.
-    pub condition: Condition,
+    /// The arm of the trial.
+    pub study_arm: StudyArm,
     /// Number of probes that began.
     pub begun: u64,
     /// Number of probes that waited in vain and were dropped.

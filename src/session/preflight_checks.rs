@@ -1,12 +1,10 @@
 //! Preflight checks of participant, gaze, eye tracker and disk space.
 
 use super::condition::Condition;
-use super::console_settings::Visibility;
 use super::gaze_samples::faults;
 use super::participant_settings::{GazeSource, ParticipantKind};
 pub use super::preflight_check::{PreflightCheck, PreflightVerdict};
 use super::session_state::Session;
-use super::study_arm::StudyArm;
 use super::tracker::TrackerConnection;
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
@@ -41,8 +39,7 @@ pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
 fn condition(session: &Session) -> Option<PreflightCheck> {
     let spec = &session.spec;
     let planned = spec.step.as_ref()?.arm?;
-    let sees_advice = session.unblinded || spec.console.visibility == Visibility::Recommendation;
-    let arm = StudyArm::from_settings(spec.trial.condition, spec.assistant.concept, sees_advice);
+    let arm = session.study_arm();
     let sees = match spec.trial.condition {
         Condition::Wizard => format!(", who sees {}", spec.console.visibility.title()),
         Condition::None | Condition::Assistant => String::new(),

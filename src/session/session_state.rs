@@ -8,7 +8,8 @@ use super::phase::Phase;
 use super::probe_state::ProbeBook;
 use super::protocol_state::Protocol;
 use super::robot_status::RobotStatus;
-use super::settings::SessionSpec;
+use super::settings::{Condition, SessionSpec, Visibility};
+use super::study_arm::StudyArm;
 use super::timeline_entry::{TimelineEntry, TimelineEvent};
 use super::tracker::TrackerStatus;
 use crate::base::rng::of_trial;
@@ -18,6 +19,7 @@ use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{DishId, Kitchen, LocationId, State};
+use crate::wizard::settings::WizardKind;
 
 /// Time without a sample after which there is no gaze, in seconds.
 const SILENT_S: f64 = 1.0;
@@ -197,6 +199,17 @@ impl Session {
     /// Seed of estimates and recommendations, unique to the trial.
     pub fn seed(&self) -> u64 {
         of_trial(self.spec.seed, self.trial)
+    }
+
+    /// Whether a person who is the wizard saw the assistant's recommendations.
+    pub fn wizard_saw_advice(&self) -> bool {
+        let is_person = self.spec.trial.condition == Condition::Wizard && self.spec.wizard.kind == WizardKind::Person;
+        is_person && (self.unblinded || self.spec.console.visibility == Visibility::Recommendation)
+    }
+
+    /// The arm of the trial, by what is done in it.
+    pub fn study_arm(&self) -> StudyArm {
+        StudyArm::from_settings(self.spec.trial.condition, self.spec.assistant.concept, self.wizard_saw_advice())
     }
 
     /// Presses of both agents during the trial.

@@ -34,8 +34,7 @@ use crate::mind::dirichlet::DirichletBelief;
 use crate::run::standing::exclusion_status;
 use crate::session::apply::ApplyError;
 use crate::session::protocol::ProtocolEvent;
-use crate::session::settings::{Condition, ParticipantKind, Visibility};
-use crate::session::study_arm::StudyArm;
+use crate::session::settings::{Condition, ParticipantKind};
 use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEvent};
 use crate::study::acting_arm::ActingArm;
 use crate::study::belief_trace::BeliefTrace;
@@ -44,7 +43,6 @@ use crate::study::known_beliefs::{KnownBeliefs, SharedBeliefs};
 use crate::study::prevention::TrialTruth;
 use crate::study::robot_tally::{RobotSummary, RobotTally};
 use crate::study::trial_statistics::{BeliefErrors, Trial};
-use crate::wizard::settings::WizardKind;
 
 /// Result of analysing one recording.
 #[derive(Debug)]
@@ -339,7 +337,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         period: step.and_then(|step| step.period),
         is_planned: step.is_some(),
         condition: spec.trial.condition,
-        study_arm: StudyArm::from_settings(spec.trial.condition, spec.assistant.concept, saw_advice(session)),
+        study_arm: session.study_arm(),
         planned_arm: step.and_then(|step| step.arm),
         aims: step.map(|step| step.aims),
         wizard_sees: spec.console.visibility,
@@ -365,7 +363,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         useful_signals: None,
         display_arm: spec.display.arm.filter(|_| spec.participant.kind == ParticipantKind::Display),
         offers: session.makes_offers.then(|| TimedOffer::visible(session)),
-        wizard_saw_advice: saw_advice(session),
+        wizard_saw_advice: session.wizard_saw_advice(),
         lanes: None,
         swept: Vec::new(),
         raters: None,
@@ -374,13 +372,6 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         stale_consensus: None,
         probes: None,
     }
-}
-
-/// Whether a person who was the wizard saw the assistant's recommendations.
-fn saw_advice(session: &Session) -> bool {
-    let spec = &session.spec;
-    let is_person = spec.trial.condition == Condition::Wizard && spec.wizard.kind == WizardKind::Person;
-    is_person && (session.unblinded || spec.console.visibility == Visibility::Recommendation)
 }
 
 /// Seconds between two times of a session, without pauses.

@@ -11,9 +11,11 @@ use tomcom::analysis::probe_record::{
     FrozenAspect, FrozenBelief, ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial,
 };
 use tomcom::base::rng::{Stream, stream};
+use tomcom::communication::concept::ConceptName;
 use tomcom::measures::belief_basis::BeliefBasis;
 use tomcom::session::probes::ProbeOrigin;
 use tomcom::session::settings::Condition;
+use tomcom::session::study_arm::StudyArm;
 use tomcom::study::column::TableRow;
 use tomcom::study::facts::Facts;
 use tomcom::study::figures::StudySummary;
@@ -100,7 +102,8 @@ fn question(kind: ProbedKind) -> ProbedQuestion {
 }
 
 fn probed(condition: Condition, questions: Vec<ProbedQuestion>) -> ProbedTrial {
-    ProbedTrial { condition, begun: 1, dropped: 0, skipped: 0, questions }
+    let study_arm = StudyArm::from_settings(condition, ConceptName::TomCom, false);
+    ProbedTrial { study_arm, begun: 1, dropped: 0, skipped: 0, questions }
 }
 
 /// A trial with one question, rightly answered.

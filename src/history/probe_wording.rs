@@ -1,8 +1,12 @@
 //! Words for freeze probes: their questions, answers and events.
 
-use super::wording::location as said;
 use crate::base::words::count;
 use crate::session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
+
+/// A name of the log in words.
+fn said(name: &str) -> String {
+    name.replace('_', " ")
+}
 
 /// What a question is about, in words: "cutting board", "recipe of tuna maki".
 pub fn subject(about: &ProbeSubject) -> String {

@@ -59,7 +59,7 @@ pub struct Engine {
     /// The latest event after which advice is requested, once its immediate consequences have been applied.
     to_ask: Option<(u64, SessionTime)>,
     /// The latest request for advice, until it is answered.
-    asked: Option<(u64, SessionTime)>,
+    asked: Option<AdviceRequest>,
     /// Requests for advice that have not been returned yet.
     questions: Vec<AdviceRequest>,
 }
@@ -303,15 +303,12 @@ impl Engine {
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
         self.review_offer(now);
-        self.review_probe(now);
-        if self.session().is_frozen() {
-            // Advice that comes while the task stands still is refused: it is requested afterwards.
-            return;
-        }
         if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
-            self.asked = Some((seq, time));
-            self.questions.push(AdviceRequest::from_follower(&self.follower, seq, time));
+            let request = AdviceRequest::from_follower(&self.follower, seq, time);
+            self.asked = Some(request.clone());
+            self.questions.push(request);
         }
+        self.review_probe(now);
     }
 
     /// Applies due timers, then the robot's reaction to the state.
@@ -353,11 +350,12 @@ impl Engine {
         }
         let advice = match &stamped.event {
             Event::Advised(advice) => {
-                self.asked = self.asked.filter(|(seq, _)| *seq > advice.for_seq);
+                self.asked.take_if(|request| request.seq <= advice.for_seq);
                 self.acted_on(advice)
             }
             Event::Probe(ProbeEvent::Ended { .. }) => {
-                self.to_ask = self.to_ask.or(self.asked);
+                // Advice that came while the task stood still was refused. The same request again gives the same advice.
+                self.questions.extend(self.asked.clone());
                 None
             }
             _ => None,

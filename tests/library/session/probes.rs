@@ -1,6 +1,7 @@
 //! Freeze probes by hand: when they begin, how they end, and what is refused.
 
 use tomcom::base::time::SessionTime;
+use tomcom::communication::settings::Shadow;
 use tomcom::communication::{Sender, Signal};
 use tomcom::gaze::GazeSample;
 use tomcom::run::engine::Engine;
@@ -233,6 +234,24 @@ fn what_questions_teach_changes_the_estimate_of_the_locations_asked_about() {
         let is_same = taught.aspects[index] == untaught.aspects[index];
         assert_eq!(is_same, index != asked.index(), "aspect {index}, asked about {asked:?}");
     }
+}
+
+#[test]
+fn advice_that_comes_in_a_probe_is_requested_again_after_it() {
+    let mut engine = on_request(|spec| {
+        spec.assistant.shadow = Shadow::On;
+        (spec.assistant.rollout.rollouts, spec.assistant.rollout.least_rollouts) = (16, 8);
+    });
+    check(&mut engine, &[(0.0, Event::TrialStarted), (10.0, press("take rice")), (10.1, requested())]);
+    let asked = engine.take_questions().pop().expect("the assistant is asked");
+    let advice = engine.advisor().answer(&asked);
+    assert!(refused(&mut engine, 11.0, Event::Advised(advice.clone())).contains("no trial runs"));
+    check(&mut engine, &[(12.0, probe(ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() }))]);
+    assert!(engine.take_questions().is_empty(), "the task stands still");
+    until(&mut engine, 15.0);
+    let again = engine.take_questions().into_iter().next().expect("it is asked again");
+    assert_eq!(again.seq, asked.seq);
+    assert_eq!(engine.advisor().answer(&again), advice, "nothing has changed");
 }
 
 #[test]

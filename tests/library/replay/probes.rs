@@ -180,3 +180,19 @@ fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
     engine.fire();
     assert!(engine.session().is_running(), "the task goes on");
 }
+
+#[test]
+fn a_recording_of_format_2_keeps_its_probes() {
+    let golden = std::path::Path::new("tests/golden/format-2-probes.jsonl");
+    let found = verify(golden).expect("a golden recording");
+    assert!(found.verified && !found.cut, "{found:?}");
+    let mut replay = Replay::open(golden).expect("a golden recording");
+    replay.run().expect("a golden recording");
+    let over = &replay.session().probes.over;
+    assert_eq!(over.iter().map(|one| one.number).collect::<Vec<_>>(), [1, 2]);
+    for one in over {
+        assert!(one.questions.len() >= 2 && one.answers.iter().all(Option::is_some), "{one:?}");
+        assert!(one.questions.iter().all(|question| question.inclusion >= 0.05), "{one:?}");
+        assert_eq!(one.closed.map(|(end, _)| end), Some(ProbeEnd::Answered));
+    }
+}

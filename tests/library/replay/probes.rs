@@ -184,8 +184,6 @@ fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
 #[test]
 fn a_recording_of_format_2_keeps_its_probes() {
     let golden = std::path::Path::new("tests/golden/format-2-probes.jsonl");
-    let found = verify(golden).expect("a golden recording");
-    assert!(found.verified && !found.cut, "{found:?}");
     let mut replay = Replay::open(golden).expect("a golden recording");
     replay.run().expect("a golden recording");
     let over = &replay.session().probes.over;

@@ -3,9 +3,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::dirichlet::Dirichlet;
 use super::filter::BeliefFilter;
 use super::model::HumanModel;
 use super::observation::{Observation, Observed};
+use crate::base::incomplete_beta::regularized_incomplete_beta;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen, Press};
 use std::sync::Arc;
@@ -145,18 +147,20 @@ impl Parameter {
     }
 }
 
-/// Share of answers to probes that name any of the values, by mistake.
+/// Probability from which on a belief's value is answered; below it for all values the answer is "I don't know".
+const ANSWERED_FROM: f64 = 0.5;
+/// Share of answers to probes that are any answer, by mistake.
 pub const ANSWERS_AT_RANDOM: f64 = 0.02;
 
-/// An answer to a probe that names a value.
+/// An answer to a probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProbedValue {
     /// Number of observations up to the freeze, that of the freeze included.
     pub after: usize,
     /// The aspect that was asked about.
     pub aspect: AspectId,
-    /// Index of the answered value.
-    pub value: usize,
+    /// Index of the answered value; `None`: "I don't know".
+    pub value: Option<usize>,
 }
 
 /// Observations of a trial, and its answers to probes in their order.
@@ -216,10 +220,8 @@ pub fn likelihood(
         if answers.peek().is_some_and(|answer| answer.after == index + 1) {
             let belief = filter.at(observation.time, cost);
             while let Some(answer) = answers.next_if(|answer| answer.after == index + 1) {
-                let means = belief.aspect(answer.aspect).mean();
-                let p = (1.0 - ANSWERS_AT_RANDOM) * means[answer.value] + ANSWERS_AT_RANDOM / means.len() as f64;
                 found.answers += 1;
-                found.log_p_answers += p.ln();
+                found.log_p_answers += p_answer(belief.aspect(answer.aspect), answer.value).ln();
             }
         }
         if let (Observed::Pressed(Press { agent: Agent::Human, .. }), Some(evidence)) =
@@ -230,4 +232,19 @@ pub fn likelihood(
         }
     }
     found
+}
+
+/// Probability of an answer: that the belief, which is drawn from the estimate, has one half or more on the value, or on none. At most one
+/// value has, so these probabilities sum to 1.
+pub fn p_answer(estimate: &Dirichlet, value: Option<usize>) -> f64 {
+    let values = estimate.mean().len();
+    let is_surest = |value: usize| {
+        let alpha = estimate.alpha(value);
+        1.0 - regularized_incomplete_beta(ANSWERED_FROM, alpha, estimate.precision() - alpha)
+    };
+    let believed = match value {
+        Some(value) => is_surest(value),
+        None => (1.0 - (0..values).map(is_surest).sum::<f64>()).max(0.0),
+    };
+    (1.0 - ANSWERS_AT_RANDOM) * believed + ANSWERS_AT_RANDOM / (values + 1) as f64
 }

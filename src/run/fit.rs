@@ -64,7 +64,7 @@ impl FitTrials {
     }
 }
 
-/// Observations and answers of a recording. "I don't know" names no value and is left out, and so are answers about what comes next.
+/// Observations and answers of a recording, without those about what comes next.
 fn read_trial(replay: &mut Replay) -> FileResult<FitObservations> {
     let mut trial = FitObservations { seed: replay.session().seed(), ..FitObservations::default() };
     let mut questions: Vec<ProbeQuestion> = Vec::new();
@@ -77,16 +77,15 @@ fn read_trial(replay: &mut Replay) -> FileResult<FitObservations> {
             Event::Probe(ProbeEvent::Begun { questions: drawn, .. }) => {
                 (questions, frozen) = (drawn, trial.observations.len());
             }
-            Event::Probe(ProbeEvent::Answered { question, answer: Some(answer), .. }) => {
+            Event::Probe(ProbeEvent::Answered { question, answer, .. }) => {
                 let asked = (question as usize).checked_sub(1).and_then(|index| questions.get(index));
                 let kitchen = &replay.session().kitchen;
-                let value = asked.and_then(|asked| {
-                    let aspect = probe_sampling::aspect(kitchen, &asked.about)?;
+                let aspect = asked.and_then(|asked| probe_sampling::aspect(kitchen, &asked.about));
+                trial.answers.extend(aspect.map(|aspect| {
                     let labels = &kitchen.aspects[aspect.index()].labels;
-                    let value = labels.iter().position(|label| *label == answer)?;
-                    Some(ProbedValue { after: frozen, aspect, value })
-                });
-                trial.answers.extend(value);
+                    let value = labels.iter().position(|label| Some(label) == answer.as_ref());
+                    ProbedValue { after: frozen, aspect, value }
+                }));
             }
             _ => {}
         }

@@ -8,7 +8,7 @@ use crate::mind::fitting::{Likelihood, Parameter};
 /// Answers to probes in a fit, and what they add to the presses.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedAnswers {
-    /// Number of answers that name a value.
+    /// Number of answers.
     pub answers: u64,
     /// Log likelihood per answer with the parameters from before, in nats.
     pub log_likelihood_before: f64,

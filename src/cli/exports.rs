@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -19,6 +19,7 @@ use crate::run::bids_export::{self, BidsSummary};
 /// recording, questionnaires as phenotype. As MCAP, for robotics tools: joints, frames and log in Foxglove's types, gaze, beliefs and
 /// events. The logs stay as they are.
 #[derive(Debug, Args)]
+#[command(group(ArgGroup::new("what").required(true).multiple(true).args(["bids", "mcap"])))]
 #[command(after_help = "Labels of participants are the letters and digits of their codes; what is changed is told.\n\
                   Examples: tomcom export sessions --bids ../bids\n          \
                   tomcom export sessions/2026-03-14-P07-1 --mcap\nMore: docs/exports.md")]

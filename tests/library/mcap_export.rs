@@ -99,9 +99,10 @@ fn a_file_of_somebody_else_is_left_and_an_own_one_replaced() {
     assert_eq!(fs::read(&file).expect("left"), b"not ours");
     fs::remove_file(&file).expect("removed");
     export(&folder).expect("exported");
-    let first = fs::read(&file).expect("an MCAP");
+    let first = messages(&file);
     export(&folder).expect("exported again");
-    assert_eq!(fs::read(&file).expect("an MCAP"), first, "the same log gives the same bytes");
+    // Not byte by byte: the crate lists the channels once more at the file's end, in an order of chance.
+    assert!(!first.is_empty() && messages(&file) == first, "the same log gives the same messages");
     assert!(!folder.join("recording.mcap.new").exists());
     let error = export(Path::new("tests/golden/format-1-people.jsonl")).expect_err("no folder").to_string();
     assert!(error.contains("a log by another name"), "{error}");

@@ -1,6 +1,7 @@
 //! Declarations of the tables: source of a row, and columns.
 
 pub mod actions;
+mod arm_columns;
 pub mod aspect_beliefs;
 pub mod communications;
 pub mod concept_table;
@@ -9,5 +10,6 @@ pub mod offer_table;
 pub mod participants;
 pub mod probe_table;
 pub mod questionnaires;
+mod trial_column;
 pub mod trials;
 pub mod tutorial_answers;

@@ -1,16 +1,18 @@
 //! Table of trials, and the measures among its columns that are compared between conditions.
 
+use super::trial_column::TrialColumn::{self, Compared};
+use super::trial_column::plain;
 use crate::analysis::offer_summary::OfferSummary;
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::robot::AbortReason;
 use crate::session::event::EndReason;
-use crate::session::study_arm::StudyArm;
 use crate::session::wall_display::DisplayedArm;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::effect::StudyMeasure;
 use crate::study::known_beliefs::SharedBeliefs;
 use crate::study::robot_tally::ArmSummary;
+use crate::study::tables::arm_columns;
 use crate::study::tables::probe_table::PROBES_WRONG;
 use crate::study::trial_statistics::{BeliefErrors, Trial, mean_length};
 
@@ -24,15 +26,6 @@ pub const HEADLINE: StudyMeasure = StudyMeasure {
     digits: 3,
     value: Trial::error_rate_human,
 };
-
-/// Declaration of a column in the table of trials.
-enum TrialColumn {
-    Plain(Column<Trial>),
-    /// A measure that is compared between assisted and unassisted trials.
-    Compared(StudyMeasure),
-}
-
-use TrialColumn::Compared;
 
 /// Number of errors, as the paper compares them. Trials differ in length, so the rate is the headline.
 const NUMBER_OF_ERRORS: StudyMeasure = StudyMeasure {
@@ -91,16 +84,7 @@ fn declared() -> impl Iterator<Item = TrialColumn> {
         .chain(shown())
         .chain(false_beliefs())
         .chain(probed())
-        .chain(arms())
-}
-
-fn plain(
-    name: &'static str,
-    unit: &'static str,
-    meaning: &'static str,
-    value: fn(&Trial) -> TableCell<'_>,
-) -> TrialColumn {
-    TrialColumn::Plain(Trial::column(name, unit, meaning, value))
+        .chain(arm_columns::arms())
 }
 
 fn kind_of_trial() -> Vec<TrialColumn> {
@@ -411,25 +395,5 @@ fn probed() -> Vec<TrialColumn> {
             |t| t.probes.as_ref().map(|probes| probes.counted().count() as u64).into(),
         ),
         Compared(PROBES_WRONG),
-    ]
-}
-
-fn arms() -> Vec<TrialColumn> {
-    vec![
-        plain(
-            "study_arm",
-            "",
-            "arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), tom-com, tom or dev",
-            |t| t.study_arm.name().into(),
-        ),
-        plain("planned_arm", "", "arm that the plan gave to the trial; empty without a plan", |t| {
-            t.planned_arm.map(StudyArm::name).into()
-        }),
-        plain(
-            "wizard_sees",
-            "",
-            "what the console may show: state (kitchen and gaze), belief (also the estimate) or recommendation (also advice)",
-            |t| t.wizard_sees.name().into(),
-        ),
     ]
 }

@@ -1,0 +1,25 @@
+//! Columns of the table of trials about the arms of a study.
+
+use super::trial_column::{TrialColumn, plain};
+use crate::session::study_arm::StudyArm;
+
+/// The arm by what was done, the planned one, and what the wizard was allowed to see.
+pub(super) fn arms() -> Vec<TrialColumn> {
+    vec![
+        plain(
+            "study_arm",
+            "",
+            "arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), tom-com, tom or dev",
+            |t| t.study_arm.name().into(),
+        ),
+        plain("planned_arm", "", "arm that the plan gave to the trial; empty without a plan", |t| {
+            t.planned_arm.map(StudyArm::name).into()
+        }),
+        plain(
+            "wizard_sees",
+            "",
+            "what the console may show: state (kitchen and gaze), belief (also the estimate) or recommendation (also advice)",
+            |t| t.wizard_sees.name().into(),
+        ),
+    ]
+}

@@ -6,13 +6,8 @@ use crate::base::words::count;
 
 /// The figures of probes for the terminal.
 pub fn describe(found: &ProbeFigures) -> String {
-    let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.3}"));
-    let percent = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value));
-    let within = |interval: Option<[f64; 2]>, scale: f64, digits: usize| {
-        interval.map_or(String::new(), |[from, to]| format!(" ({:.digits$} to {:.digits$})", scale * from, scale * to))
-    };
     let (counts, detection, scores) = (&found.counts, &found.detection, &found.log_scores);
-    let mut text = format!(
+    let text = format!(
         "probes: {} of {} in {}; {} count, {} of them \"I don't know\"; left out: {} without an answer in time, {} in probes of the \
          wizard, {} about what comes next\n\
          right answers: {}{}\n\
@@ -44,6 +39,12 @@ pub fn describe(found: &ProbeFigures) -> String {
         number(scores.last_seen),
         number(scores.truth),
     );
+    text + &accuracies(found)
+}
+
+/// Right answers by group, the effect of assistance, questions about what comes next, and what true beliefs would say.
+fn accuracies(found: &ProbeFigures) -> String {
+    let mut text = String::new();
     // Single aspects and the way of drawing stand in the figures.
     let told = [AccuracyGrouping::Kind, AccuracyGrouping::Age, AccuracyGrouping::Seen, AccuracyGrouping::Condition];
     for one in found.accuracies.iter().filter(|one| told.contains(&one.by)) {
@@ -74,4 +75,17 @@ pub fn describe(found: &ProbeFigures) -> String {
         );
     }
     text
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or("-".to_string(), |value| format!("{value:.3}"))
+}
+
+fn percent(value: Option<f64>) -> String {
+    value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value))
+}
+
+/// An interval in brackets; nothing where it is not known.
+fn within(interval: Option<[f64; 2]>, scale: f64, digits: usize) -> String {
+    interval.map_or(String::new(), |[from, to]| format!(" ({:.digits$} to {:.digits$})", scale * from, scale * to))
 }

@@ -48,7 +48,17 @@ const ONLY_IN: [(&str, &[&str]); 16] = [
     ("tonic_web", &["src/edge/rerun"]),
     ("tower_layer", &["src/edge/rerun"]),
     ("zeromq", &["src/edge"]),
-    ("nalgebra", &["src/analysis/fitting", "src/arm", "src/scene", "src/edge/rerun.rs"]),
+    (
+        "nalgebra",
+        &[
+            "src/analysis/fitting",
+            "src/arm",
+            "src/scene",
+            "src/edge/rerun.rs",
+            "src/study/linear_mixed_model.rs",
+            "src/study/negative_binomial_model.rs",
+        ],
+    ),
     ("urdf_rs", &["src/arm"]),
     ("rapier3d", &["src/arm"]),
     ("maud", &["src/study"]),

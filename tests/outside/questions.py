@@ -20,7 +20,7 @@ def session_file(folder, port, language="en"):
                     for name, when in [("demographics", "before = true"), ("nasa-tlx", "after = [1]"), ("sus", "after = [1]")])
     session.write_text(f'layout = "{layout}"\nseed = 3\n[trial]\npresses = 20\n[participant]\nkind = "display"\ngaze = "none"\n'
                        f'[display]\nport = {port}\nlanguage = "{language}"\nquestionnaire = "display"\n'
-                       f'[plan]\nname = "asked"\nparticipants = 2\nconditions = ["none", "wizard"]\n'
+                       f'[console]\nvisibility = "state"\n[plan]\nname = "asked"\nparticipants = 2\nconditions = ["none", "wizard"]\n'
                        f'consent = "{CONSENT}"\nconsent_on = "display"\n{asked}')
     return session
 

@@ -169,7 +169,7 @@ pub fn tiny_plan(folder: &Path) -> PathBuf {
     let session = folder.join("tiny.toml");
     let text = format!(
         "layout = \"{root}/layouts/sushi.toml\"\nseed = 3\n[trial]\npresses = 6\n[robot]\npress_s = 0.2\n\
-         [plan]\nname = \"tiny\"\nparticipants = [\"A1\", \"B2\"]\nconditions = [\"none\", \"wizard\"]\n\
+         [console]\nvisibility = \"state\"\n[plan]\nname = \"tiny\"\nparticipants = [\"A1\", \"B2\"]\nconditions = [\"none\", \"wizard\"]\n\
          instruction = [\"Show the table.\", \"Show the buttons.\"]\ndebriefing = [\"What did you miss?\"]\n\
          [plan.familiarisation]\npresses = 4\nseconds = 60.0\norders = 1\n\
          [[plan.questionnaire]]\nfile = \"{root}/sessions/questionnaires/acceptance.toml\"\n"

@@ -9,6 +9,7 @@ use crate::communication::offer::OfferedAct;
 use crate::session::accuracy_check::CalibrationEvent;
 use crate::session::answer_value::AnswerValue;
 use crate::session::event::Event;
+use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
 use crate::session::tutorial::TutorialEvent;
@@ -44,6 +45,7 @@ impl EventCells {
             Event::Tracker(event) => cells.take_tracker(event),
             Event::Calibration(event) => cells.take_calibration(event),
             Event::Display(event) => cells.take_display(event),
+            Event::Probe(event) => cells.take_probe(event),
             Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) | Event::Advised(_) | Event::OfferOpened(_) => {
                 cells.take_advice(event);
             }
@@ -264,6 +266,29 @@ impl EventCells {
         };
         if let CalibrationEvent::Accepted { corrected } | CalibrationEvent::Carried { corrected, .. } = event {
             self.answer = if *corrected { "corrected" } else { "as it is" }.to_string();
+        }
+    }
+
+    fn take_probe(&mut self, event: &ProbeEvent) {
+        self.what = tag(event, "did");
+        match event {
+            ProbeEvent::Requested => self.agent = "wizard".to_string(),
+            ProbeEvent::Delayed { reason, .. } | ProbeEvent::Dropped { reason, .. } => self.reason = name(reason),
+            ProbeEvent::Begun { origin, questions, .. } => {
+                (self.reason, self.value) = (name(origin), Some(questions.len() as f64));
+            }
+            ProbeEvent::Asked { question, .. } => self.item = question.to_string(),
+            ProbeEvent::Answered { question, answer, confidence, .. } => {
+                self.agent = "human".to_string();
+                self.item = question.to_string();
+                self.answer = answer.clone().unwrap_or_else(|| "unsure".to_string());
+                self.value = confidence.map(f64::from);
+            }
+            ProbeEvent::Skipped { reason, .. } => {
+                (self.agent, self.words) = ("wizard".to_string(), reason.clone());
+            }
+            ProbeEvent::Closed { reason, .. } => self.reason = name(reason),
+            ProbeEvent::Ended { .. } => {}
         }
     }
 

@@ -55,14 +55,17 @@ pub(super) const EVENTS: [BidsColumn; 21] = [
     BidsColumn::of_unit("force", "N", "Contact force"),
     BidsColumn::new(
         "item",
-        "Item of a questionnaire, step of the tutorial, phase, aspect of a belief, size of the display",
+        "Item of a questionnaire, step of the tutorial, phase, aspect of a belief, size of the display, number of a probe's question",
     ),
-    BidsColumn::new("answer", "Answer to the item: a number, or the ids of the chosen options"),
+    BidsColumn::new(
+        "answer",
+        "Answer to the item: a number, or the ids of the chosen options; of a probe the value, or unsure",
+    ),
     BidsColumn::new(
         "value",
         "The number that the event tells: of robot_safety the faulty joint, clock_jumped milliseconds, tracker seconds or dropped \
          samples (fixations: milliseconds), calibration targets or accuracy in degrees, belief_estimated the log probability of the \
-         press, advised and offer_opened the net benefit in presses",
+         press, advised and offer_opened the net benefit in presses, probe the number of questions, or how sure an answer is from 1 to 3",
     ),
     BidsColumn::new("reason", "Why, as the log names it"),
 ];

@@ -24,6 +24,7 @@ pub const LEVELS: &[(&str, &str)] = &[
     ),
     ("preflight", "The checks before the trial"),
     ("press", "The participant or the robot pressed a button"),
+    ("probe", "A freeze probe: the task stands still, and the participant is asked what it believes"),
     ("protocol", "A step of the study around the trial: consent, phases, tutorial, questionnaires"),
     ("robot_aborts", "The robot gave up its press"),
     ("robot_driven", "Somebody chose the robot's next press"),

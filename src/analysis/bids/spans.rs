@@ -6,6 +6,7 @@ use crate::base::time::SessionTime;
 use crate::kitchen::Agent;
 use crate::session::accuracy_check::CalibrationEvent;
 use crate::session::event::Event;
+use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
 use crate::session::wall_display::DisplayEvent;
@@ -24,6 +25,7 @@ enum Span {
     Safety,
     Signal,
     Offer,
+    Probe,
     Target,
     TrackerLoss,
     DisplayUnseen,
@@ -77,6 +79,7 @@ fn is_of_trial(span: &Span) -> bool {
             | Span::RobotHold
             | Span::Signal
             | Span::Offer
+            | Span::Probe
     )
 }
 
@@ -94,6 +97,7 @@ fn begun(event: &Event) -> Option<Span> {
         Event::RobotSafety { .. } => Span::Safety,
         Event::SignalShown { .. } => Span::Signal,
         Event::OfferOpened(_) => Span::Offer,
+        Event::Probe(ProbeEvent::Begun { .. }) => Span::Probe,
         Event::Calibration(CalibrationEvent::TargetShown { .. }) => Span::Target,
         Event::Tracker(TrackerEvent::Lost { .. }) => Span::TrackerLoss,
         Event::Tracker(TrackerEvent::DisplayLost | TrackerEvent::OtherSurfaces { .. }) => Span::DisplayUnseen,
@@ -116,6 +120,7 @@ fn ended(event: &Event) -> Vec<Span> {
         Event::RobotReleased { .. } => vec![Span::RobotHold],
         Event::SignalEnded { .. } => vec![Span::Signal],
         Event::OfferClosed { .. } => vec![Span::Offer],
+        Event::Probe(ProbeEvent::Ended { .. }) => vec![Span::Probe],
         Event::Calibration(
             CalibrationEvent::TargetsHidden | CalibrationEvent::Dismissed | CalibrationEvent::Begun { .. },
         ) => vec![Span::Target],

@@ -179,10 +179,10 @@ impl PlanSpec {
         if !is_blind || visibility < Visibility::Recommendation {
             return Ok(());
         }
-        let found = "the wizard sees recommendations, in a plan with the condition \"wizard\"".to_string();
-        let remedy = "visibility = \"state\" or \"belief\", or the condition \"wizard+advice\": what the wizard sees is part of the \
+        let found = "the condition \"wizard\", and a wizard who sees recommendations".to_string();
+        let remedy = "[console] with visibility = \"state\" or \"belief\", or the condition \"wizard+advice\": what the wizard sees is part of the \
                       condition";
-        Err(SettingError::new("console.visibility", found, remedy))
+        Err(SettingError::new("plan.conditions", found, remedy))
     }
 
     fn check_participants(&self) -> Result<(), SettingError> {

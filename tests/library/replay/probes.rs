@@ -78,6 +78,9 @@ fn by_hand(seed: u64) -> SessionFiles {
     files.spec.participant.kind = ParticipantKind::Keyboard;
     files.spec.participant.gaze = GazeSource::Mouse;
     (files.spec.seed, files.spec.probes) = (seed, Some(often()));
+    // Hands press and signal all the time: neither must end the trial early, or keep every probe waiting.
+    (files.spec.trial.presses, files.spec.trial.seconds) = (5_000, 2_000.0);
+    files.spec.probes.as_mut().expect("probes").after_signal_s = 1.0;
     files
 }
 

@@ -72,7 +72,7 @@ pub fn check(block: &Block, folder: &Path, place: &str) {
             "tomcom keys sessions/that-names-it.toml".to_string()
         }
         Some(Kind::Questionnaire) => {
-            let plan = "[plan]\nname = \"asked\"\nparticipants = 2\nconditions = [\"none\", \"wizard\"]\n";
+            let plan = "[plan]\nname = \"asked\"\nparticipants = 2\nconditions = [\"none\", \"tom-com\"]\n";
             with(&format!("{plan}[[plan.questionnaire]]\nfile = \"questionnaires/{name}\"\n"));
             "tomcom plan sessions/that-names-it.toml".to_string()
         }

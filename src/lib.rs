@@ -103,7 +103,6 @@ pub mod cli;
 pub mod communication;
 #[cfg(feature = "console")]
 pub mod console;
-#[cfg(feature = "display")]
 pub mod display;
 #[cfg(feature = "cli")]
 pub mod edge;

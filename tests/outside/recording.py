@@ -41,10 +41,12 @@ def check_header(header, session):
     recipes = layout.parent / tomllib.loads(layout.read_text())["recipes"]
     assert header["layout"]["text"] == layout.read_text()
     assert header["recipes"]["text"] == recipes.read_text()
-    # Nobody signals in simulated trials, unless a wizard is simulated, too.
+    # Nobody signals in simulated trials, but the assistant in its arms of a plan, and a wizard that is simulated, too.
     is_scripted = asked_for.get("wizard", {}).get("kind") == "scripted"
     condition = header["session"]["trial"]["condition"]
-    assert condition in (asked_for["plan"]["conditions"] if is_scripted else ["none"]), condition
+    arms = {"none": "none", "wizard": "wizard", "wizard+advice": "wizard", "tom-com": "assistant", "tom": "assistant"}
+    planned = {arms[name] for name in asked_for.get("plan", {}).get("conditions", [])} | {"none"}
+    assert condition in planned - (set() if is_scripted else {"wizard"}), condition
     assert header["session"]["trial"] == asked_for["trial"] | {"condition": condition}
 
 

@@ -39,7 +39,7 @@ pub struct ProbeAccuracy {
     pub unsure: u64,
     /// Weighted share of right answers.
     pub accuracy: Option<f64>,
-    /// Its 95 % interval by bootstrap over participants; null with fewer than two.
+    /// Its 95 % interval by bootstrap over participants; null with fewer than five.
     pub interval: Option<[f64; 2]>,
 }
 
@@ -50,7 +50,7 @@ pub struct AwarenessEffect {
     pub participants: u64,
     /// Mean over these participants of accuracy with assistance minus accuracy without.
     pub difference: f64,
-    /// Its 95 % interval by bootstrap over participants; null with fewer than two.
+    /// Its 95 % interval by bootstrap over participants; null with fewer than five.
     pub interval: Option<[f64; 2]>,
 }
 

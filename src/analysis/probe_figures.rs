@@ -26,7 +26,7 @@ pub struct ProbeFigures {
     /// The estimate against answers.
     #[serde(flatten)]
     pub detection: ProbeDetection,
-    /// 95 % interval of `auc` by bootstrap over participants; null with fewer than two.
+    /// 95 % interval of `auc` by bootstrap over participants; null with fewer than five.
     pub auc_interval: Option<[f64; 2]>,
     /// 95 % interval of `ece`, likewise.
     pub ece_interval: Option<[f64; 2]>,

@@ -9,6 +9,9 @@ const RESAMPLES: usize = 2000;
 /// Quantiles of the bootstrap distribution that bound the interval.
 const INTERVAL: [f64; 2] = [0.025, 0.975];
 
+/// Least number of units of which an interval says something: the draws from fewer are nearly all alike.
+const FEWEST: usize = 5;
+
 /// The 95 % interval of a statistic of these trials. The random stream is seeded by `seed`.
 ///
 /// # Panics
@@ -25,14 +28,14 @@ pub fn interval<T: Copy>(trials: &[T], seed: u64, statistic: impl Fn(&[T]) -> f6
     INTERVAL.map(|share| resampled[((RESAMPLES - 1) as f64 * share).round() as usize])
 }
 
-/// The same of a statistic that some draws do not have: those are left out. `None` with fewer than two units, or if fewer than half of
+/// The same of a statistic that some draws do not have: those are left out. `None` with fewer than five units, or if fewer than half of
 /// the draws have it.
 pub fn interval_where_known<T: Copy>(
     units: &[T],
     seed: u64,
     statistic: impl Fn(&[T]) -> Option<f64>,
 ) -> Option<[f64; 2]> {
-    if units.len() < 2 {
+    if units.len() < FEWEST {
         return None;
     }
     let mut random = stream(seed, "bootstrap over participants", 0);

@@ -62,11 +62,13 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
         }
         ManualAction::Exclude => ask(model, PickerQuestion::Exclude),
         ManualAction::AskProbe => {
-            let words = "a probe is asked for: it begins as soon as it may";
+            let words = "a probe is asked for";
             send(model, session, Event::Probe(ProbeEvent::Requested), NoticeLevel::Done, words)
         }
-        ManualAction::SkipProbe if skippable(session).is_none() => refuse(model, "no probe is open"),
-        ManualAction::SkipProbe => ask(model, PickerQuestion::SkipProbe),
+        ManualAction::SkipProbe => match skippable(session) {
+            Some(probe) => ask(model, PickerQuestion::SkipProbe(probe)),
+            None => refuse(model, "no probe is open"),
+        },
     }
 }
 
@@ -74,6 +76,16 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
 pub(super) fn skippable(session: &Session) -> Option<u32> {
     let open = session.probes.open.as_ref()?;
     (open.closed.is_none() && session.phase == Phase::Paused).then_some(open.number)
+}
+
+/// Closes the list of reasons of a probe that is over: the next probe is not skipped for them.
+pub fn expire(model: &mut ConsoleModel, session: &Session) {
+    if let Some(Dialog::Pick(Picker { question: PickerQuestion::SkipProbe(probe), .. })) = model.dialog
+        && skippable(session) != Some(probe)
+    {
+        model.dialog = None;
+        model.say(NoticeLevel::Refused, format!("probe {probe} was over before it was skipped"));
+    }
 }
 
 fn redo(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
@@ -157,8 +169,8 @@ pub(super) fn pick(
         (PickerQuestion::Abort, PickerAnswer::Reason(reason)) => {
             send(model, session, Event::TrialAborted { reason }, NoticeLevel::Done, "aborted")
         }
-        (PickerQuestion::SkipProbe, PickerAnswer::Reason(reason)) => {
-            let event = ProbeEvent::Skipped { probe: skippable(session)?, reason };
+        (PickerQuestion::SkipProbe(probe), PickerAnswer::Reason(reason)) => {
+            let event = ProbeEvent::Skipped { probe, reason };
             send(model, session, Event::Probe(event), NoticeLevel::Done, "the rest of the probe is skipped")
         }
         (_, PickerAnswer::Reason(reason)) => {

@@ -19,6 +19,7 @@ use super::palette;
 use super::panels;
 use super::possible::acts_on_sheet;
 use super::preflight;
+use super::probe_keys;
 use super::sending::send;
 use super::sheet_key::SheetKey;
 use super::view::dialog::{help_pages, report_rest};
@@ -80,7 +81,10 @@ pub(super) fn press(
         _ if model.dialog == Some(Dialog::Calibration) => {
             gaze_targets::answer(model, session, chord.code, touch == Touch::Press)
         }
-        _ if touch == Touch::Held => {
+        // Digits of a number follow one another quickly: 11 is no held 1.
+        _ if touch == Touch::Held
+            && !(matches!(code, KeyCode::Char('0'..='9')) && probe_keys::takes_number(model, session)) =>
+        {
             if model.dialog.is_none() {
                 model.say(NoticeLevel::Refused, format!("\"{chord}\" is held down: it counts once"));
             }

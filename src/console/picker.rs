@@ -20,8 +20,8 @@ pub enum PickerQuestion {
     Abort,
     /// Why is it left out of the analysis?
     Exclude,
-    /// Why is the rest of the probe skipped?
-    SkipProbe,
+    /// Why is the rest of the probe with this number skipped?
+    SkipProbe(u32),
 }
 
 /// What can be answered.
@@ -82,7 +82,7 @@ impl Picker {
             PickerQuestion::Button => "The robot's next press".to_string(),
             PickerQuestion::Abort => "Abort the trial: why?".to_string(),
             PickerQuestion::Exclude => "Leave the trial out: why?".to_string(),
-            PickerQuestion::SkipProbe => "Skip the rest of the probe: why?".to_string(),
+            PickerQuestion::SkipProbe(probe) => format!("Skip the rest of probe {probe}: why?"),
         }
     }
 
@@ -98,7 +98,7 @@ impl Picker {
             PickerQuestion::Place => places(session),
             PickerQuestion::Content(place) => contents(session, place),
             PickerQuestion::Button => buttons(session),
-            PickerQuestion::Abort | PickerQuestion::Exclude | PickerQuestion::SkipProbe => reasons(session),
+            PickerQuestion::Abort | PickerQuestion::Exclude | PickerQuestion::SkipProbe(_) => reasons(session),
         }
     }
 

@@ -7,6 +7,8 @@ pub struct ProbeEntry {
     of: (u32, usize),
     /// Number of the choice; 0: "I don't know".
     pub choice: Option<usize>,
+    /// The last key was a digit: the next one continues the number.
+    pub is_typed: bool,
     /// The choice is confirmed, and how sure the participant is comes next.
     pub asks_sure: bool,
     /// How sure the participant is, from 1 to 3.

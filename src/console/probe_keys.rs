@@ -8,7 +8,7 @@ use super::sheet_key::SheetKey;
 use crate::session::probes::{OpenProbe, ProbeEvent, ProbeOrigin};
 use crate::session::settings::ParticipantKind;
 use crate::session::wall_display::Answering;
-use crate::session::{Event, Session};
+use crate::session::{Event, Phase, Session};
 
 /// Who answers the questions of a probe now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,9 +53,18 @@ pub fn status(session: &Session, model: &ConsoleModel) -> Option<String> {
     if let Some(waiting) = &book.waiting {
         return Some(format!("{} waits", numbered(session, waiting.number)));
     }
-    let next = book.schedule.get(book.came_due).filter(|_| session.is_running())?;
+    // The participant at the console must not foresee it.
+    let foresees = session.spec.participant.kind == ParticipantKind::Keyboard;
+    let next = book.schedule.get(book.came_due).filter(|_| session.is_running() && !foresees)?;
     let in_s = next.at.as_secs_f64() - session.trial_clock(model.now).as_secs_f64();
     Some(format!("{} in {:.0} s", numbered(session, book.numbered + 1), in_s.max(0.0).ceil()))
+}
+
+/// Whether digits are the number of a choice now.
+pub(super) fn takes_number(model: &ConsoleModel, session: &Session) -> bool {
+    let is_free = model.dialog.is_none() && model.playback.is_none();
+    let is_asked = session.probes.open.as_ref().is_some_and(|open| open.question().is_some());
+    is_free && is_asked && session.phase == Phase::Paused && answerer(session, model) == ProbeAnswerer::Console
 }
 
 /// Carries out a key of the sheet.
@@ -84,16 +93,21 @@ pub(super) fn write(
         SheetKey::Digit(digit @ 1..=3) if entry.asks_sure => entry.sure = Some(digit),
         SheetKey::Digit(_) if entry.asks_sure => return refuse(model, "how sure: 1, 2 or 3"),
         SheetKey::Digit(digit) => {
-            let digit = usize::from(digit);
-            let longer = entry.choice.filter(|&choice| choice > 0).map(|choice| 10 * choice + digit);
-            match longer.filter(|&number| number <= choices).or((digit <= choices).then_some(digit)) {
-                Some(number) => entry.choice = Some(number),
-                None => return refuse(model, "the question has no such choice"),
+            let begun = entry.choice.filter(|_| entry.is_typed).unwrap_or(0);
+            let number = 10 * begun + usize::from(digit);
+            if number > choices {
+                return refuse(model, &format!("there is no choice {number}; backspace takes a digit back"));
             }
+            (entry.choice, entry.is_typed) = (Some(number), true);
         }
         SheetKey::Forward | SheetKey::Back if entry.asks_sure => return refuse(model, "how sure: 1, 2 or 3"),
-        SheetKey::Forward => entry.choice = Some(entry.choice.map_or(1, |choice| (choice + 1).min(choices))),
-        SheetKey::Back => entry.choice = Some(entry.choice.map_or(0, |choice| choice.saturating_sub(1))),
+        SheetKey::Forward | SheetKey::Back => {
+            let by = if stroke == SheetKey::Forward { 1 } else { -1 };
+            let to = entry.choice.map_or(0, |choice| choice.saturating_add_signed(by)).min(choices);
+            // The first arrow goes to the first choice.
+            let to = if entry.choice.is_none() && by > 0 { 1 } else { to };
+            (entry.choice, entry.is_typed) = (Some(to), false);
+        }
         SheetKey::Undo if entry.asks_sure => (entry.asks_sure, entry.sure) = (false, None),
         SheetKey::Undo => entry.choice = entry.choice.filter(|&choice| choice > 9).map(|choice| choice / 10),
         SheetKey::Confirm => match entry.choice {
@@ -104,6 +118,8 @@ pub(super) fn write(
                 let answer = number.checked_sub(1).and_then(|index| question.choices.get(index)).cloned();
                 let (probe, question, on) = (open.number, index as u32 + 1, Answering::Console);
                 let event = ProbeEvent::Answered { probe, question, answer, confidence: entry.sure, on };
+                entry.is_typed = false;
+                model.probe_entry = entry;
                 return send(model, session, Event::Probe(event), NoticeLevel::Done, "");
             }
         },

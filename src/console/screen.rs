@@ -49,7 +49,7 @@ fn name(dialog: &Dialog) -> &'static str {
             PickerQuestion::Button => "drive_robot",
             PickerQuestion::Abort => "abort_trial",
             PickerQuestion::Exclude => "exclude_trial",
-            PickerQuestion::SkipProbe => "skip_probe",
+            PickerQuestion::SkipProbe(_) => "skip_probe",
         },
     }
 }

@@ -3,6 +3,7 @@
 use super::click_question;
 use super::console_message::{ConsoleCommand, ConsoleMessage};
 use super::console_model::ConsoleModel;
+use super::hands;
 use super::key_press;
 use super::mouse;
 use crate::session::{Event, Phase, Session};
@@ -10,6 +11,7 @@ use crate::session::{Event, Phase, Session};
 /// Takes a message at the time `model.now`.
 pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessage) -> Option<ConsoleCommand> {
     click_question::expire(model, session);
+    hands::expire(model, session);
     match message {
         ConsoleMessage::Key(key) => key_press::key(model, session, &key),
         ConsoleMessage::Pointer(column, row) => {

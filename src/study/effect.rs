@@ -10,6 +10,7 @@ use super::statistics::{
     Correlation, FTest, Interval, MixedAnova, hedges_g, hodges_lehmann, mixed_anova, pearson, permutation_p,
 };
 use super::trial_statistics::Trial;
+use crate::session::study_arm::StudyArm;
 
 /// Confidence level of intervals.
 pub const LEVEL: f64 = 0.95;
@@ -101,8 +102,15 @@ impl AssistanceEffect {
 }
 
 /// Pairs of one assisted and one unassisted trial that count and have this measure, in the order of participant codes. If a
-/// participant repeated a period, its last trial counts.
+/// participant repeated a period, its last trial counts. None where the trials have more than two arms: those are compared as a whole
+/// ([`super::arm_comparison`]).
 pub fn pairs(trials: &[Trial], measure: StudyMeasure) -> Vec<TrialPair> {
+    let mut arms: Vec<StudyArm> = trials.iter().filter(|trial| trial.counts()).map(|trial| trial.study_arm).collect();
+    arms.sort_unstable();
+    arms.dedup();
+    if arms.len() > 2 {
+        return Vec::new();
+    }
     let mut codes: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
     codes.sort_unstable();
     codes.dedup();

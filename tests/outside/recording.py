@@ -60,9 +60,16 @@ def check_order(events):
         assert f"`{kind}`" in RECORDINGS, f"docs/recordings.md does not say what {kind} is"
 
 
+def probes(events, did):
+    """The events of this kind of freeze probes, which most sessions have not."""
+    return events[(events["kind"] == "probe") & (events["did"] == did)] if "did" in events else events.iloc[:0]
+
+
 def check_gaze(events):
     gaze = events[events["kind"] == "gaze"]
-    seconds = (gaze["t_ns"].iloc[-1] - gaze["t_ns"].iloc[0]) / 1e9
+    # In a freeze probe simulated eyes stand still.
+    frozen = probes(events, "ended")["t_ns"].sum() - probes(events, "begun")["t_ns"].sum()
+    seconds = (gaze["t_ns"].iloc[-1] - gaze["t_ns"].iloc[0] - frozen) / 1e9
     rate_hz = (len(gaze) - 1) / seconds
     assert 115 < rate_hz < 125, f"simulated gaze at {rate_hz} Hz"
     assert gaze["confidence"].between(0, 1).all()
@@ -71,10 +78,11 @@ def check_gaze(events):
 
 
 def check_beliefs(header, events):
-    """Before each of its presses the participant tells what it believes of every aspect."""
+    """Before each of its presses, and before each freeze probe, the participant tells what it believes of every aspect."""
     sizes = Kitchen(header["layout"]["text"], header["recipes"]["text"]).state_space()
     told = events[events["kind"] == "participant_believes"]
-    assert len(told) == ((events["kind"] == "press") & (events["agent"] == "human")).sum()
+    pressed = ((events["kind"] == "press") & (events["agent"] == "human")).sum()
+    assert len(told) == pressed + len(probes(events, "begun"))
     for aspects in told["aspects"]:
         assert [held["aspect"] for held in aspects] == list(sizes), aspects
         for held in aspects:

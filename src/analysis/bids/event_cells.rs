@@ -9,7 +9,7 @@ use crate::communication::offer::OfferedAct;
 use crate::session::accuracy_check::CalibrationEvent;
 use crate::session::answer_value::AnswerValue;
 use crate::session::event::Event;
-use crate::session::probes::ProbeEvent;
+use crate::session::probes::{ProbeEvent, ProbeSubject};
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
 use crate::session::tutorial::TutorialEvent;
@@ -64,6 +64,15 @@ impl EventCells {
             event => cells.take_trial(event),
         }
         cells
+    }
+
+    /// What a question of a probe is about.
+    pub(super) fn ask_about(&mut self, about: &ProbeSubject) {
+        match about {
+            ProbeSubject::Location { location } => self.location = location.clone(),
+            ProbeSubject::Recipe { dish } => self.dish = dish.clone(),
+            ProbeSubject::NextOrder | ProbeSubject::NextPress => self.reason = tag(about, "asks"),
+        }
     }
 
     /// The cells from `location` on, in the order of the columns.
@@ -277,10 +286,10 @@ impl EventCells {
             ProbeEvent::Begun { origin, questions, .. } => {
                 (self.reason, self.value) = (name(origin), Some(questions.len() as f64));
             }
-            ProbeEvent::Asked { question, .. } => self.item = question.to_string(),
-            ProbeEvent::Answered { question, answer, confidence, .. } => {
+            ProbeEvent::Asked { probe, question } => self.item = format!("{probe}.{question}"),
+            ProbeEvent::Answered { probe, question, answer, confidence, .. } => {
                 self.agent = "human".to_string();
-                self.item = question.to_string();
+                self.item = format!("{probe}.{question}");
                 self.answer = answer.clone().unwrap_or_else(|| "unsure".to_string());
                 self.value = confidence.map(f64::from);
             }

@@ -42,7 +42,7 @@ pub(super) const EVENTS: [BidsColumn; 21] = [
         "Presses of the participant in the trial: whether the press was an error, by the number of presses that it loses",
     ),
     BidsColumn::new("location", "The place that it is about, by its name in the layout"),
-    BidsColumn::new("dish", "The wanted dish"),
+    BidsColumn::new("dish", "The wanted dish, or the one whose recipe a probe asks for"),
     BidsColumn::new("content", "What lies at the place"),
     BidsColumn::of_levels("signal", SIGNALS, "Kind of the signal that is shown, offered or recommended"),
     BidsColumn::new("refers_to", "Number (seq) of the event that this one is about, answers or follows from"),
@@ -55,7 +55,7 @@ pub(super) const EVENTS: [BidsColumn; 21] = [
     BidsColumn::of_unit("force", "N", "Contact force"),
     BidsColumn::new(
         "item",
-        "Item of a questionnaire, step of the tutorial, phase, aspect of a belief, size of the display, number of a probe's question",
+        "Item of a questionnaire, step of the tutorial, phase, aspect of a belief, size of the display, probe and question as in 2.1",
     ),
     BidsColumn::new(
         "answer",

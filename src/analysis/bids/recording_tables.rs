@@ -10,6 +10,7 @@ use crate::base::time::SessionTime;
 use crate::session::accuracy_check::CalibrationEvent;
 use crate::session::event::{EndReason, Event};
 use crate::session::plan::ItemForm;
+use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
 use crate::session::wall_display::DisplayEvent;
@@ -111,7 +112,13 @@ impl RecordingTables {
     }
 
     fn rest(&mut self, stamped: &Stamped, session: &Session, outcome: Option<PressOutcome>) -> String {
-        let cells = EventCells::from_event(&stamped.event, is_words(&stamped.event, session));
+        let mut cells = EventCells::from_event(&stamped.event, is_words(&stamped.event, session));
+        if let Event::Probe(ProbeEvent::Asked { question, .. } | ProbeEvent::Answered { question, .. }) = &stamped.event
+            && let Some(open) = &session.probes.open
+            && let Some(asked) = (*question as usize).checked_sub(1).and_then(|index| open.questions.get(index))
+        {
+            cells.ask_about(&asked.about);
+        }
         let is_on = matches!(session.phase, Phase::Running | Phase::Paused)
             || matches!(stamped.event, Event::TrialEnded { .. } | Event::TrialAborted { .. });
         let clock = is_on.then(|| seconds(session.trial_clock(stamped.time)));

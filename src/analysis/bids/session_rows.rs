@@ -4,6 +4,7 @@ use super::event_cells;
 use super::tsv::{self, BidsColumn, BidsFile, or_nothing, seconds, yes};
 use crate::base::time::SessionTime;
 use crate::session::event::EndReason;
+use crate::session::study_arm::StudyArm;
 use crate::session::{Header, Session};
 
 const YES: &[(&str, &str)] = &[("0", "No"), ("1", "Yes")];
@@ -20,13 +21,18 @@ const ENDS: &[(&str, &str)] = &[
     ("aborted", "It was aborted and does not count"),
 ];
 
-const COLUMNS: [BidsColumn; 19] = [
+const COLUMNS: [BidsColumn; 21] = [
     BidsColumn::new("session_id", "The recording's session"),
     BidsColumn::new("acq_time", "When the recording began (UTC); n/a: simulated"),
     BidsColumn::new("recording", "Name of the recording's folder"),
     BidsColumn::new("kitchen", "Name of the kitchen"),
     BidsColumn::of_levels("condition", CONDITIONS, "Who could send signals"),
     BidsColumn::new("concept", "Communication concept of the assistant"),
+    BidsColumn::new(
+        "study_arm",
+        "Arm by what was done: none, wizard, wizard+advice (the wizard saw recommendations), tom-com, tom or dev",
+    ),
+    BidsColumn::new("planned_arm", "Arm that the plan gave to the trial"),
     BidsColumn::of_levels("practice", YES, "Whether it is practice, which no analysis takes"),
     BidsColumn::new("period", "Number of the trial in the plan, from 1"),
     BidsColumn::new("attempt", "Number of the attempt, from 1"),
@@ -69,6 +75,8 @@ impl SessionRow {
             session.kitchen.name.clone(),
             spec.trial.condition.name().to_string(),
             spec.assistant.concept.name().to_string(),
+            session.study_arm().name().to_string(),
+            or_nothing(step.and_then(|step| step.arm).map(StudyArm::name)),
             yes(step.is_some_and(|step| step.period.is_none())),
             or_nothing(step.and_then(|step| step.period)),
             or_nothing(step.map(|step| step.attempt)),

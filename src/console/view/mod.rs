@@ -73,6 +73,7 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     scrub::draw(brush, &regions, session, model);
     footer::message(brush, &regions, session, model);
     cards::draw(brush, &regions, session, model);
+    probe_sheet::hide(brush, regions.middle(), session, model);
     sheet::draw(brush, area, session, model);
     dialog::draw(brush, area, &regions, session, model);
     footer::draw(brush, &regions, session, model);

@@ -6,6 +6,17 @@ use super::paint::Painter;
 use super::regions::inside;
 use super::theme::TextRole;
 
+/// Clears an area.
+pub(super) fn blank(brush: &mut Painter, area: Rect) {
+    for y in area.y..area.bottom() {
+        for x in area.x..area.right() {
+            if let Some(cell) = brush.buffer.cell_mut((x, y)) {
+                cell.reset();
+            }
+        }
+    }
+}
+
 /// Clears and frames an area in the middle of the screen; returns the area inside.
 pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
     let (columns, rows) = (size.0.min(screen.width), size.1.min(screen.height));
@@ -17,13 +28,7 @@ pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &
     };
     // What lies below cannot be clicked; the hint line is drawn later.
     brush.targets.clear();
-    for y in area.y..area.bottom() {
-        for x in area.x..area.right() {
-            if let Some(cell) = brush.buffer.cell_mut((x, y)) {
-                cell.reset();
-            }
-        }
-    }
+    blank(brush, area);
     let style = brush.style(TextRole::Strong);
     brush.frame(area, &brush.theme.signs().frame, style);
     brush.text(area.x + 2, area.y, columns, &format!(" {title} "), style);

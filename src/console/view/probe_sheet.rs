@@ -4,7 +4,8 @@
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
 
-use super::paint::{KeyHint, width};
+use super::paint::{KeyHint, Painter, width};
+use super::popup::blank;
 use super::sheet_page::{Page, Pen, plain};
 use super::theme::TextRole;
 use crate::console::beliefs::visibility;
@@ -14,12 +15,20 @@ use crate::console::key_action::{KeyAction, ManualAction};
 use crate::console::probe_entry::ProbeEntry;
 use crate::console::probe_keys::{ProbeAnswerer, answerer, status};
 use crate::display::{ProbeWording, probe_left, probe_wording};
-use crate::session::Session;
 use crate::session::probes::{OpenProbe, ProbeAnswer, ProbeQuestion};
 use crate::session::settings::Visibility;
+use crate::session::{Phase, Session};
 
 /// How sure a participant is, in words.
 const SURE: [&str; 3] = ["a guess", "fairly sure", "certain"];
+
+/// Clears what lies below the sheet where the participant answers at the console: what is asked must not stand beside the question.
+pub(super) fn hide(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel) {
+    let is_open = session.probes.open.is_some() && session.phase == Phase::Paused;
+    if is_open && model.playback.is_none() && answerer(session, model) == ProbeAnswerer::Console {
+        blank(brush, area);
+    }
+}
 
 /// Draws the sheet.
 pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Session, model: &ConsoleModel) {

@@ -1,8 +1,8 @@
 //! Output of a live session: the wizard's screen (and its record), and the participant's display.
 
 use super::live_session::Live;
-use crate::console::click_question;
 use crate::console::screen::screen;
+use crate::console::{click_question, hands};
 use crate::run::watch_desk::ComparisonDesk;
 use crate::session::wall_display::DisplayEvent;
 use crate::session::{Event, Phase};
@@ -18,6 +18,7 @@ impl Live {
     pub(super) fn prepare_frame(&mut self) {
         self.tick();
         click_question::expire(&mut self.model, self.engine.session());
+        hands::expire(&mut self.model, self.engine.session());
         if let (Some(newest), Some(compared)) =
             (self.comparison.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)
         {

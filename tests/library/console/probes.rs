@@ -125,8 +125,19 @@ fn an_answer_is_entered_where_no_page_is_connected() {
     assert_eq!(stage.type_keys(&digits("012\n")), Some(answered(choices.get(11), None)));
     let arrows = [KeyCode::Down, KeyCode::Up, KeyCode::Enter];
     assert_eq!(stage.type_keys(&arrows), Some(answered(choices.get(11), None)));
-    // A number that is too large begins anew with its last digit.
-    assert_eq!(stage.type_keys(&digits("99\n")), Some(answered(choices.get(8), None)));
+    // A digit that would make the number too large is refused, and a digit after arrows begins a number.
+    assert_eq!(stage.type_keys(&digits("99")), None);
+    assert!(stage.notice().contains("no choice 99"), "{}", stage.notice());
+    assert_eq!(stage.type_keys(&[KeyCode::Enter]), Some(answered(choices.get(8), None)));
+    assert_eq!(
+        stage.type_keys(&[KeyCode::Up, KeyCode::Char('3'), KeyCode::Enter]),
+        Some(answered(choices.get(2), None))
+    );
+    // 11 typed quickly is no held 1.
+    stage.key(KeyCode::Char('1'));
+    stage.key(KeyCode::Char('1'));
+    assert_eq!(stage.type_keys(&[KeyCode::Enter]), Some(answered(choices.get(10), None)));
+    assert_eq!(stage.type_keys(&[KeyCode::Up, KeyCode::Char('9')]), None);
     assert_eq!(stage.type_keys(&[KeyCode::Backspace, KeyCode::Enter]), None);
 
     let mut stage = probed("sushi", false, true);
@@ -172,7 +183,7 @@ fn a_probe_is_asked_for_paused_and_skipped() {
     stage.at(72.0, Event::TrialResumed);
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Delete), None);
-    assert!(stage.screen((80, 24)).contains("Skip the rest of the probe: why?"), "{}", stage.screen((80, 24)));
+    assert!(stage.screen((80, 24)).contains("Skip the rest of probe 1: why?"), "{}", stage.screen((80, 24)));
     stage.wait(1.0);
     let reason = stage.session.spec.console.reasons[0].clone();
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(Event::Probe(ProbeEvent::Skipped { probe: 1, reason })));
@@ -181,6 +192,20 @@ fn a_probe_is_asked_for_paused_and_skipped() {
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Delete), None);
     assert_eq!(stage.notice(), "no probe is open");
+}
+
+/// Reasons that were asked for one probe must not skip the next one.
+#[test]
+fn a_list_of_reasons_is_closed_with_its_probe() {
+    let mut stage = probed("sushi", true, false);
+    stage.begin(&ASPECTS);
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Delete), None);
+    assert!(stage.screen((120, 40)).contains("Skip the rest of probe 1: why?"));
+    stage.probe(90.0, ProbeEvent::Closed { probe: 1, reason: ProbeEnd::TimeOver });
+    stage.wait(1.0);
+    assert_eq!(stage.key(KeyCode::Enter), None);
+    assert!(!stage.screen((120, 40)).contains("why?"), "{}", stage.screen((120, 40)));
 }
 
 #[test]

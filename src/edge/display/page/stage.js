@@ -244,10 +244,12 @@ const Stage = (() => {
     const title = scene.words[name], more = scene.words[`${name} text`];
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
-    // A page of the tutorial stands beside the recipe that it explains.
-    const recipe = sight.signal && sight.signal.recipe;
-    const free = recipe ? room.forRecipe([...parts.all, parts.cards[recipe.order]]) : parts.free;
-    if (sight.tutorial) return Tutorial.draw(parts.sheet, sight.tutorial, { scene, free, element, text, put, partOf });
+    if (sight.tutorial) {
+      // A page of the tutorial stands beside the recipe that it explains.
+      const recipe = sight.signal && sight.signal.recipe;
+      const free = recipe ? room.forRecipe([...parts.all, parts.cards[recipe.order]]) : parts.free;
+      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, free, element, text, put, partOf });
+    }
     Tutorial.end();
     if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });
     Probe.end();

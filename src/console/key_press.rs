@@ -82,9 +82,7 @@ pub(super) fn press(
             gaze_targets::answer(model, session, chord.code, touch == Touch::Press)
         }
         // Digits of a number follow one another quickly: 11 is no held 1.
-        _ if touch == Touch::Held
-            && !(matches!(code, KeyCode::Char('0'..='9')) && probe_keys::takes_number(model, session)) =>
-        {
+        _ if touch == Touch::Held && !probe_keys::takes_digit(model, session, code) => {
             if model.dialog.is_none() {
                 model.say(NoticeLevel::Refused, format!("\"{chord}\" is held down: it counts once"));
             }

@@ -1,5 +1,7 @@
 //! The sheet of a freeze probe: the wizard pauses it, and enters the answers where the participant has no display.
 
+use crossterm::event::KeyCode;
+
 use super::console_message::ConsoleCommand;
 use super::console_model::ConsoleModel;
 use super::notice::NoticeLevel;
@@ -60,11 +62,16 @@ pub fn status(session: &Session, model: &ConsoleModel) -> Option<String> {
     Some(format!("{} in {:.0} s", numbered(session, book.numbered + 1), in_s.max(0.0).ceil()))
 }
 
-/// Whether digits are the number of a choice now.
-pub(super) fn takes_number(model: &ConsoleModel, session: &Session) -> bool {
+/// Whether the key is a digit of the number of a choice.
+pub(super) fn takes_digit(model: &ConsoleModel, session: &Session, code: KeyCode) -> bool {
+    let is_digit = matches!(code, KeyCode::Char('0'..='9'));
     let is_free = model.dialog.is_none() && model.playback.is_none();
     let is_asked = session.probes.open.as_ref().is_some_and(|open| open.question().is_some());
-    is_free && is_asked && session.phase == Phase::Paused && answerer(session, model) == ProbeAnswerer::Console
+    is_digit
+        && is_free
+        && is_asked
+        && session.phase == Phase::Paused
+        && answerer(session, model) == ProbeAnswerer::Console
 }
 
 /// Carries out a key of the sheet.

@@ -227,7 +227,7 @@ def plays(tomcom, chromium, folder, kitchen, language):
         given.append(answer(page, "pad", 1))
         page.asks(2)
         console.key("\x1b[3~")
-        console.wait_for("Skip the rest of the probe")
+        console.wait_for("Skip the rest of probe")
         console.key("\r")
         page.wait_for("Stage.shown().probe && Stage.shown().probe.closed")
         page.stage("running")

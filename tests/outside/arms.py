@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import statsmodels.formula.api as smf
+from simulated import run, shortened
 from statsmodels.stats.multitest import multipletests
 
 SESSION = Path("sessions/arms.toml")
@@ -42,21 +43,11 @@ for (w in weights) {
 """
 
 
-def run(*arguments):
-    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True)
-    assert done.returncode == 0, f"{arguments}\n{done.stderr}"
-    return done.stdout
-
-
 def simulate(tomcom, folder):
     """The study of arms with a scripted wizard, who sees no advice, and shorter trials."""
-    text = SESSION.read_text().replace('"../', f'"{Path.cwd()}/')
-    text = text.replace('["none", "wizard", "wizard+advice", "tom-com", "tom"]', json.dumps(ARMS))
-    text = text.replace("presses = 304", "presses = 120").replace("block = 10", "block = 4")
-    text += '\n[wizard]\nkind = "scripted"\n'
-    folder.mkdir(parents=True)
-    session = folder / "arms.toml"
-    session.write_text(text)
+    session = shortened(SESSION, folder / "arms.toml", 120, '\n[wizard]\nkind = "scripted"\n')
+    text = session.read_text().replace('["none", "wizard", "wizard+advice", "tom-com", "tom"]', json.dumps(ARMS))
+    session.write_text(text.replace("block = 10", "block = 4"))
     run(tomcom, "simulate", session, "--seed", 71, "--out", folder / "recordings")
     return folder / "recordings"
 

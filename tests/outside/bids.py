@@ -8,12 +8,12 @@ events, and the same values. Nothing that somebody typed is in the tree unless i
 
 import filecmp
 import json
-import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pandas as pd
+from simulated import run, shortened
 
 SESSION = Path("sessions/paper.toml")
 TYPED = "Erika Mustermann came in"
@@ -34,12 +34,6 @@ WARNINGS = {
 }
 
 
-def run(*arguments, code=0):
-    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True)
-    assert done.returncode == code, f"{arguments}\n{done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout + (done.stderr if code else "")
-
-
 def lines(recording):
     with open(recording / "events.jsonl", encoding="utf-8") as log:
         return [json.loads(line) for line in log]
@@ -56,15 +50,10 @@ def write(recording, log):
 
 def simulate(tomcom, folder):
     """A short study, and two trials with the arm in the physics, outside of any plan."""
-    folder.mkdir(parents=True)
-    text = SESSION.read_text().replace('"../', f'"{Path.cwd()}/')
-    session = folder / "study.toml"
-    session.write_text(re.sub(r"(?m)^presses = \d+", "presses = 40", text))
+    session = shortened(SESSION, folder / "study.toml", 40)
     recordings = folder / "recordings"
     run(tomcom, "simulate", session, "--trials", 4, "--seed", 5, "--out", recordings)
-    text = Path("sessions/default.toml").read_text().replace('"../', f'"{Path.cwd()}/')
-    alone = folder / "alone.toml"
-    alone.write_text(re.sub(r"(?m)^presses = \d+", "presses = 20", text))
+    alone = shortened("sessions/default.toml", folder / "alone.toml", 20)
     run(tomcom, "simulate", alone, "--trials", 3, "--seed", 7, "--arm", "physics", "--out", recordings)
     return recordings
 

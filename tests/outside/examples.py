@@ -16,20 +16,13 @@ import sys
 from collections import Counter
 from pathlib import Path
 
+from simulated import run, shortened
+
 SESSION = Path("sessions/paper.toml")
 
 
-def run(*arguments):
-    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True)
-    assert done.returncode == 0, f"{arguments}\n{done.stdout}{done.stderr}"
-    return done.stdout
-
-
 def simulate(tomcom, folder):
-    folder.mkdir(parents=True)
-    text = SESSION.read_text().replace('"../', f'"{Path.cwd()}/')
-    session = folder / "study.toml"
-    session.write_text(re.sub(r"(?m)^presses = \d+", "presses = 60", text))
+    session = shortened(SESSION, folder / "study.toml", 60)
     run(tomcom, "simulate", session, "--trials", 8, "--seed", 11, "--out", folder / "recordings")
     run(tomcom, "study", folder / "recordings", "--out", folder / "study", "--skip", "concepts")
     return sorted(path for path in (folder / "recordings").iterdir() if path.is_dir())

@@ -8,7 +8,6 @@ of the same joints, and `rerun mcap convert` reads the file.
 
 import json
 import re
-import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
@@ -17,23 +16,15 @@ import fastjsonschema
 import numpy as np
 import pinocchio
 from mcap.reader import make_reader
+from simulated import run, shortened
 
 BIN = Path(sys.executable).parent
 FOXGLOVE = {"/robot/joints": "foxglove.JointStates", "/tf": "foxglove.FrameTransforms", "/log": "foxglove.Log"}
 SAMPLES = {"/gaze": "gaze", "/robot/joints": "robot_moves", "/tf": "robot_moves", "/robot/arm": "robot_moves"}
 
 
-def run(*arguments, code=0):
-    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True)
-    assert done.returncode == code, f"{arguments}\n{done.returncode}\n{done.stdout}{done.stderr}"
-    return done.stdout + (done.stderr if code else "")
-
-
 def simulate(tomcom, folder):
-    folder.mkdir(parents=True)
-    text = Path("sessions/default.toml").read_text().replace('"../', f'"{Path.cwd()}/')
-    session = folder / "session.toml"
-    session.write_text(re.sub(r"(?m)^presses = \d+", "presses = 40", text))
+    session = shortened("sessions/default.toml", folder / "session.toml", 40)
     out = folder / "recordings"
     run(tomcom, "simulate", session, "--trials", 2, "--seed", 3, "--arm", "physics", "--condition", "assistant", "--out", out)
     return sorted(path for path in out.iterdir() if path.is_dir())

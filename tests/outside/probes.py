@@ -8,14 +8,13 @@ people, by taking their recorded beliefs out of the recordings: `replay --check-
 """
 
 import json
-import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from simulated import as_people, recordings_in, run, shortened
 from sklearn.calibration import calibration_curve
 from sklearn.metrics import log_loss, roc_auc_score
 
@@ -29,20 +28,10 @@ def near(what, found, wanted, by=EXACT):
     assert found is not None and abs(found - wanted) <= by * max(1.0, abs(wanted)), f"{what}: {found} instead of {wanted}"
 
 
-def run(*arguments):
-    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True)
-    assert done.returncode == 0, f"{arguments}\n{done.stderr}"
-    return done.stdout
-
-
 def simulate(tomcom, folder):
     """The study of the paper with probes, shorter trials, and fewer participants."""
-    text = SESSION.read_text().replace('"../', f'"{Path.cwd()}/')
-    text = re.sub(r"(?m)^presses = \d+", f"presses = {PRESSES}", text)
-    assert "[probes]" not in text
-    folder.mkdir(parents=True)
-    session = folder / "study.toml"
-    session.write_text(text + "\n[probes]\nper_trial = 4\napart_s = 45\nlevel_2 = true\nconfidence = true\n")
+    probes = "\n[probes]\nper_trial = 4\napart_s = 45\nlevel_2 = true\nconfidence = true\n"
+    session = shortened(SESSION, folder / "study.toml", PRESSES, probes)
     out = folder / "recordings"
     run(tomcom, "simulate", session, "--trials", 12, "--seed", 7, "--out", out, "--format", "json")
     return out
@@ -140,24 +129,6 @@ def check_accuracies(found, rows, trials):
         near(recording, trial.probes_wrong, np.average(own.wrong, weights=own.weight))
 
 
-def people(simulated, out):
-    """The recordings as if people had made them."""
-    for recording in sorted(path for path in simulated.iterdir() if (path / "events.jsonl").exists()):
-        folder = out / recording.name
-        folder.mkdir(parents=True)
-        head, *lines = (recording / "events.jsonl").read_text().splitlines(keepends=True)
-        header = json.loads(head)
-        participant = header["session"]["participant"]
-        participant["kind"], participant["gaze"] = "keyboard", "json"
-        participant.pop("population", None)
-        for index, line in enumerate(lines):
-            if '"kind":"participant_believes"' in line:
-                event = json.loads(line)
-                hidden = {"seq": event["seq"], "t_ns": event["t_ns"], "kind": "marker", "note": "-"}
-                lines[index] = json.dumps(hidden, separators=(",", ":")) + "\n"
-        (folder / "events.jsonl").write_text(json.dumps(header, separators=(",", ":")) + "\n" + "".join(lines))
-
-
 def main():
     tomcom, scratch = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     shutil.rmtree(scratch, ignore_errors=True)
@@ -184,9 +155,7 @@ def main():
     assert set(tables["probes"].columns) == set(words[words.table == "probes"].column)
     assert "What people knew" in (recordings.parent / f"{recordings.name}-study" / "report.html").read_text()
 
-    folder = scratch / "people"
-    people(recordings, folder)
-    paths = sorted(folder.iterdir())
+    paths = as_people(recordings_in(recordings), scratch / "people")
     checked = json.loads(run(tomcom, "replay", *paths, "--check-beliefs", "--format", "json"))
     assert checked["beliefs_from"] == "probes" and checked["probes"]["by_true_beliefs"] is None
     for name in ["auc", "auc_locations", "auc_recipes", "auc_baseline", "ece"]:

@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from simulated import as_people, recordings_in, run, shortened
 from sklearn.metrics import auc, cohen_kappa_score
 
 EXACT = 1e-6
@@ -31,19 +32,9 @@ def near(what, found, wanted):
     assert found is not None and abs(found - wanted) <= EXACT * max(1.0, abs(wanted)), f"{what}: {found} instead of {wanted}"
 
 
-def run(*arguments):
-    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True)
-    assert done.returncode == 0, f"{arguments}\n{done.stderr}"
-    return done.stdout
-
-
 def simulate(tomcom, folder, seed):
     """The study of the paper, with shorter trials and fewer participants."""
-    text = SESSION.read_text().replace('"../', f'"{Path.cwd()}/')
-    text = re.sub(r"(?m)^presses = \d+", f"presses = {PRESSES}", text)
-    folder.mkdir(parents=True)
-    session = folder / "study.toml"
-    session.write_text(text)
+    session = shortened(SESSION, folder / "study.toml", PRESSES)
     out = folder / "recordings"
     run(tomcom, "simulate", session, "--trials", 12, "--seed", seed, "--out", out, "--format", "json")
     return out
@@ -72,25 +63,13 @@ def true_code(row):
 
 def people(simulated, actions, out, raters):
     """Recordings of people, with the codes of these raters beside them."""
-    for recording in sorted(path for path in simulated.iterdir() if (path / "events.jsonl").exists()):
-        folder = out / recording.name
-        folder.mkdir(parents=True)
-        head, *lines = (recording / "events.jsonl").read_text().splitlines(keepends=True)
-        header = json.loads(head)
-        participant = header["session"]["participant"]
-        participant["kind"], participant["gaze"] = "keyboard", "json"
-        participant.pop("population", None)
-        for index, line in enumerate(lines):
-            if '"kind":"participant_believes"' in line:
-                event = json.loads(line)
-                hidden = {"seq": event["seq"], "t_ns": event["t_ns"], "kind": "marker", "note": "-"}
-                lines[index] = json.dumps(hidden, separators=(",", ":")) + "\n"
-        (folder / "events.jsonl").write_text(json.dumps(header, separators=(",", ":")) + "\n" + "".join(lines))
+    for folder in as_people(recordings_in(simulated), out):
+        head = (folder / "events.jsonl").read_text().splitlines()[0]
         layout = [name for name in re.findall(r'name = \\"(\w+)\\"', head)]
-        errors = actions[(actions.recording == recording.name) & (actions.error == True)]  # noqa: E712
+        errors = actions[(actions.recording == folder.name) & (actions.error == True)]  # noqa: E712
         places = sorted({code[1] for code in map(true_code, errors.itertuples()) if code[1]} & set(layout))
         for rater in raters:
-            chance = random.Random(f"{recording.name} {rater}")
+            chance = random.Random(f"{folder.name} {rater}")
             rows = ["press,cause,aspect"]
             for row in errors.itertuples():
                 code = true_code(row)

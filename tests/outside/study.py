@@ -11,7 +11,6 @@ import json
 import math
 import re
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -19,6 +18,7 @@ import numpy as np
 import pandas as pd
 import pingouin as pg
 import scipy.stats as st
+from simulated import run, shortened
 from sklearn.metrics import auc, cohen_kappa_score
 
 EXACT = 1e-6
@@ -34,22 +34,9 @@ def near(what, found, wanted, within=EXACT):
     assert abs(found - wanted) <= within * max(1.0, abs(wanted)), f"{what}: {found} instead of {wanted}"
 
 
-def run(*arguments):
-    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True)
-    assert done.returncode == 0, f"{arguments}\n{done.stderr}"
-    return done.stdout
-
-
 def simulate(tomcom, folder, presses, seed):
     """The study of the paper, with shorter trials."""
-    text = SESSION.read_text().replace('"../', f'"{Path.cwd()}/')
-    text = "\n".join(
-        f"presses = {presses}" if line.split("#")[0].replace(" ", "").startswith("presses=") else line
-        for line in text.splitlines()
-    )
-    folder.mkdir(parents=True)
-    session = folder / "study.toml"
-    session.write_text(text)
+    session = shortened(SESSION, folder / "study.toml", presses)
     out = folder / "recordings"
     run(tomcom, "simulate", session, "--seed", seed, "--out", out, "--format", "json")
     return out

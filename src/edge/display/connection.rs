@@ -315,17 +315,7 @@ impl Talk {
                 let _ = self.hub.inputs.try_send(PageInput::Pointer { x, y });
                 return Some(());
             }
-            FromPage::Answer { item, answer } => PageInput::Answer { item, answer },
-            FromPage::Next => PageInput::Next,
-            FromPage::Back { item } => PageInput::Back { item },
-            FromPage::Consent => PageInput::Consent,
-            FromPage::Confirm => PageInput::Confirm,
-            FromPage::Turn { step, forward } => PageInput::Turn { step, forward },
-            FromPage::Choose { step, choice } => PageInput::Choose { step, choice },
-            FromPage::CardsShown { step } => PageInput::CardsShown { step },
-            FromPage::Believe { probe, question, choice, items, sure } => {
-                PageInput::Believe { probe, question, choice, items, sure }
-            }
+            FromPage::Reply(reply) => PageInput::Reply(reply),
             FromPage::Drawn { cue, at } => PageInput::Drawn { cue, at: self.hub.moment(at) },
             FromPage::Redrawn { took } => {
                 let change = |page: &mut ActivePage| page.redraw_ms = Some(took);

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::page_input::PageReply;
 use crate::display::{DisplayScene, DisplayUpdate, RobotPose};
 use crate::session::answer_value::AnswerValue;
 
@@ -72,56 +73,6 @@ pub enum FromPage {
         /// Fraction of the display's height, downwards.
         y: f64,
     },
-    /// Answer to a questionnaire item, or skipping it.
-    Answer {
-        /// The item's name.
-        item: String,
-        /// The answer; none: left out.
-        answer: Option<AnswerValue>,
-    },
-    /// Going on to the next questionnaire item, or to all answers.
-    Next,
-    /// Return to a questionnaire item.
-    Back {
-        /// The item's name.
-        item: String,
-    },
-    /// The button of the consent was held for as long as the page asks.
-    Consent,
-    /// Confirmation of all answers.
-    Confirm,
-    /// Turning the page of the tutorial from this step.
-    Turn {
-        /// The id of the step that is shown.
-        step: String,
-        /// To the next step; else to the one before.
-        forward: bool,
-    },
-    /// Answer to the question of a tutorial's step.
-    Choose {
-        /// The step's id.
-        step: String,
-        /// The choice, counted from 1.
-        choice: u8,
-    },
-    /// The recipe cards of a tutorial's step were shown for their time.
-    CardsShown {
-        /// The step's id.
-        step: String,
-    },
-    /// Answer to the question of a probe: a choice, or items that lie on one another; neither: "I don't know".
-    Believe {
-        /// Number of the probe.
-        probe: u32,
-        /// Number of the question, from 1.
-        question: u32,
-        /// Number of the choice, from 1.
-        choice: Option<u16>,
-        /// The items of a stack, by name.
-        items: Vec<String>,
-        /// How sure the participant is, from 1 to 3, if that is asked.
-        sure: Option<u8>,
-    },
     /// The screen shows the event with this sequence number.
     Drawn {
         /// Sequence number of the event.
@@ -134,6 +85,9 @@ pub enum FromPage {
         /// Time from the press to the effect, in milliseconds.
         took: f64,
     },
+    /// What the participant does beside the task.
+    #[serde(untagged)]
+    Reply(PageReply),
 }
 
 /// A message to a page other than scene and sight.
@@ -155,7 +109,6 @@ pub(super) enum ToPage {
 pub fn read(text: &str) -> Option<FromPage> {
     let message: FromPage = serde_json::from_str(text).ok()?;
     let is_time = |ms: &f64| ms.is_finite() && ms.abs() < 1e13;
-    let is_text = |text: &String| !text.is_empty() && text.len() <= MAX_TEXT && !text.chars().any(char::is_control);
     let is_size = |width: u32, height: u32| (1..=MAX_PIXELS).contains(&width) && (1..=MAX_PIXELS).contains(&height);
     let is_fine = match &message {
         FromPage::Hello { page, width, height, code, .. } => {
@@ -164,21 +117,36 @@ pub fn read(text: &str) -> Option<FromPage> {
         FromPage::Ping { t, took, .. } => is_time(t) && took.is_none_or(|took| (0.0..1e6).contains(&took)),
         FromPage::Press { button, at, .. } => is_text(button) && is_time(at),
         FromPage::Pointer { x, y } => (-1.0..=2.0).contains(x) && (-1.0..=2.0).contains(y),
-        FromPage::Answer { item, answer } => is_text(item) && answer.as_ref().is_none_or(is_answer),
-        FromPage::Back { item } => is_text(item),
-        FromPage::Turn { step, .. } | FromPage::Choose { step, .. } | FromPage::CardsShown { step } => is_text(step),
-        FromPage::Believe { choice, items, sure, .. } => {
+        FromPage::Reply(reply) => is_reply(reply),
+        FromPage::Drawn { at, .. } => is_time(at),
+        FromPage::Redrawn { took } => (0.0..1e6).contains(took),
+        FromPage::Size { width, height } => is_size(*width, *height),
+        FromPage::TakePart => true,
+    };
+    is_fine.then_some(message)
+}
+
+/// Whether a text names something.
+fn is_text(text: &String) -> bool {
+    !text.is_empty() && text.len() <= MAX_TEXT && !text.chars().any(char::is_control)
+}
+
+/// Whether a reply is short enough to be looked at, with names and numbers that can be some.
+fn is_reply(reply: &PageReply) -> bool {
+    match reply {
+        PageReply::Answer { item, answer } => is_text(item) && answer.as_ref().is_none_or(is_answer),
+        PageReply::Back { item: name }
+        | PageReply::Turn { step: name, .. }
+        | PageReply::Choose { step: name, .. }
+        | PageReply::CardsShown { step: name } => is_text(name),
+        PageReply::Believe { choice, items, sure, .. } => {
             *choice != Some(0)
                 && items.len() <= MAX_ITEMS
                 && items.iter().all(is_text)
                 && sure.is_none_or(|sure| (1..=3).contains(&sure))
         }
-        FromPage::Drawn { at, .. } => is_time(at),
-        FromPage::Redrawn { took } => (0.0..1e6).contains(took),
-        FromPage::Size { width, height } => is_size(*width, *height),
-        FromPage::Confirm | FromPage::Consent | FromPage::Next | FromPage::TakePart => true,
-    };
-    is_fine.then_some(message)
+        PageReply::Next | PageReply::Consent | PageReply::Confirm => true,
+    }
 }
 
 /// Whether an answer is short enough to be looked at. Whether the item takes it, the session says.

@@ -23,7 +23,7 @@ use tokio::net::TcpListener;
 use tokio::sync::mpsc::{Receiver, channel};
 use tokio::sync::watch;
 
-pub use self::page_input::PageInput;
+pub use self::page_input::{PageInput, PageReply};
 use self::server::serve;
 use self::server_state::{PageFeed, ServerState};
 use self::status::DisplayStatus;

@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use serde::Deserialize;
+
 use crate::session::answer_value::AnswerValue;
 
 /// An input of the acting page.
@@ -30,6 +32,21 @@ pub enum PageInput {
         /// Fraction of the display's height, downwards.
         y: f64,
     },
+    /// What the participant does beside the task.
+    Reply(PageReply),
+    /// The event with this sequence number was drawn at this instant.
+    Drawn {
+        /// Sequence number of the event.
+        cue: u64,
+        /// When, by this computer's clock.
+        at: Instant,
+    },
+}
+
+/// What the participant does on the page beside the task: consents, answers a questionnaire or a probe, reads the tutorial.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub enum PageReply {
     /// Answer to a questionnaire item, or skipping it.
     Answer {
         /// The item's name.
@@ -37,14 +54,14 @@ pub enum PageInput {
         /// The answer; none: left out.
         answer: Option<AnswerValue>,
     },
-    /// Go on to the next questionnaire item, or to all answers.
+    /// Going on to the next questionnaire item, or to all answers.
     Next,
     /// Return to a questionnaire item.
     Back {
         /// The item's name.
         item: String,
     },
-    /// The button of the consent was held.
+    /// The button of the consent was held for as long as the page asks.
     Consent,
     /// Confirmation of all answers.
     Confirm,
@@ -67,24 +84,17 @@ pub enum PageInput {
         /// The step's id.
         step: String,
     },
-    /// Answer to the question of a probe.
+    /// Answer to the question of a probe: a choice, or items that lie on one another; neither: "I don't know".
     Believe {
         /// Number of the probe.
         probe: u32,
         /// Number of the question, from 1.
         question: u32,
-        /// Number of the choice, from 1; without one and without items: "I don't know".
+        /// Number of the choice, from 1.
         choice: Option<u16>,
         /// The items of a stack, by name.
         items: Vec<String>,
-        /// How sure the participant is, from 1 to 3.
+        /// How sure the participant is, from 1 to 3, if that is asked.
         sure: Option<u8>,
-    },
-    /// The event with this sequence number was drawn at this instant.
-    Drawn {
-        /// Sequence number of the event.
-        cue: u64,
-        /// When, by this computer's clock.
-        at: Instant,
     },
 }

@@ -2,8 +2,8 @@
 
 use crate::display::page_language::DisplayWords;
 use crate::display::{consent_sight, scene};
-use crate::edge::display::Display;
 pub(in crate::run) use crate::edge::display::PageInput;
+use crate::edge::display::{Display, PageReply};
 use crate::run::error::LiveError;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Session, SessionSpec};
@@ -52,5 +52,5 @@ impl WallDisplay {
 
 /// Whether an input of the page is the participant's consent.
 pub(in crate::run) fn is_consent(input: &PageInput) -> bool {
-    *input == PageInput::Consent
+    *input == PageInput::Reply(PageReply::Consent)
 }

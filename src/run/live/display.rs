@@ -6,7 +6,7 @@ use crate::base::time::SessionTime;
 use crate::console::display_status::DisplayHealth;
 use crate::console::notice::NoticeLevel;
 use crate::display::{DisplayUpdate, RobotHand, RobotPose, choice_made_of, probe_left, scene, sight};
-use crate::edge::display::{Display, PageConnection};
+use crate::edge::display::{Display, PageConnection, PageReply};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::run::desk::{OperatorDesk, PageInput};
@@ -103,26 +103,33 @@ impl PageEvent {
                 let is_gaze = session.spec.participant.gaze == GazeSource::Mouse;
                 is_gaze.then(|| Event::Gaze(GazeSample::new(x, y, 1.0)))
             }
-            PageInput::Answer { item, answer: Some(given) } => {
-                answer(ProtocolEvent::ItemAnswered { item, answer: given }, session)
-            }
-            PageInput::Answer { item, answer: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
-            PageInput::Next => session.next_item().and_then(|next| answer(next, session)),
-            PageInput::Back { item } => answer(ProtocolEvent::ItemShown { item }, session),
-            // It is asked for before a recording begins; a late one changes nothing.
-            PageInput::Consent => None,
-            PageInput::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
-            PageInput::Turn { step, forward } => turn(session, &step, forward),
-            PageInput::Choose { step, choice } => practise(session, TutorialEvent::Answered { step, choice }),
-            PageInput::CardsShown { step } => practise(session, TutorialEvent::CardsHidden { step }),
-            PageInput::Believe { probe, question, choice, items, sure } => {
-                believe(session, (probe, question), (choice, &items), sure)
-            }
+            PageInput::Reply(reply) => answered(reply, session),
             PageInput::Drawn { cue, at } => {
                 Some(Event::Display(DisplayEvent::Drawn { cue, at_ns: session_time(at, now) }))
             }
         };
         PageEvent { event, notice: None }
+    }
+}
+
+/// A reply of the participant as an event of the session, if it is one now.
+fn answered(reply: PageReply, session: &Session) -> Option<Event> {
+    match reply {
+        PageReply::Answer { item, answer: Some(given) } => {
+            answer(ProtocolEvent::ItemAnswered { item, answer: given }, session)
+        }
+        PageReply::Answer { item, answer: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
+        PageReply::Next => session.next_item().and_then(|next| answer(next, session)),
+        PageReply::Back { item } => answer(ProtocolEvent::ItemShown { item }, session),
+        // It is asked for before a recording begins; a late one changes nothing.
+        PageReply::Consent => None,
+        PageReply::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
+        PageReply::Turn { step, forward } => turn(session, &step, forward),
+        PageReply::Choose { step, choice } => practise(session, TutorialEvent::Answered { step, choice }),
+        PageReply::CardsShown { step } => practise(session, TutorialEvent::CardsHidden { step }),
+        PageReply::Believe { probe, question, choice, items, sure } => {
+            believe(session, (probe, question), (choice, &items), sure)
+        }
     }
 }
 

@@ -80,7 +80,13 @@ impl ProbeCollector {
                 }
             }
             ProbeEvent::Dropped { .. } => self.dropped += 1,
-            ProbeEvent::Skipped { .. } => self.skipped += 1,
+            ProbeEvent::Skipped { .. } => {
+                self.skipped += 1;
+                let missing = self.open.iter_mut().flat_map(|open| &mut open.drawn);
+                for question in missing.filter(|question| question.response == ProbeResponse::Missing) {
+                    question.response = ProbeResponse::Skipped;
+                }
+            }
             ProbeEvent::Ended { .. } => self.close(),
             ProbeEvent::Requested | ProbeEvent::Delayed { .. } | ProbeEvent::Closed { .. } => {}
         }

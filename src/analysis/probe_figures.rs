@@ -63,6 +63,8 @@ pub struct ProbeCounts {
     pub unsure: u64,
     /// Left out: no answer in time.
     pub unanswered: u64,
+    /// Left out: shown when the wizard skipped the rest of the probe.
+    pub questions_skipped: u64,
     /// Left out: answered, in a probe that the wizard asked for.
     pub by_wizard: u64,
     /// Left out: answered, about what comes next.
@@ -153,6 +155,7 @@ impl ProbeCounts {
             for question in &trial.questions {
                 counts.questions += 1;
                 match question {
+                    one if one.response == ProbeResponse::Skipped => counts.questions_skipped += 1,
                     one if one.response == ProbeResponse::Missing => counts.unanswered += 1,
                     one if one.origin == ProbeOrigin::Wizard => counts.by_wizard += 1,
                     one if one.kind.is_level_2() => counts.level_2 += 1,

@@ -57,6 +57,8 @@ pub enum ProbeResponse {
     Value(String),
     /// "I don't know".
     Unsure,
+    /// Nothing until the wizard skipped the rest of the probe.
+    Skipped,
     /// Nothing in time.
     Missing,
 }
@@ -145,7 +147,7 @@ impl ProbedQuestion {
         match &self.response {
             ProbeResponse::Value(answer) => Some(answer != truth),
             ProbeResponse::Unsure => Some(true),
-            ProbeResponse::Missing => None,
+            ProbeResponse::Skipped | ProbeResponse::Missing => None,
         }
     }
 
@@ -158,7 +160,7 @@ impl ProbedQuestion {
     pub fn answer(&self) -> Option<&str> {
         match &self.response {
             ProbeResponse::Value(answer) => Some(answer),
-            ProbeResponse::Unsure | ProbeResponse::Missing => None,
+            ProbeResponse::Unsure | ProbeResponse::Skipped | ProbeResponse::Missing => None,
         }
     }
 }

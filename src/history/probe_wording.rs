@@ -29,8 +29,9 @@ pub fn event(event: &ProbeEvent) -> String {
                 ProbeOrigin::Schedule => "",
                 ProbeOrigin::Wizard => ", for the wizard",
             };
+            let about: Vec<String> = questions.iter().map(|question| subject(&question.about)).collect();
             let questions = count(questions.len() as u64, "question", "questions");
-            format!("probe {probe} begins{by}: the task stands still, {questions}")
+            format!("probe {probe} begins{by}: the task stands still, {questions}: {}", about.join(", "))
         }
         ProbeEvent::Asked { probe, question } => format!("probe {probe} asks question {question}"),
         ProbeEvent::Answered { question, answer: Some(answer), confidence, .. } => {

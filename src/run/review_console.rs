@@ -17,7 +17,7 @@ use crate::console::playback::{Playback, ReplayKey, SPEEDS};
 use crate::console::rater_session::RaterSession;
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::key_file::key_map;
-use crate::edge::log::LogEnding;
+use crate::edge::log::{LogEnding, RecordingLock};
 use crate::edge::terminal::TerminalScreen;
 use crate::history::landmark::ReplayLandmark;
 use crate::session::Event;
@@ -41,9 +41,10 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) 
 /// saved beside the log after every key.
 ///
 /// # Errors
-/// The recording or its codes cannot be read, or there is no terminal.
+/// The recording or its codes cannot be read, another program codes as this rater, or there is no terminal.
 pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
+    let _lock = RecordingLock::take_for_codes(film.replay.log().folder(), &[rater])?;
     let coding = coding_desk::of_rater(&film, rater)?;
     at_desk(film, recording, false, None, Some(coding))
 }
@@ -56,6 +57,7 @@ pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
 /// consensus cannot be written, or there is no terminal.
 pub fn settle(recording: &Path, raters: [&str; 2]) -> Result<(), ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
+    let _lock = RecordingLock::take_for_codes(film.replay.log().folder(), &raters)?;
     let coding = coding_desk::of_pair(&film, raters)?;
     at_desk(film, recording, false, None, Some(coding))
 }

@@ -99,6 +99,11 @@ impl AssistanceEffect {
     pub fn assistance(&self) -> Option<FTest> {
         self.by_period.interaction
     }
+
+    /// Whether any participant has a trial with assistance and one without.
+    pub fn has_pairs(&self) -> bool {
+        self.groups != [0, 0]
+    }
 }
 
 /// Pairs of one assisted and one unassisted trial that count and have this measure, in the order of participant codes. If a

@@ -48,7 +48,7 @@ def main_results(tables):
     """Questions of the main results in trials that count."""
     probes = tables["probes"].merge(tables["trials"][["recording", "counts"]], on="recording", validate="many_to_one")
     chosen = probes[probes.counts & probes.in_main_results].copy()
-    assert ((chosen.origin == "schedule") & (chosen.response != "missing")).all()
+    assert ((chosen.origin == "schedule") & ~chosen.response.isin(["missing", "skipped"])).all()
     chosen["wrong"] = chosen.wrong.astype(bool)
     unsure = chosen.response == "unsure"
     assert chosen.wrong[unsure].all() and chosen.answer[unsure].isna().all()
@@ -141,6 +141,7 @@ def main():
     assert counts["questions"] == len(probes) and counts["counted"] == len(rows) > 100, counts
     assert counts["unsure"] == (rows.response == "unsure").sum()
     assert counts["unanswered"] == (probes.response == "missing").sum()
+    assert counts["questions_skipped"] == (probes.response == "skipped").sum()
     near("effective", counts["effective"], rows.weight.sum() ** 2 / (rows.weight**2).sum())
     check_detection(found, rows)
     check_scores(found["log_scores"], rows)

@@ -10,7 +10,9 @@ use super::subject::ForgetSubject;
 use crate::edge::bids_tree;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::consensus_file::CONSENSUS_NAME;
-use crate::edge::log::{EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME, is_damaged_log};
+use crate::edge::log::{
+    CODES_LOCK, EXCLUSION_NAME, LOCK_NAME, LOG_NAME, MCAP_NAME, RRD_NAME, SETTINGS_NAME, is_damaged_log,
+};
 use crate::edge::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
 use crate::session::settings::is_code;
 
@@ -136,7 +138,7 @@ impl ForgetWalk {
             match kind {
                 EntryKind::Folder => self.enter(&path, is_own),
                 // Whoever takes the lock of a recording gives it back.
-                EntryKind::File if is_of_recording && path.ends_with(LOCK_NAME) => {}
+                EntryKind::File if is_of_recording && is_lock(&path) => {}
                 EntryKind::File if is_of_recording => self.recording_files.push(path),
                 EntryKind::File => files.push(path),
                 EntryKind::Other if is_own => self.left.push(LeftFile::new(&path, STRANGE)),
@@ -192,9 +194,14 @@ fn is_of_recording(path: &Path) -> bool {
     let name = name.strip_suffix(".new").unwrap_or(name);
     let is_code_file = name.strip_prefix("codes-").and_then(|name| name.strip_suffix(".csv")).is_some_and(is_code);
     let seal = name.strip_suffix(".toml").unwrap_or_default();
-    let names =
-        [LOG_NAME, SETTINGS_NAME, RRD_NAME, MCAP_NAME, EXCLUSION_NAME, CONSENSUS_NAME, RESCUE_NOTE_NAME, LOCK_NAME];
-    is_code_file || is_damaged_log(name) || names.contains(&name) || seal == RRD_NAME
+    let names = [LOG_NAME, SETTINGS_NAME, RRD_NAME, MCAP_NAME, EXCLUSION_NAME, CONSENSUS_NAME, RESCUE_NOTE_NAME];
+    is_lock(path) || is_code_file || is_damaged_log(name) || names.contains(&name) || seal == RRD_NAME
+}
+
+/// Whether this is a lock of a recording.
+fn is_lock(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    name == LOCK_NAME || name.starts_with(CODES_LOCK)
 }
 
 fn is_rescued((path, kind): &&(PathBuf, EntryKind)) -> bool {

@@ -10,6 +10,8 @@ use crate::edge::file_error::open_regular;
 /// The name of the lock in the folder of a recording that is being written, with the number of the process in it, and
 /// where viewers connect.
 pub const LOCK_NAME: &str = "lock";
+/// How the name of the lock of raters' codes begins; their names follow.
+pub const CODES_LOCK: &str = "lock-codes-";
 /// How often somebody else may give the lock up between our opening and taking it.
 const ATTEMPTS: usize = 8;
 
@@ -47,7 +49,24 @@ impl RecordingLock {
     /// # Errors
     /// Another program has it, or the folder cannot be written to.
     pub fn take(folder: &Path) -> Result<RecordingLock, WriteError> {
-        let path = folder.join(LOCK_NAME);
+        RecordingLock::take_file(folder.join(LOCK_NAME), folder)
+    }
+
+    /// Takes the right to code the errors of the recording in this folder as these raters: their codes are replaced as a whole.
+    ///
+    /// # Errors
+    /// Another program has it, or the folder cannot be written to.
+    pub fn take_for_codes(folder: &Path, raters: &[&str]) -> Result<RecordingLock, WriteError> {
+        let mut raters = raters.to_vec();
+        raters.sort_unstable();
+        let path = folder.join(format!("{CODES_LOCK}{}", raters.join("-")));
+        RecordingLock::take_file(path, folder).map_err(|error| match error {
+            WriteError::InUse { folder, pid } => WriteError::Coded { folder, raters: raters.join(" and "), pid },
+            other => other,
+        })
+    }
+
+    fn take_file(path: PathBuf, folder: &Path) -> Result<RecordingLock, WriteError> {
         let failed = |reason| WriteError::unwritable(&path, reason);
         // Taking it empties the file, which must not be one that a link leads to; opening a pipe would wait for its other end.
         if fs::symlink_metadata(&path).is_ok_and(|data| !data.is_file()) {
@@ -139,6 +158,19 @@ mod tests {
         assert_eq!(RecordingLock::holder(&folder), None);
         fs::write(folder.join(LOCK_NAME), "1\n").unwrap();
         assert_eq!(RecordingLock::holder(&folder), None, "what a killed program left behind is held by nobody");
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn one_program_at_a_time_codes_as_one_rater() {
+        let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-codes-lock-{}", std::process::id())).unwrap();
+        let first = RecordingLock::take_for_codes(&folder, &["R1"]).unwrap();
+        let refusal = RecordingLock::take_for_codes(&folder, &["R1"]).unwrap_err().to_string();
+        assert!(refusal.contains("codes its errors as R1"), "{refusal}");
+        let _other = RecordingLock::take_for_codes(&folder, &["R2"]).unwrap();
+        let _recording = RecordingLock::take(&folder).unwrap();
+        drop(first);
+        drop(RecordingLock::take_for_codes(&folder, &["R1"]).unwrap());
         fs::remove_dir_all(folder).unwrap();
     }
 

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 use crate::session::Stamped;
 pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, ruling};
-pub use lock::{LOCK_NAME, LockHolder, RecordingLock};
+pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};
 pub use reader::{LogEnding, LogLine, LogReader, at_line};
 pub use simulated_log::{SimulatedLog, check_simulated};
 pub use writer::{LogWriter, check_continued, is_written_settings};
@@ -67,6 +67,17 @@ pub enum WriteError {
     InUse {
         /// The recording's folder.
         folder: PathBuf,
+        /// That program's process id, if it is known.
+        pid: Option<u32>,
+    },
+    /// Another program codes the errors of this recording as the same rater.
+    #[error("{}: another program{} codes its errors as {raters}", folder.display(), process(.pid))]
+    #[diagnostic(help("go on there, or leave it first; every rater has a name of its own"))]
+    Coded {
+        /// The recording's folder.
+        folder: PathBuf,
+        /// The rater, or the two who settle their differences.
+        raters: String,
         /// That program's process id, if it is known.
         pid: Option<u32>,
     },

@@ -39,11 +39,18 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
         div class="figures" { (pictures) } "\n"
         (headline.map_or_else(nothing, in_words))
         (experience(figures))
-        h3 { "Tests" } "\n"
-        (scroll(tests(captions, figures)))
-        @if let Some(effect) = headline { (anova(captions, effect)) }
+        @if figures.effects.iter().any(AssistanceEffect::has_pairs) {
+            h3 { "Tests" } "\n"
+            (scroll(tests(captions, figures)))
+            @if let Some(effect) = headline { (anova(captions, effect)) }
+        } @else {
+            p class="note" {
+                "Nothing is tested: no participant has one trial with assistance and one without among the trials that count."
+            }
+            "\n"
+        }
     };
-    section("Does assistance help?", content)
+    section(if figures.conditions.len() > 1 { "Does assistance help?" } else { "Errors and times" }, content)
 }
 
 fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {

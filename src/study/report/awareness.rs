@@ -73,6 +73,7 @@ fn left_out(counts: &ProbeCounts) -> Markup {
     let one = |n: u64, what: &str| (n > 0).then(|| format!("{n} {what}"));
     let questions: Vec<String> = [
         one(counts.unanswered, "without an answer in time"),
+        one(counts.questions_skipped, "that the wizard skipped"),
         one(counts.by_wizard, "in probes that the wizard asked for"),
         one(counts.level_2, "about what comes next"),
     ]

@@ -46,7 +46,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     ];
     let caption =
         "All trials together. Paper: Buehler, Adamy and Weisswange (2021); its 6.9 % is per press of both agents.";
-    section("Beside the paper", captions.table(caption, &["", "here", "paper"], &rows))
+    section("Comparison with the paper", captions.table(caption, &["", "here", "paper"], &rows))
 }
 
 /// Belief related errors about orders, recipes, an order or its recipe, and places.

@@ -39,6 +39,7 @@ impl ProbeRow<'_> {
         match self.question.response {
             ProbeResponse::Value(_) => "answered",
             ProbeResponse::Unsure => "unsure",
+            ProbeResponse::Skipped => "skipped",
             ProbeResponse::Missing => "missing",
         }
     }
@@ -98,8 +99,8 @@ fn question<'a>() -> Vec<ProbeColumn<'a>> {
 
 fn answer<'a>() -> Vec<ProbeColumn<'a>> {
     let answer = "the answered value; empty: \"I don't know\", or none in time";
-    let response = "answered (a value), unsure (\"I don't know\") or missing (nothing in time)";
-    let wrong = "whether the answer differs from the truth; \"I don't know\" does; empty: missing, or no truth";
+    let response = "answered (a value), unsure (\"I don't know\"), skipped (the wizard skipped the rest of the probe) or missing (nothing in time)";
+    let wrong = "whether the answer differs from the truth; \"I don't know\" does; empty: no answer, or no truth";
     vec![
         ProbeRow::column("truth", "", "true value; of level 2 what came next, empty: nothing did", |row| {
             row.question.truth.as_ref().into()

@@ -232,14 +232,15 @@ fn answers_without_errors_give_the_figures_of_the_true_beliefs() {
 #[test]
 fn only_scheduled_questions_about_what_is_that_were_answered_in_time_count() {
     let missing = ProbedQuestion { response: ProbeResponse::Missing, ..question(ProbedKind::Place) };
+    let skipped = ProbedQuestion { response: ProbeResponse::Skipped, ..question(ProbedKind::Place) };
     let by_wizard = ProbedQuestion { origin: ProbeOrigin::Wizard, ..question(ProbedKind::Place) };
     let next = ProbedQuestion { truth: Some("serve_1".to_string()), ..question(ProbedKind::NextPress) };
     let unsure = ProbedQuestion { response: ProbeResponse::Unsure, inclusion: 0.25, ..question(ProbedKind::Order) };
-    let trial = probed(Condition::None, vec![question(ProbedKind::Place), missing, by_wizard, next, unsure]);
+    let trial = probed(Condition::None, vec![question(ProbedKind::Place), missing, skipped, by_wizard, next, unsure]);
     let found = ProbeFigures::from_trials([("P1", &trial)]).expect("there are questions");
     let counts = found.counts;
-    let left_out = [counts.unanswered, counts.by_wizard, counts.level_2];
-    assert_eq!((counts.questions, counts.counted, counts.unsure, left_out), (5, 2, 1, [1, 1, 1]));
+    let left_out = [counts.unanswered, counts.questions_skipped, counts.by_wizard, counts.level_2];
+    assert_eq!((counts.questions, counts.counted, counts.unsure, left_out), (6, 2, 1, [1, 1, 1, 1]));
     // "I don't know" is wrong, and weighs twice the right answer.
     near(found.accuracy.accuracy.unwrap(), 1.0 / 3.0);
     near(found.detection.wrong.unwrap(), 2.0 / 3.0);

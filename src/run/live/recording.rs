@@ -43,6 +43,9 @@ impl Live {
             let by_gaze = events.iter().all(|stamped| stamped.event.is_sample());
             let session = self.engine.session();
             let moment = BeliefSnapshot::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
+            if let Some(lsl) = &mut self.lsl {
+                lsl.tell(events, &self.engine, &moment, &self.clock);
+            }
             self.model.belief.note(moment);
             self.model.belief.forget(last.time, belief_track::SHOWN_S);
             self.model.signals.note(session, |aspect| self.engine.is_false(aspect));
@@ -87,6 +90,7 @@ impl Live {
             self.model.say(NoticeLevel::Alarm, text);
         }
         self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);
+        self.watch_lsl();
         if let Some(drops) = self.gaze.drops(self.engine.session()) {
             self.input(drops);
         }

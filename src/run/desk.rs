@@ -18,7 +18,7 @@ use crate::console::view::theme::Theme;
 use crate::edge::gaze_file::{self, GazeFile};
 use crate::edge::gaze_input::GazeNews;
 use crate::edge::gaze_json;
-use crate::edge::lsl::{self, LslError};
+use crate::edge::lsl::{self, InletEnd, LslError};
 use crate::edge::pupil::{self, CaptureAddress, CaptureRequest};
 use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, outlive_file_limits, theme};
 use crate::gaze::surface::SurfaceMap;
@@ -68,6 +68,8 @@ pub(super) struct GazeTracker {
     news: Option<Receiver<GazeNews>>,
     /// Channel for requests to Pupil Capture.
     orders: Option<Sender<CaptureRequest>>,
+    /// The end of the thread that reads a stream of the Lab Streaming Layer, waited for once `news` is dropped.
+    _inlet: Option<InletEnd>,
     file: Option<Arc<GazeFile>>,
     /// Latest state of the tracker, for recordings that begin later.
     link: Option<GazeNews>,
@@ -160,8 +162,9 @@ impl GazeTracker {
                 let stream = spec.lsl.as_ref().and_then(|lsl| lsl.gaze.clone());
                 // The settings have been checked: there are both.
                 let Some((library, stream)) = desk.library().zip(stream) else { return Ok(GazeTracker::default()) };
-                let news = lsl::follow(library, stream, kitchen.display_m).map_err(|_| LslError::NoThread)?;
-                Ok(GazeTracker { news: Some(news), ..GazeTracker::default() })
+                let followed = lsl::follow(library, stream, kitchen.display_m);
+                let (news, inlet) = followed.map_err(|_| LslError::NoThread)?;
+                Ok(GazeTracker { news: Some(news), _inlet: Some(inlet), ..GazeTracker::default() })
             }
             GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => Ok(GazeTracker::default()),
         }

@@ -4,6 +4,7 @@
 //! another clock, its offset is estimated from their arrival, as for lines of JSON.
 
 use std::io;
+use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -25,18 +26,41 @@ const CONNECT_S: f64 = 5.0;
 const SAMPLE_S: f64 = 0.2;
 /// Period of comparing clocks.
 const COMPARE: Duration = Duration::from_secs(1);
+/// How long the end of the program waits for the end of the thread.
+const END: Duration = Duration::from_secs(2);
 /// Pause before a stream that cannot be read is tried again.
 const RETRY: Duration = Duration::from_secs(1);
+
+/// The end of the thread that reads. Whoever drops it waits for that end, since the library must not be in use when the program ends;
+/// the receiver of news is to be dropped before.
+#[derive(Debug)]
+pub struct InletEnd(mpsc::Receiver<()>);
+
+impl Drop for InletEnd {
+    fn drop(&mut self) {
+        // A library that hangs does not hold up the end of the program.
+        let _ = self.0.recv_timeout(END);
+    }
+}
 
 /// Follows the stream from a thread of its own until the session no longer listens. The display has `display_m` metres.
 ///
 /// # Errors
 /// No thread can be started.
-pub fn follow(library: LslLibrary, stream: LslGazeSpec, display_m: [f64; 2]) -> io::Result<Receiver<GazeNews>> {
-    let (news, heard) = channel(WAITING);
+pub fn follow(
+    library: LslLibrary,
+    stream: LslGazeSpec,
+    display_m: [f64; 2],
+) -> io::Result<(Receiver<GazeNews>, InletEnd)> {
+    let ((news, heard), (end, ended)) = (channel(WAITING), mpsc::channel());
     let mut inlet = GazeInlet { library, stream, display_m, news, lost: 0, complaint: None };
-    thread::Builder::new().name("lsl-gaze".to_string()).spawn(move || inlet.run())?;
-    Ok(heard)
+    let work = move || {
+        inlet.run();
+        // Whoever waited may be gone.
+        let _ = end.send(());
+    };
+    thread::Builder::new().name("lsl-gaze".to_string()).spawn(work)?;
+    Ok((heard, InletEnd(ended)))
 }
 
 /// Names by which the channels of a stream can be meant: their labels, and numbers where there is no label.

@@ -1,5 +1,8 @@
 //! The Lab Streaming Layer (LSL): its library is loaded when a session asks for it; streams are sent and gaze is read by threads of
 //! their own.
+//!
+//! There is no Cargo feature for it: what a build gains is one small package (`libloading`), and nothing is loaded unless a session asks.
+//! Crates that bring liblsl along need a C++ compiler and have an old version (`lsl-sys`), or are GPL (`rlsl`).
 
 mod configuration;
 mod gaze_inlet;
@@ -14,7 +17,7 @@ use std::path::Path;
 use crate::analysis::lsl::SOURCE;
 use crate::session::settings::{LslGazeSpec, LslSpec};
 
-pub use gaze_inlet::{channel_names, follow};
+pub use gaze_inlet::{InletEnd, channel_names, follow};
 pub use library::{FoundStream, LslLibrary};
 pub use lsl_error::LslError;
 pub use outlet_thread::{LslCounts, LslStreams, TimedSample};

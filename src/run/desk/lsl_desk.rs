@@ -1,6 +1,6 @@
 //! The Lab Streaming Layer at the desk: its library, and the streams that are offered to recorders.
 
-use std::sync::Arc;
+use std::rc::Rc;
 
 use crate::analysis::lsl::describe;
 use crate::edge::lsl::{self, LslError, LslLibrary, LslStreams};
@@ -11,7 +11,7 @@ use crate::session::{Session, SessionSpec};
 #[derive(Default)]
 pub(in crate::run) struct LslDesk {
     library: Option<LslLibrary>,
-    streams: Option<Arc<LslStreams>>,
+    streams: Option<Rc<LslStreams>>,
 }
 
 impl LslDesk {
@@ -33,7 +33,7 @@ impl LslDesk {
     ///
     /// # Errors
     /// The library does not offer them.
-    pub fn streams(&mut self, session: &Session) -> Result<Option<Arc<LslStreams>>, LslError> {
+    pub fn streams(&mut self, session: &Session) -> Result<Option<Rc<LslStreams>>, LslError> {
         let wanted = describe(&session.spec, &session.kitchen);
         let Some(library) = self.library.filter(|_| !wanted.is_empty()) else { return Ok(None) };
         if let Some(streams) = self.streams.as_ref().filter(|streams| streams.descriptions == wanted) {
@@ -41,7 +41,7 @@ impl LslDesk {
         }
         // Those of another participant end first.
         self.streams = None;
-        self.streams = Some(Arc::new(LslStreams::offer(library, wanted)?));
+        self.streams = Some(Rc::new(LslStreams::offer(library, wanted)?));
         Ok(self.streams.clone())
     }
 }

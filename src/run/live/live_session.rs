@@ -211,6 +211,15 @@ impl Live {
         self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);
     }
 
+    /// Begins to send to the Lab Streaming Layer, if the session does; if that fails, the session continues without it.
+    fn begin_lsl(&mut self, desk: &mut OperatorDesk) {
+        match LslStreaming::open(desk, self.engine.session(), &self.name(), &self.clock) {
+            Ok(lsl) => self.lsl = lsl,
+            Err(reason) => self.model.say(NoticeLevel::Alarm, format!("the session goes on without LSL: {reason}")),
+        }
+        self.model.lsl = self.lsl.as_ref().map(LslStreaming::status);
+    }
+
     /// Records the present state of the tracker.
     fn greet(&mut self, tracker: &GazeTracker) {
         self.gaze = GazeInput::at(tracker, self.engine.session());
@@ -231,7 +240,7 @@ impl Live {
     }
 
     /// The name of the recording.
-    pub(super) fn name(&self) -> String {
+    fn name(&self) -> String {
         self.log.folder().file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 

@@ -1,11 +1,9 @@
 //! The live streams of the Lab Streaming Layer: samples of every event go to a thread that never makes the session wait.
 
-use std::sync::Arc;
+use std::rc::Rc;
 
-use super::live_session::Live;
 use crate::analysis::lsl::{SampleMaker, StreamSample};
 use crate::console::console_model::LslStatus;
-use crate::console::notice::NoticeLevel;
 use crate::edge::clock::SessionClock;
 use crate::edge::lsl::{LslCounts, LslStreams, TimedSample};
 use crate::history::belief_track::BeliefSnapshot;
@@ -16,7 +14,7 @@ use crate::session::{Session, Stamped};
 /// A session whose samples are sent.
 pub(super) struct LslStreaming {
     maker: SampleMaker,
-    streams: Arc<LslStreams>,
+    streams: Rc<LslStreams>,
     /// Counts of losses that the wizard was told of.
     told: LslCounts,
 }
@@ -33,7 +31,7 @@ impl LslStreaming {
         clock: &SessionClock,
     ) -> Result<Option<LslStreaming>, String> {
         let streams = desk.lsl.streams(session).map_err(|error| error.to_string())?;
-        let open = |streams: Arc<LslStreams>| {
+        let open = |streams: Rc<LslStreams>| {
             let (maker, told) = (SampleMaker::new(session), streams.counts());
             let streaming = LslStreaming { maker, streams, told };
             streaming.send(streaming.maker.opening(recording, session), clock);
@@ -57,14 +55,14 @@ impl LslStreaming {
     }
 
     /// State of the streams.
-    fn status(&self) -> LslStatus {
+    pub fn status(&self) -> LslStatus {
         let LslCounts { sent, dropped, refused } = self.streams.counts();
         let names = self.streams.descriptions.iter().map(|stream| stream.outlet.name().to_string()).collect();
         LslStatus { streams: names, sent, lost: dropped + refused }
     }
 
     /// What is to be said about samples that were lost since the last call.
-    fn complaint(&mut self) -> Option<String> {
+    pub fn complaint(&mut self) -> Option<String> {
         let now = self.streams.counts();
         let before = std::mem::replace(&mut self.told, now);
         let (dropped, refused) = (now.dropped - before.dropped, now.refused - before.refused);
@@ -73,26 +71,5 @@ impl LslStreaming {
             (_, 0) => Some(format!("LSL: {dropped} samples dropped, the session goes on")),
             _ => Some(format!("LSL: {refused} samples refused by liblsl, the session goes on")),
         }
-    }
-}
-
-impl Live {
-    /// Begins to send to the Lab Streaming Layer, if the session does; if that fails, the session goes on without it.
-    pub(super) fn begin_lsl(&mut self, desk: &mut OperatorDesk) {
-        match LslStreaming::open(desk, self.engine.session(), &self.name(), &self.clock) {
-            Ok(lsl) => self.lsl = lsl,
-            Err(reason) => self.model.say(NoticeLevel::Alarm, format!("the session goes on without LSL: {reason}")),
-        }
-        self.watch_lsl();
-    }
-
-    /// Looks at the streams of the Lab Streaming Layer.
-    pub(super) fn watch_lsl(&mut self) {
-        let Some(lsl) = &mut self.lsl else { return };
-        if let Some(complaint) = lsl.complaint() {
-            self.model.warn(complaint);
-            self.dirty = true;
-        }
-        self.model.lsl = Some(lsl.status());
     }
 }

@@ -1,6 +1,7 @@
 //! Recording of events in the log and their distribution to stream, comparison and tracker; handling of write errors.
 
 use super::live_session::Live;
+use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
 use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
@@ -90,7 +91,11 @@ impl Live {
             self.model.say(NoticeLevel::Alarm, text);
         }
         self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);
-        self.watch_lsl();
+        if let Some(complaint) = self.lsl.as_mut().and_then(LslStreaming::complaint) {
+            self.model.warn(complaint);
+            self.dirty = true;
+        }
+        self.model.lsl = self.lsl.as_ref().map(LslStreaming::status);
         if let Some(drops) = self.gaze.drops(self.engine.session()) {
             self.input(drops);
         }

@@ -60,15 +60,15 @@ recording.stop()
 """
 
 
-def session(folder, outlets=OUTLETS, gaze=True, library=LIBRARY, channel="left_x"):
+def session(folder, condition="assistant", gaze=True, library=LIBRARY, channel="left_x"):
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "session.toml"
     layout = Path("layouts/sushi.toml").resolve()
     source = "lsl" if gaze else "simulated"
     text = (
-        f'layout = "{layout}"\nseed = 9761\n[trial]\ncondition = "assistant"\npresses = 4000000000\nseconds = 86400.0\n'
-        f'[participant]\ncode = "L7"\nkind = "simulated"\ngaze = "{source}"\n[robot]\narm = "physics"\n[rerun]\nlive = false\nrecord = false\n'
-        f'[lsl]\nlibrary = "{library}"\noutlets = {json.dumps(outlets)}\n'
+        f'layout = "{layout}"\nseed = 9761\n[trial]\ncondition = "{condition}"\npresses = 4000000000\nseconds = 86400.0\n'
+        f'[signals]\ncool_down_s = 0.0\n[participant]\ncode = "L7"\nkind = "simulated"\ngaze = "{source}"\n[robot]\narm = "physics"\n[rerun]\nlive = false\nrecord = false\n'
+        f'[lsl]\nlibrary = "{library}"\noutlets = {json.dumps(OUTLETS)}\n'
     )
     if gaze:
         text += (
@@ -216,13 +216,13 @@ def check_gaze(journal, events, streams):
     """What the tracker sent is in the log: each sample but those of closed eyes, on the display, with its own time."""
     sent = [json.loads(line) for line in journal.read_text().splitlines()]
     gaze = [event for event in events if event["kind"] == "gaze"]
-    by_stamp = {round(stamp * 1e6): (stamp, x, y) for stamp, x, y, _ in sent}
-    stamps = [round(event["device_ns"] / 1e3) for event in gaze]
+    by_stamp = {int(stamp * 1e9): (stamp, x, y) for stamp, x, y, _ in sent}
+    stamps = [event["device_ns"] for event in gaze]
     assert len(set(stamps)) == len(stamps) and stamps == sorted(stamps)
     for stamp, event in zip(stamps, gaze):
         _, x, y = by_stamp[stamp]
         assert abs(event["x"] - x / SIZE[0]) < 2e-5 and abs(event["y"] - (1 - y / SIZE[1])) < 2e-5, (event, x, y)
-    seen = [round(stamp * 1e6) for stamp, x, _, _ in sent if not math.isnan(x) and stamps[0] <= round(stamp * 1e6) <= stamps[-1]]
+    seen = [int(stamp * 1e9) for stamp, x, _, _ in sent if not math.isnan(x) and stamps[0] <= int(stamp * 1e9) <= stamps[-1]]
     assert seen == stamps, f"{len(seen)} sent, {len(stamps)} recorded"
     # From the tracker's stamp to the stamp of our own stream: two ways through liblsl, one clock.
     out = streams["gaze"]["time_stamps"]
@@ -319,7 +319,7 @@ def check_tracker_comes_and_goes(tomcom, folder):
     what = [event["what"] for event in events_of(recording) if event["kind"] == "tracker" and event["what"] in ("connected", "lost")]
     assert what == ["connected", "lost", "connected"], what
     verify(tomcom, recording)
-    sender, _ = tracker(folder / "recordings" / "..")
+    sender, _ = tracker(folder)
     console, _ = begin(tomcom, folder / "channel", channel="gaze_x")
     with console:
         console.key(".")
@@ -334,7 +334,7 @@ def check_tracker_comes_and_goes(tomcom, folder):
 
 def check_stopped_reader(tomcom, folder):
     """A reader that is stopped delays no key: signals are in the log as soon as without it."""
-    console, recording = begin(tomcom, folder, gaze=False)
+    console, recording = begin(tomcom, folder, condition="wizard", gaze=False)
     reader = subprocess.Popen([sys.executable, "examples/lsl_consumer.py"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     try:
         with console:

@@ -25,6 +25,8 @@ pub mod lesson_report;
 pub mod likelihood;
 #[cfg(feature = "cli")]
 pub mod looks;
+#[cfg(feature = "cli")]
+pub mod lsl;
 pub mod offer_steadiness;
 pub mod offer_summary;
 pub mod order_work;

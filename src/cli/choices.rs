@@ -27,6 +27,8 @@ pub(super) enum GazeArg {
     File,
     /// Lines of JSON over TCP or UDP.
     Json,
+    /// A stream of the Lab Streaming Layer: see [lsl.gaze] in the session file.
+    Lsl,
     /// No gaze at all.
     None,
 }
@@ -100,6 +102,7 @@ impl From<GazeArg> for GazeSource {
             GazeArg::Pupil => GazeSource::Pupil,
             GazeArg::File => GazeSource::File,
             GazeArg::Json => GazeSource::Json,
+            GazeArg::Lsl => GazeSource::Lsl,
             GazeArg::None => GazeSource::None,
         }
     }

@@ -100,6 +100,17 @@ pub struct ViewerStreamStatus {
     pub dropped: u64,
 }
 
+/// State of the streams of the Lab Streaming Layer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LslStatus {
+    /// Which streams are sent.
+    pub streams: Vec<String>,
+    /// Number of samples sent.
+    pub sent: u64,
+    /// Number of samples that were dropped or refused.
+    pub lost: u64,
+}
+
 /// A key that is held down, with times on [`ConsoleModel::clock`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PressedKey {
@@ -133,6 +144,8 @@ pub struct ConsoleModel {
     pub recording: RecordingStatus,
     /// The stream to Rerun's viewers, if there is one.
     pub viewers: Option<ViewerStreamStatus>,
+    /// The streams of the Lab Streaming Layer, if there are any.
+    pub lsl: Option<LslStatus>,
     /// Free disk space of the recording's folder in bytes; `None` if unknown.
     pub free_bytes: Option<u64>,
     /// The panel that is shown at full size, if any.
@@ -201,6 +214,7 @@ impl ConsoleModel {
             notice: None,
             recording: RecordingStatus::Off,
             viewers: None,
+            lsl: None,
             free_bytes: None,
             alone: None,
             help_from: 0,
@@ -317,6 +331,7 @@ impl ConsoleModel {
             GazeSource::Pupil => "pupil",
             GazeSource::File => "file",
             GazeSource::Json => "json",
+            GazeSource::Lsl => "lsl",
             GazeSource::None => "none",
         }
     }

@@ -6,7 +6,7 @@ use core::net::SocketAddr;
 use crossterm::event::KeyCode;
 
 use super::console_message::ConsoleCommand;
-use super::console_model::{ConsoleModel, Dialog, RecordingStatus, ViewerStreamStatus};
+use super::console_model::{ConsoleModel, Dialog, LslStatus, RecordingStatus, ViewerStreamStatus};
 use super::display_status::{DisplayHealth, is_wanted};
 use super::key_action::KeyAction;
 use super::key_action::ManualAction;
@@ -27,6 +27,7 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     checks.extend(probes(session, model));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
     checks.extend(model.viewers.as_ref().map(viewers));
+    checks.extend(model.lsl.as_ref().map(lsl));
     checks
 }
 
@@ -111,6 +112,17 @@ fn viewers(viewers: &ViewerStreamStatus) -> PreflightCheck {
             format!("{found}; {dropped} rows dropped"),
             "end what else keeps the processor busy; tomcom review makes the stream from the log",
         ),
+    }
+}
+
+fn lsl(status: &LslStatus) -> PreflightCheck {
+    let found = format!("{}: any computer in the network can read them", status.streams.join(", "));
+    match status.lost {
+        0 => PreflightCheck::ok("lsl", found),
+        lost => {
+            let remedy = "end what else keeps the processor busy; the log has every event";
+            PreflightCheck::new("lsl", PreflightVerdict::Warning, format!("{found}; {lost} samples lost"), remedy)
+        }
     }
 }
 

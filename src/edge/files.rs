@@ -61,6 +61,9 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     if let Some(file) = &mut spec.tracker.file {
         *file = path.parent().unwrap_or(Path::new(".")).join(&*file).display().to_string();
     }
+    if let Some(library) = spec.lsl.as_mut().and_then(|lsl| lsl.library.as_mut()) {
+        *library = folder.join(&*library).display().to_string();
+    }
     if let Some(file) = &spec.human_model {
         if spec.human != HumanModel::default() {
             let found = "human_model, beside parameters of the human model in the session file".to_string();

@@ -4,6 +4,7 @@ pub mod ask;
 pub mod battery_file;
 pub mod bids_tree;
 pub mod clock;
+mod compared_clock;
 pub mod connection_table;
 pub mod datagram_holder;
 #[cfg(feature = "display")]
@@ -23,6 +24,7 @@ mod host_name;
 pub mod key_file;
 pub mod language;
 pub mod log;
+pub mod lsl;
 #[cfg(feature = "mcap")]
 pub mod mcap_file;
 pub mod near_path;

@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 
 /// The number of joints that move.
 pub const JOINTS: usize = 6;
+/// The joints in the arm's URDF, from the base on.
+pub const JOINT_NAMES: [&str; JOINTS] = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"];
 /// Angles of the joints, from the base on, in radians.
 pub type JointAngles = [f64; JOINTS];
 

@@ -18,6 +18,7 @@ use crate::console::view::theme::Theme;
 use crate::edge::gaze_file::{self, GazeFile};
 use crate::edge::gaze_input::GazeNews;
 use crate::edge::gaze_json;
+use crate::edge::lsl::{self, InletEnd, LslError};
 use crate::edge::pupil::{self, CaptureAddress, CaptureRequest};
 use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, outlive_file_limits, theme};
 use crate::gaze::surface::SurfaceMap;
@@ -38,6 +39,9 @@ mod wall;
 #[path = "desk/without_display.rs"]
 mod wall;
 
+mod lsl_desk;
+
+use lsl_desk::LslDesk;
 use wall::WallDisplay;
 pub(super) use wall::{PageInput, is_consent};
 
@@ -49,6 +53,7 @@ pub(super) struct OperatorDesk {
     pub seat: OperatorInput,
     pub tracker: GazeTracker,
     pub wall: WallDisplay,
+    pub lsl: LslDesk,
 }
 
 /// Input of the wizard, and termination signals.
@@ -63,6 +68,8 @@ pub(super) struct GazeTracker {
     news: Option<Receiver<GazeNews>>,
     /// Channel for requests to Pupil Capture.
     orders: Option<Sender<CaptureRequest>>,
+    /// The end of the thread that reads a stream of the Lab Streaming Layer, waited for once `news` is dropped.
+    _inlet: Option<InletEnd>,
     file: Option<Arc<GazeFile>>,
     /// Latest state of the tracker, for recordings that begin later.
     link: Option<GazeNews>,
@@ -88,12 +95,14 @@ impl OperatorDesk {
     /// Opens the devices that these settings need, and takes the terminal.
     ///
     /// # Errors
-    /// There is no terminal, the gaze port cannot be opened, a gaze file cannot be read, or the tags do not fit on the display.
+    /// There is no terminal, the gaze port cannot be opened, a gaze file cannot be read, the tags do not fit on the display, or the library
+    /// of the Lab Streaming Layer is missing.
     pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<OperatorDesk, LiveError> {
         outlive_file_limits().map_err(TerminalError)?;
-        let tracker = GazeTracker::open(spec, kitchen).await?;
+        let lsl = LslDesk::open(spec)?;
+        let tracker = GazeTracker::open(spec, kitchen, &lsl).await?;
         let wall = WallDisplay::open(spec).await?;
-        Ok(OperatorDesk { tracker, wall, ..OperatorDesk::without_devices(&spec.console)? })
+        Ok(OperatorDesk { tracker, wall, lsl, ..OperatorDesk::without_devices(&spec.console)? })
     }
 
     /// Takes the terminal, without devices.
@@ -104,7 +113,8 @@ impl OperatorDesk {
         let screen = TerminalScreen::take().map_err(TerminalError)?;
         let theme = theme(console, screen.ground);
         let seat = OperatorInput { hands: TerminalInput::default(), end: Box::pin(asked_to_end()) };
-        Ok(OperatorDesk { screen, theme, seat, tracker: GazeTracker::default(), wall: WallDisplay::default() })
+        let (tracker, wall, lsl) = (GazeTracker::default(), WallDisplay::default(), LslDesk::default());
+        Ok(OperatorDesk { screen, theme, seat, tracker, wall, lsl })
     }
 }
 
@@ -120,7 +130,7 @@ impl OperatorInput {
 }
 
 impl GazeTracker {
-    async fn open(spec: &SessionSpec, kitchen: &Kitchen) -> Result<GazeTracker, LiveError> {
+    async fn open(spec: &SessionSpec, kitchen: &Kitchen, desk: &LslDesk) -> Result<GazeTracker, LiveError> {
         let (participant, tracker) = (&spec.participant, &spec.tracker);
         let surface = || {
             let hull = || DisplayTags::place(kitchen).map(|tags| tags.hull()).map_err(LiveError::Tags);
@@ -147,6 +157,14 @@ impl GazeTracker {
                 let path = tracker.file.as_deref().unwrap_or_default();
                 let file = Arc::new(gaze_file::read(Path::new(path), &surface()?, tracker.file_start_s)?);
                 Ok(GazeTracker { file: Some(file), ..GazeTracker::default() })
+            }
+            GazeSource::Lsl => {
+                let stream = spec.lsl.as_ref().and_then(|lsl| lsl.gaze.clone());
+                // The settings have been checked: there are both.
+                let Some((library, stream)) = desk.library().zip(stream) else { return Ok(GazeTracker::default()) };
+                let followed = lsl::follow(library, stream, kitchen.display_m);
+                let (news, inlet) = followed.map_err(|_| LslError::NoThread)?;
+                Ok(GazeTracker { news: Some(news), _inlet: Some(inlet), ..GazeTracker::default() })
             }
             GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => Ok(GazeTracker::default()),
         }

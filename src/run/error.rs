@@ -8,6 +8,7 @@ use super::resume::ResumeError;
 use crate::console::key_action::KeyError;
 use crate::edge::file_error::FileError;
 use crate::edge::log::WriteError;
+use crate::edge::lsl::LslError;
 use crate::gaze::tags::TagError;
 
 /// A file cannot be read, or a result cannot be written.
@@ -58,6 +59,10 @@ pub enum LiveError {
         /// Why not.
         reason: io::Error,
     },
+    /// The Lab Streaming Layer cannot be used.
+    #[error(transparent)]
+    #[diagnostic(help("{}", .0.remedy()))]
+    Lsl(#[from] LslError),
     /// The participant's display cannot be served.
     #[error("nothing can listen on {address}, port {port}, for the participant's display: {reason}")]
     #[diagnostic(help("another port in the session file (port under [display]), or an address of this computer"))]

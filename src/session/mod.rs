@@ -27,6 +27,7 @@ pub mod gaze_samples;
 mod gaze_status;
 pub mod header;
 mod interventions;
+mod lsl_settings;
 pub mod offers;
 pub mod orders;
 pub mod participant_code;

@@ -98,6 +98,8 @@ pub enum GazeSource {
     File,
     /// Newline separated JSON over TCP and UDP.
     Json,
+    /// A stream of the Lab Streaming Layer.
+    Lsl,
     /// No gaze at all.
     None,
 }

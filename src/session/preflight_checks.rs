@@ -2,6 +2,7 @@
 
 use super::condition::Condition;
 use super::gaze_samples::faults;
+use super::lsl_settings::LslGazeSpec;
 use super::participant_settings::{GazeSource, ParticipantKind};
 pub use super::preflight_check::{PreflightCheck, PreflightVerdict};
 use super::session_state::Session;
@@ -74,6 +75,11 @@ pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec
             checks.extend(gaze(session, now));
             checks.extend(calibration(session, check_gaze));
         }
+        GazeSource::Lsl => {
+            checks.push(stream(session));
+            checks.extend(gaze(session, now));
+            checks.extend(calibration(session, check_gaze));
+        }
         GazeSource::Pupil => {
             checks.push(tracker(session));
             checks.extend(gaze(session, now));
@@ -87,6 +93,7 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
     let mends = match session.spec.participant.gaze {
         GazeSource::Json => format!("start what sends lines to port {}", session.spec.participant.gaze_port),
         GazeSource::Pupil => "let the participant look at the wall display; Capture needs a calibration".to_string(),
+        GazeSource::Lsl => "let the participant look at the display: the stream has no gaze".to_string(),
         GazeSource::Mouse | GazeSource::Simulated | GazeSource::File | GazeSource::None => {
             "move the pointer over the kitchen".to_string()
         }
@@ -172,6 +179,18 @@ fn tracker(session: &Session) -> PreflightCheck {
             PreflightCheck::new(name, PreflightVerdict::Failed, "Pupil Capture does not answer", remedy)
         }
     }
+}
+
+/// Checks the stream of the Lab Streaming Layer that gaze comes from.
+fn stream(session: &Session) -> PreflightCheck {
+    let wanted = session.spec.lsl.as_ref().and_then(|lsl| lsl.gaze.as_ref()).map_or(String::new(), LslGazeSpec::title);
+    let found = match &session.tracker.link {
+        TrackerConnection::Connected { device } => return PreflightCheck::ok("eye tracker", device.clone()),
+        TrackerConnection::Lost { reason, .. } => reason.clone(),
+        TrackerConnection::Unknown => format!("no stream {wanted} in the Lab Streaming Layer"),
+    };
+    let remedy = "start what sends it; tomcom doctor lists the streams and channels that there are";
+    PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy)
 }
 
 /// The result of the last gaze accuracy check, if there was one.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 pub use super::condition::Condition;
 pub use super::console_settings::{ConsoleSpec, MAX_NOTES, ThemeChoice, Visibility};
+pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
 use super::plan::{PlanSpec, StepSpec};
 pub use super::probe_settings::ProbeSpec;
@@ -60,6 +61,9 @@ pub struct SessionSpec {
     /// The stream to Rerun's viewers.
     #[serde(default)]
     pub rerun: RerunSpec,
+    /// The Lab Streaming Layer; `None`: nothing is sent or read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lsl: Option<LslSpec>,
     /// Path of a file with the parameters of the human model, relative to the session file; `None` for those in [`Self::human`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub human_model: Option<String>,
@@ -113,7 +117,7 @@ impl SessionSpec {
         }
         if self.participant.gaze == GazeSource::Simulated && self.participant.kind != ParticipantKind::Simulated {
             let found = "gaze = \"simulated\" of a participant who is not simulated".to_string();
-            let remedy = "gaze = \"mouse\", \"pupil\", \"file\", \"json\" or \"none\"";
+            let remedy = "gaze = \"mouse\", \"pupil\", \"file\", \"json\", \"lsl\" or \"none\"";
             return Err(SettingError::new("participant.gaze", found, remedy));
         }
         self.participant.check()?;
@@ -121,6 +125,7 @@ impl SessionSpec {
         self.console.check()?;
         self.display.check()?;
         self.rerun.check()?;
+        self.check_lsl()?;
         if let Some(probes) = &self.probes {
             probes.check(self.trial.seconds)?;
         }
@@ -133,6 +138,23 @@ impl SessionSpec {
 }
 
 impl SessionSpec {
+    /// Checks the Lab Streaming Layer, and that there is a stream where gaze comes from one.
+    fn check_lsl(&self) -> Result<(), SettingError> {
+        if self.participant.gaze == GazeSource::Lsl && self.lsl.as_ref().is_none_or(|lsl| lsl.gaze.is_none()) {
+            let found = "gaze = \"lsl\", and no stream".to_string();
+            let remedy =
+                "[lsl.gaze] with the stream's name and channels, such as name = \"tracker\", x = \"x\", y = \"y\"";
+            return Err(SettingError::new("participant.gaze", found, remedy));
+        }
+        self.lsl.as_ref().map_or(Ok(()), LslSpec::check)
+    }
+
+    /// Whether the session needs the library of the Lab Streaming Layer.
+    pub fn uses_lsl(&self) -> bool {
+        let sends = self.lsl.as_ref().is_some_and(|lsl| !lsl.outlets.is_empty());
+        sends || self.participant.gaze == GazeSource::Lsl
+    }
+
     /// Whether the assistant computes recommendations: in the assistant condition, and with `shadow = "on"`.
     pub fn asks_assistant(&self) -> bool {
         self.trial.condition == Condition::Assistant || self.assistant.shadow == Shadow::On

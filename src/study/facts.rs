@@ -133,6 +133,7 @@ fn gaze_source(source: GazeSource) -> &'static str {
         GazeSource::Pupil => "Pupil Core",
         GazeSource::File => "recorded gaze",
         GazeSource::Json => "an eye tracker that sends JSON lines",
+        GazeSource::Lsl => "an eye tracker in the Lab Streaming Layer",
         GazeSource::None => "no gaze",
     }
 }

@@ -17,6 +17,7 @@ mod gaze;
 mod gaze_senders;
 mod inference;
 mod kitchen;
+mod lsl_streams;
 mod malformed_requests;
 mod mcap_export;
 mod measures;

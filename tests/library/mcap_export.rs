@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use mcap::MessageStream;
 use serde_json::Value;
-use tomcom::analysis::foxglove::{JOINT_NAMES, MessageChannel};
+use tomcom::analysis::foxglove::MessageChannel;
 use tomcom::arm::kinematics::UR5;
+use tomcom::robot::moment::JOINT_NAMES;
 use tomcom::run::mcap_export::export;
 
 /// A golden recording in a folder of its own.

@@ -9,14 +9,12 @@ use crate::analysis::event_lines;
 use crate::analysis::follower::Follower;
 use crate::arm::kinematics::Arm;
 use crate::base::time::SessionTime;
-use crate::robot::moment::ArmSample;
+use crate::robot::moment::{ArmSample, JOINT_NAMES};
 use crate::session::Stamped;
 use crate::session::event::Event;
 
 /// The frame of the arm's base.
 const BASE: &str = "base_link";
-/// The joints in the arm's URDF, from the base on.
-pub const JOINT_NAMES: [&str; 6] = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"];
 /// Levels of Foxglove's log.
 const INFO: u8 = 2;
 const WARNING: u8 = 3;

@@ -6,4 +6,4 @@ mod messages;
 mod schemas;
 
 pub use self::channels::MessageChannel;
-pub use self::messages::{ChannelMessage, JOINT_NAMES, MessageMaker};
+pub use self::messages::{ChannelMessage, MessageMaker};

@@ -212,7 +212,9 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
         (TrackerConnection::Lost { since, .. }, _) => {
             return (format!("NO TRACKER {:.0} s", model.now.secs_since(*since)), TextRole::Alarm);
         }
-        (TrackerConnection::Unknown, _) if session.spec.participant.gaze == GazeSource::Pupil => {
+        (TrackerConnection::Unknown, _)
+            if matches!(session.spec.participant.gaze, GazeSource::Pupil | GazeSource::Lsl) =>
+        {
             return ("NO TRACKER".to_string(), TextRole::Alarm);
         }
         (TrackerConnection::Connected { .. }, Some(false)) => return ("TAGS NOT SEEN".to_string(), TextRole::Alarm),

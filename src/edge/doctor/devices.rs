@@ -4,8 +4,10 @@
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 
+use crate::base::printable::printable;
 use crate::base::words::count;
 use crate::edge::file_error::FileError;
+use crate::edge::lsl::{self, FoundStream};
 use crate::edge::{gaze_file, pupil};
 use crate::gaze::surface::SurfaceMap;
 use crate::session::SessionSpec;
@@ -15,6 +17,9 @@ use crate::session::tracker::TrackerSpec;
 
 /// Corners of a surface that covers the whole display: reading a file does not depend on the tags.
 const WHOLE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+
+/// How long streams of the Lab Streaming Layer are looked for, and their channels, in seconds.
+const STREAM_S: f64 = 3.0;
 
 /// Checks whether the participant's page can be served.
 pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
@@ -34,6 +39,7 @@ pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
     match spec.participant.gaze {
         GazeSource::Pupil => eye_tracker(&spec.tracker, true),
         GazeSource::Json => lines(&spec.participant),
+        GazeSource::Lsl => stream(spec),
         GazeSource::File => file(&spec.tracker),
         GazeSource::Simulated | GazeSource::Mouse | GazeSource::None => eye_tracker(&spec.tracker, false),
     }
@@ -73,6 +79,51 @@ fn lines(spec: &ParticipantSpec) -> PreflightCheck {
             PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("{address}: {reason}"), remedy)
         }
     }
+}
+
+/// Checks whether there is a library of the Lab Streaming Layer.
+pub(super) fn lsl(spec: &SessionSpec) -> PreflightCheck {
+    match lsl::load(spec.lsl.as_ref()) {
+        Ok(library) => {
+            PreflightCheck::ok("lsl", format!("liblsl {:.2} can be loaded", f64::from(library.version) / 100.0))
+        }
+        Err(error) => {
+            // The reasons of the system's loader are long.
+            missing(spec.uses_lsl(), "lsl", printable(&error.to_string()).into_owned(), "[lsl]", error.remedy())
+        }
+    }
+}
+
+/// Checks whether the stream of gaze is there, and lists those that are, with their channels.
+fn stream(spec: &SessionSpec) -> PreflightCheck {
+    let Some(wanted) = spec.lsl.as_ref().and_then(|lsl| lsl.gaze.as_ref()) else {
+        return PreflightCheck::new(
+            "gaze",
+            PreflightVerdict::Failed,
+            "no [lsl.gaze]",
+            "the stream's name and channels",
+        );
+    };
+    let Ok(library) = lsl::load(spec.lsl.as_ref()) else {
+        return PreflightCheck::new("gaze", PreflightVerdict::Failed, "no liblsl", "see lsl above");
+    };
+    let told = |found: &FoundStream| {
+        let [name, content, host] = found.identity();
+        let channels = lsl::channel_names(found, STREAM_S).unwrap_or_default().join(", ");
+        (name.clone(), content.clone(), format!("\"{name}\" of type \"{content}\" on {host}: {channels}"))
+    };
+    let there: Vec<(String, String, String)> = lsl::streams_of_numbers(library, STREAM_S).iter().map(told).collect();
+    let is_wanted = |(name, content, _): &&(String, String, String)| {
+        let is = |wanted: &Option<String>, found: &String| wanted.as_ref().is_none_or(|wanted| wanted == found);
+        is(&wanted.name, name) && is(&wanted.content, content)
+    };
+    if let Some((_, _, told)) = there.iter().find(is_wanted) {
+        return PreflightCheck::ok("gaze", told.clone());
+    }
+    let others: Vec<&str> = there.iter().map(|(_, _, told)| told.as_str()).collect();
+    let others = if others.is_empty() { "nor any other of numbers".to_string() } else { others.join("; ") };
+    let found = format!("no stream {}; {others}", wanted.title());
+    PreflightCheck::new("gaze", PreflightVerdict::Failed, found, "start what sends it; name and type under [lsl.gaze]")
 }
 
 /// Checks whether a gaze file can be replayed.

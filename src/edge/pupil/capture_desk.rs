@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{Receiver, Sender};
 use tokio::time::{interval, sleep_until, timeout_at};
 
-use super::clock::{ANSWERS, PupilClock, PupilClockStep};
 use super::message::{self, ANNOTATION, RecorderNews};
 use super::recorder::{CaptureAction, CaptureRecorder, CaptureRequest};
 use super::zmtp::{ZmtpConnection, ZmtpMessage};
+use crate::edge::compared_clock::{ANSWERS, ComparedClock, DeviceClockStep};
 use crate::edge::gaze_input::GazeNews;
 
 /// Period of time requests to Capture: a clock that was set is noticed within this time.
@@ -37,7 +37,7 @@ enum DeskEvent {
 
 impl CaptureDesk {
     /// Averages the first answers to time requests.
-    pub async fn set_clock(remote: &mut ZmtpConnection, clock: &Mutex<PupilClock>) -> io::Result<()> {
+    pub async fn set_clock(remote: &mut ZmtpConnection, clock: &Mutex<ComparedClock>) -> io::Result<()> {
         for _ in 0..ANSWERS {
             ask_time(remote, clock).await?;
         }
@@ -64,7 +64,7 @@ impl CaptureDesk {
         orders: &mut Receiver<CaptureRequest>,
         mut told: Receiver<RecorderNews>,
         recorder: &mut CaptureRecorder,
-        clock: &Mutex<PupilClock>,
+        clock: &Mutex<ComparedClock>,
         mut actions: Vec<CaptureAction>,
     ) -> io::Error {
         let mut asking = interval(ASK_TIME);
@@ -106,21 +106,21 @@ impl CaptureDesk {
     }
 
     /// Asks for the time; if the clock was set, tells so and asks until the mean is as good as before.
-    async fn check_time(&mut self, clock: &Mutex<PupilClock>) -> io::Result<()> {
-        let Some(PupilClockStep { by_s, known_at }) = ask_time(&mut self.remote, clock).await? else { return Ok(()) };
+    async fn check_time(&mut self, clock: &Mutex<ComparedClock>) -> io::Result<()> {
+        let Some(DeviceClockStep { by_s, known_at }) = ask_time(&mut self.remote, clock).await? else { return Ok(()) };
         // The receiver may be gone; the listener notices.
         let _ = self.news.send(GazeNews::ClockSet { by_s, known_at }).await;
         CaptureDesk::set_clock(&mut self.remote, clock).await
     }
 
-    async fn act(&mut self, action: CaptureAction, clock: &Mutex<PupilClock>) -> io::Result<()> {
+    async fn act(&mut self, action: CaptureAction, clock: &Mutex<ComparedClock>) -> io::Result<()> {
         match action {
             CaptureAction::Start(name) => self.remote.ask(&[format!("R {name}").as_bytes()]).await.map(drop),
             CaptureAction::Stop => self.remote.ask(&[b"r"]).await.map(drop),
             CaptureAction::Annotate { label, at, not_before } => {
                 let stands = not_before.map_or(at, |begun| begun.max(at));
                 let late_s = stands.saturating_duration_since(at).as_secs_f64();
-                let pupil_s = clock.lock().ok().and_then(|clock| clock.pupil_s(stands));
+                let pupil_s = clock.lock().ok().and_then(|clock| clock.device_s(stands));
                 let payload = message::annotation(&label, pupil_s.unwrap_or(0.0), late_s);
                 self.annotations.send(&[ANNOTATION.as_bytes(), &payload]).await
             }
@@ -142,7 +142,7 @@ fn is_annotated(message: &ZmtpMessage) -> bool {
     message.first().and_then(|frame| frame.strip_prefix(&[1])) == Some(ANNOTATION.as_bytes())
 }
 
-async fn ask_time(remote: &mut ZmtpConnection, clock: &Mutex<PupilClock>) -> io::Result<Option<PupilClockStep>> {
+async fn ask_time(remote: &mut ZmtpConnection, clock: &Mutex<ComparedClock>) -> io::Result<Option<DeviceClockStep>> {
     let asked = Instant::now();
     let answer = remote.ask(&[b"t"]).await?;
     let answered = Instant::now();

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::Sender;
 use tokio::time::timeout;
 
-use super::clock::PupilClock;
 use super::eye_events::{BlinkMerger, FixationMerger, FixationWindow};
 use super::message::{self, PupilBlink, PupilFixation, PupilMessage, RecorderNews};
 use super::zmtp::{ZmtpConnection, ZmtpMessage};
+use crate::edge::compared_clock::ComparedClock;
 use crate::edge::gaze_input::{GazeNews, SampleTime, TrackerFixation};
 use crate::gaze::GazeSample;
 use crate::gaze::surface::SurfaceMap;
@@ -29,7 +29,7 @@ pub(super) struct Listener<'a> {
     recorder: Sender<RecorderNews>,
     surface: &'a str,
     map: SurfaceMap,
-    clock: &'a Mutex<PupilClock>,
+    clock: &'a Mutex<ComparedClock>,
     /// Number of dropped messages that have not been reported yet.
     lost: &'a mut u64,
     fixations: FixationMerger,
@@ -47,7 +47,7 @@ impl<'a> Listener<'a> {
         news: Sender<GazeNews>,
         recorder: Sender<RecorderNews>,
         (surface, map): (&'a str, SurfaceMap),
-        clock: &'a Mutex<PupilClock>,
+        clock: &'a Mutex<ComparedClock>,
         lost: &'a mut u64,
     ) -> Listener<'a> {
         let (fixations, blinks) = (FixationMerger::default(), BlinkMerger::default());

@@ -2,7 +2,6 @@
 //! is retried without limit when Capture is missing, ends, hangs or restarts.
 
 mod capture_desk;
-mod clock;
 pub mod eye_events;
 mod listener;
 pub mod message;
@@ -16,10 +15,10 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tokio::time::sleep;
 
+use super::compared_clock::ComparedClock;
 use super::gaze_input::{GazeNews, WAITING};
 use crate::gaze::surface::SurfaceMap;
 use capture_desk::CaptureDesk;
-use clock::PupilClock;
 use listener::Listener;
 use message::{SURFACES, TOPICS};
 use recorder::CaptureRecorder;
@@ -93,7 +92,7 @@ impl Follower {
         let (address, port) = (self.capture.address.clone(), self.capture.port);
         let mut remote = ZmtpConnection::open(&address, port, SocketRole::Req).await.map_err(never)?;
         let version = remote.ask(&[b"v"]).await.map_err(never)?;
-        let clock = Mutex::new(PupilClock::new());
+        let clock = Mutex::new(ComparedClock::new());
         CaptureDesk::set_clock(&mut remote, &clock).await.map_err(never)?;
         let sub_port = port_of(&remote.ask(&[b"SUB_PORT"]).await.map_err(never)?).map_err(never)?;
         let pub_port = port_of(&remote.ask(&[b"PUB_PORT"]).await.map_err(never)?).map_err(never)?;
@@ -118,7 +117,7 @@ impl Follower {
         &mut self,
         mut desk: CaptureDesk,
         mut backbone: ZmtpConnection,
-        clock: &Mutex<PupilClock>,
+        clock: &Mutex<ComparedClock>,
         is_same_run: bool,
         listens: bool,
     ) -> io::Error {

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use super::capture_orders::CaptureOrders;
 use super::display::ParticipantDisplay;
 use super::gaze_events::GazeInput;
+use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
@@ -52,6 +53,8 @@ pub(super) struct Live {
     pub(super) log: LogWriter,
     /// The stream to Rerun viewers.
     pub(super) viewing: Option<StreamedSession>,
+    /// The streams of the Lab Streaming Layer.
+    pub(super) lsl: Option<LslStreaming>,
     /// Lock on the previous part of a continued recording.
     _before: Option<RecordingLock>,
     /// Whether writing the log has failed.
@@ -141,7 +144,7 @@ impl ConsoleShell for Live {
 }
 
 impl Live {
-    fn open(begun: PreparedSession, desk: &OperatorDesk) -> Result<Live, LiveError> {
+    fn open(begun: PreparedSession, desk: &mut OperatorDesk) -> Result<Live, LiveError> {
         let PreparedSession { engine, mut header, first, consent, time, compare, place } = begun;
         let (kitchen, spec) = (engine.session().kitchen.clone(), engine.session().spec.clone());
         let keys = KeyBindings::live(&kitchen, &spec, &key_map(header.keys.as_ref())?)?;
@@ -174,6 +177,7 @@ impl Live {
             header,
             log,
             viewing: None,
+            lsl: None,
             _before: before,
             failed: None,
             clock,
@@ -186,6 +190,7 @@ impl Live {
         };
         live.model.free_bytes = free_bytes(live.log.folder()).ok();
         live.begin_viewing(is_new, first.last().map_or(0, |last| last.seq + 1));
+        live.begin_lsl(desk);
         live.record(&first);
         live.tick();
         if let Some(request) = compare {
@@ -204,6 +209,15 @@ impl Live {
             Err(reason) => self.model.say(NoticeLevel::Alarm, format!("the session goes on without Rerun: {reason}")),
         }
         self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);
+    }
+
+    /// Begins to send to the Lab Streaming Layer, if the session does; if that fails, the session continues without it.
+    fn begin_lsl(&mut self, desk: &mut OperatorDesk) {
+        match LslStreaming::open(desk, self.engine.session(), &self.name(), &self.clock) {
+            Ok(lsl) => self.lsl = lsl,
+            Err(reason) => self.model.say(NoticeLevel::Alarm, format!("the session goes on without LSL: {reason}")),
+        }
+        self.model.lsl = self.lsl.as_ref().map(LslStreaming::status);
     }
 
     /// Records the present state of the tracker.

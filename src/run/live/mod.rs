@@ -13,6 +13,7 @@ mod display;
 mod gaze_events;
 mod inputs;
 mod live_session;
+mod lsl_streaming;
 mod recording;
 mod showing;
 mod target_timing;

@@ -1,6 +1,7 @@
 //! Recording of events in the log and their distribution to stream, comparison and tracker; handling of write errors.
 
 use super::live_session::Live;
+use super::lsl_streaming::LslStreaming;
 use super::viewing::StreamedSession;
 use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
@@ -43,6 +44,9 @@ impl Live {
             let by_gaze = events.iter().all(|stamped| stamped.event.is_sample());
             let session = self.engine.session();
             let moment = BeliefSnapshot::new(&session.kitchen, session.state, self.engine.belief(), last.time, by_gaze);
+            if let Some(lsl) = &mut self.lsl {
+                lsl.tell(events, &self.engine, &moment, &self.clock);
+            }
             self.model.belief.note(moment);
             self.model.belief.forget(last.time, belief_track::SHOWN_S);
             self.model.signals.note(session, |aspect| self.engine.is_false(aspect));
@@ -87,6 +91,11 @@ impl Live {
             self.model.say(NoticeLevel::Alarm, text);
         }
         self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);
+        if let Some(complaint) = self.lsl.as_mut().and_then(LslStreaming::complaint) {
+            self.model.warn(complaint);
+            self.dirty = true;
+        }
+        self.model.lsl = self.lsl.as_ref().map(LslStreaming::status);
         if let Some(drops) = self.gaze.drops(self.engine.session()) {
             self.input(drops);
         }

@@ -17,7 +17,7 @@ const LONGEST: &str = "no trial is longer than a day";
 /// What 32 bits hold: as much as no limit at all.
 const COUNT: f64 = 4_294_967_295.0;
 
-pub(super) const RANGES: [NumberRange; 49] = [
+pub(super) const RANGES: [NumberRange; 50] = [
     NumberRange::whole("seed", [0.0, 9_007_199_254_740_991.0], "", "every reader of JSON has these numbers exactly")
         .recorded(ANY),
     NumberRange::whole("trial.presses", [1.0, COUNT], "presses", "the largest numbers are as good as no limit"),
@@ -82,6 +82,12 @@ pub(super) const RANGES: [NumberRange; 49] = [
     NumberRange::real("tracker.gaps.every_s", [0.01, DAY_S], SECONDS, LONGEST),
     NumberRange::real("tracker.gaps.shortest_s", [0.01, DAY_S], SECONDS, LONGEST),
     NumberRange::real("tracker.gaps.longest_s", [0.01, DAY_S], SECONDS, LONGEST),
+    NumberRange::real(
+        "lsl.gaze.size",
+        [0.01, 100_000.0],
+        "in the unit of the stream",
+        "from a small display in metres to a wall of displays in pixels",
+    ),
     NumberRange::real("tracker.distance_m", [0.2, 20.0], "m", "eyes see a display from these distances"),
     NumberRange::whole("probes.per_trial", [0.0, 50.0], "probes", "more leave no time to work"),
     NumberRange::real("probes.apart_s", [1.0, 3_600.0], SECONDS, "the participant works on between two probes"),

@@ -2,7 +2,7 @@
 
 use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
-use tomcom::console::console_model::ViewerStreamStatus;
+use tomcom::console::console_model::{LslStatus, ViewerStreamStatus};
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyMap, update};
@@ -10,6 +10,7 @@ use tomcom::robot::safety::SafetyMode;
 use tomcom::session::event::{EndReason, Event};
 use tomcom::session::preflight_checks::PreflightVerdict;
 use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind};
+use tomcom::session::tracker::TrackerEvent;
 
 use super::{SIZES, Stage, input};
 use crate::check_snapshot;
@@ -169,6 +170,33 @@ fn an_open_port_for_viewers_is_a_warning_in_whole_sentences() {
     let check = of_viewers(&stage);
     assert_eq!(check.found, "viewers at 0.0.0.0:9876 need no password");
     assert!(check.remedy.is_some_and(|remedy| remedy.contains("--rerun-listen 127.0.0.1:9876")));
+}
+
+#[test]
+fn streams_that_are_sent_and_the_stream_of_gaze_are_checked() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+    stage.session.spec.participant.gaze = GazeSource::Lsl;
+    let lsl = "outlets = [\"gaze\"]\n[gaze]\nname = \"glasses\"\nx = \"x\"\ny = \"y\"\n";
+    stage.session.spec.lsl = Some(toml::from_str(lsl).expect("settings"));
+    let found = |stage: &Stage, name: &str| {
+        let check = checks(&stage.session, &stage.model).into_iter().find(|check| check.name == name).expect(name);
+        (check.verdict, check.found.clone())
+    };
+    let told = |text: &str| text.to_string();
+    let missing = told("no stream \"glasses\" in the Lab Streaming Layer");
+    assert_eq!(found(&stage, "eye tracker"), (PreflightVerdict::Failed, missing));
+    assert!(stage.screen((120, 40)).contains("NO TRACKER"));
+    let reason = "the stream glasses has no channel \"x\"; it has no labels";
+    stage.at(1.0, Event::Tracker(TrackerEvent::Lost { reason: told(reason) }));
+    assert_eq!(found(&stage, "eye tracker"), (PreflightVerdict::Failed, told(reason)));
+    stage.at(2.0, Event::Tracker(TrackerEvent::Connected { device: told("glasses on lab") }));
+    assert_eq!(found(&stage, "eye tracker"), (PreflightVerdict::Ok, told("glasses on lab")));
+    stage.model.lsl = Some(LslStatus { streams: vec![told("markers"), told("gaze")], sent: 9, lost: 0 });
+    let open = "markers, gaze: any computer in the network can read them";
+    assert_eq!(found(&stage, "lsl"), (PreflightVerdict::Ok, told(open)));
+    stage.model.lsl = Some(LslStatus { streams: vec![told("gaze")], sent: 9, lost: 3 });
+    let (verdict, text) = found(&stage, "lsl");
+    assert!(verdict == PreflightVerdict::Warning && text.ends_with("; 3 samples lost"), "{text}");
 }
 
 #[test]

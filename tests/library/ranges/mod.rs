@@ -27,6 +27,11 @@ fn every_setting() -> toml::Table {
         every_s = 10.0
         shortest_s = 1.0
         longest_s = 5.0
+        [lsl.gaze]
+        name = "tracker"
+        x = "x"
+        y = "y"
+        size = [1920.0, 1080.0]
         [assistant.rollout]
         looks_hz = 1.0
         other_looks_hz = 0.25

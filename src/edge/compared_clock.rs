@@ -1,4 +1,4 @@
-//! Offset of Pupil Capture's clock, from its answers to time requests.
+//! Offset of another clock, from its answers to time requests: Pupil Capture's, or that of the Lab Streaming Layer.
 
 use std::time::{Duration, Instant};
 
@@ -7,41 +7,41 @@ pub(super) const ANSWERS: usize = 10;
 /// A change of the offset by more than this, beyond what slow replies explain, means that the clock was set, in seconds.
 const SET_S: f64 = 0.01;
 
-/// Capture's clock was set.
+/// The other clock was set.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PupilClockStep {
+pub(super) struct DeviceClockStep {
     /// By how much it went ahead, in seconds; negative: back.
     pub by_s: f64,
     /// When the clock was last found as it was before.
     pub known_at: Instant,
 }
 
-/// The offset of Capture's clock: mean over the latest replies without slow ones. A delay in one direction shifts a reply's offset by
+/// The offset of the other clock: mean over the latest replies without slow ones. A delay in one direction shifts a reply's offset by
 /// half of the delay.
 #[derive(Debug)]
-pub(super) struct PupilClock {
+pub(super) struct ComparedClock {
     anchor: Instant,
-    /// Pupil time minus seconds since the anchor, and round trip time in seconds, the newest last.
+    /// The other clock's time minus seconds since the anchor, and round trip time in seconds, the newest last.
     answers: Vec<(f64, f64)>,
     /// When the latest reply arrived.
     known_at: Instant,
 }
 
-impl PupilClock {
-    /// A clock that was not compared with Pupil's yet.
-    pub fn new() -> PupilClock {
+impl ComparedClock {
+    /// A clock that was not compared yet.
+    pub fn new() -> ComparedClock {
         let now = Instant::now();
-        PupilClock { anchor: now, answers: Vec::new(), known_at: now }
+        ComparedClock { anchor: now, answers: Vec::new(), known_at: now }
     }
 
     /// Adds a reply to a time request; the step, if it shows that the clock was set.
-    pub fn take(&mut self, asked: Instant, answered: Instant, pupil_s: f64) -> Option<PupilClockStep> {
+    pub fn take(&mut self, asked: Instant, answered: Instant, device_s: f64) -> Option<DeviceClockStep> {
         let since = |at: Instant| at.saturating_duration_since(self.anchor).as_secs_f64();
-        let (offset, took_s) = (pupil_s - (since(asked) + since(answered)) / 2.0, since(answered) - since(asked));
+        let (offset, took_s) = (device_s - (since(asked) + since(answered)) / 2.0, since(answered) - since(asked));
         // The true offset is off by up to half of the delay; the mean before by no more than the least delay.
         let unsure_s = took_s / 2.0 + self.least_s().unwrap_or(0.0);
         let before = self.offset().filter(|before| (before - offset).abs() > SET_S + unsure_s);
-        let step = before.map(|before| PupilClockStep { by_s: offset - before, known_at: self.known_at });
+        let step = before.map(|before| DeviceClockStep { by_s: offset - before, known_at: self.known_at });
         if step.is_some() {
             self.answers.clear();
         }
@@ -65,9 +65,9 @@ impl PupilClock {
         (count > 0).then(|| sum / f64::from(count))
     }
 
-    /// Instant of a Pupil time.
-    pub fn instant(&self, pupil_s: f64) -> Option<Instant> {
-        let since_s = pupil_s - self.offset()?;
+    /// Instant of a time of the other clock.
+    pub fn instant(&self, device_s: f64) -> Option<Instant> {
+        let since_s = device_s - self.offset()?;
         match Duration::try_from_secs_f64(since_s.abs()) {
             Ok(by) if since_s < 0.0 => self.anchor.checked_sub(by),
             Ok(by) => self.anchor.checked_add(by),
@@ -75,8 +75,8 @@ impl PupilClock {
         }
     }
 
-    /// Pupil time of an instant.
-    pub fn pupil_s(&self, at: Instant) -> Option<f64> {
+    /// Time of the other clock at an instant.
+    pub fn device_s(&self, at: Instant) -> Option<f64> {
         let since_s = match at.checked_duration_since(self.anchor) {
             Some(after) => after.as_secs_f64(),
             None => -self.anchor.duration_since(at).as_secs_f64(),
@@ -91,12 +91,12 @@ mod tests {
 
     #[test]
     fn the_clock_follows_the_answers_that_came_at_once_and_one_that_was_set() {
-        let mut clock = PupilClock::new();
+        let mut clock = ComparedClock::new();
         let at = |ms: u64| clock.anchor + Duration::from_millis(ms);
         let [anchor, later] = [at(0), at(5000)];
         let after = |ms: u64| anchor + Duration::from_millis(ms);
         assert_eq!(clock.instant(7.0), None);
-        // Capture's clock is 100 s ahead; every third answer is late by 40 ms.
+        // The other clock is 100 s ahead; every third answer is late by 40 ms.
         for second in 0..30u64 {
             let asked = 1000 * second;
             let late = if second % 3 == 1 { 40 } else { 0 };
@@ -106,18 +106,18 @@ mod tests {
         let found = clock.instant(105.0).expect("a moment");
         let off = found.max(later) - found.min(later);
         assert!(off < Duration::from_micros(10), "{off:?}");
-        assert!((clock.pupil_s(later).expect("a time") - 105.0).abs() < 1e-5);
-        assert!((clock.pupil_s(anchor).expect("a time") - 100.0).abs() < 1e-5);
+        assert!((clock.device_s(later).expect("a time") - 105.0).abs() < 1e-5);
+        assert!((clock.device_s(anchor).expect("a time") - 100.0).abs() < 1e-5);
         assert_eq!(clock.take(after(29_500), after(29_502), 129.501), None);
         // It is set by 0.2 s, and by 20 ms; a slow reply of 60 ms is no step.
         let step = clock.take(after(30_000), after(30_002), 130.201).expect("a step");
         assert!((step.by_s - 0.2).abs() < 0.002 && step.known_at == after(29_502), "{step:?}");
-        assert!((clock.pupil_s(after(30_001)).expect("a time") - 130.201).abs() < 1e-9);
+        assert!((clock.device_s(after(30_001)).expect("a time") - 130.201).abs() < 1e-9);
         assert_eq!(clock.take(after(30_250), after(30_310), 130.451), None);
         let step = clock.take(after(30_500), after(30_502), 130.681).expect("a step");
         assert!((step.by_s + 0.02).abs() < 0.002, "{step:?}");
         assert!(clock.take(after(31_000), after(31_002), 7.0).is_some());
-        assert!((clock.pupil_s(after(31_001)).expect("a time") - 7.0).abs() < 1e-9);
+        assert!((clock.device_s(after(31_001)).expect("a time") - 7.0).abs() < 1e-9);
         assert_eq!(clock.instant(1e300), None);
     }
 }

@@ -1,0 +1,78 @@
+//! An event as text: its short code, and its JSON.
+
+use serde_json::{Map, Value, json};
+
+use crate::session::Stamped;
+use crate::session::event::Event;
+use crate::session::probes::ProbeEvent;
+use crate::session::protocol::ProtocolEvent;
+use crate::session::tracker::TrackerEvent;
+
+/// Fields of an event whose values are parts of its code, in this order.
+const PARTS: [&str; 14] = [
+    "what", "did", "phase", "agent", "by", "button", "location", "order", "dish", "signal", "best", "mode", "item",
+    "reason",
+];
+/// Name of the field that lists which fields were left out.
+const LEFT_OUT: &str = "left_out";
+
+/// Code of an event: its kind and what it is about, with a slash between: `press/human/take rice`. Tools such as MNE select events by
+/// such parts.
+pub fn code(stamped: &Stamped) -> String {
+    let fields = fields(&stamped.event);
+    let parts = PARTS.iter().filter_map(|part| part_text(fields.get(*part)?));
+    std::iter::once(stamped.event.kind().to_string()).chain(parts).collect::<Vec<_>>().join("/")
+}
+
+/// The event as the log has it, without what people typed or answered and without names of devices; `left_out` lists the fields
+/// that are missing.
+pub fn event_text(stamped: &Stamped) -> String {
+    let mut text = json!({ "seq": stamped.seq, "t_ns": stamped.time });
+    if let Value::Object(text) = &mut text {
+        text.extend(fields(&stamped.event));
+        let private = private_fields(&stamped.event);
+        if !private.is_empty() {
+            text.insert(LEFT_OUT.to_string(), json!(private));
+        }
+    }
+    text.to_string()
+}
+
+/// The fields of an event in the log, but those that are left out.
+fn fields(event: &Event) -> Map<String, Value> {
+    let mut fields = match serde_json::to_value(event) {
+        Ok(Value::Object(fields)) => fields,
+        _ => Map::new(),
+    };
+    fields.retain(|name, _| !private_fields(event).contains(&name.as_str()));
+    fields
+}
+
+/// A value as a part of a code: a word, or the name and content of a variant (`highlight/cooking_pot`); `None` for anything else.
+fn part_text(value: &Value) -> Option<String> {
+    match value {
+        Value::String(word) => Some(word.clone()),
+        Value::Object(fields) if fields.len() == 1 => {
+            let (name, content) = fields.iter().next()?;
+            Some(format!("{name}/{}", part_text(content)?))
+        }
+        _ => None,
+    }
+}
+
+/// Fields that may name a person, a person's computer or its folders: whoever is in the network can read a stream.
+fn private_fields(event: &Event) -> &'static [&'static str] {
+    match event {
+        Event::Marker { .. } => &["note"],
+        Event::TrialAborted { .. } | Event::TrialExcluded { .. } => &["reason"],
+        Event::Preflight { .. } => &["checks"],
+        Event::Tracker(TrackerEvent::Connected { .. }) => &["device"],
+        Event::Tracker(TrackerEvent::Lost { .. }) => &["reason"],
+        Event::Tracker(TrackerEvent::OtherSurfaces { .. }) => &["names"],
+        Event::Protocol(ProtocolEvent::ItemAnswered { .. }) => &["answer"],
+        Event::Protocol(ProtocolEvent::CriterionWaived { .. }) | Event::Probe(ProbeEvent::Skipped { .. }) => {
+            &["reason"]
+        }
+        _ => &[],
+    }
+}

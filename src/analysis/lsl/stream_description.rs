@@ -1,0 +1,167 @@
+//! What each stream is called, what its channels are, and what its metadata say.
+
+use crate::communication::Signal;
+use crate::communication::concept::ConceptName;
+use crate::communication::signals;
+use crate::kitchen::{Kitchen, Location};
+use crate::robot::moment::JOINT_NAMES;
+use crate::session::SessionSpec;
+use crate::session::settings::LslOutlet;
+
+/// How the names and sources of all streams of this program begin.
+pub const SOURCE: &str = "tomcom";
+
+/// A stream that is sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StreamDescription {
+    /// Which stream.
+    pub outlet: LslOutlet,
+    /// Its name, with the participant's code: `tomcom-markers-P07`.
+    pub name: String,
+    /// Its content type.
+    pub content: &'static str,
+    /// Its source, by which a recorder finds it again: with the name of the study, if there is one.
+    pub source: String,
+    /// Its channels.
+    pub channels: Vec<StreamChannel>,
+    /// Whether samples are texts; else they are numbers.
+    pub is_text: bool,
+    /// Metadata beside the channels.
+    pub about: Vec<MetadataNode>,
+}
+
+/// A channel of a stream.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StreamChannel {
+    /// Its name.
+    pub label: String,
+    /// Its unit; empty for texts.
+    pub unit: &'static str,
+}
+
+/// An element of a stream's metadata (LSL has them as XML).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MetadataNode {
+    /// Name of the element.
+    pub name: &'static str,
+    /// Its text; empty if it has elements.
+    pub text: String,
+    /// The elements inside.
+    pub inside: Vec<MetadataNode>,
+}
+
+impl MetadataNode {
+    fn text(name: &'static str, text: impl ToString) -> MetadataNode {
+        MetadataNode { name, text: text.to_string(), inside: Vec::new() }
+    }
+
+    fn group(name: &'static str, inside: Vec<MetadataNode>) -> MetadataNode {
+        MetadataNode { name, text: String::new(), inside }
+    }
+}
+
+impl StreamDescription {
+    /// All metadata: channels as LSL's conventions want them, then the rest.
+    pub fn metadata(&self) -> Vec<MetadataNode> {
+        let channel = |channel: &StreamChannel| {
+            let text = |name, text: &str| MetadataNode::text(name, text);
+            let fields = vec![text("label", &channel.label), text("unit", channel.unit), text("type", self.content)];
+            MetadataNode::group("channel", fields)
+        };
+        let channels = MetadataNode::group("channels", self.channels.iter().map(channel).collect());
+        std::iter::once(channels).chain(self.about.iter().cloned()).collect()
+    }
+}
+
+/// The streams that a session sends, in the order of its file. They are the same for all trials of a participant.
+pub fn describe(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<StreamDescription> {
+    let outlets = spec.lsl.iter().flat_map(|lsl| &lsl.outlets);
+    outlets.map(|&outlet| description(outlet, spec, kitchen)).collect()
+}
+
+fn description(outlet: LslOutlet, spec: &SessionSpec, kitchen: &Kitchen) -> StreamDescription {
+    let code = &spec.participant.code;
+    let study = spec.step.as_ref().map(|step| step.plan.as_str());
+    let texts = |labels: &[&str]| labels.iter().map(|label| channel(*label, "")).collect();
+    let numbers = |labels: Vec<String>, unit| labels.into_iter().map(|label| channel(label, unit)).collect();
+    let (content, channels): (_, Vec<StreamChannel>) = match outlet {
+        LslOutlet::Markers => ("Markers", texts(&["code"])),
+        LslOutlet::Events => ("Events", texts(&["event"])),
+        LslOutlet::Presses => ("Presses", texts(&["agent", "button", "effective", "error"])),
+        LslOutlet::Beliefs => {
+            ("Beliefs", numbers(kitchen.aspects.iter().map(|aspect| aspect.name.clone()).collect(), "probability"))
+        }
+        LslOutlet::NetBenefit => ("NetBenefit", numbers(signal_labels(spec, kitchen), net_benefit_unit(spec))),
+        LslOutlet::Gaze => {
+            let mut channels: Vec<StreamChannel> = numbers(vec!["x".to_string(), "y".to_string()], "normalised");
+            channels.push(channel("confidence", "probability"));
+            ("Gaze", channels)
+        }
+        LslOutlet::Arm => ("Joints", numbers(JOINT_NAMES.map(str::to_string).into(), "radians")),
+    };
+    let source = [Some(SOURCE), study, Some(code), Some(outlet.name())];
+    StreamDescription {
+        outlet,
+        name: format!("{SOURCE}-{}-{code}", outlet.name()),
+        content,
+        source: source.into_iter().flatten().collect::<Vec<_>>().join("-"),
+        channels,
+        is_text: matches!(outlet, LslOutlet::Markers | LslOutlet::Events | LslOutlet::Presses),
+        about: about(code, study, kitchen),
+    }
+}
+
+fn channel(label: impl ToString, unit: &'static str) -> StreamChannel {
+    StreamChannel { label: label.to_string(), unit }
+}
+
+/// All signals of a session, in the order of their channels.
+pub(super) fn session_signals(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<Signal> {
+    signals(kitchen, spec.signals.own_hand).into_iter().map(|(_, signal)| signal).collect()
+}
+
+fn signal_labels(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<String> {
+    let label = |signal: Signal| match signal {
+        Signal::ShowRecipe(order) => format!("show_recipe/{order}"),
+        Signal::Highlight(location) => format!("highlight/{location}"),
+    };
+    session_signals(spec, kitchen).into_iter().map(label).collect()
+}
+
+/// Unit of net benefit: the concept ToM knows deviations of beliefs only.
+fn net_benefit_unit(spec: &SessionSpec) -> &'static str {
+    if spec.assistant.concept == ConceptName::Tom { "probability" } else { "presses" }
+}
+
+/// Metadata that all streams have: program, participant, study, and the layout.
+fn about(code: &str, study: Option<&str>, kitchen: &Kitchen) -> Vec<MetadataNode> {
+    let text = |name, value: &str| MetadataNode::text(name, value);
+    let mut about = vec![
+        MetadataNode::group("program", vec![text("name", SOURCE), text("version", env!("CARGO_PKG_VERSION"))]),
+        text("participant", code),
+    ];
+    about.extend(study.map(|study| text("study", study)));
+    let location = |location: &Location| {
+        let area = location.display;
+        let number = |name, value: f64| MetadataNode::text(name, value);
+        let fields = vec![
+            text("name", &location.name),
+            number("x", area.x),
+            number("y", area.y),
+            number("width", area.w),
+            number("height", area.h),
+        ];
+        MetadataNode::group("location", fields)
+    };
+    let [width_m, height_m] = kitchen.display_m;
+    about.push(MetadataNode::group(
+        "layout",
+        vec![
+            text("name", &kitchen.name),
+            MetadataNode::text("display_width_m", width_m),
+            MetadataNode::text("display_height_m", height_m),
+            MetadataNode::group("locations", kitchen.locations.iter().map(location).collect()),
+        ],
+    ));
+    about
+}

@@ -1,0 +1,157 @@
+//! The samples of a session's streams.
+
+use serde_json::json;
+
+use super::marker_text::{code, event_text};
+use super::stream_description::session_signals;
+use crate::base::time::SessionTime;
+use crate::communication::Signal;
+use crate::communication::recommendation::Recommendation;
+use crate::history::belief_track::BeliefSnapshot;
+use crate::kitchen::Agent;
+use crate::measures::JudgedPress;
+use crate::session::event::Event;
+use crate::session::settings::LslOutlet;
+use crate::session::{Session, Stamped, TimelineEvent};
+
+/// Least time between samples of beliefs that only gaze changed, in seconds.
+const BELIEF_STEP_S: f64 = 0.1;
+
+/// A sample of a stream.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StreamSample {
+    /// The stream.
+    pub outlet: LslOutlet,
+    /// Session time of what it tells.
+    pub time: SessionTime,
+    /// A value for each channel.
+    pub values: SampleValues,
+}
+
+/// The values of a sample.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SampleValues {
+    /// Of a stream of numbers; NaN is none.
+    Numbers(Vec<f64>),
+    /// Of a stream of texts.
+    Texts(Vec<String>),
+}
+
+/// Makes samples from events.
+#[derive(Clone, Debug)]
+pub struct SampleMaker {
+    outlets: Vec<LslOutlet>,
+    /// The signals by channel.
+    signals: Vec<Signal>,
+    /// The last sample of beliefs, and its time.
+    believed: Option<(SessionTime, Vec<f32>)>,
+}
+
+impl SampleMaker {
+    /// A maker of the samples of the streams that the session sends.
+    pub fn new(session: &Session) -> SampleMaker {
+        let outlets = session.spec.lsl.as_ref().map_or(Vec::new(), |lsl| lsl.outlets.clone());
+        SampleMaker { outlets, signals: session_signals(&session.spec, &session.kitchen), believed: None }
+    }
+
+    /// Samples at the beginning of a recording with this name: which recording the following events belong to. They are no events.
+    pub fn opening(&self, recording: &str, session: &Session) -> Vec<StreamSample> {
+        let (spec, time) = (&session.spec, session.time);
+        let told = json!({
+            "kind": "recording",
+            "recording": recording,
+            "participant": spec.participant.code,
+            "condition": spec.trial.condition.name(),
+        });
+        let text = |outlet, text: String| StreamSample { outlet, time, values: SampleValues::Texts(vec![text]) };
+        let all =
+            [text(LslOutlet::Markers, format!("recording/{recording}")), text(LslOutlet::Events, told.to_string())];
+        all.into_iter().filter(|sample| self.outlets.contains(&sample.outlet)).collect()
+    }
+
+    /// The samples of events that were just applied to this session. `judged`: every press of the human so far; `belief`: the estimate
+    /// after the last event.
+    pub fn samples(
+        &mut self,
+        events: &[Stamped],
+        session: &Session,
+        judged: &[JudgedPress],
+        belief: &BeliefSnapshot,
+    ) -> Vec<StreamSample> {
+        let mut samples: Vec<StreamSample> = Vec::new();
+        for stamped in events {
+            samples.extend(self.event_samples(stamped, session, judged));
+        }
+        let by_gaze = events.iter().all(|stamped| stamped.event.is_sample());
+        samples.extend(self.belief_sample(belief, by_gaze));
+        samples.retain(|sample| self.outlets.contains(&sample.outlet));
+        samples
+    }
+
+    fn event_samples(&self, stamped: &Stamped, session: &Session, judged: &[JudgedPress]) -> Vec<StreamSample> {
+        let sample = |outlet, time, values| StreamSample { outlet, time, values };
+        let (now, texts) = (stamped.time, |texts: Vec<String>| SampleValues::Texts(texts));
+        let mut samples = match &stamped.event {
+            Event::Gaze(gaze) => {
+                let read = session.corrected(*gaze);
+                let values = SampleValues::Numbers(vec![read.x, read.y, read.confidence]);
+                return vec![sample(LslOutlet::Gaze, gaze.taken_ns.unwrap_or(now), values)];
+            }
+            Event::RobotMoves(arm) => {
+                return vec![sample(LslOutlet::Arm, now, SampleValues::Numbers(arm.joints.to_vec()))];
+            }
+            Event::Press { agent, button, at_ns } => {
+                let values = texts(press_texts(*agent, button, stamped, session, judged));
+                vec![sample(LslOutlet::Presses, at_ns.unwrap_or(now), values)]
+            }
+            Event::Advised(advice) => {
+                vec![sample(LslOutlet::NetBenefit, advice.for_ns, SampleValues::Numbers(self.net_benefits(advice)))]
+            }
+            _ => Vec::new(),
+        };
+        samples.push(sample(LslOutlet::Markers, now, texts(vec![code(stamped)])));
+        samples.push(sample(LslOutlet::Events, now, texts(vec![event_text(stamped)])));
+        samples
+    }
+
+    /// Net benefit of each signal; NaN for those that cannot be sent now.
+    fn net_benefits(&self, advice: &Recommendation) -> Vec<f64> {
+        let option = |signal: &Signal| advice.options.iter().find(|option| option.signal == *signal);
+        self.signals.iter().map(|signal| option(signal).map_or(f64::NAN, |option| option.net)).collect()
+    }
+
+    /// The beliefs, if they have changed; by gaze alone, not more often than [`BELIEF_STEP_S`] says.
+    fn belief_sample(&mut self, belief: &BeliefSnapshot, by_gaze: bool) -> Option<StreamSample> {
+        let is_due = |(at, _): &(SessionTime, Vec<f32>)| !by_gaze || belief.time.secs_since(*at) >= BELIEF_STEP_S;
+        let held: Vec<f32> = belief.held.iter().map(|held| held.p_truth).collect();
+        if !self.believed.as_ref().is_none_or(|last| is_due(last) && last.1 != held) {
+            return None;
+        }
+        let values = SampleValues::Numbers(held.iter().map(|p_truth| f64::from(*p_truth)).collect());
+        self.believed = Some((belief.time, held));
+        Some(StreamSample { outlet: LslOutlet::Beliefs, time: belief.time, values })
+    }
+}
+
+/// Agent, button, whether the press did anything, and whether it was an error: "yes", "no", or nothing where that is not judged.
+fn press_texts(
+    agent: Agent,
+    button: &str,
+    stamped: &Stamped,
+    session: &Session,
+    judged: &[JudgedPress],
+) -> Vec<String> {
+    let yes = |is_so: bool| if is_so { "yes" } else { "no" }.to_string();
+    let mut entries = session.timeline.iter().rev().take_while(|entry| entry.time >= stamped.time);
+    let is_effective = entries.any(|entry| match &entry.what {
+        TimelineEvent::Press { agent: other, button: id, no_effect } => {
+            let is_it = *other == agent && session.kitchen.button(agent, *id).name == button;
+            is_it && entry.time == stamped.time && no_effect.is_none()
+        }
+        _ => false,
+    });
+    let verdict =
+        judged.iter().rev().take_while(|press| press.seq >= stamped.seq).find(|press| press.seq == stamped.seq);
+    let error = verdict.map_or(String::new(), |press| yes(press.verdict.error));
+    vec![agent.name().to_string(), button.to_string(), yes(is_effective), error]
+}

@@ -1,0 +1,227 @@
+//! Gaze from a stream of the Lab Streaming Layer, read by a thread of its own. The stream may come and go.
+//!
+//! Times of samples are those of the sender's LSL clock, which `lsl_time_correction` maps to ours. Where a sender stamps samples by
+//! another clock, its offset is estimated from their arrival, as for lines of JSON.
+
+use std::io;
+use std::sync::mpsc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tokio::sync::mpsc::{Receiver, Sender, channel};
+
+use super::gaze_stamps::StreamStamps;
+use super::library::{FoundStream, LslInletHandle, LslLibrary};
+use super::predicate;
+use crate::edge::compared_clock::{ANSWERS, ComparedClock};
+use crate::edge::gaze_input::{GazeNews, WAITING};
+use crate::gaze::GazeSample;
+use crate::session::settings::LslGazeSpec;
+
+/// How long a stream is looked for before the session is asked whether it goes on, in seconds.
+const LOOK_S: f64 = 1.0;
+/// How long a connection, its metadata and the first comparison of clocks may take, in seconds.
+const CONNECT_S: f64 = 5.0;
+/// How long a sample is waited for, in seconds.
+const SAMPLE_S: f64 = 0.2;
+/// Period of comparing clocks.
+const COMPARE: Duration = Duration::from_secs(1);
+/// How long the end of the program waits for the end of the thread.
+const END: Duration = Duration::from_secs(2);
+/// Pause before a stream that cannot be read is tried again.
+const RETRY: Duration = Duration::from_secs(1);
+
+/// The end of the thread that reads. Whoever drops it waits for that end, since the library must not be in use when the program ends;
+/// the receiver of news is to be dropped before.
+#[derive(Debug)]
+pub struct InletEnd(mpsc::Receiver<()>);
+
+impl Drop for InletEnd {
+    fn drop(&mut self) {
+        // A library that hangs does not hold up the end of the program.
+        let _ = self.0.recv_timeout(END);
+    }
+}
+
+/// Follows the stream from a thread of its own until the session no longer listens. The display has `display_m` metres.
+///
+/// # Errors
+/// No thread can be started.
+pub fn follow(
+    library: LslLibrary,
+    stream: LslGazeSpec,
+    display_m: [f64; 2],
+) -> io::Result<(Receiver<GazeNews>, InletEnd)> {
+    let ((news, heard), (end, ended)) = (channel(WAITING), mpsc::channel());
+    let mut inlet = GazeInlet { library, stream, display_m, news, lost: 0, complaint: None };
+    let work = move || {
+        inlet.run();
+        // Whoever waited may be gone.
+        let _ = end.send(());
+    };
+    thread::Builder::new().name("lsl-gaze".to_string()).spawn(work)?;
+    Ok((heard, InletEnd(ended)))
+}
+
+/// Names by which the channels of a stream can be meant: their labels, and numbers where there is no label.
+pub fn channel_names(found: &FoundStream, patience_s: f64) -> Option<Vec<String>> {
+    let labels = found.connect(patience_s)?.labels(patience_s)?;
+    let name = |(index, label): (usize, String)| if label.is_empty() { (index + 1).to_string() } else { label };
+    Some(labels.into_iter().enumerate().map(name).collect())
+}
+
+/// A way out of reading: nobody listens any more.
+struct NobodyListens;
+
+/// Reads a stream of gaze.
+struct GazeInlet {
+    library: LslLibrary,
+    stream: LslGazeSpec,
+    display_m: [f64; 2],
+    news: Sender<GazeNews>,
+    /// Number of dropped messages that have not been told yet.
+    lost: u64,
+    /// Why the stream cannot be read, if that was told.
+    complaint: Option<String>,
+}
+
+impl GazeInlet {
+    fn run(&mut self) {
+        while !self.news.is_closed() {
+            let Some(found) = self.library.resolve(&predicate(&self.stream), 1, LOOK_S).into_iter().next() else {
+                continue;
+            };
+            match self.read(&found) {
+                Err(NobodyListens) => return,
+                Ok(Some(reason)) if self.complaint.as_ref() != Some(&reason) => {
+                    self.complaint = Some(reason.clone());
+                    if self.tell(GazeNews::Lost(reason)).is_err() {
+                        return;
+                    }
+                    thread::sleep(RETRY);
+                }
+                Ok(_) => thread::sleep(RETRY),
+            }
+        }
+    }
+
+    /// Reads the stream until it is lost; why it cannot be read, unless it is only gone before it was there.
+    fn read(&mut self, found: &FoundStream) -> Result<Option<String>, NobodyListens> {
+        let [name, _, host] = found.identity();
+        if found.is_text() {
+            return Ok(Some(format!("the stream {name} has texts, not numbers")));
+        }
+        let Some(inlet) = found.connect(CONNECT_S) else { return Ok(None) };
+        let Some(labels) = inlet.labels(CONNECT_S) else { return Ok(None) };
+        let channels = match self.channels(&labels) {
+            Ok(channels) => channels,
+            Err(missing) => {
+                let there: Vec<&str> = labels.iter().map(String::as_str).filter(|label| !label.is_empty()).collect();
+                let there = if there.is_empty() { "no labels".to_string() } else { there.join(", ") };
+                return Ok(Some(format!("the stream {name} has no channel \"{missing}\"; it has {there}")));
+            }
+        };
+        self.tell(GazeNews::Began)?;
+        self.tell(GazeNews::Connected(format!("{name} on {host}")))?;
+        self.complaint = None;
+        self.pass(&inlet, &channels)?;
+        Ok(Some(format!("the stream {name} on {host} ended")))
+    }
+
+    /// Places of x, y and confidence among the channels.
+    ///
+    /// # Errors
+    /// The name of a channel that is not there.
+    fn channels(&self, labels: &[String]) -> Result<GazeChannels, String> {
+        let place = |name: &String| {
+            let by_number = name.parse::<usize>().ok().filter(|number| (1..=labels.len()).contains(number));
+            let by_label = labels.iter().position(|label| label == name);
+            by_label.or(by_number.map(|number| number - 1)).ok_or_else(|| name.clone())
+        };
+        let confidence = self.stream.confidence.as_ref().map(place).transpose()?;
+        Ok(GazeChannels { x: place(&self.stream.x)?, y: place(&self.stream.y)?, confidence })
+    }
+
+    /// Passes samples on until the stream is lost.
+    fn pass(&mut self, inlet: &LslInletHandle, channels: &GazeChannels) -> Result<(), NobodyListens> {
+        let mut clock = ComparedClock::new();
+        (0..ANSWERS).for_each(|_| compare(&mut clock, &self.library));
+        let mut stamps = StreamStamps::new(inlet.time_correction(CONNECT_S));
+        let (mut compared, mut values) = (Instant::now(), Vec::new());
+        loop {
+            let pulled = inlet.pull(&mut values, SAMPLE_S);
+            if self.news.is_closed() {
+                return Err(NobodyListens);
+            }
+            if compared.elapsed() >= COMPARE {
+                compared = Instant::now();
+                compare(&mut clock, &self.library);
+                if let Some(step) = stamps.correct(inlet.time_correction(0.0)) {
+                    self.tell(step)?;
+                }
+            }
+            match pulled {
+                Ok(Some(stamp_s)) => self.take(stamp_s, &values, channels, &mut stamps, &clock),
+                Ok(None) => {}
+                Err(_) => return Ok(()),
+            }
+        }
+    }
+
+    /// Passes a sample on.
+    fn take(
+        &mut self,
+        stamp_s: f64,
+        values: &[f64],
+        channels: &GazeChannels,
+        stamps: &mut StreamStamps,
+        clock: &ComparedClock,
+    ) {
+        let value = |channel: usize| values.get(channel).copied().unwrap_or(f64::NAN);
+        let point = [value(channels.x), value(channels.y)];
+        let confidence = channels.confidence.map_or(1.0, value);
+        // A tracker that does not see the eyes sends NaN: no sample, and no fault.
+        if point.iter().any(|coordinate| coordinate.is_nan()) || confidence.is_nan() {
+            return;
+        }
+        let [x, y] = self.stream.to_display(point, self.display_m);
+        if !(x.is_finite() && y.is_finite() && (0.0..=1.0).contains(&confidence)) {
+            self.offer(GazeNews::Malformed(1));
+            return;
+        }
+        let (taken, step) = stamps.taken(stamp_s, clock, Instant::now());
+        if let Some(step) = step {
+            self.offer(step);
+        }
+        let device_ns = (stamp_s > 0.0).then_some((stamp_s * 1e9) as u64);
+        let sample = GazeSample { device_ns, ..GazeSample::new(x, y, confidence) };
+        self.offer(GazeNews::Sample(sample, Some(taken)));
+    }
+
+    /// Tells what must not be lost; waits where the session is behind.
+    fn tell(&self, news: GazeNews) -> Result<(), NobodyListens> {
+        self.news.blocking_send(news).map_err(|_| NobodyListens)
+    }
+
+    /// Tells what may be dropped, and counts what was.
+    fn offer(&mut self, news: GazeNews) {
+        self.lost += u64::from(self.news.try_send(news).is_err());
+        if self.lost > 0 && self.news.try_send(GazeNews::Overrun(self.lost)).is_ok() {
+            self.lost = 0;
+        }
+    }
+}
+
+/// Places of the coordinates and of the confidence among the channels.
+struct GazeChannels {
+    x: usize,
+    y: usize,
+    confidence: Option<usize>,
+}
+
+/// Compares LSL's clock with ours.
+pub(super) fn compare(clock: &mut ComparedClock, library: &LslLibrary) {
+    let asked = Instant::now();
+    let lsl_s = library.local_clock();
+    clock.take(asked, Instant::now(), lsl_s);
+}

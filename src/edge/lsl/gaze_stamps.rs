@@ -1,0 +1,147 @@
+//! When samples of a stream were taken, by their stamps.
+
+use std::time::{Duration, Instant};
+
+use crate::base::time::SessionTime;
+use crate::edge::compared_clock::ComparedClock;
+use crate::edge::gaze_input::GazeNews;
+use crate::gaze::device_clock::{ClockStep, DeviceClock};
+
+/// A first sample older than this has no stamp of LSL's clock, in seconds.
+const OLDEST_S: f64 = 2.0;
+/// A first sample further ahead than this has none either, in seconds: comparing clocks of two computers is more exact.
+const AHEAD_S: f64 = 0.05;
+/// A correction that changes by more than this was set, in seconds.
+const SET_S: f64 = 0.01;
+
+/// Maps stamps to instants. A stamp plus the correction is a time of this computer's LSL clock. Where the first sample shows that it is
+/// not, arrival tells the offset; where samples agree that the sender's stamps were set, they are followed.
+#[derive(Debug)]
+pub(super) struct StreamStamps {
+    /// Added to the stream's stamps, in seconds.
+    correction_s: Option<f64>,
+    /// When that was last found as it was before.
+    known_at: Instant,
+    /// Beginning of the times that `device` has.
+    origin: Instant,
+    device: DeviceClock,
+    /// How far the sender's clock is ahead of LSL's; `None` before the first sample.
+    ahead_s: Option<f64>,
+    /// Whether the stamps are not those of LSL's clock.
+    is_foreign: bool,
+}
+
+impl StreamStamps {
+    /// Stamps of a stream with this correction; `None` where clocks could not be compared.
+    pub fn new(correction_s: Option<f64>) -> StreamStamps {
+        let (now, device) = (Instant::now(), DeviceClock::default());
+        StreamStamps { correction_s, known_at: now, origin: now, device, ahead_s: None, is_foreign: false }
+    }
+
+    /// Takes a new correction; what is to be told, if the clock of the sender's computer was set.
+    pub fn correct(&mut self, correction_s: Option<f64>) -> Option<GazeNews> {
+        let correction_s = correction_s?;
+        let by_s = self.correction_s.map(|before| before - correction_s).filter(|by_s| by_s.abs() > SET_S);
+        let step = by_s.map(|by_s| GazeNews::ClockSet { by_s, known_at: self.known_at });
+        if by_s.is_some() {
+            self.device = DeviceClock::default();
+        }
+        (self.correction_s, self.known_at) = (Some(correction_s), Instant::now());
+        step
+    }
+
+    /// When the sample with this stamp, which arrived now, was taken; and what is to be told, if the stamps were set.
+    pub fn taken(&mut self, stamp_s: f64, clock: &ComparedClock, now: Instant) -> (Instant, Option<GazeNews>) {
+        let corrected_s = stamp_s + self.correction_s.unwrap_or(0.0);
+        let late_s = clock.device_s(now).map(|now_s| now_s - corrected_s);
+        if self.ahead_s.is_none() {
+            let is_lsl =
+                self.correction_s.is_some() && late_s.is_some_and(|late_s| (-AHEAD_S..=OLDEST_S).contains(&late_s));
+            (self.ahead_s, self.is_foreign) = (Some(0.0), !is_lsl);
+        }
+        let arrived = SessionTime(now.saturating_duration_since(self.origin).as_nanos() as u64);
+        let (by_arrival, step) = self.device.session_time((corrected_s.max(0.0) * 1e9) as u64, arrived);
+        let told = step.map(|ClockStep { by_ns, uncertain_since }| {
+            let by_s = by_ns as f64 / 1e9;
+            self.ahead_s = self.ahead_s.map(|ahead_s| ahead_s + by_s);
+            GazeNews::ClockSet { by_s, known_at: self.origin + Duration::from_nanos(uncertain_since.0) }
+        });
+        let by_stamp = || clock.instant(corrected_s - self.ahead_s.unwrap_or(0.0));
+        let taken = if self.is_foreign { None } else { by_stamp() };
+        (taken.unwrap_or(self.origin + Duration::from_nanos(by_arrival.0)).min(now), told)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Our clock and LSL's, which is 100 s ahead of the seconds since `origin`.
+    fn clocks() -> (Instant, ComparedClock) {
+        let (origin, mut clock) = (Instant::now(), ComparedClock::new());
+        for ms in 0..10 {
+            let at = origin + Duration::from_millis(ms);
+            clock.take(at, at, 100.0 + ms as f64 / 1000.0);
+        }
+        (origin, clock)
+    }
+
+    fn off_s(found: Instant, wanted: Instant) -> f64 {
+        found.max(wanted).duration_since(found.min(wanted)).as_secs_f64()
+    }
+
+    #[test]
+    fn stamps_of_lsl_are_corrected_and_a_delay_does_not_move_them() {
+        let (origin, clock) = clocks();
+        // The sender's clock is 5 s behind ours; samples arrive 8 ms after they were taken, every fifth one 40 ms after.
+        let mut stamps = StreamStamps::new(Some(5.0));
+        for index in 0..400u64 {
+            let taken = origin + Duration::from_millis(1000 + 5 * index);
+            let delay = Duration::from_millis(if index % 5 == 4 { 40 } else { 8 });
+            let (found, step) = stamps.taken(96.0 + 0.005 * index as f64, &clock, taken + delay);
+            assert!(off_s(found, taken) < 1e-4 && step.is_none(), "{index}: {:?}", off_s(found, taken));
+        }
+    }
+
+    #[test]
+    fn stamps_that_are_set_are_followed_and_told_once() {
+        let (origin, clock) = clocks();
+        let mut stamps = StreamStamps::new(Some(0.0));
+        let mut told = Vec::new();
+        for index in 0..800u64 {
+            let taken = origin + Duration::from_millis(1000 + 5 * index);
+            let set_s = if index < 400 { 0.0 } else { -0.7 };
+            let (found, step) =
+                stamps.taken(101.0 + 0.005 * index as f64 + set_s, &clock, taken + Duration::from_millis(8));
+            told.extend(step);
+            if !(400..500).contains(&index) {
+                assert!(off_s(found, taken) < 1e-3, "{index}: {}", off_s(found, taken));
+            }
+        }
+        assert!(matches!(&told[..], [GazeNews::ClockSet { by_s, .. }] if (by_s + 0.7).abs() < 1e-6), "{told:?}");
+    }
+
+    #[test]
+    fn stamps_of_another_clock_are_read_by_arrival() {
+        let (origin, clock) = clocks();
+        for correction in [Some(0.0), None] {
+            let mut stamps = StreamStamps::new(correction);
+            for index in 0..400u64 {
+                let taken = origin + Duration::from_millis(1000 + 5 * index);
+                // Seconds since 1970.
+                let (found, step) =
+                    stamps.taken(1.7e9 + 0.005 * index as f64, &clock, taken + Duration::from_millis(8));
+                assert!(off_s(found, taken) < 0.009 && step.is_none(), "{index}: {}", off_s(found, taken));
+            }
+        }
+    }
+
+    #[test]
+    fn a_clock_that_was_set_is_told_by_its_correction() {
+        let mut stamps = StreamStamps::new(Some(3.0));
+        assert_eq!(stamps.correct(Some(3.004)), None);
+        assert_eq!(stamps.correct(None), None);
+        let told = stamps.correct(Some(2.5));
+        assert!(matches!(told, Some(GazeNews::ClockSet { by_s, .. }) if (by_s - 0.504).abs() < 1e-9), "{told:?}");
+    }
+}

@@ -1,0 +1,367 @@
+//! liblsl, loaded when a session asks for it: its functions, and what they make, as values that are used safely. This is the only file
+//! of the crate with code that the compiler cannot check.
+
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::path::Path;
+
+use libloading::Library;
+
+use super::lsl_error::LslError;
+use crate::analysis::lsl::{MetadataNode, StreamDescription};
+
+/// An object of liblsl, or an element of its metadata.
+type Pointer = *mut c_void;
+
+/// Names of the library on a system that has it.
+#[cfg(target_os = "macos")]
+const SYSTEM_NAMES: [&str; 2] = ["liblsl.dylib", "/opt/homebrew/lib/liblsl.dylib"];
+#[cfg(windows)]
+const SYSTEM_NAMES: [&str; 1] = ["lsl.dll"];
+#[cfg(not(any(target_os = "macos", windows)))]
+const SYSTEM_NAMES: [&str; 2] = ["liblsl.so.2", "liblsl.so"];
+
+/// Formats of channels (`lsl_channel_format_t`).
+const DOUBLE: i32 = 2;
+const STRING: i32 = 3;
+/// A rate that is not regular (`LSL_IRREGULAR_RATE`).
+const IRREGULAR: f64 = 0.0;
+/// Samples that an outlet keeps for a consumer that is slow, in hundreds, and that an inlet keeps for us, in seconds.
+const KEPT_OUT: i32 = 360;
+const KEPT_IN: i32 = 10;
+/// Largest number of streams that are found at once.
+pub(super) const MOST_FOUND: u16 = 32;
+/// What a function without an answer in time gives as error (`lsl_timeout_error`).
+const TIMEOUT: i32 = -1;
+
+macro_rules! functions {
+    ($($name:ident: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
+        /// The functions of liblsl that are used, with the signatures of its header files (`include/lsl/*.h`).
+        #[derive(Debug)]
+        struct Functions { $($name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)* }
+
+        impl Functions {
+            fn find(library: &Library, place: &str) -> Result<Functions, LslError> {
+                Ok(Functions { $($name: {
+                    let symbol = concat!("lsl_", stringify!($name));
+                    // SAFETY: the signatures are those of liblsl's header files, which have not changed since version 1.13.
+                    let found = unsafe { library.get::<unsafe extern "C" fn($($argument),*) $(-> $result)?>(symbol) };
+                    *found.map_err(|_| LslError::Unfit { place: place.to_string(), lacks: symbol })?
+                },)* })
+            }
+        }
+    };
+}
+
+functions! {
+    library_version: fn() -> i32;
+    set_config_content: fn(*const c_char);
+    local_clock: fn() -> f64;
+    create_streaminfo: fn(*const c_char, *const c_char, i32, f64, i32, *const c_char) -> Pointer;
+    destroy_streaminfo: fn(Pointer);
+    get_name: fn(Pointer) -> *const c_char;
+    get_type: fn(Pointer) -> *const c_char;
+    get_hostname: fn(Pointer) -> *const c_char;
+    get_channel_count: fn(Pointer) -> i32;
+    get_channel_format: fn(Pointer) -> i32;
+    get_desc: fn(Pointer) -> Pointer;
+    append_child: fn(Pointer, *const c_char) -> Pointer;
+    append_child_value: fn(Pointer, *const c_char, *const c_char) -> Pointer;
+    child: fn(Pointer, *const c_char) -> Pointer;
+    next_sibling_n: fn(Pointer, *const c_char) -> Pointer;
+    child_value_n: fn(Pointer, *const c_char) -> *const c_char;
+    create_outlet: fn(Pointer, i32, i32) -> Pointer;
+    destroy_outlet: fn(Pointer);
+    push_sample_dt: fn(Pointer, *const f64, f64) -> i32;
+    push_sample_strt: fn(Pointer, *const *const c_char, f64) -> i32;
+    have_consumers: fn(Pointer) -> i32;
+    resolve_bypred: fn(*mut Pointer, u32, *const c_char, i32, f64) -> i32;
+    create_inlet: fn(Pointer, i32, i32, i32) -> Pointer;
+    destroy_inlet: fn(Pointer);
+    get_fullinfo: fn(Pointer, f64, *mut i32) -> Pointer;
+    open_stream: fn(Pointer, f64, *mut i32);
+    time_correction: fn(Pointer, f64, *mut i32) -> f64;
+    pull_sample_d: fn(Pointer, *mut f64, i32, f64, *mut i32) -> f64;
+}
+
+/// The loaded library. It stays loaded until the program ends: threads of its own may still run.
+#[derive(Clone, Copy, Debug)]
+pub struct LslLibrary {
+    functions: &'static Functions,
+    /// Its version, times 100.
+    pub version: i32,
+}
+
+impl LslLibrary {
+    /// Loads the library from this path, or the one that the system has, and gives it this configuration.
+    ///
+    /// # Errors
+    /// There is none, or it lacks a function that is needed.
+    pub fn load(path: Option<&Path>, configuration: &str) -> Result<LslLibrary, LslError> {
+        let (library, place) = match path {
+            Some(path) => (open(path)?, path.display().to_string()),
+            None => {
+                let mut tried = SYSTEM_NAMES.iter().map(|name| Ok((open(Path::new(name))?, (*name).to_string())));
+                let first = tried.next().unwrap_or(Err(LslError::Missing(String::new())));
+                first.or_else(|error| tried.find_map(Result::ok).ok_or(error))?
+            }
+        };
+        let functions: &'static Functions = Box::leak(Box::new(Functions::find(&library, &place)?));
+        std::mem::forget(library);
+        let configuration = text(configuration);
+        // SAFETY: the text ends with a zero byte and lives until the call is over; the library copies it.
+        unsafe { (functions.set_config_content)(configuration.as_ptr()) };
+        // SAFETY: the function takes nothing and only returns a number.
+        let version = unsafe { (functions.library_version)() };
+        Ok(LslLibrary { functions, version })
+    }
+
+    /// Time of LSL's clock on this computer, in seconds.
+    pub fn local_clock(&self) -> f64 {
+        // SAFETY: the function takes nothing and reads a clock.
+        unsafe { (self.functions.local_clock)() }
+    }
+
+    /// Begins to offer a stream.
+    ///
+    /// # Errors
+    /// The library refuses it.
+    pub fn offer(&self, stream: &StreamDescription) -> Result<LslOutletHandle, LslError> {
+        let functions = self.functions;
+        let (name, content, source) = (text(&stream.name), text(stream.content), text(&stream.source));
+        let format = if stream.is_text { STRING } else { DOUBLE };
+        let channels = stream.channels.len();
+        let refused = || LslError::Refused(stream.name.clone());
+        let count = i32::try_from(channels).map_err(|_| refused())?;
+        // SAFETY: all texts end with a zero byte and live until the calls are over; `info` is destroyed once, and the outlet has its
+        // own copy of it. The library returns null for what it cannot make, which is not used any further.
+        let pointer = unsafe {
+            let info = (functions.create_streaminfo)(
+                name.as_ptr(),
+                content.as_ptr(),
+                count,
+                IRREGULAR,
+                format,
+                source.as_ptr(),
+            );
+            if info.is_null() {
+                return Err(refused());
+            }
+            let root = (functions.get_desc)(info);
+            stream.metadata().iter().for_each(|node| functions.append(root, node));
+            let outlet = (functions.create_outlet)(info, 0, KEPT_OUT);
+            (functions.destroy_streaminfo)(info);
+            outlet
+        };
+        if pointer.is_null() { Err(refused()) } else { Ok(LslOutletHandle { functions, pointer, channels }) }
+    }
+
+    /// Streams that satisfy a predicate (XPath 1.0); waits for so many of them, not longer than this.
+    pub fn resolve(&self, predicate: &str, wanted: u16, patience_s: f64) -> Vec<FoundStream> {
+        let (predicate, mut found) = (text(predicate), vec![std::ptr::null_mut(); usize::from(MOST_FOUND)]);
+        // SAFETY: the buffer has room for as many pointers as the library is told that it has.
+        let count = unsafe {
+            let (buffer, room) = (found.as_mut_ptr(), u32::from(MOST_FOUND));
+            (self.functions.resolve_bypred)(buffer, room, predicate.as_ptr(), i32::from(wanted), patience_s)
+        };
+        found.truncate(usize::try_from(count).unwrap_or(0));
+        found.into_iter().map(|info| FoundStream { functions: self.functions, info }).collect()
+    }
+}
+
+fn open(path: &Path) -> Result<Library, LslError> {
+    // SAFETY: loading a library runs its initialisers; the session file, or the system, names it as liblsl.
+    unsafe { Library::new(path) }.map_err(|reason| LslError::Missing(reason.to_string()))
+}
+
+/// A text for the library; it ends at its first zero byte, of which ours have none.
+fn text(text: &str) -> CString {
+    let bytes: Vec<u8> = text.bytes().take_while(|byte| *byte != 0).collect();
+    CString::new(bytes).unwrap_or_default()
+}
+
+impl Functions {
+    /// Adds an element to an element of a stream's metadata.
+    ///
+    /// # Safety
+    /// `parent` is an element of a stream's description that lives.
+    unsafe fn append(&self, parent: Pointer, node: &MetadataNode) {
+        let (name, content) = (text(node.name), text(&node.text));
+        // SAFETY: texts live until the calls are over; elements belong to the description, which the caller keeps.
+        unsafe {
+            if node.inside.is_empty() {
+                (self.append_child_value)(parent, name.as_ptr(), content.as_ptr());
+            } else {
+                let element = (self.append_child)(parent, name.as_ptr());
+                node.inside.iter().for_each(|inner| self.append(element, inner));
+            }
+        }
+    }
+
+    /// A text of the library, which lives as long as what it belongs to.
+    ///
+    /// # Safety
+    /// `from` is null or a text that ends with a zero byte.
+    unsafe fn read(from: *const c_char) -> String {
+        // SAFETY: as the caller says.
+        if from.is_null() { String::new() } else { unsafe { CStr::from_ptr(from) }.to_string_lossy().into_owned() }
+    }
+}
+
+/// A stream that is offered, until this is dropped. It stays on the thread that made it.
+#[derive(Debug)]
+pub struct LslOutletHandle {
+    functions: &'static Functions,
+    pointer: Pointer,
+    channels: usize,
+}
+
+impl LslOutletHandle {
+    /// Sends a sample of numbers with this time of LSL's clock; whether the library took it.
+    pub fn push_numbers(&self, values: &[f64], time_s: f64) -> bool {
+        // SAFETY: there is a value for every channel, and the outlet has numbers of this type.
+        values.len() == self.channels
+            && unsafe { (self.functions.push_sample_dt)(self.pointer, values.as_ptr(), time_s) } == 0
+    }
+
+    /// Sends a sample of texts with this time of LSL's clock; whether the library took it.
+    pub fn push_texts(&self, values: &[String], time_s: f64) -> bool {
+        let texts: Vec<CString> = values.iter().map(|value| text(value)).collect();
+        let pointers: Vec<*const c_char> = texts.iter().map(|text| text.as_ptr()).collect();
+        // SAFETY: there is a text for every channel; each lives until the call is over, and the library copies it.
+        pointers.len() == self.channels
+            && unsafe { (self.functions.push_sample_strt)(self.pointer, pointers.as_ptr(), time_s) } == 0
+    }
+
+    /// Whether anybody reads it.
+    pub fn has_consumers(&self) -> bool {
+        // SAFETY: the outlet lives as long as this value.
+        unsafe { (self.functions.have_consumers)(self.pointer) != 0 }
+    }
+}
+
+impl Drop for LslOutletHandle {
+    fn drop(&mut self) {
+        // SAFETY: the outlet is destroyed once.
+        unsafe { (self.functions.destroy_outlet)(self.pointer) };
+    }
+}
+
+/// A stream that somebody offers.
+#[derive(Debug)]
+pub struct FoundStream {
+    functions: &'static Functions,
+    info: Pointer,
+}
+
+impl FoundStream {
+    /// Its name, content type, and the computer that offers it.
+    pub fn identity(&self) -> [String; 3] {
+        let functions = self.functions;
+        // SAFETY: the description lives as long as this value, and its texts with it; they are copied.
+        [functions.get_name, functions.get_type, functions.get_hostname]
+            .map(|get| unsafe { Functions::read(get(self.info)) })
+    }
+
+    /// Whether its samples are texts.
+    pub fn is_text(&self) -> bool {
+        // SAFETY: as above.
+        unsafe { (self.functions.get_channel_format)(self.info) == STRING }
+    }
+
+    /// Number of its channels.
+    pub fn channel_count(&self) -> usize {
+        // SAFETY: as above.
+        usize::try_from(unsafe { (self.functions.get_channel_count)(self.info) }).unwrap_or(0)
+    }
+
+    /// Connects to the stream; `None` if it is gone or does not answer in time.
+    pub fn connect(&self, patience_s: f64) -> Option<LslInletHandle> {
+        let channels = self.channel_count();
+        // SAFETY: the description lives; the inlet has its own copy of it. Without recovery a lost stream is told as lost.
+        let pointer = unsafe { (self.functions.create_inlet)(self.info, KEPT_IN, 0, 0) };
+        if pointer.is_null() {
+            return None;
+        }
+        let inlet = LslInletHandle { functions: self.functions, pointer, channels };
+        let mut error = 0;
+        // SAFETY: the inlet lives, and the error is written before the call returns.
+        unsafe { (self.functions.open_stream)(inlet.pointer, patience_s, &raw mut error) };
+        (error == 0).then_some(inlet)
+    }
+}
+
+impl Drop for FoundStream {
+    fn drop(&mut self) {
+        // SAFETY: the description is destroyed once.
+        unsafe { (self.functions.destroy_streaminfo)(self.info) };
+    }
+}
+
+/// A stream is gone, or the library does not read it any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StreamLost;
+
+/// A stream that is read, until this is dropped. It stays on the thread that made it.
+#[derive(Debug)]
+pub struct LslInletHandle {
+    functions: &'static Functions,
+    pointer: Pointer,
+    channels: usize,
+}
+
+impl LslInletHandle {
+    /// Labels of the channels, as far as the stream's metadata name them; `None` if they do not come in time.
+    pub fn labels(&self, patience_s: f64) -> Option<Vec<String>> {
+        let (functions, mut error) = (self.functions, 0);
+        // SAFETY: the inlet lives; the description that it gives belongs to us and is destroyed once. Elements that are not there are
+        // null or empty, which the library takes as well; there are no more steps than channels.
+        unsafe {
+            let info = (functions.get_fullinfo)(self.pointer, patience_s, &raw mut error);
+            if info.is_null() {
+                return None;
+            }
+            let channels = (functions.child)((functions.get_desc)(info), c"channels".as_ptr());
+            let mut channel = (functions.child)(channels, c"channel".as_ptr());
+            let mut labels = Vec::new();
+            for _ in 0..self.channels {
+                labels.push(Functions::read((functions.child_value_n)(channel, c"label".as_ptr())));
+                channel = (functions.next_sibling_n)(channel, c"channel".as_ptr());
+            }
+            (functions.destroy_streaminfo)(info);
+            Some(labels)
+        }
+    }
+
+    /// What is to be added to the stream's times for times of this computer's LSL clock, in seconds; `None` while it is not known.
+    pub fn time_correction(&self, patience_s: f64) -> Option<f64> {
+        let mut error = 0;
+        // SAFETY: the inlet lives, and the error is written before the call returns.
+        let correction = unsafe { (self.functions.time_correction)(self.pointer, patience_s, &raw mut error) };
+        (error == 0).then_some(correction)
+    }
+
+    /// The next sample into `values`, and its time on the stream's clock; `None` if none comes in time.
+    ///
+    /// # Errors
+    /// The stream is lost.
+    pub fn pull(&self, values: &mut Vec<f64>, patience_s: f64) -> Result<Option<f64>, StreamLost> {
+        values.resize(self.channels, 0.0);
+        let mut error = 0;
+        // SAFETY: the buffer has room for a value of every channel.
+        let time = unsafe {
+            let room = self.channels as i32;
+            (self.functions.pull_sample_d)(self.pointer, values.as_mut_ptr(), room, patience_s, &raw mut error)
+        };
+        match error {
+            0 | TIMEOUT => Ok((time != 0.0).then_some(time)),
+            _ => Err(StreamLost),
+        }
+    }
+}
+
+impl Drop for LslInletHandle {
+    fn drop(&mut self) {
+        // SAFETY: the inlet is destroyed once.
+        unsafe { (self.functions.destroy_inlet)(self.pointer) };
+    }
+}

@@ -1,0 +1,38 @@
+//! Errors of the Lab Streaming Layer.
+
+/// The Lab Streaming Layer cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LslError {
+    /// The library cannot be loaded, for this reason.
+    #[error("the library of the Lab Streaming Layer (liblsl) cannot be loaded: {0}")]
+    Missing(String),
+    /// The library lacks a function.
+    #[error("{place} is no liblsl of version 1.17.7 or newer: it lacks {lacks}")]
+    Unfit {
+        /// Where it is.
+        place: String,
+        /// The function.
+        lacks: &'static str,
+    },
+    /// The library does not offer the stream of this name.
+    #[error("liblsl does not offer the stream {0}")]
+    Refused(String),
+    /// The thread that sends cannot be started, or does not answer in time.
+    #[error("the thread for the Lab Streaming Layer does not start")]
+    NoThread,
+}
+
+impl LslError {
+    /// What to do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            LslError::Missing(_) | LslError::Unfit { .. } => {
+                "name it in the session file, under [lsl]: library = \"…/liblsl.so\". The package pylsl has one (pip install pylsl, folder \
+                 pylsl/lib); others are at github.com/sccn/liblsl/releases"
+            }
+            LslError::Refused(_) | LslError::NoThread => {
+                "see docs/lsl.md; without [lsl] in the session file nothing is sent"
+            }
+        }
+    }
+}

@@ -1,0 +1,160 @@
+//! Sends streams of the Lab Streaming Layer from a thread of its own. Whoever tells it something never waits: where the thread does not
+//! keep up, samples are dropped and counted.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, channel, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::gaze_inlet::compare;
+use super::library::{LslLibrary, LslOutletHandle};
+use super::lsl_error::LslError;
+use crate::analysis::lsl::{SampleValues, StreamDescription};
+use crate::edge::compared_clock::{ANSWERS, ComparedClock};
+use crate::session::settings::LslOutlet;
+
+/// Number of packets of samples that may wait; at 200 gaze samples a second they are those of 20 seconds.
+const WAITING: usize = 4096;
+/// How long the library may take to offer the streams.
+const BEGIN: Duration = Duration::from_secs(10);
+/// How long streams are still offered after their last sample, if somebody reads them: the library sends from threads of its own.
+const LINGER: Duration = Duration::from_millis(500);
+/// How long the end of the program waits for that.
+const END: Duration = Duration::from_secs(2);
+/// Period of comparing LSL's clock with ours.
+const COMPARE: Duration = Duration::from_secs(1);
+
+/// A sample with the instant of what it tells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TimedSample {
+    /// The stream.
+    pub outlet: LslOutlet,
+    /// When.
+    pub at: Instant,
+    /// A value for each channel.
+    pub values: SampleValues,
+}
+
+/// Counts of samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LslCounts {
+    /// Samples that the library took.
+    pub sent: u64,
+    /// Samples that were dropped, since the thread did not keep up.
+    pub dropped: u64,
+    /// Samples that the library refused.
+    pub refused: u64,
+}
+
+#[derive(Debug, Default)]
+struct Counters {
+    sent: AtomicU64,
+    dropped: AtomicU64,
+    refused: AtomicU64,
+}
+
+/// Streams that are offered, until this is dropped.
+#[derive(Debug)]
+pub struct LslStreams {
+    /// What is offered.
+    pub descriptions: Vec<StreamDescription>,
+    /// `None` once no more is told.
+    packets: Option<SyncSender<Vec<TimedSample>>>,
+    counters: Arc<Counters>,
+    done: Receiver<()>,
+}
+
+impl LslStreams {
+    /// Offers these streams.
+    ///
+    /// # Errors
+    /// The library refuses one of them, or does not answer.
+    pub fn offer(library: LslLibrary, descriptions: Vec<StreamDescription>) -> Result<LslStreams, LslError> {
+        let (packets, told) = sync_channel::<Vec<TimedSample>>(WAITING);
+        let (begun, begins) = channel();
+        let (end, done) = channel();
+        let (counters, streams) = (Arc::new(Counters::default()), descriptions.clone());
+        let counted = counters.clone();
+        let work = move || {
+            let outlets = match offer_all(library, &streams) {
+                Ok(outlets) => outlets,
+                Err(error) => return drop(begun.send(Err(error))),
+            };
+            if begun.send(Ok(())).is_ok() {
+                send(library, &outlets, &told, &counted);
+            }
+            if outlets.values().any(LslOutletHandle::has_consumers) {
+                thread::sleep(LINGER);
+            }
+            drop(outlets);
+            // Whoever waited may be gone.
+            let _ = end.send(());
+        };
+        thread::Builder::new().name("lsl".to_string()).spawn(work).map_err(|_| LslError::NoThread)?;
+        begins.recv_timeout(BEGIN).map_err(|_| LslError::NoThread)??;
+        Ok(LslStreams { descriptions, packets: Some(packets), counters, done })
+    }
+
+    /// Sends samples, or drops them where the thread does not keep up.
+    pub fn tell(&self, samples: Vec<TimedSample>) {
+        let Some(packets) = self.packets.as_ref().filter(|_| !samples.is_empty()) else { return };
+        if let Err(TrySendError::Full(samples) | TrySendError::Disconnected(samples)) = packets.try_send(samples) {
+            self.counters.dropped.fetch_add(samples.len() as u64, Relaxed);
+        }
+    }
+
+    /// Counts so far.
+    pub fn counts(&self) -> LslCounts {
+        let Counters { sent, dropped, refused } = &*self.counters;
+        LslCounts { sent: sent.load(Relaxed), dropped: dropped.load(Relaxed), refused: refused.load(Relaxed) }
+    }
+}
+
+impl Drop for LslStreams {
+    fn drop(&mut self) {
+        self.packets = None;
+        // A library that hangs does not hold up the end of the program.
+        let _ = self.done.recv_timeout(END);
+    }
+}
+
+fn offer_all(
+    library: LslLibrary,
+    streams: &[StreamDescription],
+) -> Result<BTreeMap<LslOutlet, LslOutletHandle>, LslError> {
+    streams.iter().map(|stream| Ok((stream.outlet, library.offer(stream)?))).collect()
+}
+
+/// Sends what is told until nobody tells anything any more.
+fn send(
+    library: LslLibrary,
+    outlets: &BTreeMap<LslOutlet, LslOutletHandle>,
+    told: &Receiver<Vec<TimedSample>>,
+    counters: &Counters,
+) {
+    let mut clock = ComparedClock::new();
+    (0..ANSWERS).for_each(|_| compare(&mut clock, &library));
+    let mut compared = Instant::now();
+    loop {
+        let packet = match told.recv_timeout(COMPARE) {
+            Ok(packet) => packet,
+            Err(RecvTimeoutError::Timeout) => Vec::new(),
+            Err(RecvTimeoutError::Disconnected) => return,
+        };
+        if compared.elapsed() >= COMPARE {
+            compared = Instant::now();
+            compare(&mut clock, &library);
+        }
+        for sample in &packet {
+            let outlet = outlets.get(&sample.outlet).zip(clock.device_s(sample.at));
+            let is_taken = outlet.is_some_and(|(outlet, time_s)| match &sample.values {
+                SampleValues::Numbers(values) => outlet.push_numbers(values, time_s),
+                SampleValues::Texts(values) => outlet.push_texts(values, time_s),
+            });
+            let counter = if is_taken { &counters.sent } else { &counters.refused };
+            counter.fetch_add(1, Relaxed);
+        }
+    }
+}

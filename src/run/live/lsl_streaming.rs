@@ -1,0 +1,75 @@
+//! The live streams of the Lab Streaming Layer: samples of every event go to a thread that never makes the session wait.
+
+use std::rc::Rc;
+
+use crate::analysis::lsl::{SampleMaker, StreamSample};
+use crate::console::console_model::LslStatus;
+use crate::edge::clock::SessionClock;
+use crate::edge::lsl::{LslCounts, LslStreams, TimedSample};
+use crate::history::belief_track::BeliefSnapshot;
+use crate::run::desk::OperatorDesk;
+use crate::run::engine::Engine;
+use crate::session::{Session, Stamped};
+
+/// A session whose samples are sent.
+pub(super) struct LslStreaming {
+    maker: SampleMaker,
+    streams: Rc<LslStreams>,
+    /// Counts of losses that the wizard was told of.
+    told: LslCounts,
+}
+
+impl LslStreaming {
+    /// The streams of a recording with this name, which begins now; `None` if the session sends none.
+    ///
+    /// # Errors
+    /// They cannot be offered, for this reason; the session can go on without them.
+    pub fn open(
+        desk: &mut OperatorDesk,
+        session: &Session,
+        recording: &str,
+        clock: &SessionClock,
+    ) -> Result<Option<LslStreaming>, String> {
+        let streams = desk.lsl.streams(session).map_err(|error| error.to_string())?;
+        let open = |streams: Rc<LslStreams>| {
+            let (maker, told) = (SampleMaker::new(session), streams.counts());
+            let streaming = LslStreaming { maker, streams, told };
+            streaming.send(streaming.maker.opening(recording, session), clock);
+            streaming
+        };
+        Ok(streams.map(open))
+    }
+
+    /// Sends the samples of events that have just been recorded. `belief`: the estimate after the last one.
+    pub fn tell(&mut self, events: &[Stamped], engine: &Engine, belief: &BeliefSnapshot, clock: &SessionClock) {
+        let samples = self.maker.samples(events, engine.session(), engine.judged(), belief);
+        self.send(samples, clock);
+    }
+
+    fn send(&self, samples: Vec<StreamSample>, clock: &SessionClock) {
+        let timed = |StreamSample { outlet, time, values }: StreamSample| {
+            let at = clock.instant_of(time);
+            TimedSample { outlet, at, values }
+        };
+        self.streams.tell(samples.into_iter().map(timed).collect());
+    }
+
+    /// State of the streams.
+    pub fn status(&self) -> LslStatus {
+        let LslCounts { sent, dropped, refused } = self.streams.counts();
+        let names = self.streams.descriptions.iter().map(|stream| stream.outlet.name().to_string()).collect();
+        LslStatus { streams: names, sent, lost: dropped + refused }
+    }
+
+    /// What is to be said about samples that were lost since the last call.
+    pub fn complaint(&mut self) -> Option<String> {
+        let now = self.streams.counts();
+        let before = std::mem::replace(&mut self.told, now);
+        let (dropped, refused) = (now.dropped - before.dropped, now.refused - before.refused);
+        match (dropped, refused) {
+            (0, 0) => None,
+            (_, 0) => Some(format!("LSL: {dropped} samples dropped, the session goes on")),
+            _ => Some(format!("LSL: {refused} samples refused by liblsl, the session goes on")),
+        }
+    }
+}

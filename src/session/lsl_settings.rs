@@ -1,0 +1,197 @@
+//! Settings of the Lab Streaming Layer (LSL) in a session file: which streams the program sends, and which stream gaze comes from.
+
+use serde::{Deserialize, Serialize};
+
+use super::setting_checks::SettingError;
+
+/// The Lab Streaming Layer.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LslSpec {
+    /// Path of its library (liblsl), relative to the session file; `None` for the one that the system has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub library: Option<String>,
+    /// The streams that are sent; none by default.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub outlets: Vec<LslOutlet>,
+    /// The stream that gaze comes from, with `gaze = "lsl"`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gaze: Option<LslGazeSpec>,
+}
+
+/// A stream that the program sends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LslOutlet {
+    /// Every event but samples, as a short code.
+    Markers,
+    /// The same events as JSON, as the log has them.
+    Events,
+    /// Presses of both agents, with their effect.
+    Presses,
+    /// Estimated probability of the truth for every state aspect.
+    Beliefs,
+    /// Net benefit of every signal.
+    NetBenefit,
+    /// Gaze samples.
+    Gaze,
+    /// Joint angles of the simulated arm.
+    Arm,
+}
+
+impl LslOutlet {
+    /// All streams, in the order of the documentation.
+    pub const ALL: [LslOutlet; 7] = [
+        LslOutlet::Markers,
+        LslOutlet::Events,
+        LslOutlet::Presses,
+        LslOutlet::Beliefs,
+        LslOutlet::NetBenefit,
+        LslOutlet::Gaze,
+        LslOutlet::Arm,
+    ];
+
+    /// Name in settings and in the names of streams.
+    pub fn name(self) -> &'static str {
+        match self {
+            LslOutlet::Markers => "markers",
+            LslOutlet::Events => "events",
+            LslOutlet::Presses => "presses",
+            LslOutlet::Beliefs => "beliefs",
+            LslOutlet::NetBenefit => "net_benefit",
+            LslOutlet::Gaze => "gaze",
+            LslOutlet::Arm => "arm",
+        }
+    }
+}
+
+/// A stream of gaze on the display: how it is found, and what its channels are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LslGazeSpec {
+    /// Name of the stream; any if `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Content type of the stream, such as "Gaze"; any if `None`.
+    #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
+    pub content: Option<String>,
+    /// Channel of the horizontal coordinate: its label, or its number from 1.
+    pub x: String,
+    /// Channel of the vertical coordinate.
+    pub y: String,
+    /// Channel of the confidence, from 0 to 1; `None` if the stream has none: every sample counts as certain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confidence: Option<String>,
+    /// Unit of the coordinates.
+    #[serde(default)]
+    pub unit: GazeUnit,
+    /// Where the coordinates are 0, and which way y points.
+    #[serde(default)]
+    pub origin: GazeOrigin,
+    /// Width and height of the display in the unit. Without it 1 and 1 for normalised coordinates, those of the layout for metres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub size: Option<[f64; 2]>,
+}
+
+/// Unit of gaze coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GazeUnit {
+    /// Fractions of the display.
+    #[default]
+    Normalised,
+    /// Pixels of the display.
+    Pixels,
+    /// Metres on the display.
+    Metres,
+}
+
+/// Origin of gaze coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GazeOrigin {
+    /// The display's top left corner, y points down.
+    #[default]
+    TopLeft,
+    /// The display's bottom left corner, y points up.
+    BottomLeft,
+    /// The display's centre, y points up.
+    Centre,
+}
+
+impl LslGazeSpec {
+    /// A point of the stream in fractions of the display, origin at the top left, on a display of `display_m` metres.
+    pub fn to_display(&self, [x, y]: [f64; 2], display_m: [f64; 2]) -> [f64; 2] {
+        let [width, height] = self.size.unwrap_or(match self.unit {
+            GazeUnit::Metres => display_m,
+            GazeUnit::Normalised | GazeUnit::Pixels => [1.0, 1.0],
+        });
+        let (x, y) = (x / width, y / height);
+        match self.origin {
+            GazeOrigin::TopLeft => [x, y],
+            GazeOrigin::BottomLeft => [x, 1.0 - y],
+            GazeOrigin::Centre => [0.5 + x, 0.5 - y],
+        }
+    }
+
+    /// What the stream is called in messages: its name, else its type.
+    pub fn title(&self) -> String {
+        match (&self.name, &self.content) {
+            (Some(name), _) => format!("\"{name}\""),
+            (None, Some(content)) => format!("of type \"{content}\""),
+            (None, None) => "of any name".to_string(),
+        }
+    }
+
+    fn check(&self) -> Result<(), SettingError> {
+        let texts = [
+            ("name", &self.name),
+            ("type", &self.content),
+            ("x", &Some(self.x.clone())),
+            ("y", &Some(self.y.clone())),
+            ("confidence", &self.confidence),
+        ];
+        for (key, text) in texts {
+            if let Some(text) = text.as_ref().filter(|text| !is_name(text)) {
+                let found = format!("{key} = {text:?}");
+                let remedy = "1 to 100 signs on one line, without quotation marks";
+                return Err(SettingError::new(format!("lsl.gaze.{key}"), found, remedy));
+            }
+        }
+        if self.name.is_none() && self.content.is_none() {
+            let remedy =
+                "name = \"…\" or type = \"Gaze\" under [lsl.gaze]: tomcom doctor lists the streams that there are";
+            return Err(SettingError::new("lsl.gaze", "neither name nor type of a stream".to_string(), remedy));
+        }
+        if self.x == self.y {
+            let remedy = "one channel for each coordinate";
+            return Err(SettingError::new("lsl.gaze.y", format!("x = y = \"{}\"", self.x), remedy));
+        }
+        if self.unit == GazeUnit::Pixels && self.size.is_none() {
+            let remedy = "size = [1920, 1080] under [lsl.gaze]: the display's pixels";
+            return Err(SettingError::new("lsl.gaze.unit", "unit = \"pixels\", and no size".to_string(), remedy));
+        }
+        Ok(())
+    }
+}
+
+/// Whether a text can be a name in a query for streams, which has it in quotation marks.
+fn is_name(text: &str) -> bool {
+    let is_plain = |sign: char| !sign.is_control() && !matches!(sign, '\'' | '"');
+    (1..=100).contains(&text.chars().count()) && text.chars().all(is_plain)
+}
+
+impl LslSpec {
+    pub(super) fn check(&self) -> Result<(), SettingError> {
+        if let Some(library) = self.library.as_ref().filter(|path| path.trim().is_empty()) {
+            let remedy = "the path of liblsl, or no library at all for the system's";
+            return Err(SettingError::new("lsl.library", format!("library = {library:?}"), remedy));
+        }
+        let mut outlets = self.outlets.iter().enumerate();
+        if let Some((_, twice)) = outlets.find(|(index, outlet)| self.outlets[..*index].contains(outlet)) {
+            let found = format!("\"{}\" twice", twice.name());
+            return Err(SettingError::new("lsl.outlets", found, "each stream once"));
+        }
+        self.gaze.as_ref().map_or(Ok(()), LslGazeSpec::check)
+    }
+}

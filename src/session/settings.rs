@@ -116,7 +116,6 @@ impl SessionSpec {
             let remedy = "gaze = \"mouse\", \"pupil\", \"file\", \"json\" or \"none\"";
             return Err(SettingError::new("participant.gaze", found, remedy));
         }
-        self.participant.check()?;
         self.tracker.check(self.participant.gaze)?;
         self.console.check()?;
         self.display.check()?;

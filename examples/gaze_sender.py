@@ -52,7 +52,8 @@ class GazeSender:
             self.connection = self.connection or self.connect()
             self.connection.sendall(json.dumps(line).encode() + b"\n")
         except OSError as reason:
-            print(f"nobody listens at {self.to[0]}:{self.to[1]} ({reason}); trying again", file=sys.stderr, flush=True)
+            hint = "" if self.code or self.to[0].startswith("127.") else "; on another computer it wants --pair CODE"
+            print(f"{self.to[0]}:{self.to[1]} does not take gaze ({reason}); trying again{hint}", file=sys.stderr, flush=True)
             self.connection, self.refused_until = None, time.monotonic() + 1
 
 

@@ -151,18 +151,19 @@ def check_tobii(tomcom, folder):
     to = f"{outer_address()}:{PORT + 1}"
     with operate(tomcom, folder, PORT + 1, 'gaze_listen = "0.0.0.0"\n') as console:
         console.key("\x06")
-        console.wait_for(r"pairing code [A-Z0-9]{6}")
+        console.wait_for(r"gaze pairing.*pairing code [A-Z0-9]{6}")
         shown = plain(console.text())
         assert to in shown, f"{to}:\n{shown}"
         code = re.search(r"pairing code ([A-Z0-9]{6})", shown)[1]
         console.key("\x1b")
         console.wait_for(rf"0 Hz, pairing code {code}")
-        for wrong, told in ((["--pair", "WRONG2"], "does not take the pairing code WRONG2"), ([], "")):
+        for wrong, told in ((["--pair", "WRONG2"], "does not take the pairing code WRONG2"), ([], "it wants --pair CODE")):
             with bridge("tobii", ["--to", to, *wrong], log, environment) as sender:
                 if wrong:
                     sender.wait(20)
                 else:
                     console.wait_for("rejected: it does not begin with the pairing code", 20)
+                    time.sleep(2)
             assert told in log.read_text(), log.read_text()
         console.wait_for("rejected")
         time.sleep(1.1)

@@ -9,6 +9,7 @@ use super::click::SendQuestion;
 use super::compared::ComparisonView;
 use super::display_status::DisplayHealth;
 use super::gaze_advice::CalibrationAdvice;
+use super::gaze_pairing::GazePairing;
 use super::key_action::KeyLayer;
 use super::keys::KeyBindings;
 use super::lesson::TrainingPanel;
@@ -34,7 +35,7 @@ use crate::session::{TimelineEntry, TimelineEvent};
 const NOTICE_S: f64 = 4.0;
 
 /// Largest number of senders of gaze that give a notice.
-const UNLISTED: usize = 16;
+const REFUSED: usize = 16;
 /// Number of gaze samples in the trail of the gaze map.
 const TRAIL: usize = 240;
 
@@ -164,8 +165,10 @@ pub struct ConsoleModel {
     pub trail: VecDeque<(SessionTime, GazeSample)>,
     /// Number of rejected senders of gaze: connections and datagrams that are not a tracker's.
     pub rejected_senders: u64,
-    /// Addresses of senders that were told of because the session does not list them.
-    unlisted: Vec<String>,
+    /// Notices that were given of senders that nobody let in.
+    refused_senders: Vec<String>,
+    /// How senders of gaze at other computers pair, if they do.
+    pub gaze_pairing: Option<GazePairing>,
     /// State of the participant's display, if there is one.
     pub display: Option<DisplayHealth>,
     /// Times of the human's errors, in order.
@@ -224,7 +227,8 @@ impl ConsoleModel {
             pointer: None,
             trail: VecDeque::with_capacity(TRAIL),
             rejected_senders: 0,
-            unlisted: Vec::new(),
+            refused_senders: Vec::new(),
+            gaze_pairing: None,
             display: None,
             errors: Vec::new(),
             signals: SignalJudge::default(),
@@ -284,12 +288,14 @@ impl ConsoleModel {
         }
     }
 
-    /// Counts a sender of gaze at an address that the session does not list. Each address gives one notice, and no more than a few do.
-    pub fn reject_unlisted(&mut self, address: String) {
-        self.rejected_senders += 1;
-        if self.unlisted.len() < UNLISTED && !self.unlisted.contains(&address) {
-            self.warn(format!("gaze from {address} is rejected: gaze_from does not list it"));
-            self.unlisted.push(address);
+    /// Counts senders of gaze that nobody let in, the last one at this address and for this reason. Each address gives one notice for a
+    /// reason, and no more than a few do.
+    pub fn refuse_sender(&mut self, address: &str, why: &str, senders: u64) {
+        self.rejected_senders += senders;
+        let told = format!("gaze from {address} is rejected: {why}");
+        if self.refused_senders.len() < REFUSED && !self.refused_senders.contains(&told) {
+            self.warn(told.clone());
+            self.refused_senders.push(told);
         }
     }
 

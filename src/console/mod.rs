@@ -16,6 +16,7 @@ pub mod console_model;
 pub mod display_status;
 pub mod form;
 pub mod gaze_advice;
+pub mod gaze_pairing;
 pub mod gaze_targets;
 pub mod hands;
 mod held_keys;

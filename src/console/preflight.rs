@@ -23,6 +23,7 @@ pub const OVERRIDE: char = 'o';
 /// Runs all preflight checks.
 pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     let mut checks = participant(session, model.now, &key(model, &KeyAction::Hand(ManualAction::Calibrate)));
+    checks.extend(model.gaze_pairing.as_ref().and_then(|pairing| pairing.check(session, model.now)));
     checks.extend(model.display.as_ref().map(DisplayHealth::check));
     checks.extend(probes(session, model));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);

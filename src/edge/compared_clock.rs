@@ -4,6 +4,9 @@ use std::time::{Duration, Instant};
 
 /// Number of clock replies averaged for the offset (as Pupil Labs does).
 pub(super) const ANSWERS: usize = 10;
+/// Replies are too far apart for one offset if they differ by more than this beyond what their delays explain, in seconds: the clock
+/// was slewed in between. Capture's Time Sync slews by 0.5 ms every 0.1 s, up to 10 ms in a row; clocks drift by far less.
+const SLEWED_S: f64 = 0.0005;
 /// A change of the offset by more than this, beyond what slow replies explain, means that the clock was set, in seconds.
 const SET_S: f64 = 0.01;
 
@@ -16,8 +19,8 @@ pub(super) struct DeviceClockStep {
     pub known_at: Instant,
 }
 
-/// The offset of the other clock: mean over the latest replies without slow ones. A delay in one direction shifts a reply's offset by
-/// half of the delay.
+/// The offset of the other clock: mean over the latest replies without slow ones, and without those from before the clock was slewed. A
+/// delay in one direction shifts a reply's offset by half of the delay.
 #[derive(Debug)]
 pub(super) struct ComparedClock {
     anchor: Instant,
@@ -42,8 +45,11 @@ impl ComparedClock {
         let unsure_s = took_s / 2.0 + self.least_s().unwrap_or(0.0);
         let before = self.offset().filter(|before| (before - offset).abs() > SET_S + unsure_s);
         let step = before.map(|before| DeviceClockStep { by_s: offset - before, known_at: self.known_at });
-        if step.is_some() {
-            self.answers.clear();
+        let is_past = |(old, old_took_s): &(f64, f64)| (old - offset).abs() > SLEWED_S + (old_took_s + took_s) / 2.0;
+        match (step, self.answers.iter().rposition(is_past)) {
+            (Some(_), _) => self.answers.clear(),
+            (None, Some(last)) => drop(self.answers.drain(..=last)),
+            (None, None) => {}
         }
         if self.answers.len() == ANSWERS {
             self.answers.remove(0);
@@ -119,5 +125,41 @@ mod tests {
         assert!(clock.take(after(31_000), after(31_002), 7.0).is_some());
         assert!((clock.device_s(after(31_001)).expect("a time") - 7.0).abs() < 1e-9);
         assert_eq!(clock.instant(1e300), None);
+    }
+
+    /// What Capture's Time Sync did with its clock (`tests/pupil/time_sync.csv`): seconds at which it was asked and answered, and Pupil
+    /// time; and by how much Pupil time was behind the true one then.
+    fn time_sync() -> Vec<[f64; 4]> {
+        let numbers = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect::<Vec<f64>>();
+        let table = include_str!("../../../tests/pupil/time_sync.csv");
+        table.lines().skip(1).map(|line| numbers(line).try_into().expect("four cells")).collect()
+    }
+
+    #[test]
+    fn stamps_are_right_to_5_ms_while_time_sync_slews_the_clock() {
+        let answers = time_sync();
+        let bases: Vec<f64> = answers.iter().map(|[.., behind_s]| *behind_s).collect();
+        let slewed_s: f64 = bases.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|by| *by < SET_S).sum();
+        assert!(slewed_s > 0.015, "slewed by {slewed_s} s");
+        let (mut clock, mut steps, mut wrong_s) = (ComparedClock::new(), Vec::new(), 0.0_f64);
+        for (index, [asked, answered, pupil_s, _]) in answers.iter().enumerate() {
+            let at = |seconds: f64| clock.anchor + Duration::from_secs_f64(seconds);
+            let (asked, answered) = (at(*asked), at(*answered));
+            steps.extend(clock.take(asked, answered, *pupil_s));
+            // A stamp made at the next reply is told by what is known until then.
+            let Some([_, next_s, _, behind_s]) = answers.get(index + 1) else { continue };
+            let told = clock.instant(next_s - behind_s).expect("a clock that was compared");
+            let off_s = told.saturating_duration_since(clock.anchor).as_secs_f64() - next_s;
+            // A step is known from the next reply on.
+            if (behind_s - bases[index]).abs() < SET_S {
+                wrong_s = wrong_s.max(off_s.abs());
+            }
+        }
+        assert!(wrong_s < 0.005, "wrong by {wrong_s} s");
+        assert_eq!(
+            steps.iter().map(|step| (step.by_s * 100.0).round() / 100.0).collect::<Vec<f64>>(),
+            [0.05],
+            "the jump"
+        );
     }
 }

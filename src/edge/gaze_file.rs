@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use super::file_error::{FileError, FileResult};
-use super::gaze_table::{self, REMEDY};
-use super::log::{LogReader, at_line};
+use super::gaze_table;
+use super::log::{LOG_NAME, LogReader, at_line};
+use super::tracker_folder::{TrackerFinding, tracker_data};
 use crate::gaze::GazeSample;
 use crate::gaze::surface::SurfaceMap;
 use crate::session::Event;
@@ -12,9 +13,6 @@ use crate::session::apply::apply;
 
 /// Largest number of samples in a file (a day at 60 Hz).
 const MAX_SAMPLES: usize = 5_184_000;
-
-/// Files of the trackers' own recordings: of Pupil Capture, and of Neon and Invisible. Their gaze is in the scene camera's picture.
-const TRACKER_FILES: [&str; 3] = ["gaze.pldata", "gaze ps1.raw", "gaze.csv"];
 
 /// The samples of a gaze file.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,11 +30,9 @@ pub struct GazeFile {
 /// The file cannot be read, has another format, or ends before `start_s`.
 pub fn read(path: &Path, map: &SurfaceMap, start_s: f64) -> FileResult<GazeFile> {
     let is_log = path.extension().is_some_and(|extension| extension == "jsonl");
-    if path.is_dir()
-        && let Some(name) = TRACKER_FILES.iter().find(|name| path.join(name).exists())
-    {
-        let found = format!("{name}: a folder of the eye tracker, with gaze in the scene camera's picture");
-        return Err(FileError::from_finding(path, found, REMEDY.to_string()));
+    let is_ours = is_log || path.join(LOG_NAME).exists();
+    if !is_ours && let Some(TrackerFinding { found, remedy }) = tracker_data(path) {
+        return Err(FileError::from_finding(path, found, remedy));
     }
     let mut found = if path.is_dir() || is_log { of_recording(path)? } else { of_table(path, map)? };
     let last_s = found.samples.iter().map(|(at_s, _)| *at_s).max_by(f64::total_cmp);

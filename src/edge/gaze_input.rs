@@ -20,8 +20,15 @@ pub enum GazeNews {
     WrongTime(f64),
     /// Number of rejected senders: connections and datagrams that are not a tracker's.
     Rejected(u64),
-    /// A sender at this address, which the session does not list, was rejected.
-    Unlisted(IpAddr),
+    /// Senders were rejected that nobody let in.
+    Refused {
+        /// Address of the last one.
+        from: IpAddr,
+        /// Why that one was rejected.
+        why: SenderRefusal,
+        /// How many since the last such message.
+        senders: u64,
+    },
     /// Number of messages dropped because the queue was full.
     Overrun(u64),
     /// A tracker's program started to send; its clock may differ from before.
@@ -54,6 +61,31 @@ pub enum GazeNews {
         /// When.
         taken: SampleTime,
     },
+}
+
+/// Why a sender of gaze at another computer is not let in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SenderRefusal {
+    /// The session lists addresses, and not this one.
+    Unlisted,
+    /// It sent something else than the pairing code.
+    Unpaired,
+    /// The pairing code was wrong.
+    WrongCode,
+    /// The pairing code was not checked: too many wrong ones came before.
+    Locked,
+}
+
+impl SenderRefusal {
+    /// The reason in words: "gaze from ADDRESS is rejected: …".
+    pub fn words(self) -> &'static str {
+        match self {
+            SenderRefusal::Unlisted => "gaze_from does not list it",
+            SenderRefusal::Unpaired => "it does not begin with the pairing code",
+            SenderRefusal::WrongCode => "the pairing code is wrong",
+            SenderRefusal::Locked => "no code is checked for a while, after wrong ones",
+        }
+    }
 }
 
 /// A time on the tracker's clock and on ours.

@@ -10,7 +10,7 @@ use crate::gaze::GazeSample;
 use crate::gaze::surface::SurfaceMap;
 
 /// What a gaze file may be, for messages.
-pub(super) const REMEDY: &str = "gaze on the display: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of \
+const REMEDY: &str = "gaze on the display: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of \
                                  Pupil Cloud's Marker Mapper, or a recording's folder";
 /// Longest line of a table, in bytes.
 const MAX_LINE: u64 = 1 << 16;
@@ -61,8 +61,7 @@ pub(super) fn read(path: &Path, map: &SurfaceMap, most: usize) -> FileResult<(Ve
         input.by_ref().take(MAX_LINE).read_until(b'\n', line).map_err(unreadable)
     };
     next(&mut line)?;
-    let head = String::from_utf8_lossy(&line).trim_start_matches('\u{feff}').trim().to_string();
-    let columns = columns(path, &head)?;
+    let columns = columns(path, &head_of(&line))?;
     let (mut samples, mut malformed, mut first_ns) = (Vec::new(), 0, None);
     let mut recording: Option<String> = None;
     while next(&mut line)? > 0 && samples.len() < most {
@@ -88,6 +87,18 @@ pub(super) fn read(path: &Path, map: &SurfaceMap, most: usize) -> FileResult<(Ve
         }
     }
     Ok((samples, malformed))
+}
+
+/// Whether a file is a table of gaze on a surface, by its first line.
+pub(super) fn is_on_surface(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| BufReader::new(file).take(MAX_LINE).read_until(b'\n', &mut head));
+    read.is_ok() && columns(path, &head_of(&head)).is_ok()
+}
+
+/// The first line as text, without the mark that some programs put before it.
+fn head_of(line: &[u8]) -> String {
+    String::from_utf8_lossy(line).trim_start_matches('\u{feff}').trim().to_string()
 }
 
 /// Finds the columns in the first line.

@@ -15,9 +15,12 @@ pub mod file_error;
 pub mod files;
 pub mod forget;
 mod frames;
+mod gaze_connection;
 pub mod gaze_file;
+mod gaze_gate;
 pub mod gaze_input;
 pub mod gaze_json;
+pub mod gaze_line;
 mod gaze_table;
 #[cfg(any(feature = "display", feature = "rerun"))]
 mod host_name;
@@ -28,7 +31,10 @@ pub mod lsl;
 #[cfg(feature = "mcap")]
 pub mod mcap_file;
 pub mod near_path;
+mod outer_address;
 pub mod overwrite;
+mod pairing;
+mod pairing_code;
 pub mod parse;
 mod place;
 pub mod pupil;
@@ -44,6 +50,7 @@ pub mod stream;
 pub mod stream_head;
 pub mod temporary;
 pub mod terminal;
+mod tracker_folder;
 pub mod training;
 mod type_error;
 #[cfg(feature = "rerun")]

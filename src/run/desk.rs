@@ -14,6 +14,7 @@ use tokio::time::timeout;
 
 use super::error::{LiveError, TerminalError};
 use crate::console::ConsoleMessage;
+use crate::console::gaze_pairing::GazePairing;
 use crate::console::view::theme::Theme;
 use crate::edge::gaze_file::{self, GazeFile};
 use crate::edge::gaze_input::GazeNews;
@@ -71,6 +72,8 @@ pub(super) struct GazeTracker {
     /// The end of the thread that reads a stream of the Lab Streaming Layer, waited for once `news` is dropped.
     _inlet: Option<InletEnd>,
     file: Option<Arc<GazeFile>>,
+    /// How senders at other computers pair, if they do.
+    pairing: Option<GazePairing>,
     /// Latest state of the tracker, for recordings that begin later.
     link: Option<GazeNews>,
     sees_display: Option<GazeNews>,
@@ -142,9 +145,11 @@ impl GazeTracker {
         match participant.gaze {
             GazeSource::Json => {
                 let at = SocketAddr::new(participant.gaze_listen, participant.gaze_port);
-                let listener = gaze_json::listen(at, participant.gaze_senders, participant.gaze_from.clone()).await;
+                let listener = gaze_json::listen(at, participant.gaze_senders, &participant.gaze_from).await;
                 let listener = listener.map_err(|reason| LiveError::Gaze { at, reason })?;
-                Ok(GazeTracker { news: Some(listener.news), ..GazeTracker::default() })
+                let address = listener.reachable().to_string();
+                let pairing = listener.code.map(|code| GazePairing { address, code });
+                Ok(GazeTracker { news: Some(listener.news), pairing, ..GazeTracker::default() })
             }
             GazeSource::Pupil => {
                 let (address, surface_name) = (tracker.address.clone(), tracker.surface.clone());
@@ -196,6 +201,11 @@ impl GazeTracker {
     pub fn known(&self) -> impl Iterator<Item = GazeNews> {
         let known = self.link.iter().chain(&self.sees_display).chain(&self.other_surfaces);
         known.cloned().collect::<Vec<_>>().into_iter()
+    }
+
+    /// How senders at other computers pair, if they do.
+    pub fn pairing(&self) -> Option<GazePairing> {
+        self.pairing.clone()
     }
 
     /// The file that gaze is replayed from, if it is.

@@ -4,7 +4,6 @@ use core::net::{IpAddr, Ipv4Addr};
 
 use serde::{Deserialize, Serialize};
 
-use super::setting_checks::SettingError;
 use crate::participant::population::Population;
 
 const LOCALHOST: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
@@ -24,7 +23,7 @@ pub struct ParticipantSpec {
     /// Address at which the JSON gaze input listens; this computer's own (localhost) by default.
     #[serde(skip_serializing_if = "is_localhost")]
     pub gaze_listen: IpAddr,
-    /// Addresses from which gaze is read, besides this computer's own.
+    /// Addresses of other computers from which gaze is read; if empty, other computers need the pairing code.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub gaze_from: Vec<IpAddr>,
     /// Addresses from which the JSON gaze input reads datagrams.
@@ -56,16 +55,6 @@ fn is_localhost(address: &IpAddr) -> bool {
 }
 
 impl ParticipantSpec {
-    /// Whether other computers can send gaze only if they are listed.
-    pub(super) fn check(&self) -> Result<(), SettingError> {
-        if self.gaze_listen.is_loopback() || !self.gaze_from.is_empty() {
-            return Ok(());
-        }
-        let found = format!("gaze_listen = \"{}\", and no gaze_from", self.gaze_listen);
-        let remedy = "the addresses that may send gaze: gaze_from = [\"192.168.1.20\"] under [participant]";
-        Err(SettingError::new("participant.gaze_listen", found, remedy))
-    }
-
     /// Whether gaze samples come from the simulated participant.
     pub fn simulates_gaze(&self) -> bool {
         self.kind == ParticipantKind::Simulated && self.gaze == GazeSource::Simulated

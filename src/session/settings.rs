@@ -120,7 +120,6 @@ impl SessionSpec {
             let remedy = "gaze = \"mouse\", \"pupil\", \"file\", \"json\", \"lsl\" or \"none\"";
             return Err(SettingError::new("participant.gaze", found, remedy));
         }
-        self.participant.check()?;
         self.tracker.check(self.participant.gaze)?;
         self.console.check()?;
         self.display.check()?;

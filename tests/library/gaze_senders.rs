@@ -14,7 +14,7 @@ use tomcom::console::notice::NoticeLevel;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::edge::datagram_holder::{DatagramHolder, RELEASE};
 use tomcom::edge::files::{read_kitchen, read_session};
-use tomcom::edge::gaze_input::GazeNews;
+use tomcom::edge::gaze_input::{GazeNews, SenderRefusal};
 use tomcom::edge::gaze_json::{GazeListener, listen};
 use tomcom::gaze::GazeSample;
 use tomcom::session::SessionSpec;
@@ -25,7 +25,7 @@ const SAMPLE: &[u8] = b"{\"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n";
 const PATIENCE: Duration = Duration::from_secs(30);
 
 async fn open(senders: GazeSenders) -> GazeListener {
-    listen((Ipv4Addr::LOCALHOST, 0).into(), senders, Vec::new()).await.expect("a free port")
+    listen((Ipv4Addr::LOCALHOST, 0).into(), senders, &[]).await.expect("a free port")
 }
 
 /// What comes next.
@@ -167,26 +167,82 @@ async fn from_other_addresses_only_listed_ones_are_read_and_the_others_are_told(
     let Some(outer) = outer_address() else { return };
     let anywhere = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
     let elsewhere = IpAddr::V4(Ipv4Addr::new(192, 0, 2, 7));
-    let mut listener = listen(anywhere, GazeSenders::Any, vec![elsewhere]).await.expect("a free port");
+    let mut listener = listen(anywhere, GazeSenders::Any, &[elsewhere]).await.expect("a free port");
     let to = SocketAddr::new(outer, listener.address.port());
     send_until_closed(to, &[SAMPLE]).await;
-    assert_eq!(next(&mut listener).await, GazeNews::Unlisted(outer));
+    let unlisted = GazeNews::Refused { from: outer, why: SenderRefusal::Unlisted, senders: 1 };
+    assert_eq!(next(&mut listener).await, unlisted);
+    assert_eq!(listener.code, None, "a list asks for no code");
     tokio::time::sleep(Duration::from_millis(200)).await;
     let sender = UdpSocket::bind((outer, 0)).await.expect("the address of this machine");
     sender.send_to(SAMPLE, to).await.expect("sent");
-    assert_eq!(next(&mut listener).await, GazeNews::Unlisted(outer));
+    assert_eq!(next(&mut listener).await, unlisted);
     // This computer itself needs no entry.
     let here = SocketAddr::from((Ipv4Addr::LOCALHOST, to.port()));
     socket(1).await.send_to(SAMPLE, here).await.expect("sent");
     assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
 
-    let mut listener = listen(anywhere, GazeSenders::Any, vec![outer]).await.expect("a free port");
+    let mut listener = listen(anywhere, GazeSenders::Any, &[outer]).await.expect("a free port");
     let to = SocketAddr::new(outer, listener.address.port());
     sender.send_to(SAMPLE, to).await.expect("sent");
     assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
     let mut tracker = TcpStream::connect(to).await.expect("connected");
     tracker.write_all(SAMPLE).await.expect("sent");
     assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+}
+
+/// Sends these lines over a connection of its own; the lines that it is answered until it is closed.
+async fn answers(to: SocketAddr, lines: &[&[u8]]) -> String {
+    let mut stream = TcpStream::connect(to).await.expect("connected");
+    let mut answer = vec![0; 256];
+    let mut found = String::new();
+    for line in lines {
+        stream.write_all(line).await.expect("sent");
+        let count = timeout(PATIENCE, stream.read(&mut answer)).await.expect("an answer").unwrap_or(0);
+        found += &String::from_utf8_lossy(&answer[..count]);
+    }
+    found
+}
+
+#[tokio::test]
+async fn another_computer_pairs_with_the_code_and_sends_then() {
+    assert_eq!(open(GazeSenders::Any).await.code, None, "this computer needs none");
+    let Some(outer) = outer_address() else { return };
+    let anywhere = SocketAddr::from((Ipv4Addr::UNSPECIFIED, 0));
+    let mut listener = listen(anywhere, GazeSenders::Any, &[]).await.expect("a free port");
+    let code = listener.code.clone().expect("a code, since no address is listed");
+    let to = listener.reachable();
+    assert_eq!(to, SocketAddr::new(outer, listener.address.port()));
+    let refused = |why, senders| GazeNews::Refused { from: outer, why, senders };
+    let pairing = format!("{{\"pair\": \"{}\"}}\n", code.to_lowercase());
+
+    // Nothing is read of who does not know it, and a wrong code is told to both ends.
+    assert_eq!(answers(to, &[SAMPLE]).await, "{\"paired\": false, \"wait_s\": 0}\n");
+    assert_eq!(next(&mut listener).await, refused(SenderRefusal::Unpaired, 1));
+    tokio::time::sleep(Duration::from_millis(150)).await;
+    assert_eq!(answers(to, &[b"{\"pair\": \"WRONG2\"}\n"]).await, "{\"paired\": false, \"wait_s\": 1}\n");
+    assert_eq!(next(&mut listener).await, refused(SenderRefusal::WrongCode, 1));
+    assert_eq!(answers(to, &[pairing.as_bytes()]).await, "{\"paired\": false, \"wait_s\": 1}\n", "locked");
+    tokio::time::sleep(Duration::from_millis(1100)).await;
+
+    let mut tracker = TcpStream::connect(to).await.expect("connected");
+    tracker.write_all(&[pairing.as_bytes(), SAMPLE].concat()).await.expect("sent");
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    let mut answer = [0; 17];
+    tracker.read_exact(&mut answer).await.expect("an answer");
+    assert_eq!(&answer, b"{\"paired\": true}\n");
+    // A later pairing line is a line that is no sample.
+    tracker.write_all(pairing.as_bytes()).await.expect("sent");
+    assert_eq!(next(&mut listener).await, GazeNews::Malformed(1));
+
+    // That one connection is paired pairs no datagram.
+    let datagrams = UdpSocket::bind((outer, 0)).await.expect("the address of this machine");
+    datagrams.send_to(SAMPLE, to).await.expect("sent");
+    assert_eq!(next(&mut listener).await, refused(SenderRefusal::Unpaired, 1));
+    datagrams.send_to(&[pairing.as_bytes(), SAMPLE].concat(), to).await.expect("sent");
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    datagrams.send_to(SAMPLE, to).await.expect("sent");
+    assert_eq!(next(&mut listener).await, sample());
 }
 
 #[test]
@@ -222,7 +278,7 @@ fn the_setting_is_read_and_only_kept_where_it_says_something() {
     assert!(open.check().is_ok());
     let kept = serde_json::to_string(&open).expect("JSON");
     assert!(kept.contains(r#""gaze_listen":"0.0.0.0","gaze_from":["192.168.1.20","fd00::7"]"#), "{kept}");
-    assert!(read("gaze_listen = \"0.0.0.0\"").expect("settings").check().is_err(), "open to everybody");
+    assert!(read("gaze_listen = \"0.0.0.0\"").expect("settings").check().is_ok(), "open to who knows the pairing code");
     assert!(read("gaze_from = [\"the tracker\"]").is_err());
 }
 
@@ -249,13 +305,18 @@ fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
     assert_eq!(model.rejected_senders, 109);
     assert_eq!(model.notice.map(|notice| notice.level), Some(NoticeLevel::Alarm));
     model.notice = None;
+    let unlisted = SenderRefusal::Unlisted.words();
     for address in ["192.168.1.7", "192.168.1.7", "192.168.1.8"] {
-        model.reject_unlisted(address.to_string());
+        model.refuse_sender(address, unlisted, 1);
     }
     assert_eq!(model.rejected_senders, 112);
     let text = model.notice.as_ref().map(|notice| notice.text.as_str()).unwrap_or_default();
-    assert!(text.contains("gaze from 192.168.1.8 is rejected"), "{text}");
+    assert_eq!(text, "gaze from 192.168.1.8 is rejected: gaze_from does not list it");
     model.notice = None;
-    model.reject_unlisted("192.168.1.7".to_string());
+    model.refuse_sender("192.168.1.7", unlisted, 8);
     assert_eq!(model.notice.as_ref().map(|notice| &notice.text), None, "each is told once");
+    model.refuse_sender("192.168.1.7", SenderRefusal::WrongCode.words(), 1);
+    let text = model.notice.as_ref().map(|notice| notice.text.as_str());
+    assert_eq!(text, Some("gaze from 192.168.1.7 is rejected: the pairing code is wrong"), "for each reason");
+    assert_eq!(model.rejected_senders, 121);
 }

@@ -12,7 +12,7 @@ import time
 import tomllib
 from pathlib import Path
 
-PAGE = Path("docs/eye-trackers.md").read_text()
+PAGE = Path("docs/tracker-json.md").read_text()
 PORT = tomllib.loads(Path("sessions/default.toml").read_text())["participant"]["gaze_port"]
 MALFORMED = [
     b"nonsense",
@@ -139,7 +139,7 @@ def check_sender(tomcom, scratch):
 
 
 def check_documented_sender(tomcom, scratch):
-    """The sender on docs/eye-trackers.md, run as it is printed."""
+    """The sender on docs/tracker-json.md, run as it is printed."""
     senders = [code for code in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL) if str(PORT) in code]
     assert len(senders) == 1, "one sender on the page, with the default port"
     lines = [line for line in senders[0].splitlines() if line.strip()]

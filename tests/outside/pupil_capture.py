@@ -216,6 +216,42 @@ def check_clock(tomcom, folder, pupil):
         f"{1000 * max(wrong):.2f} ms, {unread} samples of {rate:.0f} Hz unread", flush=True)
 
 
+def check_time_sync(tomcom, folder, pupil):
+    """Capture's plugin Time Sync follows another clock: it sets Capture's once, and slews it twice in the trial."""
+    capture = Modules(pupil, folder / "capture", PORT + 6, "--time-sync")
+    with Console(tomcom, [session(folder, PORT + 6), "--out", folder / "recordings"]) as console:
+        console.wait_for(r"gaze +\d\d+ Hz")
+        console.wait_for("clock was set ahead by 0[.]05")
+        start_trial(console)
+        time.sleep(36)
+        end_trial(console)
+        console.quit()
+    bases = capture.notes("timebase")
+    capture.kill()
+    (recording,) = (folder / "recordings").iterdir()
+    verify(tomcom, recording)
+    [step] = trackers(recording, "clock_set")
+    assert abs(step["by_s"] - 0.05) < 0.003, step
+    changes = [(note["t"], note["base"], abs(note["base"] - before["base"])) for before, note in zip(bases, bases[1:])]
+    slews = [(at, by) for at, _, by in changes if by < 0.01]
+    assert len(slews) > 20 and sum(by for _, by in slews) > 0.012, slews
+    # The script's gaze has the time base of its frame, so that its true time is known.
+    gaze = [event for event in recorded(recording, "gaze") if event["t_ns"] > step["t_ns"] + 1e9]
+
+    def behind(pupil_s):
+        return [note["base"] for note in bases if note["t"] <= pupil_s + 0.001][-1]
+
+    ahead = [event["taken_ns"] / 1e9 - event["device_ns"] / 1e9 - behind(event["device_ns"] / 1e9) for event in gaze]
+    # What holds before the first slew is right: Capture's clock has been compared for seconds then.
+    quiet = [value for event, value in zip(gaze, ahead) if event["device_ns"] / 1e9 < slews[0][0]]
+    right = sorted(quiet)[len(quiet) // 2]
+    worst = max(abs(value - right) for value in ahead)
+    assert len(quiet) > 100 and worst < 0.005, (len(quiet), worst)
+    print(
+        f"Time Sync: Capture's clock set by 0.05 s is told; slewed {len(slews)} times by {1000 * sum(by for _, by in slews):.1f} ms in all, stamps of "
+        f"{len(gaze)} samples are right to {1000 * worst:.2f} ms meanwhile", flush=True)
+
+
 def check_eyes(tomcom, folder, pupil):
     """Fixations and blinks of Capture's online detectors are what the eyes did."""
     capture = Modules(pupil, folder / "capture", PORT + 4)
@@ -258,9 +294,9 @@ if __name__ == "__main__":
     parser.add_argument("folder", type=Path)
     parser.add_argument("pupil")
     parser.add_argument("--trials", type=int, default=20)
-    parser.add_argument("--only", choices=["trials", "restart", "lab", "clock", "eyes", "surface"])
+    parser.add_argument("--only", choices=["trials", "restart", "lab", "clock", "time-sync", "eyes", "surface"])
     options = parser.parse_args()
-    checks = {"restart": check_restart, "lab": check_lab, "clock": check_clock, "eyes": check_eyes, "surface": check_surface}
+    checks = {"restart": check_restart, "lab": check_lab, "clock": check_clock, "time-sync": check_time_sync, "eyes": check_eyes, "surface": check_surface}
     if options.only in (None, "trials"):
         check_trials(options.tomcom, options.folder / "trials", options.pupil, options.trials)
     for name, check in checks.items():

@@ -1,8 +1,8 @@
-"""Pupil Capture without cameras and windows: Pupil's own, unmodified recorder, annotation plugin, fixation and blink detectors and
-Pupil Remote, around stand-ins for window system, cameras, pupil detection and surface tracking.
+"""Pupil Capture without cameras and windows: Pupil's own, unmodified recorder, annotation plugin, fixation and blink detectors, Time
+Sync and Pupil Remote, around stand-ins for window system, cameras, pupil detection and surface tracking.
 
     pupil_modules.py SOURCE PORT FOLDER [--surface NAME] [--seconds 0] [--hz 120] [--blinks 16] [--first-blink 6]
-                     [--record-messages FILE] [--lab-records]
+                     [--record-messages FILE] [--lab-records] [--time-sync] [--record-clock FILE]
 
 SOURCE is a clone of github.com/pupil-labs/pupil. Recordings go to FOLDER, with a journal of what was done. Gaze and lids follow SCRIPT.
 Runs until it is killed, or for some seconds.
@@ -30,6 +30,11 @@ SCRIPT = [((0.2, 0.3), 1.94), ((0.7, 0.3), 0.60), ((0.5, 0.8), 0.45), ((0.1, 0.8
 SACCADE_S = 0.03
 # Lids are closed for this long, so often.
 BLINK_S, BLINK_EVERY_S = 0.2, 1.6
+# The clock that Time Sync follows appears after so long, in seconds, and is then ahead by so much, in seconds: the first difference is
+# one that Time Sync jumps over, the others are slewed.
+MASTER_S, MASTER_AHEAD = 2, [(0, 0.050), (6, 0.058), (18, 0.049)]
+# Pupil Remote is asked for the time so often.
+ASK_S = 0.25
 
 
 class Elements(list):
@@ -44,7 +49,7 @@ def stand_ins(source):
     """Puts modules in the place of those that need a window system, a camera or a build."""
     sys.path.insert(0, str(Path(source) / "pupil_src/shared_modules"))
     for name in (
-        "pyglui", "pyglui.ui", "pyglui.cygl", "pyglui.cygl.utils", "pyglui.pyfontstash", "pyglui.pyfontstash.fontstash",
+        "uvc", "pyglui", "pyglui.ui", "pyglui.cygl", "pyglui.cygl.utils", "pyglui.pyfontstash", "pyglui.pyfontstash.fontstash",
         "OpenGL", "OpenGL.GL", "OpenGL.GLU", "gl_utils", "glfw", "cv2", "rich", "rich.progress", "ndsi", "av_writer", "background_helper",
         "audio", "pyre", "video_capture", "video_capture.ndsi_backend", "gaze_mapping", "gaze_mapping.notifications",
         "pupil_recording.update",
@@ -55,7 +60,8 @@ def stand_ins(source):
     nothing = SimpleNamespace(file_name=lambda: "there is none", from_dict=dict)
     for name in ("CalibrationSetupNotification", "CalibrationResultNotification"):
         setattr(sys.modules["gaze_mapping.notifications"], name, nothing)
-    sys.modules["pyre"].zhelper = SimpleNamespace(zthread_fork=zthread_fork)
+    pyre = sys.modules["pyre"]
+    pyre.zhelper, pyre.Pyre, pyre.__version__ = SimpleNamespace(zthread_fork=zthread_fork), Network, "0.3.4"
     # Gone from the package since Pupil was released.
     packaging.version.LegacyVersion = packaging.version.Version
 
@@ -68,6 +74,40 @@ def zthread_fork(context, work, *arguments):
     theirs.connect(name)
     threading.Thread(target=work, args=(context, theirs, *arguments), daemon=True).start()
     return ours
+
+
+class Network:
+    """What pyre does for Time Sync: it finds one other clock, which serves its time on this machine."""
+
+    since, port = None, None
+
+    def __init__(self, name):
+        self.began = time.monotonic()
+
+    def recent_events(self):
+        if self.port is None or Network.since is not None or time.monotonic() < self.began + MASTER_S:
+            return []
+        Network.since = time.monotonic()
+        return [SimpleNamespace(type="SHOUT", peer_uuid="master", peer_name="master", msg=[b"1000.0", str(self.port).encode()])]
+
+    def peer_address(self, uuid):
+        return "tcp://127.0.0.1:1"
+
+    def uuid(self):
+        return "here"
+
+    def join(self, group):
+        pass
+
+    leave = join
+
+    def start(self):
+        pass
+
+    stop = start
+
+    def shout(self, group, message):
+        pass
 
 
 def vector(place):
@@ -143,12 +183,46 @@ class Capture:
         self.notices = zmq_tools.Msg_Receiver(context, self.urls[1], topics=("notify",))
         classes = [recorder.Recorder, annotations.Annotation_Capture, fixation_detector.Fixation_Detector]
         classes.append(blink_detection.Blink_Detection)
-        pool.plugin_by_name = {one.__name__: one for one in classes}
         names = [("Recorder", {"record_world": False, "record_eye": False}), ("Fixation_Detector", {}), ("Blink_Detection", {})]
+        if arguments.time_sync:
+            names.append(("Time_Sync", {}))
+            classes.append(self.time_sync())
+        pool.plugin_by_name = {one.__name__: one for one in classes}
         pool.plugins = plugin.Plugin_List(pool, names)
         self.remote = PupilRemoteController(pool)
         self.eyes = Eyes(arguments.hz, range(arguments.first_blink, arguments.first_blink + arguments.blinks))
         self.messages = open(arguments.record_messages, "wb") if arguments.record_messages else None
+        self.timebase = None
+        if arguments.record_clock:
+            threading.Thread(target=self.record_clock, daemon=True).start()
+
+    def time_sync(self):
+        """Pupil's plugin; the clock that it follows is served by Pupil's own code, too."""
+        import network_time_sync
+        import time_sync
+
+        def ahead():
+            seen_s = time.monotonic() - (Network.since or time.monotonic())
+            return time.monotonic() + [by for since, by in MASTER_AHEAD if since <= seen_s][-1]
+
+        Network.port = network_time_sync.Clock_Sync_Master(ahead).port
+        return time_sync.Time_Sync
+
+    def record_clock(self):
+        """Asks Pupil Remote for the time as this program does: seconds when it was asked and answered, Pupil time, and Pupil's base."""
+        remote = zmq.Context.instance().socket(zmq.REQ)
+        remote.connect(f"tcp://127.0.0.1:{self.arguments.port}")
+        began = time.monotonic()
+        with open(self.arguments.record_clock, "w", buffering=1) as table:
+            table.write("asked_s,answered_s,pupil_s,behind_s\n")
+            while True:
+                asked = time.monotonic()
+                remote.send_string("t")
+                answer = float(remote.recv_string())
+                answered = time.monotonic()
+                behind = self.pool.timebase.value - began
+                table.write(f"{asked - began:.6f},{answered - began:.6f},{answer:.6f},{behind:.6f}\n")
+                time.sleep(ASK_S)
 
     def backbone(self, context):
         xsub, xpub, pull = context.socket(zmq.XSUB), context.socket(zmq.XPUB), context.socket(zmq.PULL)
@@ -194,6 +268,9 @@ class Capture:
             for one in pool.plugins:
                 one.on_notify(notice)
         now = pool.get_timestamp()
+        if self.timebase != pool.timebase.value:
+            self.timebase = pool.timebase.value
+            self.note("timebase", base=self.timebase)
         gaze, pupils = self.eyes.until(seconds, now)
         events = {"dt": 1 / FPS, "gaze": gaze, "pupil": pupils}
         for one in pool.plugins:
@@ -240,5 +317,7 @@ if __name__ == "__main__":
     parser.add_argument("--first-blink", type=int, default=6, help=f"in units of {BLINK_EVERY_S} s")
     parser.add_argument("--record-messages", help="file that gets what is published, in MessagePack: [seconds, topic, payload]")
     parser.add_argument("--lab-records", action="store_true", help="a recording that the lab began runs already")
+    parser.add_argument("--time-sync", action="store_true", help="Time Sync follows a clock that appears, and is set and drifts")
+    parser.add_argument("--record-clock", help="file that gets Pupil Remote's answers to requests for the time, as CSV")
     Capture(parser.parse_args()).run()
     os._exit(0)

@@ -79,7 +79,10 @@ fn quality(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
             format!("{hz:.0} Hz, conf {:.2}, {unusable:.0}% unusable", sample.confidence)
         }
         (Some(hz), None) => format!("{hz:.0} Hz, conf -, {unusable:.0}% unusable"),
-        (None, _) => "0 Hz, conf -, -% unusable".to_string(),
+        (None, _) => {
+            let pairing = model.gaze_pairing.as_ref().and_then(|pairing| pairing.line(session, model.now));
+            format!("0 Hz, {}", pairing.as_deref().unwrap_or("conf -, -% unusable"))
+        }
     };
     brush.parts(x, y, columns, &[(&text, TextRole::Quiet)]);
 }

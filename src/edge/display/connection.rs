@@ -12,10 +12,10 @@ use tokio::time::{sleep_until, timeout};
 use super::message::{FromPage, ToPage, read, text};
 use super::page_input::PageInput;
 use super::page_life::PageLife;
-use super::pairing::PairingVerdict;
 use super::server_state::{PageFeed, ServerState};
 use super::status::{ActivePage, count};
 use crate::edge::connection_table::ConnectionPlace;
+use crate::edge::pairing::PairingVerdict;
 
 /// Time limit for a page's hello.
 const HELLO: Duration = Duration::from_secs(5);

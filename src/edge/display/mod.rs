@@ -3,19 +3,17 @@
 //! The page receives scene and sight as JSON over a WebSocket, and sends presses, answers and the pointer. One page acts, all others
 //! watch.
 
-mod code;
 mod connection;
 mod host_check;
 pub mod message;
 mod page_input;
 mod page_life;
-mod pairing;
 mod server;
 mod server_state;
 mod status;
 
 use std::io;
-use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
+use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -30,6 +28,8 @@ use self::status::DisplayStatus;
 pub use self::status::{ActivePage, DisplayCounts};
 use crate::display::page_language::DisplayWords;
 use crate::display::{DisplayScene, DisplayUpdate, RobotPose};
+use crate::edge::outer_address::reachable;
+use crate::edge::pairing_code::pairing_code;
 
 /// Capacity of the queue of page inputs.
 const WAITING: usize = 1024;
@@ -62,7 +62,7 @@ impl Display {
         let listener = TcpListener::bind((listen, port)).await?;
         let address = listener.local_addr()?;
         let listener = listener.into_std()?;
-        let code = (!listen.is_loopback()).then(code::pairing_code);
+        let code = (!listen.is_loopback()).then(pairing_code);
         let (send, inputs) = channel(WAITING);
         let status = Arc::new(DisplayStatus::default());
         let screen = PageConnection {
@@ -92,11 +92,7 @@ impl Display {
 
     /// URL of the page, such as "http://127.0.0.1:50022"; for a wildcard address, that of this machine in the network.
     pub fn url(&self) -> String {
-        let mut address = self.address;
-        if let (true, Some(known)) = (address.ip().is_unspecified(), address_outside(address.ip())) {
-            address.set_ip(known);
-        }
-        format!("http://{address}")
+        format!("http://{}", reachable(self.address))
     }
 
     /// Pairing code, if the page needs one.
@@ -108,18 +104,6 @@ impl Display {
     pub fn screen(&self) -> PageConnection {
         self.screen.clone()
     }
-}
-
-/// Address of this machine in the network, found without sending anything (the target is a documentation address, RFC 5737 and
-/// RFC 3849).
-fn address_outside(any: IpAddr) -> Option<IpAddr> {
-    let elsewhere: IpAddr = match any {
-        IpAddr::V4(_) => Ipv4Addr::new(192, 0, 2, 1).into(),
-        IpAddr::V6(_) => Ipv6Addr::new(0x2001, 0xdb8, 0, 0, 0, 0, 0, 1).into(),
-    };
-    let socket = UdpSocket::bind((any, 0)).ok()?;
-    socket.connect((elsewhere, 9)).ok()?;
-    socket.local_addr().ok().map(|address| address.ip())
 }
 
 impl PageConnection {

@@ -9,9 +9,9 @@ use tokio::sync::mpsc::Sender;
 use tokio::sync::watch;
 
 use super::page_input::PageInput;
-use super::pairing::{PairingDesk, PairingVerdict};
 use super::status::DisplayStatus;
 use crate::edge::connection_table::{ConnectionLimits, ConnectionTable};
+use crate::edge::pairing::{PairingDesk, PairingVerdict};
 
 /// Limits of the display's server. Far fewer connections are admitted as watching pages than can be open, so that a new page
 /// always has room for its handshake. The acting page is reserved and not counted.
@@ -73,7 +73,7 @@ impl ServerState {
         match &self.pairing {
             Some(desk) => {
                 let mut desk = desk.lock().unwrap_or_else(PoisonError::into_inner);
-                desk.attempt(address, page, typed, Instant::now())
+                desk.attempt(address, Some(page), typed, Instant::now())
             }
             None => PairingVerdict::Right,
         }

@@ -73,7 +73,11 @@ fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
 fn lines(spec: &ParticipantSpec) -> PreflightCheck {
     let address = SocketAddr::new(spec.gaze_listen, spec.gaze_port);
     match TcpListener::bind(address).and_then(|_| UdpSocket::bind(address)) {
-        Ok(_) => PreflightCheck::ok("gaze", format!("{address} is free for lines of JSON")),
+        Ok(_) => {
+            let asks_code = !spec.gaze_listen.is_loopback() && spec.gaze_from.is_empty();
+            let who = if asks_code { "; other computers need the pairing code" } else { "" };
+            PreflightCheck::ok("gaze", format!("{address} is free for lines of JSON{who}"))
+        }
         Err(reason) => {
             let remedy = "end what uses the port, or set another gaze_port or gaze_listen under [participant]";
             PreflightCheck::new("gaze", PreflightVerdict::Failed, format!("{address}: {reason}"), remedy)
@@ -130,7 +134,7 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
 fn file(tracker: &TrackerSpec) -> PreflightCheck {
     let path = tracker.file.as_deref().unwrap_or_default();
     let remedy =
-        "file under [tracker]: a table of gaze on the display, or the folder of a recording (docs/eye-trackers.md)";
+        "file under [tracker]: a table of gaze on the display, or the folder of a recording (docs/tracker-recorded.md)";
     let found = SurfaceMap::new(WHOLE).map(|map| gaze_file::read(Path::new(path), &map, tracker.file_start_s));
     match found {
         Some(Ok(found)) if !found.samples.is_empty() => {

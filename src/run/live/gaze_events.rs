@@ -64,7 +64,7 @@ impl GazeInput {
                 return NONE;
             }
             // The console counts senders that are no trackers; the log has nothing of them.
-            GazeNews::Rejected(_) | GazeNews::Unlisted(_) => return NONE,
+            GazeNews::Rejected(_) | GazeNews::Refused { .. } => return NONE,
             GazeNews::Began => {
                 self.clock = DeviceClock::default();
                 return NONE;

@@ -71,8 +71,8 @@ impl Live {
             self.model.count_rejected(count);
             self.dirty = true;
         }
-        if let GazeNews::Unlisted(address) = news {
-            self.model.reject_unlisted(address.to_string());
+        if let GazeNews::Refused { from, why, senders } = news {
+            self.model.refuse_sender(&from.to_string(), why.words(), senders);
             self.dirty = true;
         }
         if let Some(complaint) = self.gaze.complaint(&news) {

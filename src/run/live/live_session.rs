@@ -166,6 +166,7 @@ impl Live {
         let comparison = comparison.map(|follower| follower.without_causes().on_thread());
         let (display, health) = ParticipantDisplay::at(desk);
         model.display = health;
+        model.gaze_pairing = desk.tracker.pairing();
         let clock = SessionClock::start(time);
         let advisor = spec.asks_assistant().then(|| engine.advisor().on_thread());
         let mut live = Live {

@@ -3,6 +3,7 @@
 use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
 use tomcom::console::console_model::{LslStatus, ViewerStreamStatus};
+use tomcom::console::gaze_pairing::GazePairing;
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::checks;
 use tomcom::console::{ConsoleMessage, KeyBindings, KeyMap, update};
@@ -215,4 +216,26 @@ fn an_arm_that_stopped_itself_is_told_for_as_long_as_it_stands() {
     }
     stage.at(61.0, Event::RobotResumed);
     assert!(!stage.screen((120, 40)).contains("The arm stands"));
+}
+
+#[test]
+fn how_a_tracker_pairs_is_shown_until_its_gaze_arrives() {
+    let mut stage = Stage::new("sushi", ParticipantKind::Keyboard);
+    stage.session.spec.participant.gaze = GazeSource::Json;
+    let check = |stage: &Stage| {
+        let checks = checks(&stage.session, &stage.model);
+        checks.iter().find(|check| check.name == "gaze pairing").map(|check| check.found.clone())
+    };
+    let is_shown = |stage: &Stage| SIZES.map(|size| stage.screen(size).contains("0 Hz, pairing code ABC234"));
+    assert_eq!((check(&stage), is_shown(&stage)), (None, [false; 3]), "programs of this computer need not pair");
+    let (address, code) = ("192.168.1.5:50021".to_string(), "ABC234".to_string());
+    stage.model.gaze_pairing = Some(GazePairing { address, code });
+    let found = "another computer sends to 192.168.1.5:50021, pairing code ABC234";
+    assert_eq!((check(&stage), is_shown(&stage)), (Some(found.to_string()), [true; 3]));
+    for step in 0..50 {
+        stage.look(1.0 + 0.01 * f64::from(step), 0.5, 0.5);
+    }
+    assert_eq!((check(&stage), is_shown(&stage)), (None, [false; 3]), "gaze arrives");
+    stage.model.now = SessionTime::from_secs_f64(20.0);
+    assert_eq!((check(&stage), is_shown(&stage)), (Some(found.to_string()), [true; 3]), "the tracker is gone");
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use rand::RngExt;
 use rmpv::Value;
 use tomcom::base::rng::stream;
+use tomcom::edge::file_error::FileError;
 use tomcom::edge::files::read_session;
 use tomcom::edge::gaze_file;
 use tomcom::edge::pupil::message::{self, PupilMessage, RecorderNews};
@@ -243,12 +244,66 @@ fn tables_of_marker_mapper_and_neon_player_are_replayed() {
     assert!(error.contains("no column timestamp [ns]"), "{error}");
 }
 
-#[test]
-fn recordings_of_the_trackers_themselves_are_told_from_ours() {
-    for name in ["gaze ps1.raw", "gaze.pldata"] {
-        let folder = folder(name);
-        std::fs::write(folder.join(name), b"").expect("written");
-        let error = gaze_file::read(&folder, &map(), 0.0).expect_err("no gaze on the display").to_string();
-        assert!(error.contains(name) && error.contains("in the scene camera's picture"), "{error}");
+/// Writes files below a folder of this test, with this first line.
+fn files(name: &str, files: &[(&str, &str)]) -> PathBuf {
+    let folder = folder(name);
+    for (file, head) in files {
+        let path = folder.join(file);
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        std::fs::write(path, format!("{head}\n")).expect("written");
     }
+    folder
+}
+
+#[test]
+fn recordings_and_downloads_of_the_trackers_are_told_from_gaze_on_the_display() {
+    let mapped =
+        "recording id,timestamp [ns],gaze position on surface x [normalized],gaze position on surface y [normalized]";
+    let scene = "section id,recording id,timestamp [ns],gaze x [px],gaze y [px],worn";
+    // Files that the programs write, as PyNeon's and Pupil Labs' pages list them.
+    let native = files(
+        "native",
+        &[
+            ("gaze ps1.raw", ""),
+            ("gaze ps1.time", ""),
+            ("gaze_200hz.raw", ""),
+            ("info.json", "{}"),
+            ("wearer.json", "{}"),
+        ],
+    );
+    let download = files("download", &[("one-56fcec49/gaze ps1.raw", ""), ("one-56fcec49/info.json", "{}")]);
+    let series = [("gaze.csv", scene), ("world_timestamps.csv", ""), ("scene_camera.json", "{}"), ("info.json", "{}")];
+    let series = files("series", &series);
+    let core = files("core", &[("gaze.pldata", ""), ("info.player.json", "{}"), ("world.mp4", "")]);
+    let export = files("export", &[("gaze_positions.csv", ""), ("surfaces/gaze_positions_on_surface_wall.csv", "")]);
+    let mapper = files("mapper", &[("gaze.csv", mapped), ("surface_positions.csv", ""), ("sections.csv", "")]);
+    let archive = files("archive", &[("Timeseries Data.zip", "PK")]).join("Timeseries Data.zip");
+    let table = format!("the table itself: {}", mapper.join("gaze.csv").display());
+    let exported =
+        format!("the table itself: {}", export.join("surfaces/gaze_positions_on_surface_wall.csv").display());
+    let [neon, player, cloud] = [
+        "open it in Neon Player with the plugin Surface Tracking and export",
+        "open it in Pupil Player with the plugin Surface Tracker and export",
+        "Pupil Cloud's Marker Mapper: gaze.csv of its download",
+    ];
+    for (path, found, remedy) in [
+        (native.clone(), "gaze ps1.raw: a recording of Neon or Invisible", neon),
+        (native.join("gaze ps1.raw"), "gaze ps1.raw: a recording of Neon or Invisible", neon),
+        (native.join("info.json"), "gaze ps1.raw: a recording of Neon or Invisible", neon),
+        (download, "gaze ps1.raw: a recording of Neon or Invisible", neon),
+        (series.clone(), "gaze.csv: time series of Pupil Cloud", cloud),
+        (core.join("world.mp4"), "gaze.pldata: a recording of Pupil Capture", player),
+        (core, "gaze.pldata: a recording of Pupil Capture", player),
+        (export, "a folder with a table of gaze on the display", &exported),
+        (mapper.clone(), "a folder with a table of gaze on the display", &table),
+        (archive, "an archive", "unpack it"),
+    ] {
+        let error = gaze_file::read(&path, &map(), 0.0).expect_err("no gaze on the display");
+        let FileError::Unfit { remedy: told, .. } = &error else { panic!("{error}") };
+        assert!(error.to_string().contains(found) && told.contains(remedy), "{error}; {told}");
+    }
+    // The table is taken, and gaze in the picture is not.
+    assert!(gaze_file::read(&mapper.join("gaze.csv"), &map(), 0.0).is_ok());
+    let error = gaze_file::read(&series.join("gaze.csv"), &map(), 0.0).expect_err("not on the display").to_string();
+    assert!(error.contains("gaze in the scene camera's picture"), "{error}");
 }

@@ -14,7 +14,7 @@ use tomcom::edge::log::{EXCLUSION_NAME, LogReader, consensus_file, rater_codes, 
 use tomcom::edge::parse::parse;
 use tomcom::edge::pupil::message as pupil_message;
 use tomcom::edge::pupil::zmtp::FrameAssembler;
-use tomcom::edge::{gaze_file, gaze_json, stream_head, training, written_tables};
+use tomcom::edge::{gaze_file, gaze_line, stream_head, training, written_tables};
 use tomcom::gaze::surface::SurfaceMap;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::measures::cause_codes::Codable;
@@ -159,7 +159,8 @@ fn rerun_head(bytes: &[u8]) {
 }
 
 fn gaze_line(bytes: &[u8]) {
-    drop(gaze_json::parse(bytes));
+    drop(gaze_line::parse(bytes, std::time::Instant::now()));
+    drop(gaze_line::code_in(bytes));
 }
 
 fn pupil(bytes: &[u8]) {

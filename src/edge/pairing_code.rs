@@ -1,4 +1,4 @@
-//! The pairing code.
+//! The pairing code, which the console shows and whoever connects from another computer has to know.
 
 use std::collections::hash_map::RandomState;
 use std::hash::BuildHasher;

@@ -1,0 +1,262 @@
+//! A connection that sends lines of gaze. One that does not begin with a JSON object is rejected and counted, and none of its lines is
+//! read: websites can make a browser send requests to this port. The first line of one from another computer is the pairing code, if
+//! its address is not listed; it is answered, so that the sender can tell whether the code was right.
+
+use std::net::IpAddr;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::sync::mpsc::Sender;
+use tokio::time::timeout;
+
+use super::connection_table::ConnectionPlace;
+use super::gaze_gate::{Admission, GazeGate};
+use super::gaze_input::GazeNews;
+use super::gaze_line::{begins_object, code_in, parse};
+
+/// Longest line, in bytes.
+const MAX_LINE: usize = 4096;
+/// Time limit for the first line of a connection.
+const FIRST_LINE: Duration = Duration::from_secs(10);
+/// Time limit for taking an answer.
+const ANSWER: Duration = Duration::from_secs(1);
+
+/// The gate that all connections pass.
+pub(super) type SharedGate = Arc<Mutex<GazeGate>>;
+
+/// A connection and what is known of its sender.
+pub(super) struct GazeConnection {
+    /// Its bytes.
+    pub stream: TcpStream,
+    /// Address of the sender.
+    pub from: IpAddr,
+    /// Its entry in the table of connections.
+    pub place: ConnectionPlace,
+    /// What lets it in.
+    pub gate: SharedGate,
+    /// Where to what it sends goes.
+    pub news: Sender<GazeNews>,
+}
+
+/// Reads a connection until it ends, is rejected, or is replaced by another.
+pub(super) async fn attend(connection: GazeConnection) {
+    let GazeConnection { stream, from, place, gate, news } = connection;
+    let is_paired = lock(&gate).admission(from) == Admission::Open;
+    let mut reader =
+        SampleReader { stream, from, place: &place, gate: &gate, news: &news, lines: LineReader::default(), is_paired };
+    let is_tracker = tokio::select! {
+        biased;
+        () = place.closed() => false,
+        is_tracker = reader.read() => is_tracker,
+    };
+    if !is_tracker {
+        reject(&news);
+    }
+}
+
+/// Counts a rejected sender.
+pub(super) fn reject(news: &Sender<GazeNews>) {
+    // A closed or full channel has more serious consequences than a wrong count.
+    let _ = news.try_send(GazeNews::Rejected(1));
+}
+
+/// The gate; a panic elsewhere leaves it usable.
+pub(super) fn lock(gate: &SharedGate) -> std::sync::MutexGuard<'_, GazeGate> {
+    gate.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Content of a line.
+enum LineContent {
+    /// The first line, with a pairing code.
+    Pairing(String),
+    News(GazeNews),
+}
+
+/// Splits a connection's bytes into lines.
+#[derive(Default)]
+struct LineReader {
+    line: Vec<u8>,
+    is_too_long: bool,
+    /// Whether the first line is complete.
+    has_line: bool,
+    /// Whether a sample arrived.
+    has_begun: bool,
+}
+
+impl LineReader {
+    /// Adds a byte; returns the content of the line that it ends, if any.
+    fn take(&mut self, byte: u8) -> Option<LineContent> {
+        if byte != b'\n' {
+            // The bound protects the memory against a sender that never ends its line.
+            match self.line.len() < MAX_LINE {
+                true => self.line.push(byte),
+                false => self.is_too_long = true,
+            }
+            return None;
+        }
+        self.end()
+    }
+
+    /// Ends the line and returns its content, if any.
+    fn end(&mut self) -> Option<LineContent> {
+        let code = if self.has_line || self.is_too_long { None } else { code_in(&self.line) };
+        let found = match (code, self.is_too_long) {
+            (Some(code), _) => Some(LineContent::Pairing(code)),
+            (None, true) => Some(LineContent::News(GazeNews::Malformed(1))),
+            (None, false) => parse(&self.line, Instant::now()).map(LineContent::News),
+        };
+        self.line.clear();
+        self.is_too_long = false;
+        self.has_line |= found.is_some();
+        found
+    }
+
+    /// Whether the beginning of the first line shows that the sender is no tracker.
+    fn is_foreign(&self) -> bool {
+        !self.has_line && begins_object(&self.line) == Some(false)
+    }
+}
+
+/// Reads the lines of a connection.
+struct SampleReader<'a> {
+    stream: TcpStream,
+    from: IpAddr,
+    place: &'a ConnectionPlace,
+    gate: &'a SharedGate,
+    news: &'a Sender<GazeNews>,
+    lines: LineReader,
+    /// Whether its lines are read.
+    is_paired: bool,
+}
+
+impl SampleReader<'_> {
+    /// Reads lines until the connection ends; a sender that is too fast is slowed down by TCP. Returns false if the sender has to
+    /// be counted as rejected.
+    async fn read(&mut self) -> bool {
+        let mut buffer = vec![0; MAX_LINE];
+        let first_by = tokio::time::Instant::now() + FIRST_LINE;
+        loop {
+            let left = first_by.saturating_duration_since(tokio::time::Instant::now());
+            let patience = if self.lines.has_line { Duration::MAX } else { left };
+            let Ok(count) = timeout(patience, self.stream.read(&mut buffer)).await else { return false };
+            let Ok(count @ 1..) = count else { break };
+            self.place.heard(Instant::now());
+            for &byte in &buffer[..count] {
+                let found = self.lines.take(byte);
+                if self.lines.is_foreign() {
+                    return false;
+                }
+                if let Some(found) = found
+                    && !self.handle(found).await
+                {
+                    return true;
+                }
+            }
+        }
+        // The last line may lack its newline.
+        if !self.lines.is_too_long
+            && let Some(found) = self.lines.end()
+        {
+            self.handle(found).await;
+        }
+        true
+    }
+
+    /// Handles the content of a line; returns whether further lines are read.
+    async fn handle(&mut self, found: LineContent) -> bool {
+        let code = match found {
+            LineContent::News(found) if self.is_paired => return self.tell(found).await,
+            LineContent::News(_) => None,
+            LineContent::Pairing(code) => Some(code),
+        };
+        let verdict = match self.is_paired {
+            true => Ok(()),
+            false => lock(self.gate).pair(self.from, code.as_deref(), Instant::now()),
+        };
+        self.is_paired = verdict.is_ok();
+        let answer = match verdict {
+            Ok(()) => "{\"paired\": true}\n".to_string(),
+            Err(wait) => format!("{{\"paired\": false, \"wait_s\": {}}}\n", wait.as_secs_f64().ceil()),
+        };
+        // Whoever does not take the answer is told by the end of the connection.
+        let _ = timeout(ANSWER, self.stream.write_all(answer.as_bytes())).await;
+        self.is_paired
+    }
+
+    /// Passes on the content of a line, with `Began` before the first sample; returns false if the receiver is gone.
+    async fn tell(&mut self, found: GazeNews) -> bool {
+        if matches!(found, GazeNews::Sample(..)) && !self.lines.has_begun {
+            self.lines.has_begun = true;
+            // All connections together are not more than may be admitted.
+            let _ = self.place.admit();
+            if self.news.send(GazeNews::Began).await.is_err() {
+                return false;
+            }
+        }
+        self.news.send(found).await.is_ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::Ipv4Addr;
+
+    use super::*;
+    use crate::edge::connection_table::{ConnectionLimits, ConnectionTable};
+    use crate::gaze::GazeSample;
+    use tokio::net::TcpListener;
+    use tokio::sync::mpsc::channel;
+
+    const ONE: ConnectionLimits = ConnectionLimits {
+        most: 1,
+        per_address: 1,
+        admitted: 1,
+        admitted_per_address: 1,
+        silence: Duration::from_secs(5),
+    };
+
+    #[tokio::test]
+    async fn samples_arrive_and_what_is_none_is_counted() {
+        // Port 0: the system chooses; so the test listens itself.
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
+        let address = listener.local_addr().expect("an address");
+        let (sender, mut lines) = channel(64);
+        let reader = tokio::spawn(async move {
+            let (stream, from) = listener.accept().await.expect("a tracker");
+            let gate = Arc::new(Mutex::new(GazeGate::new(&[], None, sender.clone())));
+            let table = ConnectionTable::new(ONE);
+            let place = table.arrive(from.ip(), Instant::now()).expect("a place").place;
+            attend(GazeConnection { stream, from: from.ip(), place, gate, news: sender }).await;
+        });
+        let mut tracker = TcpStream::connect(address).await.expect("connected");
+        let text = [
+            "{\"t\": 1.5, \"x\": 0.25, \"y\": 0.5, \"confidence\": 0.9}\n",
+            "\n{\"x\": 0.1, \"y\": 2, \"confidence\": 0, \"more\": 1}\r\n",
+            "{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1.01}\n{\"x\": 0.5, \"y\": 0.5, \"confidence\": -0.1}\n",
+            "{\"t\": 1764057600123.5, \"x\": 0, \"y\": 0, \"confidence\": 1}\n",
+            "{\"t\": -3.5, \"x\": 0, \"y\": 0, \"confidence\": 1}\n",
+            "{\"x\": NaN, \"y\": 2, \"confidence\": 1}\nnonsense\n",
+            &"9".repeat(3 * MAX_LINE),
+            "\n{\"x\": 1e999, \"y\": 0, \"confidence\": 1}\n",
+        ];
+        tracker.write_all(text.concat().as_bytes()).await.expect("sent");
+        drop(tracker);
+        reader.await.expect("the reader ends with its tracker");
+        let mut found = Vec::new();
+        while let Some(line) = lines.recv().await {
+            found.push(line);
+        }
+        let sample = |x, y, confidence, device_ns| {
+            GazeNews::Sample(GazeSample { device_ns, ..GazeSample::new(x, y, confidence) }, None)
+        };
+        assert_eq!(found.remove(0), GazeNews::Began);
+        let expected = [sample(0.25, 0.5, 0.9, Some(1_500_000_000)), sample(0.1, 2.0, 0.0, None)];
+        assert_eq!(found[..2], expected);
+        assert_eq!(found[2..4], vec![GazeNews::Malformed(1); 2]);
+        let milliseconds = sample(0.0, 0.0, 1.0, Some(1_764_057_600_123_500_032));
+        assert_eq!(found[4..6], [milliseconds, GazeNews::WrongTime(-3.5)]);
+        assert_eq!(found[6..], vec![GazeNews::Malformed(1); 4]);
+    }
+}

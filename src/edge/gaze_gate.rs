@@ -1,0 +1,184 @@
+//! Who may send gaze: every program of this computer; of other computers those that the session lists, or, if it lists none, those that
+//! know the pairing code.
+
+use std::collections::VecDeque;
+use std::net::{IpAddr, SocketAddr};
+use std::time::{Duration, Instant};
+
+use tokio::sync::mpsc::Sender;
+
+use super::gaze_input::{GazeNews, SenderRefusal};
+use super::gaze_line::code_in;
+use super::pairing::{PairingDesk, PairingVerdict};
+
+/// Least time between two notices about senders that are not let in: they can come in thousands.
+const NOTICE: Duration = Duration::from_millis(100);
+/// Number of paired senders of datagrams that are remembered.
+const MAX_PAIRED: usize = 64;
+
+/// What an address has to do before anything of it is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Admission {
+    /// Nothing.
+    Open,
+    /// Send the pairing code.
+    ByCode,
+    /// It is not let in.
+    Never,
+}
+
+/// Lets senders in, and tells of those that it does not let in. Connections and datagrams have a gate each, so that wrong codes in
+/// datagrams, whose senders can be made up, lock no connection out.
+#[derive(Debug)]
+pub(super) struct GazeGate {
+    listed: Vec<IpAddr>,
+    /// `None` if no code is asked for.
+    desk: Option<PairingDesk>,
+    /// Senders of datagrams with the right code, the oldest first.
+    paired: VecDeque<SocketAddr>,
+    news: Sender<GazeNews>,
+    /// When a rejected sender was told of last, and how many were not told of since.
+    told: Option<Instant>,
+    untold: u64,
+}
+
+impl GazeGate {
+    /// A gate for listed addresses, and for senders with this code.
+    pub fn new(listed: &[IpAddr], code: Option<&String>, news: Sender<GazeNews>) -> GazeGate {
+        let desk = code.map(|code| PairingDesk::new(code.clone()));
+        let listed = listed.iter().map(IpAddr::to_canonical).collect();
+        GazeGate { listed, desk, paired: VecDeque::new(), news, told: None, untold: 0 }
+    }
+
+    /// What an address has to do.
+    pub fn admission(&self, from: IpAddr) -> Admission {
+        // Where both kinds of addresses are listened on, those of version 4 come in the clothes of version 6.
+        let from = from.to_canonical();
+        match from.is_loopback() || self.listed.contains(&from) {
+            true => Admission::Open,
+            false if self.desk.is_some() => Admission::ByCode,
+            false => Admission::Never,
+        }
+    }
+
+    /// Checks the code of a sender that has to send one; tells of the sender if it is not let in.
+    ///
+    /// # Errors
+    /// It is not let in; the code of its address is not checked again for so long.
+    pub fn pair(&mut self, from: IpAddr, code: Option<&str>, now: Instant) -> Result<(), Duration> {
+        let verdict = match (&mut self.desk, code) {
+            (Some(desk), Some(code)) => Some(desk.attempt(from, None, code, now)),
+            _ => None,
+        };
+        let (why, wait) = match verdict {
+            Some(PairingVerdict::Right) => return Ok(()),
+            Some(PairingVerdict::Wrong(wait)) => (SenderRefusal::WrongCode, wait),
+            Some(PairingVerdict::Locked(wait)) => (SenderRefusal::Locked, wait),
+            None => (SenderRefusal::Unpaired, Duration::ZERO),
+        };
+        self.refuse(from, why, now);
+        Err(wait)
+    }
+
+    /// The lines of a datagram that are read; `None` if its sender is not let in. A datagram with the code as its first line pairs its
+    /// address and port; later ones of them need none.
+    pub fn lines<'a>(&mut self, from: SocketAddr, datagram: &'a [u8], now: Instant) -> Option<&'a [u8]> {
+        let first = datagram.iter().position(|&byte| byte == b'\n').unwrap_or(datagram.len());
+        let code = code_in(&datagram[..first]);
+        let lines = if code.is_some() { &datagram[first..] } else { datagram };
+        match self.admission(from.ip()) {
+            Admission::Open => Some(lines),
+            Admission::ByCode if self.paired.contains(&from) => Some(lines),
+            Admission::ByCode => {
+                self.pair(from.ip(), code.as_deref(), now).ok()?;
+                self.paired.push_back(from);
+                if self.paired.len() > MAX_PAIRED {
+                    self.paired.pop_front();
+                }
+                Some(lines)
+            }
+            Admission::Never => {
+                self.refuse(from.ip(), SenderRefusal::Unlisted, now);
+                None
+            }
+        }
+    }
+
+    /// Tells of a sender that is not let in.
+    pub fn refuse(&mut self, from: IpAddr, why: SenderRefusal, now: Instant) {
+        self.untold += 1;
+        if self.told.is_some_and(|told| now.saturating_duration_since(told) < NOTICE) {
+            return;
+        }
+        let refused = GazeNews::Refused { from: from.to_canonical(), why, senders: self.untold };
+        // A closed or full channel has more serious consequences than a missing notice.
+        if self.news.try_send(refused).is_ok() {
+            (self.told, self.untold) = (Some(now), 0);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tokio::sync::mpsc::{Receiver, channel};
+
+    const SAMPLE: &[u8] = b"{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}\n";
+
+    fn gate(listed: &[&str], code: Option<&str>) -> (GazeGate, Receiver<GazeNews>) {
+        let (news, told) = channel(16);
+        let listed: Vec<IpAddr> = listed.iter().map(|address| address.parse().expect("an address")).collect();
+        (GazeGate::new(&listed, code.map(str::to_string).as_ref(), news), told)
+    }
+
+    fn sender(port: u16) -> SocketAddr {
+        SocketAddr::from(([192, 168, 1, 20], port))
+    }
+
+    #[test]
+    fn a_datagram_with_the_code_pairs_its_sender_and_no_other() {
+        let (mut gate, mut told) = gate(&[], Some("ABC234"));
+        let mut now = Instant::now();
+        let paired = [b"{\"pair\": \"abc 234\"}\n", SAMPLE].concat();
+        assert_eq!(gate.lines(sender(1), SAMPLE, now), None);
+        assert_eq!(gate.lines(sender(1), &paired, now).map(<[u8]>::trim_ascii), Some(SAMPLE.trim_ascii()));
+        assert_eq!(gate.lines(sender(1), SAMPLE, now), Some(SAMPLE), "paired");
+        assert_eq!(gate.lines(sender(2), SAMPLE, now), None, "another program there is not");
+        // A code of a paired sender is not looked at, so it can repeat it, and nobody can guess behind it.
+        assert_eq!(gate.lines(sender(1), b"{\"pair\": \"WRONG2\"}", now), Some(&b""[..]));
+        now += NOTICE;
+        assert_eq!(gate.lines(sender(2), b"{\"pair\": \"WRONG2\"}", now), None);
+        now += NOTICE;
+        assert_eq!(gate.lines(sender(2), &paired, now), None, "locked");
+        assert_eq!(gate.lines(sender(1), SAMPLE, now), Some(SAMPLE), "who is paired stays");
+        let refused = |why, senders| Ok(GazeNews::Refused { from: sender(0).ip(), why, senders });
+        assert_eq!(told.try_recv(), refused(SenderRefusal::Unpaired, 1));
+        assert_eq!(told.try_recv(), refused(SenderRefusal::WrongCode, 2));
+        assert_eq!(told.try_recv(), refused(SenderRefusal::Locked, 1));
+        assert!(told.try_recv().is_err());
+        now += Duration::from_secs(1);
+        assert!(gate.lines(sender(2), &paired, now).is_some());
+        for port in 10..200 {
+            assert!(gate.lines(sender(port), &paired, now).is_some());
+        }
+        assert!(gate.paired.len() == MAX_PAIRED && gate.lines(sender(1), SAMPLE, now).is_none());
+    }
+
+    #[test]
+    fn a_list_lets_in_whom_it_lists_and_asks_for_no_code() {
+        let (mut gate, mut told) = gate(&["192.168.1.20"], None);
+        let now = Instant::now();
+        let mapped: IpAddr = "::ffff:192.168.1.20".parse().expect("an address");
+        let [here, other]: [IpAddr; 2] =
+            ["127.0.0.1", "192.168.1.21"].map(|address| address.parse().expect("an address"));
+        assert_eq!(
+            [here, mapped, other].map(|from| gate.admission(from)),
+            [Admission::Open, Admission::Open, Admission::Never]
+        );
+        assert_eq!(gate.lines(SocketAddr::new(other, 1), SAMPLE, now), None);
+        let refused = GazeNews::Refused { from: other, why: SenderRefusal::Unlisted, senders: 1 };
+        assert_eq!(told.try_recv(), Ok(refused));
+        // Whoever needs no code may send one all the same.
+        assert_eq!(gate.lines(sender(1), b"{\"pair\": \"anything\"}\n{}", now), Some(&b"\n{}"[..]));
+    }
+}

@@ -1,0 +1,124 @@
+//! Lines of the gaze input: samples {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1, "age": seconds}, and the line with which a
+//! sender at another computer pairs, {"pair": "CODE"}. Coordinates are fractions of the wall display, the origin at the top left; t is
+//! the tracker's own clock, age the time since the sample was taken.
+
+use std::time::{Duration, Instant};
+
+use serde::Deserialize;
+
+use super::gaze_input::GazeNews;
+use crate::gaze::GazeSample;
+
+/// Largest age of a sample, in seconds. A sender that knows an age knows it of samples that it just got.
+const MAX_AGE_S: f64 = 60.0;
+
+#[derive(Deserialize)]
+struct SampleLine {
+    #[serde(default)]
+    t: Option<f64>,
+    x: f64,
+    y: f64,
+    confidence: f64,
+    #[serde(default)]
+    age: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PairingLine {
+    pair: String,
+}
+
+/// Whether bytes begin like a JSON object; `None` if there are too few to decide.
+pub(super) fn begins_object(bytes: &[u8]) -> Option<bool> {
+    let mut signs = bytes.iter().filter(|byte| !byte.is_ascii_whitespace());
+    match (signs.next(), signs.next()) {
+        (Some(b'{'), Some(next)) => Some(matches!(next, b'"' | b'}')),
+        (Some(b'{') | None, None) => None,
+        _ => Some(false),
+    }
+}
+
+/// The code of a pairing line; `None` if the line is none.
+pub fn code_in(line: &[u8]) -> Option<String> {
+    serde_json::from_slice::<PairingLine>(line).ok().map(|line| line.pair)
+}
+
+/// Parses a line that arrived at this instant; `None` for an empty line.
+pub fn parse(line: &[u8], arrived: Instant) -> Option<GazeNews> {
+    if line.trim_ascii().is_empty() {
+        return None;
+    }
+    let Ok(found) = serde_json::from_slice::<SampleLine>(line) else { return Some(GazeNews::Malformed(1)) };
+    let has_age = found.age.is_none_or(|age_s| (0.0..=MAX_AGE_S).contains(&age_s));
+    // Beside the display is a place, too; a confidence beyond its scale is a tracker that speaks another language.
+    if !(found.x.is_finite() && found.y.is_finite() && (0.0..=1.0).contains(&found.confidence) && has_age) {
+        return Some(GazeNews::Malformed(1));
+    }
+    let device_ns = match found.t.map(|t| device_ns(t).ok_or(t)).transpose() {
+        Ok(device_ns) => device_ns,
+        Err(t) => return Some(GazeNews::WrongTime(t)),
+    };
+    let sample = GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence) };
+    let taken = found.age.and_then(|age_s| arrived.checked_sub(Duration::from_secs_f64(age_s)));
+    Some(GazeNews::Sample(sample, taken))
+}
+
+/// Converts a time stamp to nanoseconds; `None` if it is none. Up to ten digits are seconds of any clock. More are milliseconds,
+/// microseconds or nanoseconds since 1970, which differ by three digits each.
+fn device_ns(t: f64) -> Option<u64> {
+    let ns_per_unit = match t {
+        0.0..1e10 => 1e9,
+        1e11..1e13 => 1e6,
+        1e14..1e16 => 1e3,
+        1e17..1e19 => 1.0,
+        _ => return None,
+    };
+    Some((t * ns_per_unit).round() as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn time_stamps_are_seconds_or_finer_units_since_1970_or_refused() {
+        let since_1970_s = 1_764_057_600.25;
+        for unit in [1.0, 1e3, 1e6, 1e9] {
+            let ns = device_ns(since_1970_s * unit).expect("a time");
+            assert!(ns.abs_diff(1_764_057_600_250_000_000) < 500, "{unit}: {ns}");
+        }
+        assert_eq!(device_ns(12.5), Some(12_500_000_000));
+        for wrong in [-0.001, 5e10, 5e13, 5e16, 1e20, f64::NAN, f64::INFINITY] {
+            assert_eq!(device_ns(wrong), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_sample_of_known_age_was_taken_so_long_before_it_arrived() {
+        let arrived = Instant::now() + Duration::from_secs(100);
+        let with = |age: &str| {
+            let line = format!("{{\"t\": 7, \"x\": 0, \"y\": 1, \"confidence\": 1, \"age\": {age}}}");
+            parse(line.as_bytes(), arrived).expect("a line")
+        };
+        let sample = GazeSample { device_ns: Some(7_000_000_000), ..GazeSample::new(0.0, 1.0, 1.0) };
+        let before = |age_s| GazeNews::Sample(sample, Some(arrived - Duration::from_secs_f64(age_s)));
+        assert_eq!([with("0"), with("0.125"), with("60")], [before(0.0), before(0.125), before(60.0)]);
+        assert_eq!(with("null"), GazeNews::Sample(sample, None));
+        for wrong in ["-0.001", "60.1", "\"1\"", "1e999"] {
+            assert_eq!(with(wrong), GazeNews::Malformed(1), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_pairing_line_has_the_code_and_nothing_else() {
+        assert_eq!(code_in(b" {\"pair\": \"abc 234\"}\r"), Some("abc 234".to_string()));
+        for other in
+            ["{\"pair\": 7}", "{\"pair\": \"A\", \"x\": 0}", "{}", "{\"x\": 0, \"y\": 0, \"confidence\": 1}", "ABC234"]
+        {
+            assert_eq!(code_in(other.as_bytes()), None, "{other}");
+        }
+        // To who needs no code it is no sample.
+        assert_eq!(parse(b"{\"pair\": \"ABC234\"}", Instant::now()), Some(GazeNews::Malformed(1)));
+    }
+}

@@ -90,7 +90,7 @@ pub struct FrozenPlan {
 
 impl FrozenAnalysis {
     /// The analysis that this version of the program makes of a study.
-    pub fn of_study(study: &Study) -> FrozenAnalysis {
+    pub fn from_study(study: &Study) -> FrozenAnalysis {
         let conditions = &study.plan.conditions;
         let arms: Vec<StudyArm> = StudyArm::ALL.into_iter().filter(|arm| conditions.contains(arm)).collect();
         FrozenAnalysis {
@@ -118,7 +118,7 @@ impl FrozenPlan {
             groups: (0..participants.len()).map(|index| study.group(index).name).collect(),
             participants,
             recordings_before,
-            analysis: FrozenAnalysis::of_study(study),
+            analysis: FrozenAnalysis::from_study(study),
             definitions: current_definitions(),
             settings: serde_json::json!({
                 "plan": study.plan,

@@ -74,7 +74,7 @@ impl Preregistration {
 }
 
 /// Participants in words; `None` without any.
-fn named(who: &str, codes: &Vec<&str>) -> Option<String> {
+fn named(who: &str, codes: &[&str]) -> Option<String> {
     let number = count(codes.len() as u64, "participant is", "participants are");
     (!codes.is_empty()).then(|| format!("{number} {who}: {}", codes.join(", ")))
 }

@@ -15,6 +15,7 @@ mod mcap_exports;
 mod mcap_exports;
 mod operate;
 mod output;
+mod pools;
 #[cfg(feature = "rerun")]
 mod rerun_messages;
 #[cfg(not(feature = "rerun"))]
@@ -79,6 +80,8 @@ pub fn main() -> ExitCode {
         CliCommand::Review(args) => review::review(&args),
         CliCommand::List(args) => list::list(&args),
         CliCommand::Robustness(args) => cohorts::robustness(&args),
+        CliCommand::Power(args) => pools::power(&args),
+        CliCommand::Arms(args) => pools::arms(&args),
         CliCommand::Simulate(args) => simulation::simulate(&args),
         CliCommand::Study(args) => study::study(&args),
         CliCommand::Plan(args) => show_plan(&args),
@@ -110,7 +113,11 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
         return Err(wrong_argument(&args.session, found, "a session file with a [plan], like sessions/study.toml"));
     };
     let figures = StudyPlanSummary::from_study(&study, &args.out)?;
-    print(args.format, &figures, || plan::describe(&figures))
+    let Some(file) = &args.freeze else {
+        return print(args.format, &figures, || plan::describe(&figures));
+    };
+    let frozen = plan::freeze(&study, &files.kitchen, &figures, file)?;
+    print(args.format, &frozen, || frozen.describe())
 }
 
 /// Warns of recordings with settings outside of the ranges for settings files.

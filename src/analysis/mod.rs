@@ -50,11 +50,12 @@ pub mod recording_summary;
 pub mod recording_table;
 #[cfg(feature = "cli")]
 pub mod seen_contents;
+pub mod signal_time;
 pub mod sweep_row;
 pub mod timing_summary;
 pub mod training_record;
 #[cfg(feature = "cli")]
-mod trial_bootstrap;
+pub mod trial_bootstrap;
 pub mod trial_summary;
 pub mod watcher;
 pub mod wizard_log;

@@ -11,6 +11,7 @@ use super::exports::ExportArgs;
 use super::list::ListArgs;
 use super::operate::{OperateArgs, OperateFlags};
 use super::output::OutputFormat;
+use super::pools::{ArmsArgs, PowerArgs};
 use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::tutorial_alone::TutorialArgs;
@@ -43,6 +44,8 @@ pub(super) enum CliCommand {
     List(ListArgs),
     Simulate(SimulateArgs),
     Robustness(RobustnessArgs),
+    Power(PowerArgs),
+    Arms(ArmsArgs),
     Study(StudyArgs),
     Plan(PlanArgs),
     Fit(FitArgs),
@@ -120,6 +123,10 @@ pub(super) struct PlanArgs {
     /// Folder of the recordings.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
+    /// Freeze the plan before the study (preregistration): write plan, definitions and analysis with a digest to this new file, which
+    /// tomcom study --frozen checks.
+    #[arg(long, value_name = "FILE")]
+    pub(super) freeze: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(super) format: OutputFormat,

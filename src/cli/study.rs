@@ -29,6 +29,9 @@ pub(super) struct StudyArgs {
     /// The two raters whose codes of errors are taken; by default the two with the most complete codes of a recording.
     #[arg(long, value_names = ["A", "B"], num_args = 2)]
     raters: Option<Vec<String>>,
+    /// Hold the recordings against a plan that was frozen with tomcom plan PLAN --freeze FILE, and say what differs.
+    #[arg(long, value_name = "FILE")]
+    frozen: Option<PathBuf>,
     /// Parts to skip, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',')]
     skip: Vec<Skip>,
@@ -63,7 +66,8 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
     let out = args.out.clone().unwrap_or_else(|| args.paths[0].join("study"));
     let raters = args.raters.as_ref().map(|raters| two_raters(raters, "--raters")).transpose()?;
     let bar = progress(recordings.number() as u64, "recordings");
-    let request = AnalysisRequest { paths: args.paths.clone(), out, extent, raters };
+    let (paths, frozen) = (args.paths.clone(), args.frozen.clone());
+    let request = AnalysisRequest { paths, out, extent, raters, frozen };
     let (figures, report) = study::study(&request, &recordings, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &figures, || format!("{}report: {}\n", study::describe(&figures), report.display()))

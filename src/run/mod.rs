@@ -41,6 +41,10 @@ pub mod pick_recording;
 #[cfg(feature = "cli")]
 pub mod plan;
 #[cfg(feature = "cli")]
+pub mod pool;
+#[cfg(feature = "cli")]
+pub mod power;
+#[cfg(feature = "cli")]
 pub mod recording_list;
 #[cfg(feature = "cli")]
 pub mod replay;

@@ -1,14 +1,18 @@
 //! `tomcom plan`: participants, groups, progress and next recordings of a study.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use super::error::LiveError;
 use super::series::{slot_name, stands};
-use crate::edge::recordings;
+use crate::base::words::count;
+use crate::edge::file_error::FileResult;
+use crate::edge::files::KitchenFiles;
+use crate::edge::{frozen_file, recordings};
 use crate::session::plan::{Progress, RecordingOutcome, Study};
+use crate::study::frozen_plan::FrozenPlan;
 
 /// Output of `tomcom plan SESSION`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -50,6 +54,51 @@ impl StudyPlanSummary {
             participants,
         })
     }
+}
+
+/// Output of `tomcom plan SESSION --freeze FILE`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrozenSummary {
+    /// The plan's name.
+    pub plan: String,
+    /// SHA-256 of what was frozen.
+    pub digest: String,
+    /// Number of recordings of the plan that were there already.
+    pub recordings_before: u64,
+    /// The file.
+    pub file: PathBuf,
+}
+
+impl FrozenSummary {
+    /// What was frozen, as text.
+    pub fn describe(&self) -> String {
+        let (file, before) = (self.file.display(), count(self.recordings_before, "recording", "recordings"));
+        let warning = match self.recordings_before {
+            0 => String::new(),
+            _ => format!("{before} of the plan were made before it was frozen; the file says so\n"),
+        };
+        format!(
+            "plan {} is frozen in {file}\nSHA-256 {}\n{warning}after the study: tomcom study RECORDINGS --frozen {file}\n",
+            self.plan, self.digest
+        )
+    }
+}
+
+/// Freezes a plan: writes it with definitions and analysis to a new file. `progress` is how far the study is.
+///
+/// # Errors
+/// A file of that name is there, or it cannot be written.
+pub fn freeze(
+    study: &Study,
+    kitchen: &KitchenFiles,
+    progress: &StudyPlanSummary,
+    file: &Path,
+) -> FileResult<FrozenSummary> {
+    let steps = progress.participants.iter().flat_map(|one| &one.steps);
+    let recordings_before = steps.map(|step| step.recordings.len() as u64).sum();
+    let frozen = FrozenPlan::new(study, [&kitchen.layout.text, &kitchen.recipes.text], recordings_before);
+    let digest = frozen_file::freeze(file, &frozen)?;
+    Ok(FrozenSummary { plan: frozen.plan, digest, recordings_before, file: file.to_path_buf() })
 }
 
 /// The plan as text.

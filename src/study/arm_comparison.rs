@@ -7,11 +7,12 @@
 
 use serde::Serialize;
 
+use super::arm_design::{ArmDesign, ArmTrial, pairs};
 use super::effect::LEVEL;
-use super::linear_mixed_model::{Contrast, LinearMixedModel, Measurement};
-use super::negative_binomial_model::{NegativeBinomialModel, TrialCount, WaldContrast};
+use super::linear_mixed_model::{Contrast, LinearMixedModel};
+use super::negative_binomial_model::WaldContrast;
 use super::trial_statistics::Trial;
-use crate::session::plan::PrimaryOutcome;
+use crate::session::plan::{PrimaryOutcome, StudyAims};
 use crate::session::study_arm::StudyArm;
 
 /// Comparison of the arms of a study.
@@ -121,15 +122,6 @@ pub struct NonInferiority {
     pub holds: bool,
 }
 
-/// The design of a comparison: one row of effects per trial.
-struct Design<'a> {
-    outcome: PrimaryOutcome,
-    /// Trials with the index of their participant and the arm of the trial before.
-    rows: Vec<(usize, &'a Trial, Option<StudyArm>)>,
-    arms: Vec<StudyArm>,
-    periods: Vec<u32>,
-}
-
 /// Number of the outcome's events in a trial; `None` if it is not known there.
 fn events(outcome: PrimaryOutcome, trial: &Trial) -> Option<u64> {
     match outcome {
@@ -139,120 +131,50 @@ fn events(outcome: PrimaryOutcome, trial: &Trial) -> Option<u64> {
     }
 }
 
-impl<'a> Design<'a> {
-    /// The counting trials, ordered by participant and period, that have a period and the outcome. A repeated period counts once, by its
-    /// last trial.
-    fn new(trials: &[&'a Trial], outcome: PrimaryOutcome) -> Design<'a> {
-        let mut rows: Vec<(usize, &Trial, Option<StudyArm>)> = Vec::new();
-        let usable = trials
-            .iter()
-            .copied()
-            .filter(|trial| trial.period.is_some() && trial.human_presses > 0 && events(outcome, trial).is_some());
-        for trial in usable {
-            let Some((participant, last, before)) = rows.last().copied() else {
-                rows.push((0, trial, None));
-                continue;
-            };
-            if last.participant != trial.participant {
-                rows.push((participant + 1, trial, None));
-            } else if last.period == trial.period {
+/// The trials that have a period and the outcome. A repeated period counts once, by its last trial.
+fn counted(trials: &[&Trial], outcome: PrimaryOutcome) -> Vec<ArmTrial> {
+    let mut rows: Vec<(&Trial, ArmTrial)> = Vec::new();
+    for trial in trials.iter().copied().filter(|trial| trial.human_presses > 0) {
+        let (Some(period), Some(events)) = (trial.period, events(outcome, trial)) else { continue };
+        let mut participant = 0;
+        if let Some((last, row)) = rows.last() {
+            participant = row.participant + usize::from(last.participant != trial.participant);
+            if participant == row.participant && row.period == period {
                 rows.pop();
-                rows.push((participant, trial, before));
-            } else {
-                rows.push((participant, trial, Some(last.study_arm)));
             }
         }
-        let has = |arm: &StudyArm| rows.iter().any(|(_, trial, _)| trial.study_arm == *arm);
-        let arms = StudyArm::ALL.into_iter().filter(has).collect();
-        let mut periods: Vec<u32> = rows.iter().filter_map(|(_, trial, _)| trial.period).collect();
-        periods.sort_unstable();
-        periods.dedup();
-        Design { outcome, rows, arms, periods }
+        let (arm, presses) = (trial.study_arm, trial.human_presses);
+        rows.push((trial, ArmTrial { participant, period, arm, events, presses }));
     }
+    rows.into_iter().map(|(_, row)| row).collect()
+}
 
-    /// Whether participants can be compared with themselves.
-    fn is_within(&self) -> bool {
-        self.arms.len() > 1 && self.rows.iter().any(|(_, _, before)| before.is_some())
-    }
+/// Contrasts of the primary model with Holm's correction.
+fn contrasts(design: &ArmDesign, model: &LinearMixedModel) -> Vec<ArmContrast> {
+    let contrast = |pair: (StudyArm, StudyArm)| {
+        let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
+        let (arm, against) = pair;
+        let interval = contrast.interval(LEVEL).map(f64::exp);
+        Some(ArmContrast { arm, against, ratio: contrast.estimate.exp(), interval, p_holm: contrast.p, contrast })
+    };
+    let mut all: Vec<ArmContrast> = pairs(design.arms()).into_iter().filter_map(contrast).collect();
+    let corrected = holm(&all.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
+    all.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
+    all
+}
 
-    /// Intercept, arms without the first, periods without the first, and the arms before without the first, if asked.
-    fn effects(&self, (_, trial, before): &(usize, &Trial, Option<StudyArm>), carry_over: bool) -> Vec<f64> {
-        let is = |holds: bool| f64::from(u8::from(holds));
-        let arms = self.arms.iter().skip(1).map(|arm| is(trial.study_arm == *arm));
-        let periods = self.periods.iter().skip(1).map(|period| is(trial.period == Some(*period)));
-        let carried = self.arms.iter().skip(1).filter(|_| carry_over).map(|arm| is(*before == Some(*arm)));
-        std::iter::once(1.0).chain(arms).chain(periods).chain(carried).collect()
-    }
-
-    fn linear(&self, carry_over: bool) -> Option<LinearMixedModel> {
-        let measurement = |row: &(usize, &Trial, Option<StudyArm>)| {
-            let (participant, trial, _) = row;
-            let count = events(self.outcome, trial)? as f64;
-            let value = ((count + 0.5) / trial.human_presses as f64).ln();
-            Some(Measurement { participant: *participant, effects: self.effects(row, carry_over), value })
-        };
-        LinearMixedModel::fit(&self.rows.iter().filter_map(measurement).collect::<Vec<_>>())
-    }
-
-    fn counts(&self) -> Option<NegativeBinomialModel> {
-        let count = |row: &(usize, &Trial, Option<StudyArm>)| {
-            let (participant, trial, _) = row;
-            let count = events(self.outcome, trial)?;
-            let (effects, exposure) = (self.effects(row, false), trial.human_presses as f64);
-            Some(TrialCount { participant: *participant, effects, count, exposure })
-        };
-        NegativeBinomialModel::fit(&self.rows.iter().filter_map(count).collect::<Vec<_>>())
-    }
-
-    /// The pairs that are compared: every arm with the one without signals, and every other one with the wizard.
-    fn pairs(&self) -> Vec<(StudyArm, StudyArm)> {
-        let mut pairs = Vec::new();
-        for against in [StudyArm::None, StudyArm::Wizard] {
-            let others = self.arms.iter().copied().filter(|arm| *arm != against && *arm != StudyArm::None);
-            pairs.extend(others.filter(|_| self.arms.contains(&against)).map(|arm| (arm, against)));
-        }
-        if pairs.is_empty() {
-            // Neither is there: the first arm is what the others are compared with.
-            pairs.extend(self.arms.iter().skip(1).map(|arm| (*arm, self.arms[0])));
-        }
-        pairs
-    }
-
-    /// Weights of the fixed effects for the difference of two arms.
-    fn weights(&self, (arm, against): (StudyArm, StudyArm), size: usize) -> Vec<f64> {
-        let mut weights = vec![0.0; size];
-        for (place, other) in self.arms.iter().enumerate().skip(1) {
-            weights[place] = f64::from(i8::from(*other == arm) - i8::from(*other == against));
-        }
-        weights
-    }
-
-    fn contrasts(&self, model: &LinearMixedModel) -> Vec<ArmContrast> {
-        let contrast = |pair: (StudyArm, StudyArm)| {
-            let contrast = model.contrast(&self.weights(pair, model.estimates.len()))?;
-            let (arm, against) = pair;
-            let interval = contrast.interval(LEVEL).map(f64::exp);
-            Some(ArmContrast { arm, against, ratio: contrast.estimate.exp(), interval, p_holm: contrast.p, contrast })
-        };
-        let mut all: Vec<ArmContrast> = self.pairs().into_iter().filter_map(contrast).collect();
-        let corrected = holm(&all.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
-        all.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
-        all
-    }
-
-    fn count_comparison(&self) -> Option<CountComparison> {
-        let model = self.counts()?;
-        let contrast = |pair: (StudyArm, StudyArm)| {
-            let contrast = model.contrast(&self.weights(pair, model.estimates.len()))?;
-            let (arm, against) = pair;
-            Some(CountContrast { arm, against, ratio: contrast.estimate.exp(), p_holm: contrast.p, contrast })
-        };
-        let mut contrasts: Vec<CountContrast> = self.pairs().into_iter().filter_map(contrast).collect();
-        let corrected = holm(&contrasts.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
-        contrasts.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
-        let size = Some(model.size).filter(|size| size.is_finite());
-        Some(CountComparison { between_sd: model.between_sd, size, contrasts })
-    }
+fn count_comparison(design: &ArmDesign) -> Option<CountComparison> {
+    let model = design.counts()?;
+    let contrast = |pair: (StudyArm, StudyArm)| {
+        let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
+        let (arm, against) = pair;
+        Some(CountContrast { arm, against, ratio: contrast.estimate.exp(), p_holm: contrast.p, contrast })
+    };
+    let mut contrasts: Vec<CountContrast> = pairs(design.arms()).into_iter().filter_map(contrast).collect();
+    let corrected = holm(&contrasts.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
+    contrasts.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
+    let size = Some(model.size).filter(|size| size.is_finite());
+    Some(CountComparison { between_sd: model.between_sd, size, contrasts })
 }
 
 /// Holm's correction: the p values, multiplied from the least on by the number of those that are not smaller.
@@ -267,22 +189,34 @@ pub fn holm(p: &[f64]) -> Vec<f64> {
     corrected
 }
 
+/// Contrasts of the primary model alone, of trials ordered by participant and period; none where it cannot be estimated.
+pub fn primary_contrasts(trials: Vec<ArmTrial>) -> Vec<ArmContrast> {
+    let design = ArmDesign::new(trials);
+    let model = if design.is_within() { design.linear(false) } else { None };
+    model.map_or_else(Vec::new, |model| contrasts(&design, &model))
+}
+
 /// Compares the arms of these trials, which must be ordered by participant and period; `None` unless participants have trials in different
 /// arms, or where the model cannot be estimated. Outcome and margin are those of the plan.
 pub fn compare_arms(trials: &[&Trial]) -> Option<ArmComparison> {
     let aims = trials.iter().find_map(|trial| trial.aims).unwrap_or_default();
-    let design = Design::new(trials, aims.outcome);
+    compare_counts(counted(trials, aims.outcome), aims)
+}
+
+/// The same of counts of the primary outcome of these aims.
+pub fn compare_counts(trials: Vec<ArmTrial>, aims: StudyAims) -> Option<ArmComparison> {
+    let design = ArmDesign::new(trials);
     if !design.is_within() {
         return None;
     }
     let model = design.linear(false)?;
-    let contrasts = design.contrasts(&model);
-    let with_carry_over = match design.arms.len() {
+    let found = contrasts(&design, &model);
+    let with_carry_over = match design.arms().len() {
         0..=2 => Vec::new(),
-        _ => design.linear(true).map_or_else(Vec::new, |model| design.contrasts(&model)),
+        _ => design.linear(true).map_or_else(Vec::new, |model| contrasts(&design, &model)),
     };
     let is_assistants = |arm: StudyArm| matches!(arm, StudyArm::TomCom | StudyArm::Tom | StudyArm::Dev);
-    let against_wizard = contrasts.iter().filter(|one| one.against == StudyArm::Wizard && is_assistants(one.arm));
+    let against_wizard = found.iter().filter(|one| one.against == StudyArm::Wizard && is_assistants(one.arm));
     let non_inferiority = against_wizard.map(|one| NonInferiority {
         arm: one.arm,
         against: one.against,
@@ -293,23 +227,23 @@ pub fn compare_arms(trials: &[&Trial]) -> Option<ArmComparison> {
         holds: one.interval[1] < aims.margin,
     });
     let outcome_of = |arm: StudyArm| {
-        let own = || design.rows.iter().map(|(_, trial, _)| *trial).filter(|trial| trial.study_arm == arm);
+        let own = || design.trials().iter().filter(|trial| trial.arm == arm);
         ArmOutcome {
             arm,
             trials: own().count(),
-            events: own().filter_map(|trial| events(aims.outcome, trial)).sum(),
-            presses: own().map(|trial| trial.human_presses).sum(),
+            events: own().map(|trial| trial.events).sum(),
+            presses: own().map(|trial| trial.presses).sum(),
         }
     };
     Some(ArmComparison {
         outcome: aims.outcome,
-        participants: design.rows.last().map_or(0, |(participant, ..)| participant + 1),
-        trials: design.rows.len(),
-        arms: design.arms.iter().copied().map(outcome_of).collect(),
+        participants: design.trials().last().map_or(0, |trial| trial.participant + 1),
+        trials: design.trials().len(),
+        arms: design.arms().iter().copied().map(outcome_of).collect(),
         standard_deviations: [model.between.sqrt(), model.within.sqrt()],
         non_inferiority: non_inferiority.collect(),
-        contrasts,
+        contrasts: found,
         with_carry_over,
-        negative_binomial: design.count_comparison(),
+        negative_binomial: count_comparison(&design),
     })
 }

@@ -11,6 +11,7 @@ use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
 use super::facts::Facts;
 use super::known_beliefs::SharedBeliefs;
 use super::live_arms::{LiveArm, live_arms};
+use super::preregistration::Preregistration;
 use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
 use super::statistics::{Correlation, FTest};
 use super::tables::probe_table::PROBES_WRONG;
@@ -51,6 +52,9 @@ pub struct StudySummary {
     pub ended: BTreeMap<EndReason, u64>,
     /// Robot statistics by kind of arm.
     pub robot: Vec<ArmGroup>,
+    /// How the study stands to its frozen plan; absent if none was given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preregistration: Option<Preregistration>,
     /// The trials by condition.
     pub conditions: Vec<StudyConditionSummary>,
     /// Effect of assistance on errors per human press: the interaction of period and starting group.
@@ -202,6 +206,7 @@ impl StudySummary {
                 ended
             }),
             robot: by_arm(&counting),
+            preregistration: None,
             conditions: conditions(&counting),
             anova: effects[0].assistance(),
             pearson: effects[0].pearson,
@@ -235,6 +240,11 @@ impl StudySummary {
             left_out: left_out.collect(),
             practice,
         }
+    }
+
+    /// Adds how the study stands to its frozen plan, if one was given.
+    pub fn with_preregistration(self, preregistration: Option<Preregistration>) -> StudySummary {
+        StudySummary { preregistration, ..self }
     }
 
     /// Adds the answers to the questions of tutorials, which must be ordered by participant.

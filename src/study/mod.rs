@@ -9,7 +9,10 @@
 //! - [`trial_statistics`] keeps the statistics of each trial, [`trial_totals`] sums them up; [`figures`] summarizes them with [`effect`], [`roc`] and
 //!   [`statistics`].
 //! - [`arm_comparison`] compares any number of arms, by a [linear mixed model](linear_mixed_model) and a
-//!   [negative binomial one](negative_binomial_model).
+//!   [negative binomial one](negative_binomial_model), after an [`arm_design`].
+//! - [`drawn_study`] draws studies from a [`simulation_pool`]; [`power`] counts what their tests find, [`power_answer`] says how many participants are
+//!   needed; [`arm_table`] compares the arms of a pool.
+//! - [`frozen_plan`] is what is frozen before a study, [`preregistration`] whether the study is that one.
 //! - [`tables`] declares the tables: the source of a row, and each [column](mod@column) with name, unit, meaning and value. Header lines,
 //!   rows and [`dictionary`] are generated. A measure that is compared between assisted and unassisted trials is declared as such
 //!   in the table of trials ([`tables::trials`]); its columns in the table of participants and its line in the report are
@@ -20,24 +23,33 @@ pub mod acceptance;
 pub mod acting_arm;
 pub mod arm_chart;
 pub mod arm_comparison;
+pub mod arm_design;
 pub mod arm_group;
+pub mod arm_table;
 pub mod belief_trace;
 pub mod charts;
 pub mod column;
 pub mod definitions;
 pub mod dictionary;
+pub mod drawn_study;
 pub mod effect;
 pub mod facts;
 pub mod figures;
+pub mod frozen_plan;
 pub mod known_beliefs;
 pub mod linear_mixed_model;
 pub mod live_arms;
 pub mod negative_binomial_model;
+pub mod power;
+pub mod power_answer;
+pub mod power_chart;
+pub mod preregistration;
 pub mod prevention;
 pub mod rater_episodes;
 pub mod report;
 pub mod robot_tally;
 pub mod roc;
+pub mod simulation_pool;
 pub mod statistics;
 pub mod svg;
 pub mod tables;

@@ -248,10 +248,15 @@ pub fn mean_interval(values: &[f64], level: f64) -> Option<Interval> {
 
 /// Proportion with its Wilson score interval (Wilson 1927); `None` if `whole` is 0.
 pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<Interval> {
-    if whole == 0 {
+    wilson(part as f64 / whole as f64, whole as f64, level)
+}
+
+/// The proportion `p` of `n` observations with its Wilson score interval; `n` may be the fractional number of independent observations
+/// with the same variance. `None` if it is 0.
+pub fn wilson(p: f64, n: f64, level: f64) -> Option<Interval> {
+    if n <= 0.0 {
         return None;
     }
-    let (n, p) = (whole as f64, part as f64 / whole as f64);
     let z = Normal::new(0.0, 1.0).ok()?.inverse_cdf(0.5 + level / 2.0);
     let (centre, reach) = ((p + z * z / (2.0 * n)), z * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt());
     let scale = 1.0 + z * z / n;

@@ -175,6 +175,16 @@ impl SvgChart {
     }
 }
 
+/// A finished chart as a file of its own, with this style sheet.
+pub fn document(chart: &Markup, style: &str) -> String {
+    let style = format!("<style>\n{style}svg {{ background: var(--paper); }}\n</style>\n");
+    let chart = chart.0.replacen("<svg ", "<svg xmlns=\"http://www.w3.org/2000/svg\" ", 1);
+    match chart.split_once('\n') {
+        Some((head, body)) => format!("{head}\n{style}{body}"),
+        None => chart,
+    }
+}
+
 /// A pixel coordinate with one decimal.
 fn tenths(pixels: f64) -> String {
     format!("{pixels:.1}")

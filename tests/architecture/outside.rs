@@ -37,7 +37,7 @@ const BANNED_BELOW_EDGE: [&str; 21] = [
 ];
 
 /// Crates that only some rooms may name; a file name stands for that file alone.
-const ONLY_IN: [(&str, &[&str]); 17] = [
+const ONLY_IN: [(&str, &[&str]); 18] = [
     ("ratatui", &["src/console", "src/edge"]),
     ("crossterm", &["src/console", "src/edge"]),
     ("tokio", &["src/edge", "src/run", "src/main.rs", "src/cli.rs"]),
@@ -65,6 +65,7 @@ const ONLY_IN: [(&str, &[&str]); 17] = [
     ("flate2", &["src/edge/bids_tree.rs"]),
     ("mcap", &["src/edge/mcap_file.rs"]),
     ("libloading", &["src/edge/lsl/library.rs"]),
+    ("sha2", &["src/edge/frozen_file.rs"]),
 ];
 
 /// Collects the paths, macros and kinds of code that a file names.

@@ -12,6 +12,7 @@ mod forgetting_others;
 mod forgotten_answers;
 mod overwriting;
 mod plan;
+mod power;
 mod stuck_terminal;
 mod survival;
 mod terminal;

@@ -1,6 +1,7 @@
 //! `tomcom study`: replays the recordings of a study on all processors and writes tables, charts and the report.
 
 mod coded_errors;
+mod frozen_check;
 mod questionnaire_answers;
 pub mod reading;
 mod rows;
@@ -13,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use self::reading::{AnalysisScope, RecordingAnalysis};
-pub use self::tell::describe;
+pub use self::tell::{describe, describe_arms};
 use super::parallel;
 use super::replay::SameKitchen;
 use crate::edge::export::{ExportError, ExportFolder};
@@ -62,6 +63,8 @@ pub struct AnalysisRequest {
     pub extent: AnalysisScope,
     /// The two raters whose codes are taken; `None`: those with the most complete codes of each recording.
     pub raters: Option<[String; 2]>,
+    /// The file of the frozen plan that the recordings are held against.
+    pub frozen: Option<PathBuf>,
 }
 
 /// Recordings of an analysis, each with the name that identifies it in tables.
@@ -116,6 +119,10 @@ pub fn study(
     recordings: &NamedRecordings,
     done: impl Fn() + Sync,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
+    let preregistration = match &analysis.frozen {
+        Some(file) => Some(frozen_check::check(file, recordings.found.iter().map(|(path, _)| path.as_path()))?),
+        None => None,
+    };
     let export = ExportFolder::create(&analysis.out)?;
     let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
     let kitchen = LogReader::open(first)?.kitchen;
@@ -144,6 +151,7 @@ pub fn study(
     let practice = (recordings.number() - trials.len()) as u64;
     let tutorials = tutorial_answers(recordings)?;
     let figures = StudySummary::from_trials(&trials, &facts, practice).with_tutorials(&tutorials);
+    let figures = figures.with_preregistration(preregistration);
     if !analysis.extent.events {
         kept.clear();
     }

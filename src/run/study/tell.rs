@@ -29,6 +29,7 @@ pub fn describe(figures: &StudySummary) -> String {
         percent(totals.error_rate),
         percent(totals.error_rate_human),
     );
+    text += &figures.preregistration.as_ref().map_or(String::new(), |found| format!("{}\n", found.words()));
     text += &match (totals.belief_related_errors, totals.sequences) {
         (Some(related), Some(sequences)) => format!(
             "belief related: {related} ({}), in {} of {} errors each (whatever the aspect {}), recovery \
@@ -89,7 +90,7 @@ pub fn describe(figures: &StudySummary) -> String {
         );
     }
     text += &figures.effects.first().map_or(String::new(), of_effect);
-    text += &figures.arms.as_ref().map_or(String::new(), of_arms);
+    text += &figures.arms.as_ref().map_or(String::new(), describe_arms);
     if figures.roc.iter().any(|roc| !roc.points.is_empty()) {
         let heads: Vec<String> = EQUAL_SIGNALS.iter().map(|signals| format!("{signals:>6}")).collect();
         text += &format!(
@@ -189,7 +190,7 @@ fn of_effect(effect: &AssistanceEffect) -> String {
 }
 
 /// The contrasts of the primary outcome between arms.
-fn of_arms(found: &ArmComparison) -> String {
+pub fn describe_arms(found: &ArmComparison) -> String {
     let mut text = format!(
         "{} per press of the human, by condition (linear mixed model of {} trials of {}):\n",
         found.outcome.title(),

@@ -19,8 +19,8 @@ use super::facts::Facts;
 use super::figures::StudySummary;
 use super::trial_statistics::Trial;
 
-/// Style sheet of the page.
-const STYLE: &str = include_str!("style.css");
+/// Style sheet of the page, and of its charts.
+pub const STYLE: &str = include_str!("style.css");
 
 /// The report as an HTML page; it refers to the files of these tables.
 pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[Table]) -> String {

@@ -53,6 +53,9 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
             }
             "\n"
         }
+        @if let Some(found) = &figures.preregistration {
+            p class=(if found.differences.is_empty() { "note" } else { "warning" }) { (found.words()) } "\n"
+        }
         @if let Some(found) = &figures.raters { (raters(found, figures)) }
         @for one in &figures.stale_consensus {
             p class="warning" { "Stale consensus, not used: " (one.recording) ": " (one.reason) "." } "\n"

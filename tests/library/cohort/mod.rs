@@ -4,6 +4,7 @@
 mod codes;
 mod job_array;
 mod learning;
+mod pool;
 mod robustness;
 mod twins;
 mod wizard;

@@ -2,7 +2,9 @@
 
 mod arms;
 mod effect;
+mod frozen;
 mod live_arms;
+mod power;
 mod prevention;
 mod probe_recordings;
 mod probes;

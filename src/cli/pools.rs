@@ -1,0 +1,202 @@
+//! Commands over pools of simulated participants: `tomcom power` and `tomcom arms`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::choices::ArmArg;
+use super::failure::{Failure, wrong_argument};
+use super::output::{OutputFormat, print, progress, put_aside};
+use crate::base::words::count;
+use crate::edge::file_error::FileError;
+use crate::edge::files::{SessionFiles, read_session};
+use crate::edge::{pool_file, power_files};
+use crate::run::pool::{self, PoolRequest};
+use crate::run::power::{self, PowerRequest};
+use crate::run::simulate::Shard;
+use crate::run::study::describe_arms;
+use crate::session::settings::ArmKind;
+use crate::study::drawn_study::DrawnEffect;
+use crate::study::simulation_pool::SimulationPool;
+use crate::study::{arm_table, power_answer};
+
+/// Numbers of participants by default: from 8 to 40.
+const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";
+
+/// Says how many participants a study needs.
+///
+/// Simulates a pool of participants with the plan's conditions, and each trial once more without signals; draws studies of whole persons from
+/// it; analyses each as the plan will be, and prints power, the least effect that is found, and how many participants are needed.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples: tomcom power sessions/paper.toml --pool 200 --seed 9741 --out pool.jsonl --picture power.svg\n          \
+                  tomcom power sessions/paper.toml --pool 1000 --shard 2/8 --out part-2.jsonl\n          \
+                  tomcom power sessions/paper.toml --from part-*.jsonl --out pool.jsonl\nMore: docs/planning.md"
+)]
+pub(super) struct PowerArgs {
+    #[command(flatten)]
+    pool: PoolArgs,
+    /// Numbers of participants, separated by commas.
+    #[arg(long, value_name = "N,N,…", value_delimiter = ',', default_value = SIZES, value_parser = clap::value_parser!(u16).range(4..=1000))]
+    sizes: Vec<u16>,
+    /// Number of studies that are drawn for each number of participants.
+    #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(20..=100_000))]
+    studies: u64,
+    /// Put this effect into unassisted trials, instead of what the conditions did: the ratio of the rates of every condition to the first,
+    /// above 0; with 1 what is found is an error of type I.
+    #[arg(long, value_name = "RATIO", value_parser = ratio)]
+    effect: Option<f64>,
+    /// Simulate unassisted trials alone, and measure the type I error: short for --effect 1, and quicker.
+    #[arg(long, conflicts_with = "effect")]
+    null: bool,
+    /// Write the table to this file (CSV).
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write a picture to this file (SVG).
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
+}
+
+/// Compares all conditions of a plan with simulated participants.
+///
+/// Each participant has a trial in every condition. Prints a table with errors, belief related errors, lengths of error sequences, orders,
+/// signals and the time with a signal on the display, with intervals, and the contrasts between conditions. Nothing is recorded.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: tomcom arms sessions/arms.toml --pool 60 --seed 9742\nMore: docs/planning.md")]
+pub(super) struct ArmsArgs {
+    #[command(flatten)]
+    pool: PoolArgs,
+}
+
+/// The pool of a command.
+#[derive(Debug, Args)]
+struct PoolArgs {
+    /// The session file with the plan.
+    plan: PathBuf,
+    /// Number of simulated participants in the pool, whatever the plan says.
+    #[arg(long = "pool", visible_alias = "participants", value_name = "PARTICIPANTS", default_value_t = 200, value_parser = clap::value_parser!(u32).range(2..=100_000))]
+    participants: u32,
+    /// Seed of everything random; by default that of the session file.
+    #[arg(long, conflicts_with = "from")]
+    seed: Option<u64>,
+    /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
+    #[arg(long, value_enum)]
+    arm: Option<ArmArg>,
+    /// Simulate one shard of the pool, such as "2/8", the second of eight, for job arrays, and only write it to --out.
+    #[arg(
+        long,
+        value_name = "PART/PARTS",
+        default_value = "1/1",
+        hide_default_value = true,
+        requires = "out",
+        conflicts_with = "from"
+    )]
+    shard: Shard,
+    /// Take the participants from these files instead of simulating them; shards are joined.
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "participants")]
+    from: Vec<PathBuf>,
+    /// Write the pool, the joined one, or the shard to this file (JSON Lines).
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Output format.
+    #[arg(long, value_enum, default_value = "text")]
+    format: OutputFormat,
+}
+
+fn ratio(text: &str) -> Result<f64, String> {
+    let right = || "a ratio of rates above 0, at most 1, such as 0.7".to_string();
+    text.parse().ok().filter(|&ratio| ratio > 0.0 && ratio <= 1.0).ok_or_else(right)
+}
+
+impl PoolArgs {
+    /// The pool of these arguments; `None` if only a shard was asked for, which is then written. `arms` and `unassisted` say what is
+    /// simulated.
+    fn pool(&self, arms: bool, unassisted: bool) -> Result<Option<SimulationPool>, Failure> {
+        let mut files = read_session(&self.plan)?;
+        let spec = &mut files.spec;
+        spec.robot.arm = self.arm.map_or(spec.robot.arm, ArmKind::from);
+        spec.require_built().map_err(|missing| FileError::not_built(&self.plan, missing))?;
+        if let Some(out) = &self.out {
+            pool_file::check_pool(out)?;
+        }
+        let pool = match self.from.is_empty() {
+            false => self.read(files)?,
+            true => {
+                files.spec.seed = self.seed.unwrap_or(files.spec.seed);
+                let request =
+                    PoolRequest { files, participants: self.participants, shard: self.shard, arms, unassisted };
+                let bar = progress(request.trials(&self.plan)?, "trials");
+                let pool = pool::simulate(&request, &self.plan, || bar.inc(1))?;
+                bar.finish_and_clear();
+                pool
+            }
+        };
+        if let Some(out) = &self.out {
+            pool_file::write_pool(out, &pool)?;
+        }
+        if self.shard != Shard::WHOLE {
+            let (Shard { number, of }, persons) = (self.shard, pool.persons.len() as u64);
+            put_aside(&format!("part {number} of {of}: {}\n", count(persons, "participant", "participants")));
+            return Ok(None);
+        }
+        Ok(Some(pool))
+    }
+
+    /// The pool from files, which must be of the plan.
+    fn read(&self, mut files: SessionFiles) -> Result<SimulationPool, Failure> {
+        let pool = pool_file::read_pool(&self.from)?;
+        files.spec.seed = pool.header.seed;
+        let (participants, shard) = (pool.header.participants, Shard::WHOLE);
+        let request =
+            PoolRequest { files, participants, shard, arms: pool.header.arms, unassisted: pool.header.unassisted };
+        let wanted = request.header(&self.plan)?;
+        if wanted.digest != pool.header.digest {
+            let found = format!("a pool of another plan or other settings ({})", pool.header.digest);
+            let remedy =
+                format!("a pool of {} as it is now ({}), also with its --arm", self.plan.display(), wanted.digest);
+            return Err(wrong_argument(&self.from[0], found, &remedy));
+        }
+        Ok(pool)
+    }
+
+    /// Where the pool comes from, for messages.
+    fn source(&self) -> &PathBuf {
+        self.from.first().unwrap_or(&self.plan)
+    }
+}
+
+/// `tomcom power PLAN`.
+pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
+    power_files::check_power(args.csv.as_deref(), args.picture.as_deref())?;
+    let Some(pool) = args.pool.pool(!args.null, true)? else { return Ok(()) };
+    let ratio = if args.null { Some(1.0) } else { args.effect };
+    let effect = ratio.map_or(DrawnEffect::AsSimulated, DrawnEffect::Ratio);
+    let mut sizes: Vec<usize> = args.sizes.iter().map(|&size| usize::from(size)).collect();
+    sizes.sort_unstable();
+    sizes.dedup();
+    let request = PowerRequest { sizes, studies: args.studies, effect };
+    let bar = progress(power::blocks(&request, &pool), "blocks of studies");
+    let found = power::measure(&request, &pool, args.pool.source(), || bar.inc(1))?;
+    bar.finish_and_clear();
+    if let Some(file) = &args.csv {
+        power_files::write_table(file, &found)?;
+    }
+    if let Some(file) = &args.picture {
+        power_files::write_picture(file, &found)?;
+    }
+    print(args.pool.format, &found, || power_answer::describe(&found))
+}
+
+/// `tomcom arms PLAN`.
+pub(super) fn arms(args: &ArmsArgs) -> Result<(), Failure> {
+    let Some(pool) = args.pool.pool(true, false)? else { return Ok(()) };
+    if !pool.header.arms {
+        let found = "a pool of unassisted trials alone".to_string();
+        return Err(wrong_argument(args.pool.source(), found, "a pool made without --null"));
+    }
+    let table = arm_table::ArmTable::from_pool(&pool);
+    print(args.pool.format, &table, || {
+        let comparisons: String = table.comparisons.iter().map(describe_arms).collect();
+        arm_table::describe(&table) + "\n" + &comparisons
+    })
+}

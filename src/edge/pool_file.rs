@@ -1,0 +1,89 @@
+//! Files of pools of simulated participants: JSON Lines ([`crate::study::simulation_pool`]).
+
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::file_error::{FileError, FileResult, read_text};
+use super::{overwrite, replace_file};
+use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, SimulationPool};
+
+/// How a pool's file begins.
+const HEAD: &[u8] = b"{\"pool\":";
+const REMEDY: &str = "a pool that tomcom power or tomcom arms wrote with --out";
+
+/// Reads the parts of a pool and joins them.
+///
+/// # Errors
+/// A file cannot be read, is no pool of this format, or the parts do not make one pool.
+pub fn read_pool(paths: &[PathBuf]) -> FileResult<SimulationPool> {
+    let parts = paths.iter().map(|path| read_part(path)).collect::<FileResult<Vec<_>>>()?;
+    SimulationPool::joined(parts).map_err(|wrong| {
+        let path = paths.get(wrong.index).map_or(Path::new("--from"), PathBuf::as_path);
+        FileError::from_finding(path, wrong.found, wrong.remedy)
+    })
+}
+
+fn read_part(path: &Path) -> FileResult<SimulationPool> {
+    let text = read_text(path)?;
+    let mut lines = Vec::new();
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        lines.push((start..start + line.trim_end().len(), line));
+        start += line.len();
+    }
+    let Some(((place, first), trials)) = lines.split_first() else {
+        return Err(FileError::from_finding(path, "an empty file".to_string(), REMEDY.to_string()));
+    };
+    let at = |place: &Range<usize>, found: String, remedy: &str| {
+        FileError::at(path, &text, Some(place.clone()), found, remedy.to_string())
+    };
+    let header: PoolHeader = parsed(first).map_err(|found| at(place, found, REMEDY))?;
+    if header.pool != POOL_FORMAT {
+        let remedy = format!("a pool of format {POOL_FORMAT}, or the version of the program that wrote it");
+        return Err(at(place, format!("a pool of format {}", header.pool), &remedy));
+    }
+    let read = trials.iter().map(|(place, line)| parsed(line).map_err(|found| at(place, found, REMEDY)));
+    let read = read.collect::<FileResult<Vec<_>>>()?;
+    SimulationPool::from_trials(header, read).map_err(|wrong| {
+        let place = trials.get(wrong.index).map_or(place, |(place, _)| place);
+        at(place, wrong.found, &wrong.remedy)
+    })
+}
+
+fn parsed<T: DeserializeOwned>(line: &str) -> Result<T, String> {
+    serde_json::from_str(line).map_err(|error| format!("a line that is none of a pool: {error}"))
+}
+
+/// Checks that a pool can be written to this path.
+///
+/// # Errors
+/// There is a file that is no pool.
+pub fn check_pool(path: &Path) -> FileResult<()> {
+    overwrite::check(path, "a pool", |head| head.starts_with(HEAD)).map_err(|reason| unwritable(path, reason))
+}
+
+/// Writes a pool, as a whole or not at all.
+///
+/// # Errors
+/// There is a file that is no pool, or the folder cannot be written to.
+pub fn write_pool(path: &Path, pool: &SimulationPool) -> FileResult<()> {
+    check_pool(path)?;
+    let mut text = line(&pool.header);
+    for trial in pool.trials() {
+        text += &line(&trial);
+    }
+    replace_file::replace(path, text.as_bytes()).map_err(|reason| unwritable(path, reason))
+}
+
+fn line(value: &impl Serialize) -> String {
+    // Headers and trials have string keys and finite numbers.
+    serde_json::to_string(value).unwrap_or_default() + "\n"
+}
+
+fn unwritable(path: &Path, reason: io::Error) -> FileError {
+    FileError::unreadable(path, reason, "another name for the file, in a folder that can be written to")
+}

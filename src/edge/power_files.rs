@@ -1,0 +1,80 @@
+//! Table and picture of `tomcom power`.
+
+use std::io;
+use std::path::Path;
+
+use super::file_error::{FileError, FileResult};
+use super::{overwrite, replace_file};
+use crate::study::drawn_study::TestMethod;
+use crate::study::power_answer::{PowerSummary, SizePower, TestPower};
+use crate::study::power_chart;
+
+/// A column of the table: its name, and its value in a row.
+type PowerColumn = (&'static str, fn(&SizePower, &TestPower) -> String);
+
+const COLUMNS: [PowerColumn; 12] = [
+    ("participants", |size, _| size.participants.to_string()),
+    ("method", |_, one| method(one.test.method).to_string()),
+    ("arm", |_, one| one.test.arm.name().to_string()),
+    ("against", |_, one| one.test.against.name().to_string()),
+    ("studies", |_, one| one.found.studies.to_string()),
+    ("rejected", |_, one| one.found.rejected.to_string()),
+    ("rejected_uncorrected", |_, one| one.found.rejected_uncorrected.to_string()),
+    ("unknown", |_, one| one.found.unknown.to_string()),
+    ("share", |_, one| format!("{:.4}", one.found.share)),
+    ("low", |_, one| format!("{:.4}", one.found.interval[0])),
+    ("high", |_, one| format!("{:.4}", one.found.interval[1])),
+    ("least_ratio", |_, one| one.least_ratio.map_or(String::new(), |ratio| format!("{ratio:.4}"))),
+];
+
+fn method(method: TestMethod) -> &'static str {
+    match method {
+        TestMethod::MixedAnova => "mixed_anova",
+        TestMethod::LinearMixedModel => "linear_mixed_model",
+    }
+}
+
+/// Checks that table and picture can be written to these paths.
+///
+/// # Errors
+/// There is a file that is none of this program's.
+pub fn check_power(table: Option<&Path>, picture: Option<&Path>) -> FileResult<()> {
+    let names = COLUMNS.map(|(name, _)| name).join(",");
+    let check = |path: Option<&Path>, what: &str, is_own: &dyn Fn(&[u8]) -> bool| match path {
+        Some(path) => overwrite::check(path, what, is_own).map_err(|reason| unwritable(path, reason)),
+        None => Ok(()),
+    };
+    check(table, "a table of tomcom power", &|head| overwrite::first_line(head) == names.as_bytes())?;
+    check(picture, "a picture of tomcom power", &|head| head.starts_with(b"<svg "))
+}
+
+/// Writes the table: a row for each number of participants and test (CSV).
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
+    let write = || -> io::Result<()> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        table.write_record(COLUMNS.map(|(name, _)| name))?;
+        for size in &found.sizes {
+            for one in &size.tests {
+                table.write_record(COLUMNS.map(|(_, value)| value(size, one)))?;
+            }
+        }
+        let bytes = table.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
+        replace_file::replace(path, &bytes)
+    };
+    write().map_err(|reason| unwritable(path, reason))
+}
+
+/// Writes the picture (SVG).
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_picture(path: &Path, found: &PowerSummary) -> FileResult<()> {
+    replace_file::replace(path, power_chart::power(found).as_bytes()).map_err(|reason| unwritable(path, reason))
+}
+
+fn unwritable(path: &Path, reason: io::Error) -> FileError {
+    FileError::unreadable(path, reason, "another name for the file, in a folder that can be written to")
+}

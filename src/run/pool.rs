@@ -1,0 +1,202 @@
+//! Simulates the participants of a pool in memory ([`crate::study::simulation_pool`]): every trial of the plan, and its unassisted twin.
+//! `tomcom power` and `tomcom arms` use it.
+
+use std::convert::Infallible;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::engine::Engine;
+use super::headless;
+use super::parallel::WorkerPool;
+use super::simulate::Shard;
+use crate::analysis::signal_time::signal_seconds;
+use crate::analysis::trial_summary::TrialSummary;
+use crate::communication::settings::Shadow;
+use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::files::SessionFiles;
+use crate::kitchen::Kitchen;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::session::SessionSpec;
+use crate::session::plan::{Participants, Study};
+use crate::session::settings::Condition;
+use crate::session::study_arm::StudyArm;
+use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, SimulationPool, TrialCounts};
+
+/// Request of a pool.
+#[derive(Clone, Debug)]
+pub struct PoolRequest {
+    /// The plan with its settings and files.
+    pub files: SessionFiles,
+    /// Number of participants of the whole pool, whatever the plan says.
+    pub participants: u32,
+    /// The shard of these participants.
+    pub shard: Shard,
+    /// Whether trials are simulated in the arms of the plan.
+    pub arms: bool,
+    /// Whether their unassisted twins are simulated.
+    pub unassisted: bool,
+}
+
+/// A trial to be simulated.
+#[derive(Clone, Copy, Debug)]
+struct PoolItem {
+    participant: u32,
+    period: u32,
+    is_twin: bool,
+}
+
+/// A request with the study that it makes of the plan.
+struct PoolStudy<'a> {
+    request: &'a PoolRequest,
+    /// The plan with the participants of the pool.
+    study: Study,
+    header: PoolHeader,
+}
+
+impl PoolRequest {
+    /// The first line of the pool.
+    ///
+    /// # Errors
+    /// The session has no plan.
+    pub fn header(&self, path: &Path) -> FileResult<PoolHeader> {
+        Ok(self.study(path)?.header)
+    }
+
+    fn study(&self, path: &Path) -> FileResult<PoolStudy<'_>> {
+        let Some(mut study) = self.files.study() else {
+            let remedy = "a session file with a [plan], like sessions/arms.toml".to_string();
+            return Err(FileError::from_finding(path, "a session without a plan".to_string(), remedy));
+        };
+        study.plan.participants = Participants::Count(self.participants);
+        let header = PoolHeader {
+            pool: POOL_FORMAT,
+            program: env!("CARGO_PKG_VERSION").to_string(),
+            plan: study.plan.name.clone(),
+            digest: study.digest.clone(),
+            seed: study.session.seed,
+            participants: self.participants,
+            shard: self.shard.number,
+            shards: self.shard.of,
+            conditions: study.plan.conditions.clone(),
+            aims: study.plan.aims,
+            arms: self.arms,
+            unassisted: self.unassisted,
+        };
+        Ok(PoolStudy { request: self, study, header })
+    }
+
+    /// Checks that the plan can be simulated as it is: `path` is its file.
+    ///
+    /// # Errors
+    /// It has fewer than two conditions, or one in which nobody but a person could send the signals.
+    pub fn check(&self, path: &Path) -> FileResult<()> {
+        let pool = self.study(path)?;
+        let wrong = |found: String, remedy: &str| Err(FileError::from_finding(path, found, remedy.to_string()));
+        let conditions = &pool.header.conditions;
+        if conditions.len() < 2 {
+            return wrong("a plan with one condition".to_string(), "two conditions or more, which can be compared");
+        }
+        for period in (1..=conditions.len() as u32).filter(|_| self.arms) {
+            let item = PoolItem { participant: 0, period, is_twin: false };
+            let (planned, done) = (pool.planned(item), pool.settings(item).1);
+            if planned != done {
+                let found = format!("the condition {}, which would be simulated as {}", planned.name(), done.name());
+                return wrong(found, "[wizard] with kind = \"scripted\", and conditions that the script can carry out");
+            }
+        }
+        Ok(())
+    }
+
+    /// Number of trials to be simulated.
+    pub fn trials(&self, path: &Path) -> FileResult<u64> {
+        Ok(self.study(path)?.items().len() as u64)
+    }
+}
+
+impl PoolStudy<'_> {
+    /// The trials of the shard, ordered by participant and period; a twin follows its trial.
+    fn items(&self) -> Vec<PoolItem> {
+        let Shard { number, of } = self.request.shard;
+        let own = (0..self.request.participants).filter(|&one| u64::from(one) % of == number - 1);
+        let periods = self.header.conditions.len() as u32;
+        let items = own.flat_map(|participant| {
+            (1..=periods).flat_map(move |period| [false, true].map(|is_twin| PoolItem { participant, period, is_twin }))
+        });
+        let is_asked = |item: &PoolItem| match (self.planned(*item), item.is_twin) {
+            // An unassisted trial is its own twin.
+            (StudyArm::None, is_twin) => !is_twin,
+            (_, true) => self.request.unassisted,
+            (_, false) => self.request.arms,
+        };
+        items.filter(is_asked).collect()
+    }
+
+    /// The arm that the plan gives to a trial.
+    fn planned(&self, item: PoolItem) -> StudyArm {
+        self.study.group(item.participant as usize).conditions[item.period as usize - 1]
+    }
+
+    /// The settings and the number of a trial, with the arm by what is done in it between them.
+    fn settings(&self, item: PoolItem) -> (SessionSpec, StudyArm, u64) {
+        let (mut spec, trial) = self.study.simulated(item.participant as usize, item.period);
+        if item.is_twin {
+            spec.trial.condition = Condition::None;
+        }
+        let done = match item.is_twin {
+            true => StudyArm::None,
+            false => spec.step.as_ref().and_then(|step| step.arm).unwrap_or_default(),
+        };
+        if done != StudyArm::WizardWithAdvice {
+            // Recommendations that nobody sees would only take time.
+            spec.assistant.shadow = Shadow::Off;
+        }
+        (spec, done, trial)
+    }
+
+    /// Simulates a trial. Returns the cost to go for the next one.
+    fn simulate(&self, kitchen: &Arc<Kitchen>, item: PoolItem, cost: CostToGo) -> (PoolTrial, CostToGo) {
+        let (spec, arm, trial) = self.settings(item);
+        let mut engine = Engine::new(kitchen.clone(), spec, trial, cost);
+        headless::run(&mut engine, |_| Ok::<(), Infallible>(())).unwrap_or_else(|never| match never {});
+        let follower = engine.into_follower();
+        let summary = TrialSummary::from_follower(&follower);
+        // Simulated participants tell what they believed before every press.
+        let beliefs = summary.beliefs.unwrap_or_default();
+        let counts = TrialCounts {
+            human_presses: summary.human_actions,
+            robot_presses: summary.robot_actions,
+            errors: summary.errors,
+            belief_related_errors: beliefs.related,
+            lengths: beliefs.sequences.iter().map(|sequence| sequence.length()).collect(),
+            orders: summary.served.len() as u64,
+            signals: summary.signals,
+            signal_s: signal_seconds(&follower.session),
+            seconds: summary.seconds,
+        };
+        let group = self.study.group(item.participant as usize).name;
+        let PoolItem { participant, period, .. } = item;
+        let planned = self.planned(item);
+        (PoolTrial { participant, group, period, planned, arm, counts }, follower.cost)
+    }
+}
+
+/// Simulates the participants of a shard on all processors. `path` is the file of the plan; `done` is called after each trial.
+///
+/// # Errors
+/// Those of [`PoolRequest::check`], or a trial ends without a press of the human.
+pub fn simulate(request: &PoolRequest, path: &Path, done: impl Fn() + Sync) -> FileResult<SimulationPool> {
+    request.check(path)?;
+    let pool = request.study(path)?;
+    let kitchen = Arc::new(request.files.kitchen.kitchen.clone());
+    let workers = WorkerPool::new(|| Some(CostToGo::new(kitchen.clone())));
+    let one = |cost: &mut Option<CostToGo>, item: &PoolItem| {
+        let own = cost.take().unwrap_or_else(|| CostToGo::new(kitchen.clone()));
+        let (trial, own) = pool.simulate(&kitchen, *item, own);
+        *cost = Some(own);
+        trial
+    };
+    let trials = workers.each(&pool.items(), one, done);
+    let header = pool.header.clone();
+    SimulationPool::from_trials(header, trials)
+        .map_err(|wrong| FileError::from_finding(path, wrong.found, wrong.remedy))
+}

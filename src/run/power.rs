@@ -1,0 +1,137 @@
+//! `tomcom power`: draws studies from a pool on all processors, and counts what their tests find. The same pool gives the same answer on any
+//! number of processors.
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::parallel;
+use crate::edge::file_error::{FileError, FileResult};
+use crate::study::drawn_study::{DrawnEffect, PowerTest, StudySource, tests};
+use crate::study::power::{POOLS, RejectionCount, STUDIES_OF_POOL, STUDIES_OF_RATIO, count, ratios};
+use crate::study::power_answer::{PowerSummary, SizeCounts};
+use crate::study::simulation_pool::SimulationPool;
+
+/// Number of studies that a thread draws at a time.
+const BLOCK: u64 = 25;
+
+/// What is asked of a pool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PowerRequest {
+    /// Numbers of participants, in order.
+    pub sizes: Vec<usize>,
+    /// Number of studies that are drawn for each.
+    pub studies: u64,
+    /// The effect in them.
+    pub effect: DrawnEffect,
+}
+
+/// What the studies of a block are drawn from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Drawn {
+    /// The pool, with the effect that was asked for.
+    Pool,
+    /// The resampled pool of this number, from 1.
+    Resampled(u64),
+    /// The pool, with the ratio of this index.
+    Ratio(usize),
+}
+
+/// A block of studies.
+#[derive(Clone, Debug)]
+struct Block {
+    size: usize,
+    drawn: Drawn,
+    numbers: Range<u64>,
+}
+
+/// Number of blocks of studies, each of which `done` is called for.
+pub fn blocks(request: &PowerRequest, pool: &SimulationPool) -> u64 {
+    all_blocks(request, pool).len() as u64
+}
+
+/// The least effect is looked for where unassisted twins are there to put one in.
+fn all_blocks(request: &PowerRequest, pool: &SimulationPool) -> Vec<Block> {
+    let split =
+        |studies: u64| (0..studies.div_ceil(BLOCK)).map(move |block| block * BLOCK..((block + 1) * BLOCK).min(studies));
+    let tried = if pool.header.unassisted && request.effect != DrawnEffect::Ratio(1.0) { ratios().len() } else { 0 };
+    let mut blocks = Vec::new();
+    for &size in &request.sizes {
+        let mut add = |drawn: Drawn, studies: u64| {
+            blocks.extend(split(studies).map(|numbers| Block { size, drawn, numbers }));
+        };
+        add(Drawn::Pool, request.studies);
+        (1..=POOLS).for_each(|number| add(Drawn::Resampled(number), STUDIES_OF_POOL));
+        (0..tried).for_each(|index| add(Drawn::Ratio(index), STUDIES_OF_RATIO.min(request.studies)));
+    }
+    blocks
+}
+
+/// Draws the studies and answers. `path` is where the pool is from; `done` is called after each block.
+///
+/// # Errors
+/// The pool has too few persons in an order of the conditions, or lacks the trials that the effect needs.
+pub fn measure(
+    request: &PowerRequest,
+    pool: &SimulationPool,
+    path: &Path,
+    done: impl Fn() + Sync,
+) -> FileResult<PowerSummary> {
+    let header = &pool.header;
+    let wrong = |found: String, remedy: &str| Err(FileError::from_finding(path, found, remedy.to_string()));
+    match request.effect {
+        DrawnEffect::AsSimulated if !header.arms => {
+            return wrong(
+                "a pool of unassisted trials alone".to_string(),
+                "--effect RATIO, or a pool made without --null",
+            );
+        }
+        DrawnEffect::Ratio(_) if !header.unassisted => {
+            return wrong("a pool without unassisted twins".to_string(), "a pool of tomcom power, not of tomcom arms");
+        }
+        _ => {}
+    }
+    let source = match StudySource::new(pool) {
+        Ok(source) => source,
+        Err(found) => return wrong(found, "a larger pool: two persons or more in every order of the conditions"),
+    };
+    let (tests, ratios) = (tests(&header.conditions), ratios());
+    let blocks = all_blocks(request, pool);
+    let counted = parallel::each(&blocks, |block| counts(&source, &tests, request.effect, &ratios, block), done);
+    let of_size = |&size: &usize| {
+        let sum = |drawn: Drawn| {
+            let own = blocks.iter().zip(&counted).filter(|(block, _)| block.size == size && block.drawn == drawn);
+            own.fold(vec![RejectionCount::default(); tests.len() + 1], |sum, (_, counts)| {
+                sum.into_iter().zip(counts).map(|(sum, one)| sum.plus(*one)).collect()
+            })
+        };
+        let tried = blocks.iter().filter(|block| block.size == size);
+        let tried = tried.filter_map(|block| match block.drawn {
+            Drawn::Ratio(index) => Some(index + 1),
+            _ => None,
+        });
+        SizeCounts {
+            participants: size,
+            counts: sum(Drawn::Pool),
+            of_pools: (1..=POOLS).map(|number| sum(Drawn::Resampled(number))).collect(),
+            of_ratios: (0..tried.max().unwrap_or(0)).map(|index| sum(Drawn::Ratio(index))).collect(),
+        }
+    };
+    let sizes: Vec<SizeCounts> = request.sizes.iter().map(of_size).collect();
+    Ok(PowerSummary::new(header, request.effect, &sizes))
+}
+
+/// The counts of a block.
+fn counts(
+    source: &StudySource,
+    tests: &[PowerTest],
+    effect: DrawnEffect,
+    ratios: &[f64],
+    block: &Block,
+) -> Vec<RejectionCount> {
+    let numbers = block.numbers.clone();
+    match block.drawn {
+        Drawn::Pool => count(source, tests, block.size, effect, numbers),
+        Drawn::Resampled(number) => count(&source.resampled(number), tests, block.size, effect, numbers),
+        Drawn::Ratio(index) => count(source, tests, block.size, DrawnEffect::Ratio(ratios[index]), numbers),
+    }
+}

@@ -1,0 +1,122 @@
+//! The design of a comparison of arms: for each trial the effects of its arm, its period and the arm before, as the models take them.
+
+use super::linear_mixed_model::{LinearMixedModel, Measurement};
+use super::negative_binomial_model::{NegativeBinomialModel, TrialCount};
+use crate::session::study_arm::StudyArm;
+
+/// What the comparison of arms takes of a trial.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ArmTrial {
+    /// Index of the participant.
+    pub participant: usize,
+    /// The number of the trial in the participant's series; 1 is the first.
+    pub period: u32,
+    /// The arm.
+    pub arm: StudyArm,
+    /// Events of the primary outcome.
+    pub events: u64,
+    /// Presses of the human; above 0.
+    pub presses: u64,
+}
+
+impl ArmTrial {
+    /// The value of the primary model: log((events + 0.5) / presses).
+    pub fn log_rate(&self) -> f64 {
+        ((self.events as f64 + 0.5) / self.presses as f64).ln()
+    }
+}
+
+/// The design of a comparison: one row of effects per trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmDesign {
+    trials: Vec<ArmTrial>,
+    arms: Vec<StudyArm>,
+    periods: Vec<u32>,
+}
+
+/// The pairs of arms that are compared: every arm with the one without signals, and every other one with the wizard. Where neither is
+/// there, the first arm is what the others are compared with.
+pub fn pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
+    let mut pairs = Vec::new();
+    for against in [StudyArm::None, StudyArm::Wizard] {
+        let others = arms.iter().copied().filter(|arm| *arm != against && *arm != StudyArm::None);
+        pairs.extend(others.filter(|_| arms.contains(&against)).map(|arm| (arm, against)));
+    }
+    if pairs.is_empty() {
+        pairs.extend(arms.iter().skip(1).map(|arm| (*arm, arms[0])));
+    }
+    pairs
+}
+
+impl ArmDesign {
+    /// The design of these trials, which must be ordered by participant and period.
+    pub fn new(trials: Vec<ArmTrial>) -> ArmDesign {
+        let has = |arm: &StudyArm| trials.iter().any(|trial| trial.arm == *arm);
+        let arms = StudyArm::ALL.into_iter().filter(has).collect();
+        let mut periods: Vec<u32> = trials.iter().map(|trial| trial.period).collect();
+        periods.sort_unstable();
+        periods.dedup();
+        ArmDesign { trials, arms, periods }
+    }
+
+    /// The trials.
+    pub fn trials(&self) -> &[ArmTrial] {
+        &self.trials
+    }
+
+    /// The arms that occur, in the order of tables.
+    pub fn arms(&self) -> &[StudyArm] {
+        &self.arms
+    }
+
+    /// Whether participants can be compared with themselves.
+    pub fn is_within(&self) -> bool {
+        self.arms.len() > 1 && self.trials.windows(2).any(|pair| pair[0].participant == pair[1].participant)
+    }
+
+    /// The arm of the participant's trial before the one with this index.
+    fn before(&self, index: usize) -> Option<StudyArm> {
+        let before = self.trials.get(index.checked_sub(1)?)?;
+        (before.participant == self.trials[index].participant).then_some(before.arm)
+    }
+
+    /// Intercept, arms without the first, periods without the first, and the arms before without the first, if asked.
+    fn effects(&self, index: usize, carry_over: bool) -> Vec<f64> {
+        let (trial, before) = (&self.trials[index], self.before(index));
+        let is = |holds: bool| f64::from(u8::from(holds));
+        let arms = self.arms.iter().skip(1).map(|arm| is(trial.arm == *arm));
+        let periods = self.periods.iter().skip(1).map(|period| is(trial.period == *period));
+        let carried = self.arms.iter().skip(1).filter(|_| carry_over).map(|arm| is(before == Some(*arm)));
+        std::iter::once(1.0).chain(arms).chain(periods).chain(carried).collect()
+    }
+
+    /// The primary model, with the effect of the arm before if asked; `None` where it cannot be estimated.
+    pub fn linear(&self, carry_over: bool) -> Option<LinearMixedModel> {
+        let measurement = |(index, trial): (usize, &ArmTrial)| Measurement {
+            participant: trial.participant,
+            effects: self.effects(index, carry_over),
+            value: trial.log_rate(),
+        };
+        LinearMixedModel::fit(&self.trials.iter().enumerate().map(measurement).collect::<Vec<_>>())
+    }
+
+    /// The model of counts; `None` where it cannot be estimated.
+    pub fn counts(&self) -> Option<NegativeBinomialModel> {
+        let count = |(index, trial): (usize, &ArmTrial)| TrialCount {
+            participant: trial.participant,
+            effects: self.effects(index, false),
+            count: trial.events,
+            exposure: trial.presses as f64,
+        };
+        NegativeBinomialModel::fit(&self.trials.iter().enumerate().map(count).collect::<Vec<_>>())
+    }
+
+    /// Weights of the fixed effects of a model with so many of them, for the difference of two arms.
+    pub fn weights(&self, (arm, against): (StudyArm, StudyArm), size: usize) -> Vec<f64> {
+        let mut weights = vec![0.0; size];
+        for (place, other) in self.arms.iter().enumerate().skip(1) {
+            weights[place] = f64::from(i8::from(*other == arm) - i8::from(*other == against));
+        }
+        weights
+    }
+}

@@ -1,0 +1,166 @@
+//! The comparison of all arms of a plan in simulated trials: what each arm's participants did, with intervals, and the contrasts between arms.
+
+use serde::Serialize;
+
+use super::arm_comparison::{ArmComparison, compare_counts};
+use super::arm_design::ArmTrial;
+use super::simulation_pool::{SimulationPool, TrialCounts};
+use crate::analysis::trial_bootstrap::interval_where_known;
+use crate::session::plan::{PrimaryOutcome, StudyAims};
+use crate::session::study_arm::StudyArm;
+
+/// The seed of the bootstrap: the same trials give the same interval.
+const SEED: u64 = 1;
+
+/// A figure with its interval of 95 %, by a bootstrap over participants.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ArmFigure {
+    /// The figure of all trials together; null where there is nothing to compute it from.
+    pub value: Option<f64>,
+    /// Its interval; null with fewer than five participants.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// A row of the table: one arm.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ArmRow {
+    /// The arm.
+    pub arm: StudyArm,
+    /// Number of trials.
+    pub trials: u64,
+    /// Errors per 100 presses of the human.
+    pub errors_per_100: ArmFigure,
+    /// Belief related errors per 100 presses of the human.
+    pub related_per_100: ArmFigure,
+    /// Mean number of errors in a sequence of related errors.
+    pub sequence_length: ArmFigure,
+    /// Orders served per minute.
+    pub orders_per_minute: ArmFigure,
+    /// Signals per 100 presses of the human.
+    pub signals_per_100: ArmFigure,
+    /// Share of the trials' time with a signal on the display.
+    pub signal_time: ArmFigure,
+}
+
+/// The output of `tomcom arms`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ArmTable {
+    /// The plan's name.
+    pub plan: String,
+    /// Checksum of plan and settings with this seed.
+    pub digest: String,
+    /// Version of the program that simulated the trials.
+    pub program: String,
+    /// The seed of everything random.
+    pub seed: u64,
+    /// Number of participants.
+    pub participants: u32,
+    /// The arms, in the order of tables.
+    pub arms: Vec<ArmRow>,
+    /// Comparisons by errors and by belief related errors; without those that cannot be estimated.
+    pub comparisons: Vec<ArmComparison>,
+}
+
+impl ArmRow {
+    fn new(arm: StudyArm, trials: &[&TrialCounts]) -> ArmRow {
+        let figure = |value: fn(&[&TrialCounts]) -> Option<f64>| ArmFigure {
+            value: value(trials),
+            interval: interval_where_known(trials, SEED, value),
+        };
+        ArmRow {
+            arm,
+            trials: trials.len() as u64,
+            errors_per_100: figure(|trials| per_100(trials, |trial| trial.errors)),
+            related_per_100: figure(|trials| per_100(trials, |trial| trial.belief_related_errors)),
+            sequence_length: figure(|trials| {
+                let errors = sum(trials, |trial| trial.lengths.iter().map(|&length| f64::from(length)).sum());
+                ratio(errors, sum(trials, |trial| trial.lengths.len() as f64))
+            }),
+            orders_per_minute: figure(|trials| {
+                ratio(60.0 * sum(trials, |trial| trial.orders as f64), sum(trials, |trial| trial.seconds))
+            }),
+            signals_per_100: figure(|trials| per_100(trials, |trial| trial.signals)),
+            signal_time: figure(|trials| ratio(sum(trials, |one| one.signal_s), sum(trials, |one| one.seconds))),
+        }
+    }
+}
+
+fn sum(trials: &[&TrialCounts], value: fn(&TrialCounts) -> f64) -> f64 {
+    trials.iter().map(|trial| value(trial)).sum()
+}
+
+fn ratio(part: f64, whole: f64) -> Option<f64> {
+    (whole > 0.0).then(|| part / whole)
+}
+
+fn per_100(trials: &[&TrialCounts], number: fn(&TrialCounts) -> u64) -> Option<f64> {
+    let number = trials.iter().map(|trial| number(trial)).sum::<u64>() as f64;
+    ratio(100.0 * number, sum(trials, |trial| trial.human_presses as f64))
+}
+
+impl ArmTable {
+    /// The table of a pool whose trials were simulated in the arms of its plan.
+    pub fn from_pool(pool: &SimulationPool) -> ArmTable {
+        let header = &pool.header;
+        let row = |arm: StudyArm| {
+            let own = pool.persons.iter().flat_map(|person| &person.trials).filter(|trial| trial.arm == arm);
+            let counts: Vec<&TrialCounts> = own.filter_map(|trial| trial.own.as_ref()).collect();
+            (!counts.is_empty()).then(|| ArmRow::new(arm, &counts))
+        };
+        let outcomes = [PrimaryOutcome::Errors, PrimaryOutcome::BeliefRelatedErrors];
+        let compared = |outcome| compare_counts(counted(pool, outcome), StudyAims { outcome, ..header.aims });
+        ArmTable {
+            plan: header.plan.clone(),
+            digest: header.digest.clone(),
+            program: header.program.clone(),
+            seed: header.seed,
+            participants: header.participants,
+            arms: StudyArm::ALL.into_iter().filter_map(row).collect(),
+            comparisons: outcomes.into_iter().filter_map(compared).collect(),
+        }
+    }
+}
+
+/// The trials of a pool in its arms, as the comparison of arms takes them.
+fn counted(pool: &SimulationPool, outcome: PrimaryOutcome) -> Vec<ArmTrial> {
+    let persons = pool.persons.iter().enumerate();
+    let trials = persons.flat_map(|(participant, person)| {
+        person.trials.iter().zip(1..).filter_map(move |(trial, period)| {
+            let counts = trial.own.as_ref()?;
+            let (events, presses) = (counts.events(outcome), counts.human_presses);
+            Some(ArmTrial { participant, period, arm: trial.arm, events, presses })
+        })
+    });
+    trials.collect()
+}
+
+/// The table as text, in Markdown.
+pub fn describe(table: &ArmTable) -> String {
+    let mut text = format!(
+        "plan {} ({}), seed {}: {} simulated participants, each with a trial in every condition\n\n",
+        table.plan, table.digest, table.seed, table.participants
+    );
+    text += "| condition | trials | errors /100 | belief related /100 | errors per sequence | orders a minute | signals /100 | time with a signal, % |\n";
+    text += "|---|---|---|---|---|---|---|---|\n";
+    for row in &table.arms {
+        let cells = [
+            number(&row.errors_per_100, 1.0, 1),
+            number(&row.related_per_100, 1.0, 1),
+            number(&row.sequence_length, 1.0, 2),
+            number(&row.orders_per_minute, 1.0, 2),
+            number(&row.signals_per_100, 1.0, 1),
+            number(&row.signal_time, 100.0, 1),
+        ];
+        text += &format!("| {} | {} | {} |\n", row.arm.name(), row.trials, cells.join(" | "));
+    }
+    text + "\nper 100 presses of the participant; in brackets intervals of 95 %, by a bootstrap over participants\n"
+}
+
+fn number(figure: &ArmFigure, scale: f64, digits: usize) -> String {
+    let Some(value) = figure.value else { return "-".to_string() };
+    let value = format!("{:.digits$}", scale * value);
+    match figure.interval {
+        Some([low, high]) => format!("{value} ({:.digits$} to {:.digits$})", scale * low, scale * high),
+        None => value,
+    }
+}

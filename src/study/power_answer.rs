@@ -1,0 +1,247 @@
+//! The answer of `tomcom power`: for each number of participants the power of each test and the least effect that it finds, and how many
+//! participants are needed.
+
+use serde::Serialize;
+
+use super::drawn_study::{DrawnEffect, PowerTest, TestMethod, reference, tests};
+use super::power::{RejectionCount, RejectionShare, WANTED, least_ratio};
+use super::simulation_pool::PoolHeader;
+use crate::base::words::count;
+use crate::session::plan::PrimaryOutcome;
+use crate::session::study_arm::StudyArm;
+
+/// The counts of rejections for one number of participants, each with an entry per test and a last one for any contrast.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SizeCounts {
+    /// Number of participants.
+    pub participants: usize,
+    /// In studies from the pool.
+    pub counts: Vec<RejectionCount>,
+    /// In studies from each resampled pool.
+    pub of_pools: Vec<Vec<RejectionCount>>,
+    /// In studies with each tried ratio, the weakest effect first; empty if the least effect was not looked for.
+    pub of_ratios: Vec<Vec<RejectionCount>>,
+}
+
+/// The output of `tomcom power`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PowerSummary {
+    /// The plan's name.
+    pub plan: String,
+    /// Checksum of plan and settings with the pool's seed.
+    pub digest: String,
+    /// Version of the program that simulated the pool.
+    pub program: String,
+    /// The seed of pool and studies.
+    pub seed: u64,
+    /// Number of participants in the pool.
+    pub pool: u32,
+    /// What is counted.
+    pub outcome: PrimaryOutcome,
+    /// The conditions of the plan.
+    pub conditions: Vec<StudyArm>,
+    /// The ratio that was put in; null: the effect is that of the simulated arms.
+    pub ratio: Option<f64>,
+    /// The answer for each number of participants.
+    pub sizes: Vec<SizePower>,
+    /// The answer for each test.
+    pub needed: Vec<NeededParticipants>,
+}
+
+/// Power for one number of participants.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SizePower {
+    /// Number of participants.
+    pub participants: usize,
+    /// Each test; the primary one is the first.
+    pub tests: Vec<TestPower>,
+    /// Studies in which at least one contrast rejects, corrected for their number; null with one contrast.
+    pub any: Option<RejectionShare>,
+}
+
+/// Power of a test for one number of participants.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct TestPower {
+    /// The test.
+    #[serde(flatten)]
+    pub test: PowerTest,
+    /// How often it finds an effect.
+    #[serde(flatten)]
+    pub found: RejectionShare,
+    /// The ratio of rates nearest to 1 that is found with a power of 0.8; null where it was not looked for, or none is.
+    pub least_ratio: Option<f64>,
+}
+
+/// How many participants a test needs for a power of 0.8.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct NeededParticipants {
+    /// The test.
+    #[serde(flatten)]
+    pub test: PowerTest,
+    /// The least of the tried numbers from which on the power is reached; null if it is not.
+    pub participants: Option<usize>,
+    /// The same for the lower end of the interval of the power.
+    pub surely: Option<usize>,
+}
+
+impl PowerSummary {
+    /// The answer from the counts of each number of participants, the least first.
+    pub fn new(header: &PoolHeader, effect: DrawnEffect, sizes: &[SizeCounts]) -> PowerSummary {
+        let tests = tests(&header.conditions);
+        let sizes: Vec<SizePower> = sizes.iter().map(|size| SizePower::new(size, &tests, &header.conditions)).collect();
+        let needed = |(index, test): (usize, &PowerTest)| {
+            let from = |value: fn(&RejectionShare) -> f64| {
+                let holds = sizes.iter().rev().take_while(|size| value(&size.tests[index].found) >= WANTED);
+                holds.last().map(|size| size.participants)
+            };
+            NeededParticipants {
+                test: *test,
+                participants: from(|found| found.share),
+                surely: from(|found| found.interval[0]),
+            }
+        };
+        PowerSummary {
+            plan: header.plan.clone(),
+            digest: header.digest.clone(),
+            program: header.program.clone(),
+            seed: header.seed,
+            pool: header.participants,
+            outcome: header.aims.outcome,
+            conditions: header.conditions.clone(),
+            ratio: match effect {
+                DrawnEffect::AsSimulated => None,
+                DrawnEffect::Ratio(ratio) => Some(ratio),
+            },
+            needed: tests.iter().enumerate().map(needed).collect(),
+            sizes,
+        }
+    }
+
+    /// Whether no effect was put in, so that what is found is an error of type I.
+    pub fn is_null(&self) -> bool {
+        self.ratio == Some(1.0)
+    }
+}
+
+impl SizePower {
+    fn new(size: &SizeCounts, tests: &[PowerTest], conditions: &[StudyArm]) -> SizePower {
+        let share = |index: usize| {
+            let of_pools: Vec<RejectionCount> = size.of_pools.iter().map(|pool| pool[index]).collect();
+            RejectionShare::new(size.counts[index], &of_pools)
+        };
+        let test_power = |(index, test): (usize, &PowerTest)| {
+            let shares: Vec<f64> = size.of_ratios.iter().map(|counts| counts[index].share()).collect();
+            // The ratio is put in between all arms and the reference, and not between others.
+            let is_put_in = test.against == reference(conditions) && !shares.is_empty();
+            TestPower {
+                test: *test,
+                found: share(index),
+                least_ratio: is_put_in.then(|| least_ratio(&shares)).flatten(),
+            }
+        };
+        let contrasts = tests.iter().filter(|test| test.method == TestMethod::LinearMixedModel).count();
+        SizePower {
+            participants: size.participants,
+            tests: tests.iter().enumerate().map(test_power).collect(),
+            any: (contrasts > 1).then(|| share(tests.len())),
+        }
+    }
+}
+
+impl PowerTest {
+    /// The test in words: "wizard to none, mixed ANOVA (the paper's test)".
+    pub fn title(&self) -> String {
+        let method = match self.method {
+            TestMethod::MixedAnova => "mixed ANOVA (the paper's test)",
+            TestMethod::LinearMixedModel => "linear mixed model",
+        };
+        format!("{} to {}, {method}", self.arm.name(), self.against.name())
+    }
+}
+
+/// The answer in words, with a table for each test.
+pub fn describe(found: &PowerSummary) -> String {
+    let effect = match found.ratio {
+        None => "the effect is that of the simulated conditions".to_string(),
+        Some(1.0) => "no effect: all trials are unassisted, and conditions are exchanged within persons".to_string(),
+        Some(ratio) => format!("the effect is put into unassisted trials: rates are {ratio} times as high"),
+    };
+    let studies = found.sizes.first().and_then(|size| size.tests.first()).map_or(0, |one| one.found.studies);
+    let mut text = format!(
+        "plan {} ({}), outcome: {} per press of the participant; {} for each number of participants, drawn from {} (seed \
+         {}); {effect}\n",
+        found.plan,
+        found.digest,
+        found.outcome.title(),
+        count(studies, "study", "studies"),
+        count(found.pool, "simulated participant", "simulated participants"),
+        found.seed,
+    );
+    for (index, needed) in found.needed.iter().enumerate() {
+        text += &describe_test(found, index);
+        text += &if found.is_null() { error_in_words(found, index) } else { power_in_words(found, needed, index) };
+    }
+    if found.sizes.iter().any(|size| size.any.is_some()) {
+        text += "at least one contrast of the linear mixed model, corrected for their number (Holm)\n";
+        for size in &found.sizes {
+            let Some(any) = size.any else { continue };
+            text += &format!("  {:>3} participants {}\n", size.participants, in_numbers(&any));
+        }
+    }
+    text + "Participants are simulated: the answer is about them, and about people as far as they are like them.\n"
+}
+
+fn in_numbers(found: &RejectionShare) -> String {
+    let [low, high] = found.interval;
+    format!("{:.3} ({low:.3} to {high:.3})", found.share)
+}
+
+fn describe_test(found: &PowerSummary, index: usize) -> String {
+    let what = if found.is_null() { "type I error" } else { "power" };
+    let mut text = format!("{}: {what} (interval of 95 % with the pool's error)\n", found.needed[index].test.title());
+    for size in &found.sizes {
+        let one = &size.tests[index];
+        let least = one.least_ratio.map_or(String::new(), |ratio| format!(", least effect: ratio {ratio:.2}"));
+        let unknown = match one.found.unknown {
+            0 => String::new(),
+            unknown => format!(", {} could not be tested", count(unknown, "study", "studies")),
+        };
+        text += &format!("  {:>3} participants {}{least}{unknown}\n", size.participants, in_numbers(&one.found));
+    }
+    text
+}
+
+/// How many participants are needed, and which effect the middle number of participants finds.
+fn power_in_words(found: &PowerSummary, needed: &NeededParticipants, index: usize) -> String {
+    let largest = found.sizes.last().map_or(0, |size| size.participants);
+    let mut text = match (needed.participants, needed.surely) {
+        (Some(enough), Some(surely)) if surely > enough => {
+            format!(
+                "  {enough} participants are needed for a power of {WANTED}; {surely} to be sure of it, as the pool is finite."
+            )
+        }
+        (Some(enough), Some(_)) => format!("  {enough} participants are needed for a power of {WANTED}."),
+        (Some(enough), None) => {
+            format!(
+                "  {enough} participants are needed for a power of {WANTED}; the pool is too small to be sure of it."
+            )
+        }
+        (None, _) => format!("  {largest} participants are not enough for a power of {WANTED}."),
+    };
+    let middle = found.sizes.get(found.sizes.len() / 2);
+    if let Some((size, ratio)) = middle.and_then(|size| Some((size, size.tests[index].least_ratio?))) {
+        text += &format!(
+            " With {} participants, four of five studies find an effect that takes away {:.0} % of the {} or more.",
+            size.participants,
+            100.0 * (1.0 - ratio),
+            found.outcome.title(),
+        );
+    }
+    text + "\n"
+}
+
+fn error_in_words(found: &PowerSummary, index: usize) -> String {
+    let shares = || found.sizes.iter().map(|size| size.tests[index].found.share);
+    let [least, most] = [shares().fold(f64::INFINITY, f64::min), shares().fold(0.0, f64::max)];
+    format!("  Without an effect the test finds one in {:.1} to {:.1} % of the studies.\n", 100.0 * least, 100.0 * most)
+}

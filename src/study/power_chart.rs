@@ -1,0 +1,60 @@
+//! Picture of the power of a study over its number of participants, as an SVG file of its own.
+
+use super::drawn_study::{TestMethod, reference};
+use super::power::{ALPHA, WANTED};
+use super::power_answer::PowerSummary;
+use super::report::STYLE;
+use super::svg::{PlotAxis, SvgChart, document};
+use crate::session::study_arm::StudyArm;
+
+/// Size of the picture, in pixels.
+const SIZE: [f64; 2] = [720.0, 420.0];
+
+/// The picture: a line with its band for each test against the arm that all others are compared with.
+pub fn power(found: &PowerSummary) -> String {
+    let sizes: Vec<f64> = found.sizes.iter().map(|size| size.participants as f64).collect();
+    let (first, last) = (sizes.first().copied().unwrap_or(0.0), sizes.last().copied().unwrap_or(1.0));
+    let (title, label, line, most) = match found.is_null() {
+        true => ("Type I error by number of participants", "studies that find an effect", ALPHA, 0.2),
+        false => ("Power by number of participants", "power", WANTED, 1.0),
+    };
+    let x = PlotAxis::between("participants", first.min(last - 1.0), last + 0.2 * (last - first).max(1.0));
+    let mut chart = SvgChart::new(SIZE[0], SIZE[1], x, PlotAxis::between(label, 0.0, most));
+    chart.line("thin ideal", &[(first, line), (last, line)]);
+    for (index, needed) in found.needed.iter().enumerate() {
+        let test = needed.test;
+        if test.against != reference(&found.conditions) {
+            continue;
+        }
+        let class = class(test.arm, test.method);
+        let shares: Vec<[f64; 3]> = found
+            .sizes
+            .iter()
+            .map(|size| size.tests[index].found)
+            .map(|one| [one.share, one.interval[0], one.interval[1]].map(|share| share.min(most)))
+            .collect();
+        let points: Vec<(f64, f64)> = sizes.iter().copied().zip(shares.iter().map(|share| share[0])).collect();
+        let band: Vec<[f64; 3]> = sizes.iter().zip(&shares).map(|(x, share)| [*x, share[1], share[2]]).collect();
+        chart.band(class, &band);
+        chart.line(class, &points);
+        for (x, share) in &points {
+            chart.point(class, *x, *share, &format!("{}, {x} participants: {share:.3}", test.title()));
+        }
+        if let Some((x, share)) = points.last() {
+            let name = if test.method == TestMethod::MixedAnova { "paper's test" } else { test.arm.title() };
+            chart.words("strong", *x, *share, true, name);
+        }
+    }
+    document(&chart.finish(title), STYLE)
+}
+
+/// The class of a test's colour: the paper's test and the mixed model differ, and so do arms.
+fn class(arm: StudyArm, method: TestMethod) -> &'static str {
+    match (method, arm) {
+        (TestMethod::MixedAnova, _) | (_, StudyArm::WizardWithAdvice) => "first",
+        (_, StudyArm::None | StudyArm::Wizard) => "second",
+        (_, StudyArm::TomCom) => "tom-com",
+        (_, StudyArm::Tom) => "tom",
+        (_, StudyArm::Dev) => "dev",
+    }
+}

@@ -1,0 +1,80 @@
+//! Whether a study is the one that was frozen before it began, and what differs.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+
+use super::frozen_plan::FrozenPlan;
+use crate::base::words::count;
+
+/// The plan that a recording belongs to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordedPlan {
+    /// The participant's code.
+    pub participant: String,
+    /// Name and digest of the plan; `None` without a plan.
+    pub plan: Option<(String, String)>,
+}
+
+/// How a study stands to its frozen plan.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Preregistration {
+    /// SHA-256 of what was frozen, in hexadecimal digits.
+    pub digest: String,
+    /// The plan's name.
+    pub plan: String,
+    /// Number of recordings of the plan that were there when it was frozen.
+    pub recordings_before: u64,
+    /// What differs, in words; empty if nothing does.
+    pub differences: Vec<String>,
+}
+
+impl Preregistration {
+    /// Holds the recordings of an analysis, and what this version of the program defines, against a frozen plan with this digest.
+    pub fn new(digest: String, frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> Preregistration {
+        let mut differences = frozen.differs_from_program();
+        let mut others: BTreeMap<String, u64> = BTreeMap::new();
+        for recording in recordings {
+            let what = match &recording.plan {
+                None => "of no plan".to_string(),
+                Some((plan, _)) if *plan != frozen.plan => format!("of the plan \"{plan}\""),
+                Some((_, digest)) if *digest != frozen.plan_digest => {
+                    format!("of another version of the plan ({digest}, frozen: {})", frozen.plan_digest)
+                }
+                Some(_) => continue,
+            };
+            *others.entry(what).or_default() += 1;
+        }
+        differences.extend(
+            others.iter().map(|(what, number)| format!("{} {what}", count(*number, "recording is", "recordings are"))),
+        );
+        let there: BTreeSet<&str> = recordings.iter().map(|recording| recording.participant.as_str()).collect();
+        let is_planned = |code: &&&str| frozen.participants.iter().any(|planned| planned == **code);
+        let strangers: Vec<&str> = there.iter().filter(|code| !is_planned(code)).copied().collect();
+        let missing = frozen.participants.iter().map(String::as_str).filter(|code| !there.contains(code));
+        for (who, codes) in [("without a recording", missing.collect()), ("not in the frozen plan", strangers)] {
+            differences.extend(named(who, &codes));
+        }
+        let (plan, recordings_before) = (frozen.plan.clone(), frozen.recordings_before);
+        Preregistration { digest, plan, recordings_before, differences }
+    }
+
+    /// In words: that it is preregistered, or what differs.
+    pub fn words(&self) -> String {
+        let before = match self.recordings_before {
+            0 => "before the first recording".to_string(),
+            number => format!("when {} of it there", count(number, "recording was", "recordings were")),
+        };
+        let frozen = format!("the plan \"{}\" was frozen {before}, SHA-256 {}", self.plan, self.digest);
+        match &self.differences[..] {
+            [] => format!("Preregistered: {frozen}; plan, definitions and analysis are those."),
+            several => format!("Not as preregistered: {frozen}; differences: {}.", several.join("; ")),
+        }
+    }
+}
+
+/// Participants in words; `None` without any.
+fn named(who: &str, codes: &[&str]) -> Option<String> {
+    let number = count(codes.len() as u64, "participant is", "participants are");
+    (!codes.is_empty()).then(|| format!("{number} {who}: {}", codes.join(", ")))
+}

@@ -1,0 +1,136 @@
+//! `tomcom power`, `tomcom arms` and frozen plans, as people and job arrays run them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use serial_test::serial;
+
+use crate::tmux::tomcom;
+
+/// An empty folder for the test of this name, with the paper's plan and short trials in it.
+fn folder(name: &str) -> (PathBuf, String) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("power-program").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    let text = fs::read_to_string("sessions/paper.toml").expect("the paper's session");
+    let root = format!("\"{}/", env!("CARGO_MANIFEST_DIR"));
+    let text = text.replace("\"../", &root).replace("presses = 304", "presses = 40");
+    let plan = folder.join("short.toml");
+    fs::write(&plan, text.replace("participants = 14", "participants = 4").replace("block = 14", "block = 4"))
+        .expect("written");
+    (folder, plan.display().to_string())
+}
+
+fn done(arguments: &[&str]) -> String {
+    let output = tomcom(arguments);
+    assert!(output.status.success(), "{arguments:?}: {output:?}");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+fn refused(arguments: &[&str], says: &str) {
+    let output = tomcom(arguments);
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+    assert!(told.contains(says), "{says:?} is not in\n{told}");
+}
+
+#[test]
+#[serial]
+fn shards_of_a_pool_are_joined_and_answer_as_the_whole() {
+    let (folder, plan) = folder("shards");
+    let at = |name: &str| folder.join(name).display().to_string();
+    let (whole, one, two, joined) = (at("whole.jsonl"), at("1.jsonl"), at("2.jsonl"), at("joined.jsonl"));
+    let (table, picture) = (at("power.csv"), at("power.svg"));
+    let asked = ["--studies", "40", "--sizes", "6,8", "--format", "json"];
+    let of_whole = done(&[&["power", &plan, "--pool", "8", "--out", &whole][..], &asked].concat());
+    for (shard, file) in [("1/2", &one), ("2/2", &two)] {
+        assert_eq!(
+            done(&["power", &plan, "--pool", "8", "--shard", shard, "--out", file]),
+            "",
+            "a shard has no answer"
+        );
+    }
+    let files = ["--csv", &table, "--picture", &picture];
+    let from = ["power", &plan, "--from", &two, &one, "--out", &joined];
+    assert_eq!(done(&[&from[..], &files, &asked].concat()), of_whole);
+    assert_eq!(fs::read(&whole).expect("a pool"), fs::read(&joined).expect("a pool"));
+    let found: Value = serde_json::from_str(&of_whole).expect("one JSON object");
+    assert_eq!((found["pool"].as_u64(), found["sizes"][1]["participants"].as_u64()), (Some(8), Some(8)));
+    assert_eq!(found["needed"][0]["method"], "mixed_anova");
+    assert_eq!(fs::read_to_string(&table).expect("a table").lines().count(), 5);
+    assert!(fs::read_to_string(&picture).expect("a picture").ends_with("</svg>\n"));
+    let arms = done(&["arms", &plan, "--from", &whole]);
+    assert!(arms.contains("| wizard | 8 |") && arms.contains("errors per press of the human, by condition"), "{arms}");
+    refused(&["power", &plan, "--from", &one], "4 of 8 participants");
+    refused(&["power", "sessions/paper.toml", "--from", &whole], "a pool of another plan or other settings");
+    refused(&["power", &plan, "--pool", "8", "--picture", &plan], "a file is there that is not a picture");
+    refused(
+        &["power", "sessions/study.toml", "--arm", "timed"],
+        "the condition wizard, which would be simulated as none",
+    );
+    let usage = tomcom(&["power", &plan, "--shard", "1/2"]);
+    assert_eq!(usage.status.code(), Some(2), "a shard needs a file: {usage:?}");
+    for ratio in ["0", "1.2", "much"] {
+        assert_eq!(tomcom(&["power", &plan, "--effect", ratio]).status.code(), Some(2), "{ratio}");
+    }
+}
+
+#[test]
+#[serial]
+fn the_type_i_error_needs_unassisted_trials_alone() {
+    let (folder, plan) = folder("null");
+    let pool = folder.join("null.jsonl").display().to_string();
+    let text = done(&["power", &plan, "--pool", "8", "--null", "--studies", "40", "--sizes", "8", "--out", &pool]);
+    assert!(text.contains("Without an effect the test finds one in"), "{text}");
+    let lines = fs::read_to_string(&pool).expect("a pool");
+    assert_eq!(lines.lines().count(), 1 + 16);
+    assert!(lines.lines().skip(1).all(|line| line.contains("\"arm\":\"none\"") && line.contains("\"signals\":0")));
+    let strong = done(&[
+        "power",
+        &plan,
+        "--from",
+        &pool,
+        "--effect",
+        "0.2",
+        "--studies",
+        "40",
+        "--sizes",
+        "8",
+        "--format",
+        "json",
+    ]);
+    let strong: Value = serde_json::from_str(&strong).expect("one JSON object");
+    assert_eq!(strong["ratio"].as_f64(), Some(0.2));
+    refused(&["power", &plan, "--from", &pool], "a pool of unassisted trials alone");
+    refused(&["arms", &plan, "--from", &pool], "a pool of unassisted trials alone");
+}
+
+#[test]
+#[serial]
+fn a_plan_is_frozen_once_and_the_study_says_whether_it_is_that_one() {
+    let (folder, plan) = folder("frozen");
+    let at = |name: &str| folder.join(name).display().to_string();
+    let (file, out, recordings) = (at("short.frozen"), at("none-yet"), at("recordings"));
+    let frozen: Value =
+        serde_json::from_str(&done(&["plan", &plan, "--out", &out, "--freeze", &file, "--format", "json"]))
+            .expect("one JSON object");
+    let digest = frozen["digest"].as_str().expect("a digest").to_string();
+    refused(&["plan", &plan, "--out", &out, "--freeze", &file], "a file that is there already");
+    done(&["simulate", &plan, "--out", &recordings]);
+    let study = |extra: &[&str]| {
+        done(&[&["study", &recordings, "--skip", "concepts,events", "--frozen", &file], extra].concat())
+    };
+    let text = study(&[]);
+    assert!(text.contains("Preregistered: the plan \"paper\" was frozen before the first recording"), "{text}");
+    assert!(text.contains(&digest), "{text}");
+    let report = fs::read_to_string(Path::new(&recordings).join("study/report.html")).expect("a report");
+    assert!(report.contains("Preregistered") && report.contains(&digest), "the report says so");
+    fs::remove_dir_all(Path::new(&recordings).join("seed1-P03-2")).expect("removed");
+    fs::remove_dir_all(Path::new(&recordings).join("seed1-P03-1")).expect("removed");
+    let found: Value = serde_json::from_str(&study(&["--format", "json"])).expect("one JSON object");
+    assert_eq!(found["preregistration"]["differences"][0], "1 participant is without a recording: P03");
+    let text = fs::read_to_string(&file).expect("frozen");
+    fs::write(&file, text.replacen("\"level\": 0.95", "\"level\": 0.90", 1)).expect("written");
+    refused(&["study", &recordings, "--skip", "concepts,events", "--frozen", &file], "so it was changed");
+}

@@ -8,6 +8,7 @@
 use serde::Serialize;
 
 use super::effect::LEVEL;
+use super::group_orders::{GroupOrder, group_orders};
 use super::linear_mixed_model::{Contrast, LinearMixedModel, Measurement};
 use super::negative_binomial_model::{NegativeBinomialModel, TrialCount, WaldContrast};
 use super::trial_statistics::Trial;
@@ -35,6 +36,8 @@ pub struct ArmComparison {
     pub negative_binomial: Option<CountComparison>,
     /// Whether arms of the assistant are not worse than the wizard.
     pub non_inferiority: Vec<NonInferiority>,
+    /// The starting groups with their orders of conditions.
+    pub groups: Vec<GroupOrder>,
 }
 
 /// The trials of an arm.
@@ -311,5 +314,6 @@ pub fn compare_arms(trials: &[&Trial]) -> Option<ArmComparison> {
         contrasts,
         with_carry_over,
         negative_binomial: design.count_comparison(),
+        groups: group_orders(trials),
     })
 }

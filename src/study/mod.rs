@@ -29,6 +29,7 @@ pub mod dictionary;
 pub mod effect;
 pub mod facts;
 pub mod figures;
+pub mod group_orders;
 pub mod known_beliefs;
 pub mod linear_mixed_model;
 pub mod live_arms;

@@ -58,7 +58,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     let best = advice.best.ok_or("a signal that is worth its cost")?;
-    assert_eq!(best.target(), kitchen.location(order).name);
+    assert_eq!(best.location(&kitchen), Some(order));
     println!("send {best:?}");
     Ok(())
 }

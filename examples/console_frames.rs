@@ -196,7 +196,7 @@ impl Stage {
             frames.push(ansi(terminal.backend().buffer()));
         }
         let recommended = session.advice.as_ref().and_then(|advice| advice.best.as_ref().and(advice.top()));
-        let location = self.best.0.as_ref().and_then(|signal| kitchen.location_named(signal.target()));
+        let location = self.best.0.as_ref().and_then(|signal| signal.location(kitchen));
         let key = location.and_then(|location| self.model.keys.mark(location));
         let really_false =
             kitchen.aspects.iter().zip(&witness.aspects).enumerate().filter_map(|(index, (aspect, held))| {
@@ -206,7 +206,7 @@ impl Stage {
         let row = format!(
             "{kind:?},{},{},{},{:.1},{}",
             key.map_or("none".to_string(), |key| format!("{key} or enter")),
-            self.best.0.as_ref().map_or("none", |signal| signal.target()),
+            self.best.0.as_ref().and_then(Signal::target).unwrap_or("none"),
             recommended.map_or(String::new(), |option| format!("{:.1}", option.net)),
             self.model.now.secs_since(self.best.1),
             really_false.collect::<Vec<_>>().join("; "),

@@ -67,7 +67,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     let signal = advice.best.as_ref().ok_or("no signal is worth its cost")?;
-    assert_eq!(signal.target(), "assembly_board", "the change on the board that the human has not seen");
+    assert_eq!(signal.target(), Some("assembly_board"), "the change on the board that the human has not seen");
     println!("send {signal:?}");
     Ok(())
 }

@@ -85,6 +85,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::SignalShown { signal: shown, .. } => format!("signal: {}", wording::signal(shown)),
         Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
         Event::SignalEnded { reason: SignalEnd::TakenBack } => "signal taken back".to_string(),
+        Event::SignalEnded { reason: SignalEnd::Outdated } => "signal out of date".to_string(),
         Event::Marker { note } => format!("marker: {note}"),
         Event::Probe(event) => probe_wording::event(event),
         Event::Protocol(event) => wording::protocol(event),

@@ -2,6 +2,7 @@
 //! and replays use the same code.
 
 use crate::base::time::SessionTime;
+use crate::communication::Signal;
 use crate::communication::repeats::Repeats;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change, Kitchen, Press, State};
@@ -12,7 +13,7 @@ use crate::measures::sequences::Episodes;
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::{BeliefFilter, Evidence};
-use crate::mind::observation::{Observation, Observed};
+use crate::mind::observation::{Observation, Observed, ProposedPresses};
 use crate::mind::recorded_estimate::EstimateWitness;
 use crate::session::apply::ApplyError;
 use crate::session::probes::{OpenProbe, ProbeEvent, ProbeSubject};
@@ -241,7 +242,11 @@ impl Follower {
                 let teaches = self.session.spec.probes.as_ref().map_or(0.0, |probes| probes.teaches);
                 Some(Observed::Thawed { by: stamped.time - over.begun, asked: self.asked_about(over), teaches })
             }
-            Event::SignalShown { .. } => Some(Observed::Told { location: self.session.shown.as_ref()?.location }),
+            Event::SignalShown { signal: Signal::Propose(presses), .. } => {
+                let button = |name: &String| self.session.kitchen.button_named(Agent::Human, name);
+                Some(Observed::Proposed(ProposedPresses::new(presses.iter().filter_map(button))))
+            }
+            Event::SignalShown { .. } => Some(Observed::Told { location: self.session.shown.as_ref()?.location? }),
             _ => None,
         }
     }

@@ -211,8 +211,9 @@ pub fn with_oneself(kitchen: &Kitchen, one: &JudgedRecording, other: &JudgedReco
         let kind = match signal.signal {
             Signal::ShowRecipe(_) => CommunicationKind::Recipe,
             Signal::Highlight(_) => CommunicationKind::Highlight,
+            Signal::Propose(_) => CommunicationKind::Proposal,
         };
-        let content = CommunicationTarget { kind, target: kitchen.location_named(signal.signal.target()) };
+        let content = CommunicationTarget { kind, target: signal.signal.location(kitchen) };
         CommunicationEvent { press: signal.press, clock: signal.clock_ns, content }
     };
     let [one, again] = [one, other].map(|time| time.signals.iter().map(said).collect::<Vec<CommunicationEvent>>());

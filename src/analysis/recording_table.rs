@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::base::words::count;
 use crate::session::settings::Condition;
+use crate::session::study_arm::StudyArm;
 
 /// State of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -43,6 +44,8 @@ pub struct ListedRecording {
     pub code: Option<String>,
     /// Who sent signals; null for what cannot be read.
     pub condition: Option<Condition>,
+    /// The arm by what was done; null for what cannot be read.
+    pub arm: Option<StudyArm>,
     /// When the recording began (UTC, RFC 3339); null for a simulated one.
     pub date: Option<String>,
     /// The trial's length by its own clock, in seconds.
@@ -99,14 +102,10 @@ impl ListedRecording {
     /// One cell for each of [`RecordingList::HEADINGS`]; "-" for what is not known.
     pub fn cells(&self) -> [String; 7] {
         let or_dash = |cell: Option<String>| cell.unwrap_or_else(|| "-".to_string());
-        let condition = self.condition.map(|condition| match condition {
-            Condition::None => "unassisted".to_string(),
-            other => other.name().to_string(),
-        });
         let minutes = |seconds: f64| format!("{}:{:02}", seconds as u64 / 60, seconds as u64 % 60);
         [
             or_dash(self.code.clone()),
-            or_dash(condition),
+            or_dash(self.arm.map(|arm| arm.title().to_string())),
             or_dash(self.date.as_deref().map(|date| date.chars().take(16).collect::<String>().replace('T', " "))),
             or_dash(self.trial_s.map(minutes)),
             or_dash(self.errors.map(|errors| errors.to_string())),

@@ -11,7 +11,8 @@ use crate::kitchen::{Agent, DishId};
 use crate::measures::attribution::Cause;
 use crate::measures::sequences::{Sequence, sequences, sequences_any_aspect};
 use crate::session::TimelineEvent;
-use crate::session::settings::{Condition, ParticipantKind};
+use crate::session::settings::ParticipantKind;
+use crate::session::study_arm::StudyArm;
 
 /// Summary of one trial.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -146,11 +147,11 @@ impl BeliefErrorSummary {
     }
 }
 
-/// Totals of the trials in one condition.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ConditionSummary {
-    /// Who sends signals.
-    pub condition: Condition,
+/// Totals of the trials of one arm.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ArmTotals {
+    /// The arm by what was done.
+    pub arm: StudyArm,
     /// Number of trials.
     pub trials: u64,
     /// Presses of the human.
@@ -159,12 +160,6 @@ pub struct ConditionSummary {
     pub errors: u64,
     /// Signals that were shown.
     pub signals: u64,
-}
-
-impl Default for ConditionSummary {
-    fn default() -> Self {
-        ConditionSummary { condition: Condition::None, trials: 0, human_actions: 0, errors: 0, signals: 0 }
-    }
 }
 
 /// The output of `tomcom simulate`.
@@ -204,8 +199,8 @@ pub struct SimulationSummary {
     /// New paths of logs that ended before the end of their header, as after a power failure; their trials were simulated
     /// again.
     pub moved: Vec<String>,
-    /// Totals by condition.
-    pub conditions: Vec<ConditionSummary>,
+    /// Totals by arm.
+    pub arms: Vec<ArmTotals>,
     /// The folders of the recordings.
     pub recordings: Vec<String>,
 }
@@ -290,7 +285,7 @@ pub struct SimulationSums {
 
 impl SimulationSums {
     /// Adds a trial. `plan_lengths` is the least number of presses for each dish from an empty kitchen.
-    pub fn add(&mut self, condition: Condition, trial: &TrialSummary, plan_lengths: &[u32]) {
+    pub fn add(&mut self, arm: StudyArm, trial: &TrialSummary, plan_lengths: &[u32]) {
         let sums = &mut self.figures;
         sums.trials += 1;
         sums.human_actions += trial.human_actions;
@@ -300,12 +295,11 @@ impl SimulationSums {
         sums.signals += trial.signals;
         sums.orders_served += trial.served.len() as u64;
         sums.simulated_s += trial.seconds;
-        let index = sums.conditions.iter().position(|one| one.condition >= condition);
-        let index = index.unwrap_or(sums.conditions.len());
-        if sums.conditions.get(index).is_none_or(|one| one.condition != condition) {
-            sums.conditions.insert(index, ConditionSummary { condition, ..ConditionSummary::default() });
+        let index = sums.arms.iter().position(|one| one.arm >= arm).unwrap_or(sums.arms.len());
+        if sums.arms.get(index).is_none_or(|one| one.arm != arm) {
+            sums.arms.insert(index, ArmTotals { arm, ..ArmTotals::default() });
         }
-        let one = &mut sums.conditions[index];
+        let one = &mut sums.arms[index];
         one.trials += 1;
         one.human_actions += trial.human_actions;
         one.errors += trial.errors;

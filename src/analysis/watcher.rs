@@ -150,7 +150,7 @@ impl ComparisonFollower {
         if let (Some(filter), Event::SignalShown { signal, .. }) = (filter, &stamped.event) {
             let (press, state) = (self.presses(), self.follower.session.state);
             self.counterfactuals.push_back(CounterfactualFilter { press, signal: signal.clone(), state, filter });
-            let spoken = self.spoken(CommunicationContent::Signal(signal.clone()), stamped.time);
+            let spoken = self.spoken(CommunicationContent::from_signal(signal), stamped.time);
             self.sent.push(spoken);
         }
         match &stamped.event {
@@ -199,7 +199,7 @@ impl ComparisonFollower {
             return;
         }
         let Some(what) = self.follower.observed(stamped, change) else { return };
-        if matches!(what, Observed::Told { .. }) {
+        if matches!(what, Observed::Told { .. } | Observed::Proposed(_)) {
             return;
         }
         let observation = Observation { time: stamped.time, what };
@@ -216,8 +216,7 @@ impl ComparisonFollower {
         for voice in &mut self.voices {
             // A signal that was also sent needs no second entry.
             let is_sent = |location: &LocationId| {
-                let is_it =
-                    |one: &CounterfactualFilter| session.kitchen.location_named(one.signal.target()) == Some(*location);
+                let is_it = |one: &CounterfactualFilter| one.signal.location(&session.kitchen) == Some(*location);
                 self.counterfactuals.iter().any(is_it)
             };
             voice.said.retain(|(said, location)| {
@@ -271,7 +270,7 @@ impl ComparisonFollower {
         let voice = &mut self.voices[index];
         if let Some(signal) = &advice.best {
             voice.repeats.shown(&session.kitchen, session.state, signal);
-            let location = session.kitchen.location_named(signal.target());
+            let location = signal.location(&session.kitchen);
             // An earlier signal about this place must not end the memory of this one when it leaves the window.
             voice.said.retain(|(_, earlier)| Some(*earlier) != location);
             voice.said.extend(location.map(|location| (session.presses[Agent::Human.index()], location)));

@@ -167,7 +167,8 @@ pub(super) struct SimulateArgs {
     /// unless --condition says otherwise. With a plan, its settings apply, and every trial has another participant.
     #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
     pub(super) sweep: Vec<SweepAxis>,
-    /// Compute the assistant's recommendations in unassisted trials too; they are recorded and shown to nobody.
+    /// Compute the assistant's recommendations in trials in which it does not act, too; they are recorded. A scripted wizard reads them
+    /// where the session shows recommendations; nobody else sees them.
     #[arg(long)]
     pub(super) shadow: bool,
     /// Also write a stream for the Rerun viewer beside every log, as recording.rrd.

@@ -67,7 +67,7 @@ pub(super) enum ConceptArg {
     TomCom,
     /// Signals about sufficiently certain false beliefs (ToM).
     Tom,
-    /// Proposals of the next good presses after an error (DEV); shown at the console only, since there is no signal for them.
+    /// Proposals of the next good presses after an error (DEV): on the display where the assistant acts, at the console beside a wizard.
     Dev,
     /// No signals.
     None,

@@ -12,6 +12,8 @@ use crate::edge::files;
 use crate::run::{simulate, sweep};
 use crate::session::SessionSpec;
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
+use crate::session::study_arm::StudyArm;
+use crate::wizard::settings::WizardKind;
 
 /// `tomcom simulate SESSION`.
 pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
@@ -42,6 +44,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     };
     check_condition(args, files.spec.plan.is_some())?;
     tell_unused(args, &files.spec);
+    tell_absent_wizard(args, &files.spec);
     // With a plan, the plan defines the conditions.
     files.spec.trial.condition = match args.condition {
         None if !args.sweep.is_empty() => Condition::Assistant,
@@ -85,6 +88,21 @@ fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     for (_, found, option) in unused.iter().filter(|(is_unused, ..)| *is_unused) {
         let session = args.session.display();
         put_aside(&format!("{session}: {found} holds at the console; trials are simulated with it by {option}\n"));
+    }
+}
+
+/// Reports the conditions of a plan in which a person would send signals, who is not there in a simulation.
+fn tell_absent_wizard(args: &SimulateArgs, spec: &SessionSpec) {
+    let Some(plan) = spec.plan.as_ref().filter(|_| spec.wizard.kind == WizardKind::Person) else { return };
+    let is_wizards = |arm: &&StudyArm| arm.condition() == Condition::Wizard;
+    let silent: Vec<String> =
+        plan.conditions.iter().filter(is_wizards).map(|arm| format!("\"{}\"", arm.name())).collect();
+    if !silent.is_empty() {
+        put_aside(&format!(
+            "{}: trials of {} are simulated without signals, since the wizard is a person; [wizard] with kind = \"scripted\" simulates one\n",
+            args.session.display(),
+            silent.join(" and ")
+        ));
     }
 }
 

@@ -1,10 +1,10 @@
 //! DEV: the deviation based concept. When the human's press was an error, it proposes the next good presses (paper, "Concept
 //! comparisons": 1 to 5 of them).
 //!
-//! A proposal is not a signal: signals show recipes and locations, not presses, and most good presses involve the own hand or a
-//! storage, for which there is no signal. Highlighting the location of a press would instead reveal its content, as the theory of
-//! mind concepts do. A proposal is therefore recorded and shown at the console, but never sent, not even in the assistant
-//! condition. The comparison of concepts assumes that participants follow proposals, as in the paper.
+//! A proposal has a signal of its own ([`Signal::Propose`](super::Signal::Propose)): "next: …". Most good presses involve the own hand or a
+//! storage, for which there is no other signal, and highlighting the location of a press would reveal its content, as the theory of
+//! mind concepts do. The assistant sends it in trials of DEV; beside a wizard a proposal is shown at the console alone. No other concept
+//! has it among its candidates. The offline comparison of concepts assumes that participants follow proposals, as in the paper.
 
 use std::sync::Arc;
 

@@ -25,7 +25,7 @@ pub const TAKEN_AFTER: SessionTime = SessionTime(1_300_000_000);
 pub enum OfferedAct {
     /// A signal to the participant.
     Signal(Signal),
-    /// Presses that DEV proposes, by the names of their buttons. They are shown to the wizard and cannot be sent.
+    /// Presses that DEV proposes, by the names of their buttons. They are shown to the wizard, who cannot send them.
     Presses(Vec<String>),
 }
 
@@ -54,7 +54,7 @@ pub struct OfferedAdvice {
     /// Believed value, true value and the press that the signal would prevent, as far as they are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<Reason>,
-    /// Whether a wizard could see it: there is a console, and the session's settings show recommendations.
+    /// Whether a wizard could see it: there is a console or a script that reads offers, and the session's settings show recommendations.
     pub visible: bool,
 }
 

@@ -91,9 +91,9 @@ impl Recommendation {
     }
 }
 
-/// The aspects that a signal makes certain: a location's content, or an order and the recipe of its dish.
+/// The aspects that a signal makes certain: a location's content, or an order and the recipe of its dish; none of proposed presses.
 pub fn aspects_told(kitchen: &Kitchen, state: State, signal: &Signal) -> Vec<AspectId> {
-    let Some(location) = kitchen.location_named(signal.target()) else { return Vec::new() };
+    let Some(location) = signal.location(kitchen) else { return Vec::new() };
     let mut aspects = vec![AspectId::of_location(location)];
     if let (LocationKind::Order, OrderContent::Dish(dish)) = (kitchen.location(location).kind, state.order(location)) {
         aspects.push(kitchen.aspect_of_dish(dish));

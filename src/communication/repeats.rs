@@ -28,7 +28,7 @@ struct Told {
 impl Repeats {
     /// Notes that a signal was shown.
     pub fn shown(&mut self, kitchen: &Kitchen, state: State, signal: &Signal) {
-        if let Some(location) = kitchen.location_named(signal.target()) {
+        if let Some(location) = signal.location(kitchen) {
             self.told[location.index()] = Some(Told { code: state.code(location), was_known: false });
         }
     }

@@ -112,4 +112,12 @@ impl AssistantSpec {
             ConceptName::TomCom | ConceptName::Dev | ConceptName::None => self.cost_of_communication,
         }
     }
+
+    /// The parameter by which the concept is compared: the cost of communication, ToM's threshold, or the number of presses that DEV proposes.
+    pub fn parameter(&self) -> f64 {
+        match self.concept {
+            ConceptName::Dev => self.proposed_presses as f64,
+            ConceptName::TomCom | ConceptName::Tom | ConceptName::None => self.price(),
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::kitchen::{Agent, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::mind::observation::MOST_PROPOSED;
 
 /// A communication signal, by the names of the layout's locations.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -12,13 +13,30 @@ pub enum Signal {
     ShowRecipe(String),
     /// Directs attention to a location and its content.
     Highlight(String),
+    /// Proposes the human's next presses, the next one first, by the names of their buttons. Only DEV sends it; it says nothing about
+    /// contents and recipes.
+    Propose(Vec<String>),
 }
 
 impl Signal {
-    /// The location that the signal is about.
-    pub fn target(&self) -> &str {
+    /// Name of the location that the signal is about; `None` for proposed presses.
+    pub fn target(&self) -> Option<&str> {
         match self {
-            Signal::ShowRecipe(name) | Signal::Highlight(name) => name,
+            Signal::ShowRecipe(name) | Signal::Highlight(name) => Some(name),
+            Signal::Propose(_) => None,
+        }
+    }
+
+    /// The location that the signal is about; `None` for proposed presses, and if the kitchen has no such location.
+    pub fn location(&self, kitchen: &Kitchen) -> Option<LocationId> {
+        kitchen.location_named(self.target()?)
+    }
+
+    /// Number of contents: of a proposal its presses, of any other signal one.
+    pub fn contents(&self) -> usize {
+        match self {
+            Signal::ShowRecipe(_) | Signal::Highlight(_) => 1,
+            Signal::Propose(presses) => presses.len(),
         }
     }
 }
@@ -33,7 +51,7 @@ pub enum Sender {
     Assistant,
 }
 
-/// The signal about each location, in the order of the locations: recipes for orders, highlights for the others but the
+/// The signal about each location, which wizard, ToM-Com and ToM choose from, in the order of the locations: recipes for orders, highlights for the others but the
 /// human's own hand, unless `own_hand` allows it (it is what one sees best).
 pub fn signals(kitchen: &Kitchen, own_hand: bool) -> Vec<(LocationId, Signal)> {
     let signal = |index: usize| {
@@ -54,9 +72,13 @@ pub fn available(kitchen: &Kitchen, state: State, own_hand: bool) -> Vec<Signal>
     all.filter(|signal| unavailable(kitchen, state, signal).is_none()).collect()
 }
 
-/// Why a signal cannot be sent now; `None` if it can. Only an order that wants a dish has a recipe to show.
+/// Why a signal cannot be sent now; `None` if it can. Only an order that wants a dish has a recipe to show, and the first of proposed
+/// presses must have an effect.
 pub fn unavailable(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<&'static str> {
-    let Some(location) = kitchen.location_named(signal.target()) else { return Some("no such location") };
+    if let Signal::Propose(presses) = signal {
+        return not_proposable(kitchen, state, presses);
+    }
+    let Some(location) = signal.location(kitchen) else { return Some("no such location") };
     match (signal, kitchen.location(location).kind) {
         (Signal::ShowRecipe(_), LocationKind::Order) => match state.order(location) {
             OrderContent::Dish(_) => None,
@@ -64,6 +86,19 @@ pub fn unavailable(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<&
         },
         (Signal::ShowRecipe(_), _) => Some("only an order has a recipe"),
         (Signal::Highlight(_), LocationKind::Order) => Some("an order cannot be highlighted"),
-        (Signal::Highlight(_), _) => None,
+        (Signal::Highlight(_) | Signal::Propose(_), _) => None,
+    }
+}
+
+fn not_proposable(kitchen: &Kitchen, state: State, presses: &[String]) -> Option<&'static str> {
+    let button = |name: &String| kitchen.button_named(Agent::Human, name);
+    let Some(first) = presses.first() else { return Some("no press is proposed") };
+    match button(first) {
+        _ if presses.len() > MOST_PROPOSED => Some("at most five presses are proposed"),
+        _ if presses.iter().any(|name| button(name).is_none()) => Some("the human has no such button"),
+        Some(first) if kitchen.press(state, &kitchen.true_recipes(), Agent::Human, first).is_none() => {
+            Some("the proposed press would do nothing now")
+        }
+        _ => None,
     }
 }

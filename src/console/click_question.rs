@@ -76,7 +76,7 @@ pub(super) fn confirm(model: &mut ConsoleModel, session: &Session, question: Sen
         }
         Some(_) => act(model, session, KeyAction::Accept),
         None => {
-            let location = session.kitchen.location_named(question.signal.target())?;
+            let location = question.signal.location(&session.kitchen)?;
             act(model, session, KeyAction::Signal(location, question.signal))
         }
     }

@@ -293,7 +293,7 @@ fn signals(kitchen: &Kitchen) -> impl Iterator<Item = KeyBinding> {
         let location = kitchen.location(id);
         let help = match signal {
             Signal::ShowRecipe(_) => format!("show the recipe of {}", location.label()),
-            Signal::Highlight(_) => format!("highlight {}", location.label()),
+            Signal::Highlight(_) | Signal::Propose(_) => format!("highlight {}", location.label()),
         };
         let keys: Vec<KeyChord> = location.signal_key.map(KeyChord::of_letter).into_iter().collect();
         let bound = line(&location.name, &keys, KeyAction::Signal(id, signal), SIGNALS, &help, None);

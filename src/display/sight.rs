@@ -11,7 +11,7 @@ use crate::kitchen::no_effect::NoEffect;
 use crate::kitchen::{Agent, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::session::accuracy_check::RunningGazeCheck;
 use crate::session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
-use crate::session::{Phase, Session, TimelineEvent};
+use crate::session::{Phase, Session, TimelineEvent, proposals};
 
 /// What the participant sees of the session now; always the whole of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -126,6 +126,8 @@ pub enum DisplayedSignal {
     },
     /// The location with this index in the scene is highlighted.
     Highlight(usize),
+    /// The proposed presses that are still to be made, the next one first, by their indices in [`super::DisplayScene::buttons`].
+    Next(Vec<usize>),
 }
 
 /// What the participant sees of a session.
@@ -150,11 +152,9 @@ pub fn sight(session: &Session) -> DisplayUpdate {
             .map(|(button, ..)| spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action)),
         signal: match practised {
             Some((step, tutorial)) => explained(kitchen, tutorial.kitchen, step),
-            None => session
-                .shown
-                .as_ref()
-                .filter(|_| probe.is_none())
-                .and_then(|shown| told(kitchen, session.state, &shown.signal)),
+            None if probe.is_some() => None,
+            None => proposed(session)
+                .or_else(|| session.shown.as_ref().and_then(|shown| told(kitchen, session.state, &shown.signal))),
         },
         cue: session.cue,
         question: question(session),
@@ -253,9 +253,16 @@ pub(super) fn button_place(session: &Session, button: ButtonId) -> [f64; 2] {
     }
 }
 
+/// Proposed presses, if the display shows any.
+fn proposed(session: &Session) -> Option<DisplayedSignal> {
+    let button = |name: &String| session.kitchen.button_named(Agent::Human, name).map(ButtonId::index);
+    Some(DisplayedSignal::Next(proposals::left(session)?.iter().filter_map(button).collect()))
+}
+
 fn told(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<DisplayedSignal> {
-    let location = kitchen.location_named(signal.target())?;
+    let location = signal.location(kitchen)?;
     match signal {
+        Signal::Propose(_) => None,
         Signal::Highlight(_) => Some(DisplayedSignal::Highlight(location.index())),
         Signal::ShowRecipe(_) => {
             let OrderContent::Dish(dish) = state.order(location) else { return None };

@@ -21,6 +21,7 @@ use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tu
 use crate::session::ranges;
 use crate::session::settings::SettingError;
 use crate::session::wall_display::DisplayedArm;
+use crate::wizard::settings::WizardKind;
 
 /// A session file with its kitchen and its key file.
 #[derive(Clone, Debug)]
@@ -80,6 +81,10 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     read_words(path, &text, &mut spec)?;
     spec.display.reasons.get_or_insert(true);
     spec.display.arm.get_or_insert(DisplayedArm::Hand);
+    // In a plan the condition says whether the wizard sees advice.
+    if spec.plan.is_none() && spec.wizard.kind == WizardKind::Scripted {
+        spec.wizard.offers.get_or_insert_default();
+    }
     spec.check().and_then(|()| spec.check_participant_codes()).map_err(|error| wrong_setting(path, &text, error))?;
     if let Some(step) = &spec.step {
         let found = format!("the place of a recording in the plan \"{}\"", step.plan);

@@ -32,11 +32,11 @@ pub struct McapFile {
 }
 
 impl McapFile {
-    /// Begins the file of the recording in this folder, with these words about it. One that this program wrote is replaced.
+    /// Begins the file of the recording in this folder. One that this program wrote is replaced.
     ///
     /// # Errors
     /// A file of somebody else has its name, or it cannot be written.
-    pub fn create(folder: &Path, about: BTreeMap<String, String>) -> io::Result<McapFile> {
+    pub fn create(folder: &Path) -> io::Result<McapFile> {
         let path = folder.join(MCAP_NAME);
         let is_own = |head: &[u8]| {
             let written = LIBRARY.as_bytes();
@@ -54,7 +54,6 @@ impl McapFile {
             let number = writer.add_channel(schema, channel.topic(), ENCODING, &BTreeMap::new()).map_err(reason)?;
             channels.insert(channel, (number, 0));
         }
-        writer.write_metadata(&Metadata { name: LIBRARY.to_string(), metadata: about }).map_err(reason)?;
         Ok(McapFile { writer, channels, begun, path })
     }
 
@@ -74,11 +73,12 @@ impl McapFile {
         self.writer.write_to_known_channel(&header, message.content.to_string().as_bytes()).map_err(reason)
     }
 
-    /// Ends the file and gives it its name; its path, and the numbers of messages by channel.
+    /// Ends the file with these words about the recording, and gives it its name; its path, and the numbers of messages by channel.
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn finish(mut self) -> io::Result<(PathBuf, BTreeMap<&'static str, u32>)> {
+    pub fn finish(mut self, about: BTreeMap<String, String>) -> io::Result<(PathBuf, BTreeMap<&'static str, u32>)> {
+        self.writer.write_metadata(&Metadata { name: LIBRARY.to_string(), metadata: about }).map_err(reason)?;
         self.writer.finish().map_err(reason)?;
         fs::rename(&self.begun, &self.path)?;
         let counts = self.channels.iter().map(|(channel, (_, messages))| (channel.topic(), *messages)).collect();

@@ -44,19 +44,29 @@ pub enum CommunicationContent {
 }
 
 impl CommunicationContent {
+    /// The content of a signal that was sent.
+    pub fn from_signal(signal: &Signal) -> CommunicationContent {
+        match signal {
+            Signal::Propose(presses) => CommunicationContent::Proposal(presses.clone()),
+            signal => CommunicationContent::Signal(signal.clone()),
+        }
+    }
+
     /// The content as the matching compares it.
     pub fn content(&self, kitchen: &Kitchen) -> CommunicationTarget {
         let kind = match self {
             CommunicationContent::Signal(Signal::ShowRecipe(_)) => CommunicationKind::Recipe,
             CommunicationContent::Signal(Signal::Highlight(_)) => CommunicationKind::Highlight,
-            CommunicationContent::Proposal(_) => CommunicationKind::Proposal,
+            CommunicationContent::Signal(Signal::Propose(_)) | CommunicationContent::Proposal(_) => {
+                CommunicationKind::Proposal
+            }
         };
         CommunicationTarget { kind, target: self.target(kitchen) }
     }
 
     fn target(&self, kitchen: &Kitchen) -> Option<LocationId> {
         match self {
-            CommunicationContent::Signal(signal) => kitchen.location_named(signal.target()),
+            CommunicationContent::Signal(signal) => signal.location(kitchen),
             CommunicationContent::Proposal(_) => None,
         }
     }
@@ -65,10 +75,7 @@ impl CommunicationContent {
     pub fn words(&self) -> String {
         match self {
             CommunicationContent::Signal(signal) => wording::signal(signal),
-            CommunicationContent::Proposal(presses) => {
-                let presses: Vec<String> = presses.iter().map(|press| wording::location(press)).collect();
-                format!("press {}", presses.join(", then "))
-            }
+            CommunicationContent::Proposal(presses) => wording::proposal(presses),
         }
     }
 }

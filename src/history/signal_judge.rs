@@ -3,8 +3,8 @@
 //! The measures of a study look at the whole trial and leave out false beliefs that led to no error
 //! ([`crate::measures::wizard_performance`]); at the console it counts what was believed when the signal was sent.
 
-use crate::communication::Sender;
 use crate::communication::recommendation::aspects_told;
+use crate::communication::{Sender, Signal};
 use crate::kitchen::{Agent, AspectId};
 use crate::measures::wizard_performance::LATE_PRESSES;
 use crate::session::event::SignalEnd;
@@ -53,6 +53,8 @@ impl SignalJudge {
     pub fn judge(&mut self, stamped: &Stamped, session: &Session) {
         match &stamped.event {
             Event::TrialStarted => *self = SignalJudge::default(),
+            // A proposal says nothing about beliefs.
+            Event::SignalShown { by, signal: Signal::Propose(_), .. } => self.last = Some(*by),
             Event::SignalShown { by, signal, .. } => {
                 let told = aspects_told(&session.kitchen, session.state, signal);
                 let presses = session.presses[Agent::Human.index()];

@@ -80,17 +80,21 @@ pub fn signal(signal: &Signal) -> String {
     match signal {
         Signal::ShowRecipe(order) => format!("recipe of {}", location(order)),
         Signal::Highlight(place) => format!("highlight {}", location(place)),
+        Signal::Propose(presses) => proposal(presses),
     }
+}
+
+/// Proposed presses in words: "press take rice, then cooking pot".
+pub fn proposal(presses: &[String]) -> String {
+    let presses: Vec<String> = presses.iter().map(|press| location(press)).collect();
+    format!("press {}", presses.join(", then "))
 }
 
 /// What is offered in words.
 pub fn offered(what: &OfferedAct) -> String {
     match what {
         OfferedAct::Signal(told) => signal(told),
-        OfferedAct::Presses(presses) => {
-            let names: Vec<String> = presses.iter().map(|press| location(press)).collect();
-            format!("press {}", names.join(", "))
-        }
+        OfferedAct::Presses(presses) => proposal(presses),
     }
 }
 
@@ -188,7 +192,7 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
         }
         TimelineEvent::Signal { by, signal: shown } => (sender(*by), signal(shown)),
         TimelineEvent::SignalEnded(SignalEnd::TakenBack) => ("wizard", "took the signal back".to_string()),
-        TimelineEvent::SignalEnded(SignalEnd::Elapsed) => ("", "signal is over".to_string()),
+        TimelineEvent::SignalEnded(SignalEnd::Elapsed | SignalEnd::Outdated) => ("", "signal is over".to_string()),
         TimelineEvent::Served { order } => ("", format!("{} is served", kitchen.location(*order).label())),
         TimelineEvent::OrderShown { order } => ("", format!("{} is new", kitchen.location(*order).label())),
         TimelineEvent::Marker(note) => ("note", note.clone()),

@@ -36,7 +36,7 @@ pub struct BeliefWitness {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PressOrigin {
-    /// From its plan: with the truth it would press the same.
+    /// From its plan: with the truth it would press the same; or it was proposed on the display.
     Plan,
     /// From a false belief: with the truth it would press something else.
     Belief,

@@ -181,11 +181,22 @@ impl Default for TransitionModel {
 pub struct SignalModel {
     /// Probability that a signal is noticed; a noticed signal is believed.
     pub noticed: f64,
+    /// Probability that the human presses what the display proposes because it is proposed. Nobody has measured it; the default stands for
+    /// a person who notices most proposals and makes most of those.
+    #[serde(skip_serializing_if = "is_usual_following")]
+    pub follows: f64,
+}
+
+/// The default of [`SignalModel::follows`]. Files and headers leave it out.
+const FOLLOWS: f64 = 0.7;
+
+fn is_usual_following(follows: &f64) -> bool {
+    *follows == FOLLOWS
 }
 
 impl Default for SignalModel {
     fn default() -> Self {
-        SignalModel { noticed: 1.0 }
+        SignalModel { noticed: 1.0, follows: FOLLOWS }
     }
 }
 

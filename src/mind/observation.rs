@@ -2,7 +2,39 @@
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
-use crate::kitchen::{LocationId, Press, State};
+use crate::kitchen::{ButtonId, LocationId, Press, State};
+
+/// Largest number of presses in a proposal.
+pub const MOST_PROPOSED: usize = 5;
+
+/// Presses of the human that the display proposes, the next one first; by default none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ProposedPresses([Option<ButtonId>; MOST_PROPOSED]);
+
+impl ProposedPresses {
+    /// The first [`MOST_PROPOSED`] of these presses.
+    pub fn new(presses: impl IntoIterator<Item = ButtonId>) -> ProposedPresses {
+        let mut all = ProposedPresses::default();
+        all.0.iter_mut().zip(presses).for_each(|(place, press)| *place = Some(press));
+        all
+    }
+
+    /// The press that is proposed next, if one is.
+    pub fn next(&self) -> Option<ButtonId> {
+        self.0[0]
+    }
+
+    /// A press of the human: the proposal goes on if it was proposed, and is over if it was not.
+    pub fn pressed(&mut self, button: ButtonId) {
+        match self.next() == Some(button) {
+            true => {
+                self.0.rotate_left(1);
+                self.0[MOST_PROPOSED - 1] = None;
+            }
+            false => *self = ProposedPresses::default(),
+        }
+    }
+}
 
 /// One piece of evidence with its session time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +74,8 @@ pub enum Observed {
         /// The location that the signal is about.
         location: LocationId,
     },
+    /// The display proposes presses. That says nothing about contents and recipes; it matters for what the next presses say about beliefs.
+    Proposed(ProposedPresses),
     /// The trial stands still: nothing is read or forgotten until it goes on.
     Paused,
     /// The trial goes on.

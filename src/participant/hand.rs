@@ -40,7 +40,12 @@ impl SimulatedParticipant {
             return None;
         }
         let (pressed, slip) = self.slip(button);
-        let reason = slip.map_or_else(|| self.reason(Urgency::Calm, state, button), PressReason::slip);
+        let is_proposed = self.signals.follows.front() == Some(&button);
+        let reason = match slip {
+            Some(slip) => PressReason::slip(slip),
+            None if is_proposed => PressReason::proposed(),
+            None => self.reason(Urgency::Calm, state, button),
+        };
         self.intent.plan.pop_front();
         Some(self.press(now, state, pressed, reason))
     }
@@ -71,6 +76,7 @@ impl SimulatedParticipant {
 
     fn press(&mut self, now: SessionTime, state: State, button: ButtonId, reason: PressReason) -> ParticipantAction {
         self.presses += 1;
+        self.has_pressed(button);
         self.looks_first = 0;
         self.idle_since = None;
         self.press_at = now + self.reaction();

@@ -24,6 +24,8 @@ const ANSWERS_WRONG: TraitSpread = TraitSpread::from_median(0.01, 0.4);
 /// From this probability on a belief is not false, see `measures::sequences::FALSE_BELOW`.
 const ANSWERS_FROM: f64 = 0.5;
 const ANSWER_S: TraitSpread = TraitSpread::from_median(3.0, 0.3);
+/// People follow most of the advice that they notice; that is an assumption, since no proposals were shown to people.
+const FOLLOWS_PROPOSAL: TraitSpread = TraitSpread::from_median(0.9, 0.4);
 
 // Recordings leave out how questions are answered where it is the default.
 fn is_usual_wrong(value: &TraitSpread) -> bool {
@@ -32,6 +34,10 @@ fn is_usual_wrong(value: &TraitSpread) -> bool {
 
 fn is_usual_from(value: &f64) -> bool {
     *value == ANSWERS_FROM
+}
+
+fn is_usual_following(value: &TraitSpread) -> bool {
+    *value == FOLLOWS_PROPOSAL
 }
 
 fn is_usual_time(value: &TraitSpread) -> bool {
@@ -184,6 +190,9 @@ pub struct Population {
     /// Time to answer a question of a freeze probe, in seconds.
     #[serde(skip_serializing_if = "is_usual_time")]
     pub answer_s: TraitSpread,
+    /// Probability of making proposed presses that were read; they are made at the next decision, whatever is believed.
+    #[serde(skip_serializing_if = "is_usual_following")]
+    pub follows_proposal: TraitSpread,
 }
 
 /// Trials of a participant before the present one.
@@ -247,6 +256,7 @@ impl Default for Population {
             answers_wrong: ANSWERS_WRONG,
             answers_from: ANSWERS_FROM,
             answer_s: ANSWER_S,
+            follows_proposal: FOLLOWS_PROPOSAL,
         }
     }
 }
@@ -322,6 +332,8 @@ pub struct Individual {
     pub answers_wrong: f64,
     /// Median time to answer such a question, in seconds.
     pub answer_s: f64,
+    /// Chance to make proposed presses that were read.
+    pub follows_proposal: f64,
 }
 
 /// Least and largest number of own presses that a participant thinks through (study, "Simulated participants").
@@ -378,6 +390,7 @@ impl Population {
             guesses_robot: self.guesses_robot.draw_chance(random),
             answers_wrong: self.answers_wrong.draw_chance(random),
             answer_s: self.answer_s.draw(random),
+            follows_proposal: self.follows_proposal.draw_chance(random),
         }
     }
 }

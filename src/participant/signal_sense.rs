@@ -1,14 +1,18 @@
 //! What a simulated participant makes of signals: the one that it will read, and how useful they have been.
 
+use std::collections::VecDeque;
+
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::kitchen::LocationId;
+use crate::kitchen::{ButtonId, LocationId};
 
 /// What the participant makes of signals.
 #[derive(Clone, Debug)]
 pub(super) struct SignalSense {
-    /// A noticed signal, and when it will be read.
-    pub pending: Option<(SessionTime, LocationId, Signal)>,
+    /// A noticed signal with the location that it is about, and when it will be read.
+    pub pending: Option<(SessionTime, Option<LocationId>, Signal)>,
+    /// Proposed presses that the participant means to make next.
+    pub follows: VecDeque<ButtonId>,
     /// Until when a signal is read.
     pub busy_until: SessionTime,
     /// How useful signals have been, 0 to 1.
@@ -17,7 +21,7 @@ pub(super) struct SignalSense {
 
 impl Default for SignalSense {
     fn default() -> SignalSense {
-        SignalSense { pending: None, busy_until: SessionTime::ZERO, worth: 1.0 }
+        SignalSense { pending: None, follows: VecDeque::new(), busy_until: SessionTime::ZERO, worth: 1.0 }
     }
 }
 

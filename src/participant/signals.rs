@@ -10,20 +10,25 @@
 //! - After useless signals the next ones are noticed less: people respond to alarms about as often as these are right (Bliss,
 //!   Gilson and Deaton 1995, "Human probability matching behaviour in response to alarms of varying reliability").
 
+use std::collections::VecDeque;
+
 use rand::RngExt;
 
 use super::population::{chance, rare_chance};
 use super::simulated::SimulatedParticipant;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::kitchen::{LocationId, OrderContent, State};
+use crate::kitchen::{Agent, ButtonId, DishId, LocationId, OrderContent, State};
+
+/// Where the page shows proposed presses, in fractions of the display: at no place of the task.
+const PROPOSAL_AT: [f64; 2] = [0.5, 0.5];
 
 /// Least share of a participant's signals that it still notices when all of them were useless.
 const LEAST_HEED: f64 = 0.3;
 
 impl SimulatedParticipant {
     /// Reacts to a signal: the participant may notice it and looks at it after a short delay.
-    pub fn on_signal(&mut self, now: SessionTime, location: LocationId, signal: &Signal, _state: State) {
+    pub fn on_signal(&mut self, now: SessionTime, location: Option<LocationId>, signal: &Signal) {
         let [least, most] = self.population.signal_after_s;
         let after_s = least + (most - least) * self.mind.random::<f64>();
         let heed = LEAST_HEED + (1.0 - LEAST_HEED) * self.signals.worth;
@@ -32,9 +37,12 @@ impl SimulatedParticipant {
             is_noticed.then(|| (now + SessionTime::from_secs_f64(after_s), location, signal.clone()));
     }
 
-    /// Removes the signal; the participant cannot read it any more.
-    pub fn on_signal_end(&mut self, _now: SessionTime) {
+    /// Removes the signal; the participant cannot read it any more. Proposed presses that are out of date are not made.
+    pub fn on_signal_end(&mut self, is_outdated: bool) {
         self.signals.pending = None;
+        if is_outdated {
+            self.signals.follows.clear();
+        }
     }
 
     /// Whether a signal is being read, when nothing else is seen.
@@ -48,27 +56,58 @@ impl SimulatedParticipant {
         let Some((_, location, signal)) = self.signals.pending.take_if(|_| is_due) else { return };
         let kitchen = self.kitchen.clone();
         self.rethink = true;
-        let point = kitchen.location(location).display.centre();
+        let point = location.map_or(PROPOSAL_AT, |location| kitchen.location(location).display.centre());
         self.eyes.look_at(now, point);
-        self.attention.looking_at = Some(location);
-        let before = self.beliefs.point(&kitchen);
-        match signal {
-            Signal::Highlight(_) => self.read(now, location, state),
-            Signal::ShowRecipe(_) => {
+        self.attention.looking_at = location;
+        let is_useful = match (signal, location) {
+            (Signal::Propose(presses), _) => self.read_proposal(&presses),
+            (Signal::Highlight(_), Some(location)) => {
+                let before = self.beliefs.point(&kitchen);
+                self.read(now, location, state);
+                self.beliefs.point(&kitchen) != before
+            }
+            (Signal::ShowRecipe(_), Some(location)) => {
+                let before = self.beliefs.point(&kitchen);
                 if let OrderContent::Dish(dish) = state.order(location) {
                     self.read(now, location, state);
-                    let variants = kitchen.dish(dish).variants.len();
-                    let is_wrong = variants > 1 && chance(&mut self.mind, self.population.misreads_signal);
-                    let seen = if is_wrong { self.mind.random_range(1..variants) } else { 0 };
-                    let is_own = self.beliefs.most_likely(kitchen.aspect_of_dish(dish)) == seen;
-                    if is_own || !rare_chance(&mut self.mind, self.person.keeps_own_recipe) {
-                        self.memory.confirm(&kitchen, &mut self.beliefs, dish, seen);
-                    }
+                    self.read_recipe(dish);
                 }
+                self.beliefs.point(&kitchen) != before
             }
-        }
-        let is_useful = self.beliefs.point(&kitchen) != before;
+            (_, None) => false,
+        };
         self.pay_for_signal(now, is_useful);
+    }
+
+    /// Reads the recipe of a dish, wrongly now and then, and may keep to the own version.
+    fn read_recipe(&mut self, dish: DishId) {
+        let kitchen = self.kitchen.clone();
+        let variants = kitchen.dish(dish).variants.len();
+        let is_wrong = variants > 1 && chance(&mut self.mind, self.population.misreads_signal);
+        let seen = if is_wrong { self.mind.random_range(1..variants) } else { 0 };
+        let is_own = self.beliefs.most_likely(kitchen.aspect_of_dish(dish)) == seen;
+        if is_own || !rare_chance(&mut self.mind, self.person.keeps_own_recipe) {
+            self.memory.confirm(&kitchen, &mut self.beliefs, dish, seen);
+        }
+    }
+
+    /// Reads proposed presses and may mean to make them. They say nothing about contents and recipes, so beliefs stay as they are.
+    /// Returns whether they are others than the planned ones.
+    fn read_proposal(&mut self, presses: &[String]) -> bool {
+        let buttons = presses.iter().filter_map(|name| self.kitchen.button_named(Agent::Human, name));
+        let buttons: VecDeque<ButtonId> = buttons.collect();
+        let is_new = self.intent.plan.front() != buttons.front();
+        if rare_chance(&mut self.mind, self.person.follows_proposal) {
+            self.signals.follows = buttons;
+        }
+        is_new
+    }
+
+    /// Notes an own press: a proposal is followed press by press, and any other press ends that.
+    pub(super) fn has_pressed(&mut self, button: ButtonId) {
+        if self.signals.follows.pop_front() != Some(button) {
+            self.signals.follows.clear();
+        }
     }
 
     /// The costs of a signal that was read: time, perhaps the next intention, and heed for later ones.

@@ -109,7 +109,7 @@ impl SimulatedParticipant {
         self.rethink = true;
     }
 
-    /// Decides on the next presses and queues looks at their locations.
+    /// Decides on the next presses and queues looks at their locations. Proposed presses that are followed take the place of the decision.
     pub(super) fn think(&mut self, now: SessionTime) {
         self.rethink = false;
         if !self.population.all_knowing {
@@ -121,7 +121,8 @@ impl SimulatedParticipant {
         let commitment = SessionTime::from_secs_f64(self.person.commitment_s);
         let kept = self.intent.order.filter(|&(order, _)| Some(order) == resolution.order);
         self.intent.order = kept.or(resolution.order.map(|order| (order, now + commitment)));
-        self.intent.plan = resolution.plan;
+        let follows = &self.signals.follows;
+        self.intent.plan = if follows.is_empty() { resolution.plan } else { follows.clone() };
         let next = self.intent.plan.front().copied();
         if next != before {
             for place in self.needed() {

@@ -62,6 +62,11 @@ impl PressReason {
         PressReason { origin: PressOrigin::Slip, cause, targets: Vec::new() }
     }
 
+    /// A press that the display proposed.
+    pub fn proposed() -> PressReason {
+        PressReason { origin: PressOrigin::Plan, cause: "as proposed on the display".to_string(), targets: Vec::new() }
+    }
+
     /// The reason of a press that was decided for `believed`, while `truth` holds.
     pub fn decided(decision: &Decision, believed: &World, truth: &World, button: ButtonId) -> PressReason {
         let kitchen = decision.kitchen;

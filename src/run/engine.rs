@@ -18,7 +18,7 @@ mod robot;
 
 use std::sync::Arc;
 
-use self::agents::{gaze_gaps, simulated_participant, trial_robot};
+use self::agents::{gaze_gaps, scripted_wizard, simulated_participant, trial_robot};
 use crate::analysis::advisor::{AdviceRequest, Advisor, changes_task};
 use crate::analysis::follower::Follower;
 use crate::arm::worker::Robot;
@@ -34,12 +34,13 @@ use crate::participant::{ParticipantAction, SimulatedParticipant};
 use crate::session::admit::{admit, hygiene};
 use crate::session::apply::ApplyError;
 use crate::session::event::{EndReason, SignalEnd};
+use crate::session::offers;
 use crate::session::orders::OrderList;
 use crate::session::probes::ProbeEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::timers::TimerQueue;
 use crate::session::{Applied, Effect, Event, Header, Session, SessionSpec, Stamped, Timer};
-use crate::wizard::ScriptedWizard;
+use crate::wizard::{ScriptedWizard, WizardAction};
 
 /// A running session.
 #[derive(Clone, Debug)]
@@ -96,9 +97,7 @@ impl Engine {
         let participant = (spec.participant.kind == ParticipantKind::Simulated)
             .then(|| simulated_participant(kitchen.clone(), &spec, trial));
         let gaps = gaze_gaps(&spec, trial);
-        let wizard = spec.scripts_wizard().then(|| {
-            ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), spec.signals.own_hand, spec.seed, trial)
-        });
+        let wizard = scripted_wizard(&kitchen, &spec, trial);
         let follower = Follower::new(Session::new(kitchen, spec, trial), cost);
         let timers = TimerQueue::default();
         let (out, questions) = (Vec::new(), Vec::new());
@@ -272,11 +271,14 @@ impl Engine {
 
     fn let_wizard_act(&mut self, now: SessionTime) {
         let state = self.session().state;
-        let Some(signal) = self.wizard.as_mut().and_then(|one| one.act(now, state, &mut self.follower.cost)) else {
-            return;
+        let event = match self.wizard.as_mut().and_then(|one| one.act(now, state, &mut self.follower.cost)) {
+            Some(WizardAction::Send(signal)) => {
+                Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None })
+            }
+            Some(WizardAction::TakeOffer(offer)) => offers::script_takes(self.session(), now, offer),
+            None => None,
         };
-        let event = Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None };
-        if admit(self.session(), &event).is_ok() {
+        if let Some(event) = event.filter(|event| admit(self.session(), event).is_ok()) {
             self.record_own(now, event);
         }
     }
@@ -372,6 +374,7 @@ impl Engine {
         for deed in robots {
             self.record_deed(now, deed);
         }
+        self.end_outdated_proposal(now);
         self.check_criterion(now);
         self.measure_calibration(now);
         Ok(())

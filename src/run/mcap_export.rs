@@ -14,6 +14,7 @@ use crate::edge::log::{LOG_NAME, LogEnding, LogReader, at_line};
 use crate::edge::mcap_file::McapFile;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::Header;
+use crate::session::study_arm::StudyArm;
 
 /// An exported recording.
 #[derive(Clone, Debug, Serialize)]
@@ -41,7 +42,7 @@ pub fn export(recording: &Path) -> FileResult<McapSummary> {
     let folder = log.folder().to_path_buf();
     let unwritable =
         |reason: io::Error| FileError::unreadable(&folder, reason, "a folder of the recording that can be written to");
-    let mut file = McapFile::create(&folder, about(&folder, &log.header)).map_err(unwritable)?;
+    let mut file = McapFile::create(&folder).map_err(unwritable)?;
     let session = log.session();
     let cost = CostToGo::new(session.kitchen.clone());
     let (mut follower, maker) = (Follower::new(session, cost), MessageMaker::default());
@@ -55,18 +56,20 @@ pub fn export(recording: &Path) -> FileResult<McapSummary> {
             .try_for_each(|message| file.write(message))
             .map_err(unwritable)?;
     }
-    let (file, messages) = file.finish().map_err(unwritable)?;
+    let about = about(&folder, &log.header, follower.session.study_arm());
+    let (file, messages) = file.finish(about).map_err(unwritable)?;
     Ok(McapSummary { file, messages })
 }
 
-/// What the file says of the recording. Its times are session times; `started` is the wall clock at the beginning.
-fn about(folder: &Path, header: &Header) -> BTreeMap<String, String> {
+/// What the file says of the recording, whose arm by what was done is `arm`. Its times are session times; `started` is the wall clock at the beginning.
+fn about(folder: &Path, header: &Header, arm: StudyArm) -> BTreeMap<String, String> {
     let spec = &header.session;
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut about = BTreeMap::from([
         ("recording".to_string(), name),
         ("participant".to_string(), spec.participant.code.clone()),
         ("condition".to_string(), spec.trial.condition.name().to_string()),
+        ("arm".to_string(), arm.name().to_string()),
         ("trial".to_string(), header.trial.to_string()),
         ("program".to_string(), header.program.clone()),
         ("log_version".to_string(), header.version.to_string()),

@@ -311,7 +311,7 @@ fn name(recording: &Path) -> String {
     folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Prepares recordings for one stream: a single one at the root, several below their names with participant and condition.
+/// Prepares recordings for one stream: a single one at the root, several below their names with participant and arm.
 fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
     let one = |(nth, recording): (usize, &PathBuf)| {
         let playing = Playing::open(recording)?;
@@ -319,8 +319,8 @@ fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
             return Ok(playing);
         }
         let name = name(recording);
-        let spec = &playing.replay.log().header.session;
-        let title = format!("{} {} ({name})", spec.participant.code, spec.trial.condition.name());
+        let session = playing.replay.session();
+        let title = format!("{} {} ({name})", session.spec.participant.code, session.study_arm().title());
         Ok(Playing { lane: StreamLane { root: format!("{}_{}", nth + 1, slug(&name)), title }, ..playing })
     };
     recordings.iter().enumerate().map(one).collect()

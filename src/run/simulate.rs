@@ -14,7 +14,7 @@ use super::parallel::WorkerPool;
 use super::replay::Replay;
 use super::{headless, options};
 use crate::analysis::kitchen_summary::plan_lengths;
-use crate::analysis::trial_summary::{ConditionSummary, SimulationSummary, SimulationSums, TrialSummary};
+use crate::analysis::trial_summary::{ArmTotals, SimulationSummary, SimulationSums, TrialSummary};
 use crate::base::words::count;
 use crate::communication::settings::Shadow;
 use crate::edge::file_error::FileError;
@@ -23,6 +23,7 @@ use crate::edge::log::{LogReader, RecordingLock, SimulatedLog, WriteError, check
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
+use crate::session::study_arm::StudyArm;
 use crate::session::{Header, Stamped};
 
 /// Request of `tomcom simulate`.
@@ -111,7 +112,7 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
         // An existing recording can be excluded.
         match ruling(&trial.folder).map_err(Box::new)?.is_some_and(|ruling| ruling.excluded) {
             true => excluded += 1,
-            false => sums.add(trial.condition, &trial.figures, &plan_lengths),
+            false => sums.add(trial.arm, &trial.figures, &plan_lengths),
         }
         Ok(())
     })?;
@@ -123,8 +124,8 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
 pub struct SimulatedTrial {
     /// The recording's folder.
     pub folder: PathBuf,
-    /// Who could send signals.
-    pub condition: Condition,
+    /// The arm by what was done.
+    pub arm: StudyArm,
     /// The summary of the trial.
     pub figures: TrialSummary,
     /// Whether its recording existed already, or another program made it meanwhile.
@@ -240,7 +241,6 @@ fn simulate_trial(
     (own, unused): (&mut Option<CostToGo>, &CostToGo),
 ) -> Result<SimulatedTrial, RunError> {
     let header = header_of_trial(simulation, trial);
-    let condition = header.session.trial.condition;
     let folder = folder_of_trial(&simulation.out, &header.session);
     let opened = SimulatedLog::open(&folder, &header)?;
     let cost = own.take().unwrap_or_else(|| unused.clone());
@@ -257,9 +257,9 @@ fn simulate_trial(
             (engine.into_follower(), false, moved)
         }
     };
-    let figures = TrialSummary::from_follower(&follower);
+    let (arm, figures) = (follower.session.study_arm(), TrialSummary::from_follower(&follower));
     *own = Some(follower.cost);
-    Ok(SimulatedTrial { folder, condition, figures, found, moved })
+    Ok(SimulatedTrial { folder, arm, figures, found, moved })
 }
 
 /// The summary as text.
@@ -279,10 +279,10 @@ pub fn describe(figures: &SimulationSummary) -> String {
     };
     let moved = describe_moved(&figures.moved);
     let offers = figures.offers.describe();
-    let by_condition: String = match &figures.conditions[..] {
+    let by_arm: String = match &figures.arms[..] {
         [] => String::new(),
-        [one] if one.condition == Condition::None => String::new(),
-        several => several.iter().map(describe_condition).collect(),
+        [one] if one.arm == StudyArm::None => String::new(),
+        several => several.iter().map(describe_arm).collect(),
     };
     let look = figures.recordings.first().map_or(String::new(), |first| {
         format!("look at one: tomcom replay {first}, or in Rerun: tomcom review {first}\n")
@@ -291,7 +291,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
         "{moved}{} of simulated participants, {:.0} s simulated in {:.1} s{found}\n\
          presses: {} of the human, {} of the robot\n\
          errors: {} ({:.1} % of the human's presses, {:.1} % of all)\n\
-         {by_condition}\
+         {by_arm}\
          {}\n\
          {offers}\
          orders served: {}{each}\n\
@@ -319,13 +319,8 @@ pub(super) fn describe_moved(moved: &[String]) -> String {
     moved.iter().map(line).collect()
 }
 
-fn describe_condition(one: &ConditionSummary) -> String {
-    let who = match one.condition {
-        Condition::None => "unassisted",
-        Condition::Wizard => "with the wizard",
-        Condition::Assistant => "with the assistant",
-    };
+fn describe_arm(one: &ArmTotals) -> String {
     let per_100 = |number: u64| 100.0 * number as f64 / one.human_actions.max(1) as f64;
     let (errors, signals) = (per_100(one.errors), count(one.signals, "signal", "signals"));
-    format!("  {who}: {errors:.1} %, {signals} ({:.1} per 100 presses)\n", per_100(one.signals))
+    format!("  {}: {errors:.1} %, {signals} ({:.1} per 100 presses)\n", one.arm.title(), per_100(one.signals))
 }

@@ -260,7 +260,7 @@ fn of_cell(
         moved.extend(trial.moved.map(|log| log.display().to_string()));
         let TrialSummary { errors, human_actions, .. } = trial.figures;
         trials.push(TrialErrors { errors, human_actions });
-        sums.add(trial.condition, &trial.figures, &plan_lengths);
+        sums.add(trial.arm, &trial.figures, &plan_lengths);
         Ok(())
     })?;
     Ok((trials, SimulationSummary { moved, ..sums.figures() }))

@@ -5,7 +5,7 @@ use super::colours::{self, Colour};
 use super::entity_content::{EntityData, LogLevel, MarkShape, SceneSeries, slug};
 use crate::communication::offer::{OfferEnd, OfferedAdvice};
 use crate::communication::recommendation::Recommendation;
-use crate::communication::{Sender, signals};
+use crate::communication::{Sender, Signal, signals};
 use crate::history::wording;
 use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::measures::JudgedPress;
@@ -21,8 +21,8 @@ const COST_LINE: &str = "assistant/benefit/cost_line";
 /// Entity with all lines of the text log.
 const HAPPENED: &str = "happened";
 
-fn benefit(target: &str) -> String {
-    format!("assistant/benefit/{}", slug(target))
+fn benefit(signal: &Signal) -> String {
+    format!("assistant/benefit/{}", slug(signal.target().unwrap_or_default()))
 }
 
 /// Styles of the series.
@@ -34,9 +34,9 @@ pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     let mut rows: Vec<EntityUpdate> = signals(kitchen, session.spec.signals.own_hand)
         .iter()
         .map(|(_, signal)| {
-            let place = kitchen.location_named(signal.target());
+            let place = signal.location(kitchen);
             let colour = place.map_or(colours::QUIET, |place| colours::of_aspect(AspectId::of_location(place)));
-            line(benefit(signal.target()), wording::signal(signal), colour)
+            line(benefit(signal), wording::signal(signal), colour)
         })
         .collect();
     let worth = format!("worth its cost ({}) above this line", assistant.price());
@@ -109,7 +109,7 @@ pub fn advice(kitchen: &Kitchen, advice: &Recommendation) -> Vec<EntityUpdate> {
     let mut rows: Vec<EntityUpdate> = advice
         .options
         .iter()
-        .map(|option| EntityUpdate::new(benefit(option.signal.target()), EntityData::Value(option.net)))
+        .map(|option| EntityUpdate::new(benefit(&option.signal), EntityData::Value(option.net)))
         .collect();
     rows.push(EntityUpdate::new(COST_LINE, EntityData::Value(0.0)));
     if let Some(best) = &advice.best {
@@ -117,6 +117,10 @@ pub fn advice(kitchen: &Kitchen, advice: &Recommendation) -> Vec<EntityUpdate> {
         let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
         let why = reason.map_or_else(String::new, |reason| format!("; {}", reason.words()));
         let text = format!("assistant advises: {} (net {net:+.2}){why}", wording::signal(best));
+        rows.push(say("assistant/advice", LogLevel::Info, text, colours::ASSISTANT));
+    }
+    if let Some(proposal) = &advice.proposal {
+        let text = format!("assistant proposes: {}", wording::proposal(&proposal.presses));
         rows.push(say("assistant/advice", LogLevel::Info, text, colours::ASSISTANT));
     }
     rows

@@ -8,7 +8,7 @@ use crate::history::wording;
 use crate::kitchen::{
     self, Agent, AspectId, ContentId, Kitchen, Location, LocationId, LocationKind, OrderContent, State, Storage,
 };
-use crate::session::Session;
+use crate::session::{Session, proposals};
 
 /// Half widths of lines, in millimetres.
 const THIN: f64 = 2.0;
@@ -133,20 +133,22 @@ fn stored(kitchen: &Kitchen, storage: &Storage) -> [SceneDisc; 2] {
     [disc, words_at([middle, top + height * 0.42], &storage.label, colours::QUIET)]
 }
 
-/// The present signal: a highlighted place, or a recipe at its order.
+/// The present signal: a highlighted place, a recipe at its order, or proposed presses in the middle of the display.
 pub fn shown_signal(session: &Session) -> Vec<EntityUpdate> {
     let outline = |areas| EntityUpdate::new("kitchen/shown", EntityData::Areas(areas));
     let label = |words| EntityUpdate::new("kitchen/shown/words", EntityData::Discs(words));
-    let target = session.shown.as_ref().and_then(|shown| {
-        let location = session.kitchen.location_named(shown.signal.target())?;
-        Some((&shown.signal, location))
-    });
-    let Some((signal, location)) = target else { return vec![outline(Vec::new()), label(Vec::new())] };
+    if let Some(left) = proposals::left(session) {
+        let middle = session.kitchen.display_m.map(|length| length * MM / 2.0);
+        let words = format!("next: {}", wording::proposal(left));
+        return vec![outline(Vec::new()), label(vec![words_at(middle, &words, colours::SIGNAL)])];
+    }
+    let shown = session.shown.as_ref().and_then(|shown| Some((&shown.signal, shown.location?)));
+    let Some((signal, location)) = shown else { return vec![outline(Vec::new()), label(Vec::new())] };
     let words = match signal {
-        Signal::Highlight(_) => "look here".to_string(),
         Signal::ShowRecipe(_) => {
             wording::recipe(session, location).map_or_else(String::new, |recipe| format!("recipe: {recipe}"))
         }
+        Signal::Highlight(_) | Signal::Propose(_) => "look here".to_string(),
     };
     let inner = area(&session.kitchen, session.kitchen.location(location).display, colours::SIGNAL);
     let (gap, line) = (4.0 * THIN, THICK);

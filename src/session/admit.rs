@@ -10,6 +10,7 @@ use super::settings::{ArmKind, Condition, ParticipantKind};
 use super::timeline_entry::TimelineEvent;
 use super::{accuracy_check, interventions, probes, tracker};
 use crate::base::time::SessionTime;
+use crate::communication::concept::ConceptName;
 use crate::communication::{self, Sender, Signal};
 use crate::kitchen::{Agent, LocationKind};
 
@@ -91,7 +92,13 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
         return Err("signals are sent while the trial runs");
     }
     may_send(session, by)?;
-    let target = session.kitchen.location_named(signal.target()).map(|id| session.kitchen.location(id).kind);
+    if matches!(signal, Signal::Propose(_)) && session.spec.assistant.concept != ConceptName::Dev {
+        return Err("only DEV proposes presses");
+    }
+    if matches!(signal, Signal::Propose(_)) && by != Sender::Assistant {
+        return Err("proposed presses are sent by the assistant");
+    }
+    let target = signal.location(&session.kitchen).map(|id| session.kitchen.location(id).kind);
     if target == Some(LocationKind::Hand(Agent::Human)) && !session.spec.signals.own_hand {
         return Err("the session does not allow highlighting the human's own hand");
     }

@@ -162,7 +162,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
             effects.push(Effect::At { time: now + GAP, timer: Timer::ReviewOffer });
         }
         Event::SignalShown { by, signal, offer, .. } => {
-            let location = named.location(signal.target())?;
+            let location = signal.target().map(|name| named.location(name)).transpose()?;
             session.cue = Some(stamped.seq);
             session.probes.signalled_at = Some(now);
             if *by == Sender::Wizard {
@@ -320,7 +320,7 @@ fn show(
     session: &mut Session,
     now: SessionTime,
     by: Sender,
-    (signal, location): (&Signal, LocationId),
+    (signal, location): (&Signal, Option<LocationId>),
     effects: &mut Vec<Effect>,
 ) {
     let until = now + SessionTime::from_secs_f64(session.spec.signals.shown_s);
@@ -349,8 +349,10 @@ fn advise(session: &mut Session, mut advice: Recommendation) {
 
 fn end_signal(session: &mut Session, now: SessionTime, reason: SignalEnd, effects: &mut Vec<Effect>) {
     session.shown = None;
-    if reason == SignalEnd::TakenBack {
+    if reason != SignalEnd::Elapsed {
         effects.push(Effect::Cancel(Timer::EndSignal));
+    }
+    if reason == SignalEnd::TakenBack {
         session.note(now, TimelineEvent::SignalEnded(reason));
     }
 }

@@ -337,4 +337,6 @@ pub enum SignalEnd {
     Elapsed,
     /// The sender took it back.
     TakenBack,
+    /// Proposed presses are out of date: they were made, another one was, or the next one would do nothing.
+    Outdated,
 }

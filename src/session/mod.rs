@@ -12,7 +12,7 @@
 //! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `tutorial_state`, `protocol_state`, `probe_state` with `probe_schedule`; `session_state`, all of them
 //!   together.
 //! - What can happen when, and what it changes: `trial_clock`, `unseen_changes`, `robot_changes`, [`accuracy_check`], [`gaze_samples`], [`tutorial`], [`protocol`], [`probes`] with [`probe_sampling`],
-//!   `interventions`; [`admit`] and [`mod@apply`], all of them together. On these stand the rules of [`offers`]. Beside them [`preflight_checks`], and the [`timers`] that [`apply()`] sets.
+//!   `interventions`; [`admit`] and [`mod@apply`], all of them together. On these stand the rules of [`offers`] and [`proposals`]. Beside them [`preflight_checks`], and the [`timers`] that [`apply()`] sets.
 
 pub mod accuracy_check;
 pub mod admit;
@@ -42,6 +42,7 @@ mod probe_schedule;
 mod probe_settings;
 mod probe_state;
 pub mod probes;
+pub mod proposals;
 pub mod protocol;
 mod protocol_event;
 mod protocol_state;

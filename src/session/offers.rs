@@ -101,9 +101,11 @@ fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     Some(OfferedAdvice { what: OfferedAct::Signal(option.signal.clone()), for_seq, worth, reason, visible })
 }
 
-/// Whether a wizard could see an offer that opens now: something draws the console, and the settings show recommendations.
+/// Whether a wizard could see an offer that opens now: something draws the console or a script reads it, and the settings show
+/// recommendations.
 fn is_visible(session: &Session) -> bool {
-    session.has_console && session.spec.console.visibility == Visibility::Recommendation
+    let is_drawn = session.has_console && session.spec.console.visibility == Visibility::Recommendation;
+    is_drawn || session.spec.script_reads_offers()
 }
 
 /// The signal that would be offered: the best one that is worth its cost, and of two orders of one dish the older one, if
@@ -169,10 +171,19 @@ pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), Str
         return Err("recommendations are not shown in this session".to_string());
     }
     let offer = meant(session, now)?;
-    let signal = offer.signal().ok_or("proposed presses are for the participant to make; they cannot be sent")?;
-    let (by, signal) = (Sender::Wizard, signal.clone());
-    let event = Event::SignalShown { by, signal, accepted: None, offer: Some(offer.seq) };
+    let event = take(offer).ok_or("proposed presses are for the participant to make; they cannot be sent")?;
     admit(session, &event)?;
     hygiene(session, now, &event)?;
     Ok((offer, event))
+}
+
+/// The event by which a scripted wizard takes the offer with this sequence number, if `enter` means it at `now`.
+pub fn script_takes(session: &Session, now: SessionTime, offer: u64) -> Option<Event> {
+    meant(session, now).ok().filter(|meant| meant.seq == offer).and_then(take)
+}
+
+/// The event that sends the signal of an offer; `None` for proposed presses.
+fn take(offer: &Offer) -> Option<Event> {
+    let signal = offer.signal()?.clone();
+    Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: Some(offer.seq) })
 }

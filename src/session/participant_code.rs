@@ -176,6 +176,7 @@ pub const TABLE_WORDS: &[&str] = &[
     "sequences",
     "sequences_any_aspect",
     "sequences_by_aspect",
+    "signal_contents",
     "signals",
     "since_s",
     "step",

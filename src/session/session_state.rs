@@ -107,8 +107,8 @@ pub struct Served {
 pub struct ShownSignal {
     /// The signal.
     pub signal: Signal,
-    /// The location that the signal is about.
-    pub location: LocationId,
+    /// The location that the signal is about; `None` for proposed presses.
+    pub location: Option<LocationId>,
     /// Who sent it.
     pub by: Sender,
     /// When it appeared, in session time.
@@ -201,10 +201,16 @@ impl Session {
         of_trial(self.spec.seed, self.trial)
     }
 
-    /// Whether a person who is the wizard saw the assistant's recommendations.
+    /// Whether the wizard, a person or a script, saw the assistant's recommendations.
     pub fn wizard_saw_advice(&self) -> bool {
-        let is_person = self.spec.trial.condition == Condition::Wizard && self.spec.wizard.kind == WizardKind::Person;
-        is_person && (self.unblinded || self.spec.console.visibility == Visibility::Recommendation)
+        let spec = &self.spec;
+        match spec.wizard.kind {
+            WizardKind::Scripted => spec.script_reads_offers(),
+            WizardKind::Person => {
+                let is_shown = self.unblinded || spec.console.visibility == Visibility::Recommendation;
+                spec.trial.condition == Condition::Wizard && is_shown
+            }
+        }
     }
 
     /// The arm of the trial, by what is done in it.

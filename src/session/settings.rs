@@ -164,6 +164,12 @@ impl SessionSpec {
         self.trial.condition == Condition::Wizard && self.wizard.kind == WizardKind::Scripted
     }
 
+    /// Whether a scripted wizard reads the assistant's offers: they are made, and the session shows recommendations.
+    pub fn script_reads_offers(&self) -> bool {
+        let is_shown = self.asks_assistant() && self.console.visibility == Visibility::Recommendation;
+        self.scripts_wizard() && self.wizard.offers.is_some() && is_shown
+    }
+
     /// The condition without a person at the console: the wizard condition needs a scripted wizard, else it is unassisted.
     pub fn unattended(&self, condition: Condition) -> Condition {
         match condition {

@@ -73,7 +73,7 @@ impl StudyArm {
         }
     }
 
-    /// The arm of a trial in which so and so sends signals; `saw_advice`: a person who was the wizard saw the assistant's recommendations.
+    /// The arm of a trial in which so and so sends signals; `saw_advice`: the wizard saw the assistant's recommendations.
     pub fn from_settings(condition: Condition, concept: ConceptName, saw_advice: bool) -> StudyArm {
         match (condition, concept) {
             (Condition::None, _) | (Condition::Assistant, ConceptName::None) => StudyArm::None,

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::arm_design::{ArmDesign, ArmTrial, pairs};
 use super::effect::LEVEL;
+use super::group_orders::{GroupOrder, group_orders};
 use super::linear_mixed_model::{Contrast, LinearMixedModel};
 use super::negative_binomial_model::WaldContrast;
 use super::trial_statistics::Trial;
@@ -36,6 +37,8 @@ pub struct ArmComparison {
     pub negative_binomial: Option<CountComparison>,
     /// Whether arms of the assistant are not worse than the wizard.
     pub non_inferiority: Vec<NonInferiority>,
+    /// The starting groups with their orders of conditions.
+    pub groups: Vec<GroupOrder>,
 }
 
 /// The trials of an arm.
@@ -200,10 +203,11 @@ pub fn primary_contrasts(trials: Vec<ArmTrial>) -> Vec<ArmContrast> {
 /// arms, or where the model cannot be estimated. Outcome and margin are those of the plan.
 pub fn compare_arms(trials: &[&Trial]) -> Option<ArmComparison> {
     let aims = trials.iter().find_map(|trial| trial.aims).unwrap_or_default();
-    compare_counts(counted(trials, aims.outcome), aims)
+    let compared = compare_counts(counted(trials, aims.outcome), aims)?;
+    Some(ArmComparison { groups: group_orders(trials), ..compared })
 }
 
-/// The same of counts of the primary outcome of these aims.
+/// The same of counts of the primary outcome of these aims; without starting groups.
 pub fn compare_counts(trials: Vec<ArmTrial>, aims: StudyAims) -> Option<ArmComparison> {
     let design = ArmDesign::new(trials);
     if !design.is_within() {
@@ -245,5 +249,6 @@ pub fn compare_counts(trials: Vec<ArmTrial>, aims: StudyAims) -> Option<ArmCompa
         contrasts: found,
         with_carry_over,
         negative_binomial: count_comparison(&design),
+        groups: Vec::new(),
     })
 }

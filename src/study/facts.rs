@@ -50,6 +50,13 @@ impl Facts {
                 WizardKind::Person => is("wizard saw", spec.console.visibility.title().to_string()),
                 WizardKind::Scripted => is("scripted wizard", script(&spec.wizard)),
             }
+            if let Some(offers) = spec.wizard.offers.as_ref().filter(|_| spec.script_reads_offers()) {
+                let taken = 100.0 * offers.takes;
+                is(
+                    "script's offers",
+                    format!("it takes {taken:.0} % of them, after {} s in the median", offers.reads_s),
+                );
+            }
             if session.unblinded {
                 is("unblinded", String::new());
             }

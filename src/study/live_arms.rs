@@ -34,6 +34,8 @@ pub struct LiveArm {
     pub orders_per_minute: Option<f64>,
     /// Signals per 100 presses of the human.
     pub interruptions_per_100: Option<f64>,
+    /// Contents of signals per 100 presses of the human: a proposal of k presses is one interruption with k contents.
+    pub contents_per_100: Option<f64>,
     /// Useless signals per 100 presses of the human, judged by twins without the signal; null where a trial was not judged.
     pub useless_per_100: Option<f64>,
     /// The share of useless ones among the signals; null without signals, or where a trial was not judged.
@@ -58,7 +60,7 @@ pub fn live_arms(trials: &[&Trial], roc: &[Roc]) -> Vec<LiveArm> {
     let simulated = |trial: &&Trial| trial.kind == ParticipantKind::Simulated && trial.beliefs.is_some();
     let mut groups: Vec<(ActingArm, Vec<&Trial>)> = Vec::new();
     for trial in trials.iter().copied().filter(simulated) {
-        let Some(arm) = trial.acting else { continue };
+        let arm = trial.acting;
         match groups.iter_mut().find(|(other, _)| *other == arm) {
             Some((_, group)) => group.push(trial),
             None => groups.push((arm, vec![trial])),
@@ -109,6 +111,7 @@ impl LiveArm {
             orders,
             orders_per_minute: (seconds > 0.0).then(|| 60.0 * orders as f64 / seconds),
             interruptions_per_100: per_100(signals),
+            contents_per_100: per_100(sum(|trial| trial.signal_contents)),
             useless_per_100: useless.and_then(per_100),
             useless_share: useless.zip(share_of).map(|(useless, signals)| useless as f64 / signals as f64),
             prevented: None,

@@ -36,6 +36,7 @@ pub mod effect;
 pub mod facts;
 pub mod figures;
 pub mod frozen_plan;
+pub mod group_orders;
 pub mod known_beliefs;
 pub mod linear_mixed_model;
 pub mod live_arms;

@@ -49,8 +49,8 @@ pub struct Trial {
     pub aims: Option<StudyAims>,
     /// What the wizard was allowed to see.
     pub wizard_sees: Visibility,
-    /// Who sent the signals by itself; `None` for DEV.
-    pub acting: Option<ActingArm>,
+    /// Who sent the signals by itself.
+    pub acting: ActingArm,
     /// Reason for excluding the trial; `None` if it counts.
     pub left_out: Option<String>,
     /// Reason of the trial's end; `None` if the recording is incomplete.
@@ -81,6 +81,8 @@ pub struct Trial {
     pub press_s: Option<f64>,
     /// Number of signals shown.
     pub signals: u64,
+    /// Number of their contents: a proposal of k presses has k.
+    pub signal_contents: u64,
     /// Number of these that were useful, judged by twins of simulated trials; `None` where there are none.
     pub useful_signals: Option<u64>,
     /// How the participant's display showed the robot; `None` without a display, and in recordings from before it could.

@@ -8,12 +8,16 @@
 //! sometimes signals about another aspect, and drops a planned signal once the false belief would mislead nobody. Its signals are
 //! therefore sometimes late, missing or wrong, as a person's are.
 //!
+//! Where the session shows recommendations, it also reads the assistant's offers: it takes an offer after a while, or leaves it and goes
+//! by its own judgement alone.
+//!
 //! Modules from the ground up: [`settings`], `thought` (suspected false beliefs), `seen` (what the participant has seen, and
-//! explanations of a press), `scripted` (the wizard itself).
+//! explanations of a press), `offer_reader`, `scripted` (the wizard itself).
 
+mod offer_reader;
 mod scripted;
 mod seen;
 pub mod settings;
 mod thought;
 
-pub use scripted::ScriptedWizard;
+pub use scripted::{ScriptedWizard, WizardAction};

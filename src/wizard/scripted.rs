@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
+use super::offer_reader::OfferReader;
 use super::seen::{ObservedPress, SeenKitchen, explain, misleads};
 use super::settings::WizardSpec;
 use super::thought::Thought;
@@ -17,6 +18,15 @@ use crate::kitchen::{Kitchen, LocationId, OrderContent, Press, State};
 
 /// Number of the participant's last presses that the wizard remembers.
 const REMEMBERED_PRESSES: usize = 6;
+
+/// Action of the scripted wizard.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WizardAction {
+    /// Sends a signal by its own judgement.
+    Send(Signal),
+    /// Takes the offer with this sequence number.
+    TakeOffer(u64),
+}
 
 /// State of the scripted wizard in one trial.
 #[derive(Clone, Debug)]
@@ -33,22 +43,33 @@ pub struct ScriptedWizard {
     /// Locations changed by others, with the times at which the wizard checks whether the participant has seen the change.
     watched: Vec<(SessionTime, LocationId)>,
     signalled_at: Option<SessionTime>,
+    /// Its eye for offers, if it reads them.
+    reader: Option<OfferReader>,
 }
 
 impl ScriptedWizard {
-    /// Creates the wizard of a trial; its random stream is seeded by (seed, trial).
+    /// Creates the wizard of a trial, who reads no offers; its random stream is seeded by (seed, trial).
     pub fn new(kitchen: Arc<Kitchen>, spec: WizardSpec, own_hand: bool, seed: u64, trial: u64) -> ScriptedWizard {
         let seen = SeenKitchen::new(kitchen.empty_state());
         let random = stream(seed, "wizard", trial);
         let (about_to, watched, signalled_at) = (None, Vec::new(), None);
         let presses = VecDeque::with_capacity(REMEMBERED_PRESSES);
-        ScriptedWizard { kitchen, spec, own_hand, random, seen, presses, about_to, watched, signalled_at }
+        let reader = None;
+        ScriptedWizard { kitchen, spec, own_hand, random, seen, presses, about_to, watched, signalled_at, reader }
+    }
+
+    /// The same wizard, who reads offers as its settings say, with a random stream of its own.
+    pub fn reading_offers(self, seed: u64, trial: u64) -> ScriptedWizard {
+        let spread = self.spec.reaction_spread;
+        let reader = self.spec.offers.map(|offers| OfferReader::new(offers, spread, seed, trial));
+        ScriptedWizard { reader, ..self }
     }
 
     /// Time of the next signal or check; `None` if nothing is planned.
     pub fn next_due(&self) -> Option<SessionTime> {
         let watched = self.watched.iter().map(|(time, _)| *time);
-        watched.chain(self.about_to.map(|(time, _)| time)).min()
+        let offer = self.reader.as_ref().and_then(OfferReader::due);
+        watched.chain(self.about_to.map(|(time, _)| time)).chain(offer).min()
     }
 
     /// Starts the trial; the participant and the wizard see the empty kitchen.
@@ -97,6 +118,15 @@ impl ScriptedWizard {
     pub fn on_signal(&mut self, now: SessionTime, location: LocationId, state: State) {
         self.seen.told(location, state);
         self.signalled_at = Some(now);
+        // What an offer has said need not be said again.
+        self.about_to.take_if(|(_, thought)| thought.location() == location);
+    }
+
+    /// Reacts to an offer that opens on its screen.
+    pub fn on_offer(&mut self, now: SessionTime, offer: u64) {
+        if let Some(reader) = &mut self.reader {
+            reader.on_offer(now, offer);
+        }
     }
 
     /// Postpones planned signals and checks by the duration `by` of a pause.
@@ -105,12 +135,18 @@ impl ScriptedWizard {
         self.about_to = self.about_to.map(|(time, thought)| (time + by, thought));
         self.watched.iter_mut().for_each(|(time, _)| *time = *time + by);
         self.signalled_at = self.signalled_at.map(|time| time + by);
+        if let Some(reader) = &mut self.reader {
+            reader.postpone(by);
+        }
     }
 
-    /// Performs what is due now: sends a signal, or checks whether a change was seen.
-    pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<Signal> {
+    /// Performs what is due now: sends a signal, takes an offer, or checks whether a change was seen.
+    pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<WizardAction> {
         if let Some((_, thought)) = self.about_to.take_if(|(time, _)| *time <= now) {
-            return self.say(now, thought, state, cost);
+            return self.say(now, thought, state, cost).map(WizardAction::Send);
+        }
+        if self.reader.as_ref().and_then(OfferReader::due).is_some_and(|due| due <= now) {
+            return self.take_offer(now).map(WizardAction::TakeOffer);
         }
         let index = self.watched.iter().position(|(time, _)| *time <= now)?;
         let (_, location) = self.watched.swap_remove(index);
@@ -123,6 +159,24 @@ impl ScriptedWizard {
             self.think_of(now, Thought::Place(location), state);
         }
         None
+    }
+
+    /// The offer that is due to be taken; it waits until the wizard has rested from its last signal.
+    fn take_offer(&mut self, now: SessionTime) -> Option<u64> {
+        let rested = self.rested().filter(|&rested| rested > now);
+        let reader = self.reader.as_mut()?;
+        match rested {
+            Some(rested) => {
+                reader.wait_until(rested);
+                None
+            }
+            None => reader.take(now),
+        }
+    }
+
+    /// When the next signal may follow the last one; `None` before the first.
+    fn rested(&self) -> Option<SessionTime> {
+        self.signalled_at.map(|last| last + SessionTime::from_secs_f64(self.spec.rest_s))
     }
 
     /// Plans a signal about a suspected false belief, or, with a set probability, about another aspect.
@@ -172,8 +226,7 @@ impl ScriptedWizard {
         if !holds || !matters(cost) {
             return None;
         }
-        let rested = self.signalled_at.map(|last| last + SessionTime::from_secs_f64(self.spec.rest_s));
-        if let Some(rested) = rested.filter(|&rested| rested > now) {
+        if let Some(rested) = self.rested().filter(|&rested| rested > now) {
             self.about_to = Some((rested, thought));
             return None;
         }

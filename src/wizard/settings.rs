@@ -24,6 +24,25 @@ pub struct WizardSpec {
     pub guesses_wrong: f64,
     /// Shortest time between two signals, in seconds.
     pub rest_s: f64,
+    /// How it treats offers of the assistant where the session shows recommendations; `None`: it does not look at them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub offers: Option<OfferReading>,
+}
+
+/// How the script treats offers. Nobody has measured how often people take them: the values are assumptions.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct OfferReading {
+    /// Probability of taking an offer; else the script goes by its own judgement alone.
+    pub takes: f64,
+    /// Median time from the opening of an offer to the key that takes it, in seconds. Its spread is that of the reaction.
+    pub reads_s: f64,
+}
+
+impl Default for OfferReading {
+    fn default() -> Self {
+        OfferReading { takes: 0.8, reads_s: 2.0 }
+    }
 }
 
 /// Who acts as the wizard.
@@ -48,6 +67,7 @@ impl Default for WizardSpec {
             look_s: 0.15,
             guesses_wrong: 0.15,
             rest_s: 5.0,
+            offers: None,
         }
     }
 }

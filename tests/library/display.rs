@@ -103,7 +103,7 @@ fn has_recipe(kitchen: &Kitchen, list: &[String]) -> bool {
 }
 
 /// Fields of what the page is told.
-const FIELDS: [&str; 28] = [
+const FIELDS: [&str; 29] = [
     "probe",
     "tutorial",
     "why",
@@ -128,6 +128,7 @@ const FIELDS: [&str; 28] = [
     "storage",
     "recipe",
     "highlight",
+    "next",
     "order",
     "items",
     "target",

@@ -168,6 +168,7 @@ fn words(signal: &Signal) -> String {
     match signal {
         Signal::ShowRecipe(order) => format!("show recipe of {order}"),
         Signal::Highlight(location) => format!("highlight {location}"),
+        Signal::Propose(presses) => format!("propose {}", presses.join(", ")),
     }
 }
 
@@ -273,7 +274,7 @@ fn what_will_be_seen_anyway_is_not_worth_saying() {
             Situation { state, belief: &belief, changed, robot: scenario.outlook(&kitchen), robot_press_s: 2.4 };
         let mut cost = CostToGo::new(kitchen.clone());
         let answer = planner.advise(&mut cost, &moment(situation, &signals));
-        let option = answer.options.iter().find(|option| option.signal.target() == "cooking_pot");
+        let option = answer.options.iter().find(|option| option.signal.target() == Some("cooking_pot"));
         option.expect("the pot may be highlighted").benefit
     };
     let unseen = benefit(0.0, 0.0, &[pot]);

@@ -121,6 +121,7 @@ def main(tomcom, folder):
         topics = check(recording, messages, schemas)
         assert {topic: count for topic, count in one["messages"].items() if count} == dict(topics)
         assert about.name == "tomcom" and about.metadata["recording"] == recording.name
+        assert (about.metadata["condition"], about.metadata["arm"]) == ("assistant", "tom-com"), about.metadata
         lines = run(tomcom, "replay", recording).splitlines()
         words = [content["message"] for topic, _, content in messages if topic == "/log"]
         missing = [line for line in words if not any(line in printed for printed in lines)]

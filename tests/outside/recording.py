@@ -44,7 +44,8 @@ def check_header(header, session):
     # Nobody signals in simulated trials, but the assistant in its arms of a plan, and a wizard that is simulated, too.
     is_scripted = asked_for.get("wizard", {}).get("kind") == "scripted"
     condition = header["session"]["trial"]["condition"]
-    arms = {"none": "none", "wizard": "wizard", "wizard+advice": "wizard", "tom-com": "assistant", "tom": "assistant"}
+    arms = {"none": "none", "wizard": "wizard", "wizard+advice": "wizard", "tom-com": "assistant", "tom": "assistant",
+            "dev": "assistant"}
     planned = {arms[name] for name in asked_for.get("plan", {}).get("conditions", [])} | {"none"}
     assert condition in planned - (set() if is_scripted else {"wizard"}), condition
     assert header["session"]["trial"] == asked_for["trial"] | {"condition": condition}

@@ -93,10 +93,14 @@ impl EventCells {
     }
 
     fn take_signal(&mut self, signal: &Signal) {
-        self.location = signal.target().to_string();
+        self.location = signal.target().unwrap_or_default().to_string();
+        if let Signal::Propose(presses) = signal {
+            self.button = presses.join(", ");
+        }
         self.signal = match signal {
             Signal::ShowRecipe(_) => "show_recipe",
             Signal::Highlight(_) => "highlight",
+            Signal::Propose(_) => "propose",
         }
         .to_string();
     }

@@ -15,6 +15,7 @@ const YES: &[(&str, &str)] = &[("0", "No"), ("1", "Yes")];
 const SIGNALS: &[(&str, &str)] = &[
     ("show_recipe", "The recipe of the dish that the order at the place wants"),
     ("highlight", "Directs attention to the place and what lies there"),
+    ("propose", "Proposes the next presses of the participant"),
 ];
 
 /// The columns of events, in their order.

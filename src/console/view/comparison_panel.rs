@@ -98,7 +98,7 @@ impl View<'_> {
     /// The key of a signal; a proposal has none.
     fn sign(&self, brush: &Painter, spoken: &Communication) -> String {
         let CommunicationContent::Signal(signal) = &spoken.what else { return brush.theme.signs().by_hand.to_string() };
-        let location = self.session.kitchen.location_named(signal.target());
+        let location = signal.location(&self.session.kitchen);
         location.and_then(|id| self.model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
     }
 

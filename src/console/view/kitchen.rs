@@ -158,7 +158,7 @@ impl<'a> Place<'a> {
         let at = session.changed_at[id.index()];
         let age_s = session.age(at, model.now).as_secs_f64();
         let fresh = (at > SessionTime::ZERO && age_s < FRESH_S).then(|| (age_s, session.changed_by(at)));
-        let is_shown = session.shown.as_ref().is_some_and(|shown| shown.signal.target() == kitchen.location(id).name);
+        let is_shown = session.shown.as_ref().is_some_and(|shown| shown.location == Some(id));
         let (is_offered, thinks) = (false, None);
         Place { session, model, id, kitchen, content, is_empty, fresh, is_shown, is_offered, thinks }
     }

@@ -55,7 +55,7 @@ impl ShownOffer<'_> {
     /// The place that the offered signal is about.
     pub(super) fn place(&self, session: &Session) -> Option<LocationId> {
         match &self.act {
-            OfferedAct::Signal(signal) => session.kitchen.location_named(signal.target()),
+            OfferedAct::Signal(signal) => signal.location(&session.kitchen),
             OfferedAct::Presses(_) => None,
         }
     }

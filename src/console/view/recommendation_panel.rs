@@ -103,7 +103,7 @@ fn worth(option: &SignalOption, session: &Session) -> String {
 
 /// The key of an option's signal, if it has one.
 fn key(option: &SignalOption, session: &Session, model: &ConsoleModel) -> Option<KeyChord> {
-    let location = session.kitchen.location_named(option.signal.target());
+    let location = option.signal.location(&session.kitchen);
     location.and_then(|location| model.keys.mark(location)).filter(|_| may_send(session, Sender::Wizard).is_ok())
 }
 

@@ -7,7 +7,7 @@ use crate::communication::Signal;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::history::wording;
-use crate::session::{Phase, Session, ShownSignal};
+use crate::session::{Phase, Session, ShownSignal, proposals};
 
 /// Draws the panel that says which signal the participant sees now.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
@@ -72,13 +72,18 @@ fn left(session: &Session, shown: &ShownSignal, model: &ConsoleModel) -> (f64, f
 /// Content of the signal in words.
 fn says(session: &Session, signal: &Signal) -> String {
     let kitchen = &session.kitchen;
-    let Some(location) = kitchen.location_named(signal.target()) else { return String::new() };
+    let Some(location) = signal.location(kitchen) else {
+        // Proposed presses: those that are still to be made.
+        return proposals::left(session).map_or(String::new(), |left| format!("next: {}", wording::proposal(left)));
+    };
     let content = kitchen.content_label(session.state, location);
     match signal {
         Signal::ShowRecipe(_) => match wording::recipe(session, location) {
             Some(recipe) => format!("{content} = {recipe}"),
             None => format!("{}: {content}", kitchen.location(location).label()),
         },
-        Signal::Highlight(_) => format!("look here: {} holds {content}", kitchen.location(location).label()),
+        Signal::Highlight(_) | Signal::Propose(_) => {
+            format!("look here: {} holds {content}", kitchen.location(location).label())
+        }
     }
 }

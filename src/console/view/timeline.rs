@@ -231,7 +231,7 @@ fn mark(
         TimelineEvent::Corrected { .. } => (4, signs.by_hand.to_string(), TextRole::Signal),
         TimelineEvent::Signal { signal, .. } => (3, signal_sign(session, model, signal), TextRole::Signal),
         TimelineEvent::SignalEnded(SignalEnd::TakenBack) => (3, signs.taken_back.to_string(), TextRole::Signal),
-        TimelineEvent::SignalEnded(SignalEnd::Elapsed) => return None,
+        TimelineEvent::SignalEnded(SignalEnd::Elapsed | SignalEnd::Outdated) => return None,
         TimelineEvent::Served { .. } => (4, signs.served.to_string(), TextRole::Strong),
         TimelineEvent::OrderShown { .. } => (4, "+".to_string(), TextRole::Quiet),
         TimelineEvent::Probe(ProbeEvent::Begun { .. }) => (5, "?".to_string(), TextRole::Strong),
@@ -254,6 +254,6 @@ fn mark(
 
 /// The key of the signal, as shown in the kitchen.
 fn signal_sign(session: &Session, model: &ConsoleModel, signal: &Signal) -> String {
-    let location = session.kitchen.location_named(signal.target());
+    let location = signal.location(&session.kitchen);
     location.and_then(|id| model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
 }

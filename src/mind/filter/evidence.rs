@@ -25,6 +25,37 @@ const SPREAD: f64 = 0.4;
 /// Marks an aspect that is not drawn because the decision does not depend on it.
 pub const UNDRAWN: u8 = u8::MAX;
 
+/// A press as evidence: p(a | belief) = `proposed` + `chosen` p(choice = a | belief). A proposed press may be made because it is proposed,
+/// which any belief makes equally likely.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressMixture {
+    /// The pressed button.
+    pub button: ButtonId,
+    /// Probability that it is pressed because it is proposed.
+    pub proposed: f64,
+    /// Probability that the human presses what it chooses itself.
+    pub chosen: f64,
+}
+
+impl PressMixture {
+    /// A press while `proposed` is proposed, by a human who makes proposed presses with the probability `follows`.
+    pub fn new(button: ButtonId, proposed: Option<ButtonId>, follows: f64) -> PressMixture {
+        match proposed {
+            None => PressMixture { button, proposed: 0.0, chosen: 1.0 },
+            Some(other) => {
+                let proposed = if other == button { follows } else { 0.0 };
+                PressMixture { button, proposed, chosen: 1.0 - follows }
+            }
+        }
+    }
+
+    /// p(a | belief), from the probability that a human with the belief chooses the button.
+    #[inline]
+    pub fn likelihood(&self, choice: f64) -> f64 {
+        self.proposed + self.chosen * choice
+    }
+}
+
 /// Likelihood of a press and quality of the samples behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
@@ -134,7 +165,7 @@ impl Sampler {
         model: &EvidenceModel,
         cost: &mut CostToGo,
         belief: &mut DirichletBelief,
-        button: ButtonId,
+        press: PressMixture,
         looks: Option<&UnseenLooks>,
         random: &mut Stream,
     ) -> Evidence {
@@ -148,9 +179,9 @@ impl Sampler {
                 self.look(model, looks, old, random);
                 self.worlds.rate(cost, wanted * states);
             }
-            self.weigh_samples(model, button, old);
+            self.weigh_samples(model, press, old);
             while self.rate_again(cost, states) {
-                self.weigh_samples(model, button, 0);
+                self.weigh_samples(model, press, 0);
             }
             let evidence = self.evidence();
             let can_double = wanted * 2 <= model.inference.max_beliefs;
@@ -279,12 +310,12 @@ impl Sampler {
     }
 
     /// Multiplies the weights of the belief samples from index `from` on by p(a | belief).
-    fn weigh_samples(&mut self, model: &EvidenceModel, button: ButtonId, from: usize) {
+    fn weigh_samples(&mut self, model: &EvidenceModel, press: PressMixture, from: usize) {
         self.posteriors.truncate(from);
         for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
-            let likelihood = model.choice.press_likelihood(self.sum_costs(sample, &mut sums, model), button);
-            self.posteriors.push(prior * likelihood);
+            let choice = model.choice.press_likelihood(self.sum_costs(sample, &mut sums, model), press.button);
+            self.posteriors.push(prior * press.likelihood(choice));
         }
     }
 

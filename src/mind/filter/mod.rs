@@ -24,7 +24,7 @@ use super::choice::ChoiceModel;
 use super::dirichlet::{Dirichlet, DirichletBelief};
 use super::gaze_presence::GazePresence;
 use super::model::{HumanModel, LookingModel};
-use super::observation::{Observation, Observed};
+use super::observation::{Observation, Observed, ProposedPresses};
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
@@ -34,7 +34,7 @@ use crate::kitchen::{
     Agent, AspectId, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent,
 };
 pub use evidence::Evidence;
-use evidence::{EvidenceModel, Sampler};
+use evidence::{EvidenceModel, PressMixture, Sampler};
 use exchange::Exchange;
 use look_news::UnseenLooks;
 use perception::GazeReader;
@@ -78,6 +78,8 @@ pub struct BeliefFilter {
     forgot: Option<SessionTime>,
     /// When the task came to a stand for a probe, while it stands still.
     frozen: Option<SessionTime>,
+    /// The presses that the display proposes until the human presses something else.
+    proposed: ProposedPresses,
     evidence: Option<Evidence>,
 }
 
@@ -103,6 +105,7 @@ impl BeliefFilter {
             sampler: Sampler::new(&kitchen),
             forgot: None,
             frozen: None,
+            proposed: ProposedPresses::default(),
             evidence: None,
             kitchen,
             model,
@@ -130,6 +133,7 @@ impl BeliefFilter {
         match observation.what {
             Observed::Frozen => return self.frozen = Some(now),
             Observed::Thawed { by, asked, teaches } => return self.thaw(by, asked, teaches),
+            Observed::Proposed(presses) => return self.proposed = presses,
             _ => {}
         }
         if let Observed::Gaze { sample, taken } = observation.what {
@@ -155,12 +159,13 @@ impl BeliefFilter {
             Observed::Started { state } => {
                 self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
                 self.belief.clone_from(&self.prior);
+                self.proposed = ProposedPresses::default();
                 self.forgot = Some(now);
                 self.presence.rest(now);
                 self.show(now, state);
             }
             Observed::Gaze { .. } | Observed::DisplayInView(_) => {}
-            Observed::Frozen | Observed::Thawed { .. } => {}
+            Observed::Frozen | Observed::Thawed { .. } | Observed::Proposed(_) => {}
             Observed::Pressed(press) => {
                 self.presses += 1;
                 let mut random = stream(self.seed, "belief", self.presses);
@@ -296,7 +301,7 @@ impl BeliefFilter {
     }
 
     /// Updates the belief by the likelihood of a press, with the looks of the unknown time before it.
-    fn weigh_press(&mut self, button: ButtonId, cost: &mut CostToGo, random: &mut Stream) -> Evidence {
+    fn weigh_press(&mut self, press: PressMixture, cost: &mut CostToGo, random: &mut Stream) -> Evidence {
         let stretch = self.stretch.take();
         let looks = stretch.as_ref().map(|stretch| {
             let reading = |index| self.reader.reading(&self.kitchen, LocationId(index as u8), self.shown);
@@ -307,7 +312,7 @@ impl BeliefFilter {
         }
         let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
         let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
-        self.sampler.weigh(&model, cost, &mut self.belief, button, looks.as_ref(), random)
+        self.sampler.weigh(&model, cost, &mut self.belief, press, looks.as_ref(), random)
     }
 
     fn show(&mut self, now: SessionTime, state: State) {
@@ -328,7 +333,9 @@ impl BeliefFilter {
     }
 
     fn human_pressed(&mut self, button: ButtonId, effective: bool, cost: &mut CostToGo, random: &mut Stream) {
-        self.evidence = Some(self.weigh_press(button, cost, random));
+        let press = PressMixture::new(button, self.proposed.next(), self.model.signal.follows);
+        self.proposed.pressed(button);
+        self.evidence = Some(self.weigh_press(press, cost, random));
         let draws = self.model.inference.beliefs;
         match &self.lessons[button.index()] {
             Lesson::Alone => {

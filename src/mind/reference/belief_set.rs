@@ -16,7 +16,7 @@ use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKin
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::gaze_presence::GazePresence;
 use crate::mind::model::HumanModel;
-use crate::mind::observation::{Observation, Observed};
+use crate::mind::observation::{Observation, Observed, ProposedPresses};
 
 /// Explicit beliefs with their shared model and state.
 #[derive(Clone, Debug)]
@@ -36,6 +36,8 @@ pub struct Particles {
     shown: State,
     /// Time up to which forgetting has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
+    /// The presses that the display proposes until the human presses something else.
+    proposed: ProposedPresses,
 }
 
 impl Particles {
@@ -44,7 +46,8 @@ impl Particles {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
         let (doubt, sight, presence) = (prior.clone(), GazeFollower::default(), GazePresence::new(&model));
-        Particles { kitchen, model, prior, doubt, of: Vec::new(), sight, presence, unseen: None, shown, forgot: None }
+        let (of, unseen, forgot, proposed) = (Vec::new(), None, None, ProposedPresses::default());
+        Particles { kitchen, model, prior, doubt, of, sight, presence, unseen, shown, forgot, proposed }
     }
 
     /// Starts the trial in `state` with `count` beliefs drawn from the prior.
@@ -55,6 +58,7 @@ impl Particles {
         self.forgot = Some(now);
         self.presence.rest(now);
         self.unseen = None;
+        self.proposed = ProposedPresses::default();
         self.show(now, state);
     }
 
@@ -114,6 +118,10 @@ impl Particles {
             }
             return vec![1.0; self.of.len()];
         }
+        if let Observed::Proposed(presses) = observation.what {
+            self.proposed = presses;
+            return vec![1.0; self.of.len()];
+        }
         self.advance(now, cost, random);
         if let Observed::DisplayInView(is_in_view) = observation.what {
             self.presence.display_in_view = is_in_view;
@@ -123,7 +131,7 @@ impl Particles {
         self.unseen = None;
         match observation.what {
             Observed::Started { state } => self.start(now, state, self.of.len(), random),
-            Observed::Gaze { .. } | Observed::DisplayInView(_) => {}
+            Observed::Gaze { .. } | Observed::DisplayInView(_) | Observed::Proposed(_) => {}
             Observed::Pressed(press) => {
                 let weights = match press.agent {
                     Agent::Human => Some(self.human_pressed(press.button, press.effective, cost, random)),
@@ -197,10 +205,17 @@ impl Particles {
     ) -> Vec<f64> {
         let doubt: Vec<Vec<f64>> = self.doubt.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect();
         let (decision, states) = (&self.model.decision, self.model.inference.states);
+        let follows = self.model.signal.follows;
+        // A proposed press is made because of the proposal, or chosen as any other one.
+        let [proposed, chosen] = match self.proposed.next() {
+            None => [0.0, 1.0],
+            Some(other) => [if other == button { follows } else { 0.0 }, 1.0 - follows],
+        };
+        self.proposed.pressed(button);
         let mut weights = Vec::with_capacity(self.of.len());
         for person in &mut self.of {
             let chances = person.press_chances(&self.kitchen, cost, decision, states, random);
-            weights.push(chances[button.index()]);
+            weights.push(proposed + chosen * chances[button.index()]);
             person.pressed(&self.kitchen, &doubt, button, effective);
         }
         weights

@@ -19,6 +19,7 @@ use crate::session::settings::ArmKind;
 #[cfg(feature = "physics")]
 use crate::session::settings::ParticipantKind;
 use crate::session::tracker::GazeGapSpec;
+use crate::wizard::ScriptedWizard;
 
 /// The simulated participant of a trial. In a plan the same person has several trials and learns from the earlier ones.
 pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> SimulatedParticipant {
@@ -28,6 +29,15 @@ pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, t
     let presses = f64::from(trials) * f64::from(spec.trial.presses) / 2.0;
     let population = spec.participant.population.clone().unwrap_or_default();
     SimulatedParticipant::new(kitchen, &population, spec.seed, person, trial, Experience { trials, presses })
+}
+
+/// The scripted wizard of a trial, if it has one; it reads offers where the session shows them.
+pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> Option<ScriptedWizard> {
+    let (own_hand, seed) = (spec.signals.own_hand, spec.seed);
+    let script = spec
+        .scripts_wizard()
+        .then(|| ScriptedWizard::new(kitchen.clone(), spec.wizard.clone(), own_hand, seed, trial))?;
+    Some(if spec.script_reads_offers() { script.reading_offers(seed, trial) } else { script })
 }
 
 /// The drop-outs of the simulated tracker in a trial.

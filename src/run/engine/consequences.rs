@@ -1,11 +1,14 @@
-//! Events that follow at once from others: the criterion of a familiarisation, the measured gaze accuracy, the assistant's signal.
+//! Events that follow at once from others: the criterion of a familiarisation, the measured gaze accuracy, the assistant's signal, the end of
+//! proposed presses.
 
 use super::Engine;
 use crate::base::time::SessionTime;
-use crate::communication::Sender;
 use crate::communication::recommendation::Recommendation;
+use crate::communication::{Sender, Signal};
 use crate::kitchen::Agent;
 use crate::session::admit::admit;
+use crate::session::event::SignalEnd;
+use crate::session::proposals;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{Event, Phase};
 
@@ -24,6 +27,13 @@ impl Engine {
         self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
     }
 
+    /// Takes proposed presses off the display once they are out of date.
+    pub(super) fn end_outdated_proposal(&mut self, now: SessionTime) {
+        if self.session().is_running() && proposals::is_outdated(self.session()) {
+            self.record_own(now, Event::SignalEnded { reason: SignalEnd::Outdated });
+        }
+    }
+
     /// Measures the gaze accuracy after the last target of a check.
     pub(super) fn measure_calibration(&mut self, now: SessionTime) {
         let session = self.session();
@@ -33,9 +43,14 @@ impl Engine {
         }
     }
 
-    /// The signal that the assistant sends because of its recommendation, if it is allowed.
+    /// The signal that the assistant sends because of its recommendation, if it is allowed. An error gets one proposal, while it is the
+    /// human's last press.
     pub(super) fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
-        let signal = advice.best.clone()?;
+        let is_last = |error: u64| self.judged().last().is_some_and(|press| press.seq == error);
+        let proposal =
+            advice.proposal.as_ref().filter(|one| is_last(one.error) && !proposals::was_made(self.session()));
+        let proposal = proposal.map(|one| Signal::Propose(one.presses.clone()));
+        let signal = advice.best.clone().or(proposal)?;
         let event = Event::SignalShown { by: Sender::Assistant, signal, accepted: None, offer: None };
         admit(self.session(), &event).is_ok().then_some(event)
     }

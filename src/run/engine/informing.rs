@@ -2,10 +2,11 @@
 
 use super::Engine;
 use crate::base::time::SessionTime;
-use crate::communication::offer::OfferedAct;
+use crate::communication::offer::{OfferedAct, OfferedAdvice};
 use crate::communication::recommendation::Reason;
 use crate::kitchen::Change;
 use crate::session::accuracy_check::RunningGazeCheck;
+use crate::session::event::SignalEnd;
 use crate::session::offers;
 use crate::session::{Event, Stamped};
 
@@ -22,10 +23,10 @@ impl Engine {
             Event::TrialStarted => participant.on_trial_start(now, state),
             Event::SignalShown { signal, .. } => {
                 if let Some(shown) = &session.shown {
-                    participant.on_signal(now, shown.location, signal, state);
+                    participant.on_signal(now, shown.location, signal);
                 }
             }
-            Event::SignalEnded { .. } => participant.on_signal_end(now),
+            Event::SignalEnded { reason } => participant.on_signal_end(*reason == SignalEnd::Outdated),
             Event::Calibration(_) => {
                 participant.on_target(now, session.calibration.as_ref().and_then(RunningGazeCheck::target))
             }
@@ -47,7 +48,7 @@ impl Engine {
         }
     }
 
-    /// Passes the part of an applied event that a scripted wizard sees: kitchen, presses and gaze.
+    /// Passes the part of an applied event that a scripted wizard sees: kitchen, presses, gaze, and offers if they are shown.
     pub(super) fn tell_wizard(&mut self, stamped: &Stamped, change: &Change) {
         let Some(wizard) = &mut self.wizard else { return };
         let session = &self.follower.session;
@@ -61,9 +62,12 @@ impl Engine {
             Event::TrialStarted => wizard.on_trial_start(state),
             Event::Gaze(_) => wizard.on_gaze(now, session.looked_at(now), state),
             Event::SignalShown { .. } => {
-                if let Some(shown) = &session.shown {
-                    wizard.on_signal(now, shown.location, state);
+                if let Some(location) = session.shown.as_ref().and_then(|shown| shown.location) {
+                    wizard.on_signal(now, location, state);
                 }
+            }
+            Event::OfferOpened(OfferedAdvice { what: OfferedAct::Signal(_), visible: true, .. }) => {
+                wizard.on_offer(now, stamped.seq);
             }
             _ => {
                 if let Some((before, after)) = change.states() {

@@ -77,7 +77,7 @@ impl CaptureOrders {
             Event::TrialEnded { .. } => "trial ended".to_string(),
             Event::TrialAborted { .. } => "trial aborted".to_string(),
             Event::SignalShown { signal, .. } => {
-                let shown = format!("signal shown: {}", signal.target());
+                let shown = format!("signal shown: {}", signal.target().unwrap_or("next press"));
                 self.signal = Some(shown.clone());
                 shown
             }

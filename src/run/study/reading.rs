@@ -35,7 +35,7 @@ use crate::run::standing::exclusion_status;
 use crate::session::apply::ApplyError;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::{Condition, ParticipantKind};
-use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEvent};
+use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEntry, TimelineEvent};
 use crate::study::acting_arm::ActingArm;
 use crate::study::belief_trace::BeliefTrace;
 use crate::study::facts::Facts;
@@ -253,6 +253,14 @@ fn lanes(pass: &mut Pass) -> Vec<(String, Vec<CommunicationEvent>)> {
     vec![(name.to_string(), sent(session))]
 }
 
+/// Number of contents of a signal; 0 of other entries.
+fn contents(entry: &TimelineEntry) -> u64 {
+    match &entry.what {
+        TimelineEvent::Signal { signal, .. } => signal.contents() as u64,
+        _ => 0,
+    }
+}
+
 /// Signals that were shown to the participant.
 fn sent(session: &Session) -> Vec<CommunicationEvent> {
     let mut press = 0;
@@ -261,7 +269,7 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
         match &entry.what {
             TimelineEvent::Press { agent: Agent::Human, .. } => press += 1,
             TimelineEvent::Signal { signal, .. } => {
-                let content = CommunicationContent::Signal(signal.clone()).content(&session.kitchen);
+                let content = CommunicationContent::from_signal(signal).content(&session.kitchen);
                 sent.push(CommunicationEvent { press, clock: clock_at(session, entry.time), content });
             }
             _ => {}
@@ -341,7 +349,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         planned_arm: step.and_then(|step| step.arm),
         aims: step.map(|step| step.aims),
         wizard_sees: spec.console.visibility,
-        acting: ActingArm::from_settings(spec.trial.condition, spec.assistant.concept, spec.assistant.price()),
+        acting: ActingArm::from_settings(session.study_arm(), spec.assistant.parameter()),
         left_out,
         ended: None,
         arm: spec.robot.arm,
@@ -357,6 +365,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         presses_per_order: median(presses.windows(2).map(|pair| f64::from(pair[1] - pair[0])).collect()),
         press_s: median(between(follower.judged.iter().map(|press| press.time).collect())),
         signals: sent(session).len() as u64,
+        signal_contents: session.timeline.iter().map(contents).sum(),
         seconds: session.trial_clock(session.time).as_secs_f64(),
         answers: Vec::new(),
         wizard: None,

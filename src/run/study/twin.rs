@@ -2,7 +2,8 @@
 //!
 //! The trial is run again from its recording. At every signal the run is copied, and the copy goes on with the same random streams
 //! and without this or any later signal, until the false beliefs that the signal is about have ended. The signal is useful if the
-//! copy makes more belief related errors about them than the trial did until they ended there.
+//! copy makes more belief related errors about them than the trial did until they ended there. A proposal of k presses is useful if the
+//! copy makes more errors in its next k presses, belief related or not: a spared slip counts, too.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -21,13 +22,30 @@ use crate::run::engine::Engine;
 use crate::run::headless::Attendant;
 use crate::session::admit::is_external;
 use crate::session::settings::Condition;
-use crate::session::{Event, Phase, Stamped};
+use crate::session::{Event, Phase, Session, Stamped};
+
+/// What a signal could spare.
+enum SignalScope {
+    /// Belief related errors about these aspects.
+    Beliefs(Vec<AspectId>),
+    /// Errors in so many next presses.
+    Presses(usize),
+}
+
+impl SignalScope {
+    fn of_signal(session: &Session, signal: &Signal) -> SignalScope {
+        match signal {
+            Signal::Propose(presses) => SignalScope::Presses(presses.len()),
+            signal => SignalScope::Beliefs(aspects_told(&session.kitchen, session.state, signal)),
+        }
+    }
+}
 
 /// A signal of the trial, and what its twin did.
 struct TwinResult {
     time: SessionTime,
-    told: Vec<AspectId>,
-    /// Belief related errors of the twin about what the signal told.
+    scope: SignalScope,
+    /// Errors of the twin that the signal could have spared.
     errors: u64,
 }
 
@@ -55,7 +73,7 @@ pub(super) fn useful_signals(recording: &Path) -> FileResult<Option<u64>> {
         }
     }
     let trial = again.into_follower();
-    let is_useful = |one: &&TwinResult| one.errors > errors_after(&trial, one.time, &one.told);
+    let is_useful = |one: &&TwinResult| one.errors > errors_after(&trial, one.time, &one.scope);
     Ok(Some(twins.iter().filter(is_useful).count() as u64))
 }
 
@@ -63,7 +81,10 @@ pub(super) fn useful_signals(recording: &Path) -> FileResult<Option<u64>> {
 fn run_to(again: &mut Engine, recorded: &Stamped, twins: &mut Vec<TwinResult>) -> Vec<Stamped> {
     let is_signal = match &recorded.event {
         Event::SignalShown { .. } => true,
-        Event::Advised(advice) => advice.best.is_some() && again.session().spec.trial.condition == Condition::Assistant,
+        Event::Advised(advice) => {
+            let may_act = advice.best.is_some() || advice.proposal.is_some();
+            may_act && again.session().spec.trial.condition == Condition::Assistant
+        }
         _ => false,
     };
     let before = is_signal.then(|| again.clone());
@@ -89,21 +110,26 @@ fn run_to(again: &mut Engine, recorded: &Stamped, twins: &mut Vec<TwinResult>) -
 
 /// Runs a twin without further signals until the false beliefs that a signal at `time` is about have ended.
 fn twin(mut engine: Engine, time: SessionTime, signal: &Signal) -> TwinResult {
-    let session = engine.session();
-    let told = aspects_told(&session.kitchen, session.state, signal);
+    let scope = SignalScope::of_signal(engine.session(), signal);
     let presses = engine.judged().len();
     let mut attendant = Attendant::default();
     while engine.session().phase == Phase::Running || engine.session().is_frozen() {
         attendant.step(&mut engine);
         let _ = engine.take_questions();
         // What a participant believes is recorded before its presses.
-        let is_over = open_at(engine.follower(), time, &told).all(|episode| episode.corrected.is_some());
-        if is_over && engine.judged().len() > presses {
+        let is_over = match &scope {
+            SignalScope::Beliefs(told) => {
+                let corrected = open_at(engine.follower(), time, told).all(|episode| episode.corrected.is_some());
+                corrected && engine.judged().len() > presses
+            }
+            SignalScope::Presses(next) => engine.judged().len() >= presses + next,
+        };
+        if is_over {
             break;
         }
     }
-    let errors = errors_after(engine.follower(), time, &told);
-    TwinResult { time, told, errors }
+    let errors = errors_after(engine.follower(), time, &scope);
+    TwinResult { time, scope, errors }
 }
 
 /// Periods of false belief about these aspects that were open at a time.
@@ -112,8 +138,19 @@ fn open_at<'a>(follower: &'a Follower, time: SessionTime, told: &'a [AspectId]) 
     follower.episodes.all().filter(|episode| told.contains(&episode.aspect)).filter(is_open)
 }
 
+/// Errors after a time that a signal at that time could spare.
+fn errors_after(follower: &Follower, time: SessionTime, scope: &SignalScope) -> u64 {
+    match scope {
+        SignalScope::Beliefs(told) => belief_errors_after(follower, time, told),
+        SignalScope::Presses(next) => {
+            let after = follower.judged.iter().filter(|press| press.time > time).take(*next);
+            after.filter(|press| press.verdict.error).count() as u64
+        }
+    }
+}
+
 /// Belief related errors after a time about aspects in `told` that were believed wrong at that time, until the beliefs were right.
-fn errors_after(follower: &Follower, time: SessionTime, told: &[AspectId]) -> u64 {
+fn belief_errors_after(follower: &Follower, time: SessionTime, told: &[AspectId]) -> u64 {
     let kitchen = &follower.session.kitchen;
     let open: Vec<&Episode> = open_at(follower, time, told).collect();
     let errors = follower.judged.iter().filter(|press| {

@@ -147,10 +147,6 @@ impl PlanSpec {
             let remedy = "one to five conditions, such as [\"none\", \"wizard\", \"tom-com\"]";
             return wrong("plan.conditions", found, remedy);
         }
-        if self.conditions.contains(&StudyArm::Dev) {
-            let remedy = "\"tom-com\" or \"tom\": what DEV proposes is not shown on the display";
-            return wrong("plan.conditions", "the condition \"dev\"".to_string(), remedy);
-        }
         if let Some(index) = (0..self.conditions.len()).find(|&index| twice(index)) {
             let found = format!("the condition \"{}\" twice", self.conditions[index].name());
             return wrong("plan.conditions", found, "different conditions: each participant has one trial in each");

@@ -15,6 +15,7 @@ use crate::session::stream_settings::RerunSpec;
 use crate::session::study_arm::StudyArm;
 use crate::session::tracker::TrackerSpec;
 use crate::session::wall_display::{Answering, DisplaySpec};
+use crate::wizard::settings::WizardKind;
 
 /// A slot in a participant's series: it needs one complete recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -125,16 +126,16 @@ impl Study {
     }
 
     /// The settings of a simulated trial, and its number. There is no instruction and no questionnaire; without a scripted wizard,
-    /// the wizard condition is unassisted.
+    /// the wizard conditions are unassisted.
     pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
         let slots = self.slots(participant);
         let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
         let (mut spec, trial) = self.settings(WantedRecording { participant, slot, attempt: 1, instructed: true });
         spec.trial.condition = spec.unattended(spec.trial.condition);
-        let arm = StudyArm::from_settings(spec.trial.condition, spec.assistant.concept, false);
+        let saw_advice = spec.script_reads_offers();
+        let arm = StudyArm::from_settings(spec.trial.condition, spec.assistant.concept, saw_advice);
         if let Some(step) = &mut spec.step {
             step.phases = vec![PhaseSpec::Trial];
-            // No person sees advice in it.
             step.arm = Some(arm);
         }
         (spec, trial)
@@ -196,9 +197,16 @@ fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
     if let Some(concept) = arm.concept() {
         spec.assistant.concept = concept;
     }
-    if arm == StudyArm::WizardWithAdvice {
-        spec.console.visibility = Visibility::Recommendation;
-        spec.assistant.shadow = Shadow::On;
+    match arm {
+        StudyArm::WizardWithAdvice => {
+            spec.console.visibility = Visibility::Recommendation;
+            spec.assistant.shadow = Shadow::On;
+            if spec.wizard.kind == WizardKind::Scripted {
+                spec.wizard.offers.get_or_insert_default();
+            }
+        }
+        StudyArm::Wizard => spec.wizard.offers = None,
+        StudyArm::None | StudyArm::TomCom | StudyArm::Tom | StudyArm::Dev => {}
     }
 }
 

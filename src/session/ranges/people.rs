@@ -18,7 +18,7 @@ const fn rare_chance(path: &'static str) -> NumberRange {
         .recorded([0.0, INSIDE_0_AND_1[1]])
 }
 
-pub(super) const RANGES: [NumberRange; 57] = [
+pub(super) const RANGES: [NumberRange; 60] = [
     chance("participant.population.slip.median"),
     chance("participant.population.look_alike_slip.median"),
     chance("participant.population.thoughtless.median"),
@@ -44,6 +44,7 @@ pub(super) const RANGES: [NumberRange; 57] = [
     rare_chance("participant.population.misremembers.median"),
     rare_chance("participant.population.guesses_robot.median"),
     rare_chance("participant.population.answers_wrong.median"),
+    rare_chance("participant.population.follows_proposal.median"),
     NumberRange::real("participant.population.answers_from", [0.0, 1.0], "", CHANCE),
     NumberRange::real(
         "participant.population.answer_s.median",
@@ -171,4 +172,6 @@ pub(super) const RANGES: [NumberRange; 57] = [
     NumberRange::real("wizard.look_s", [0.0, 60.0], SECONDS, LATE),
     NumberRange::real("wizard.guesses_wrong", [0.0, 1.0], "", CHANCE),
     NumberRange::real("wizard.rest_s", [0.0, 60.0], SECONDS, LATE),
+    NumberRange::real("wizard.offers.takes", [0.0, 1.0], "", CHANCE),
+    NumberRange::real("wizard.offers.reads_s", [0.0, 60.0], SECONDS, LATE),
 ];

@@ -6,6 +6,7 @@ use super::elements::{Captions, PageColumn, nothing, number, p_value, scroll, se
 use crate::study::arm_chart;
 use crate::study::arm_comparison::{ArmComparison, ArmContrast, ArmOutcome, NonInferiority};
 use crate::study::figures::StudySummary;
+use crate::study::group_orders::GroupOrder;
 use crate::study::trial_statistics::Trial;
 
 /// Section with the arms' rates, their contrasts, and whether the assistant is not worse than the wizard.
@@ -33,6 +34,13 @@ fn comparison(captions: &mut Captions, found: &ArmComparison) -> Markup {
             (number(Some(between), 2)) " between participants, " (number(Some(within), 2)) " within."
         }
         "\n"
+        @if !found.groups.is_empty() {
+            p {
+                "Starting groups, with the order of their conditions and the number of participants: "
+                (found.groups.iter().map(GroupOrder::describe).collect::<Vec<_>>().join("; ")) "."
+            }
+            "\n"
+        }
         (scroll(rates(captions, found)))
         div class="figures" {
             (captions.figure(arm_chart::ratios(&found.contrasts), "Ratio of the rates of two conditions, with its interval of 95 %. Below \

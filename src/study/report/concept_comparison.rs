@@ -72,6 +72,7 @@ fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
             arm.orders.to_string(),
             number(arm.orders_per_minute, 2),
             number(arm.interruptions_per_100, 2),
+            number(arm.contents_per_100, 2),
             number(arm.useless_per_100, 2),
             number(arm.prevented, 2),
             number(arm.prevented_offline, 2),
@@ -88,6 +89,7 @@ fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
         "orders",
         "orders per minute",
         "signals per 100 presses",
+        "their contents",
         "useless",
         "fewer belief related errors",
         "prevented, offline",
@@ -95,8 +97,10 @@ fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
     ];
     let trials = figures.live.first().map_or(0, |arm| arm.trials);
     let caption = format!(
-        "Concepts that acted by themselves in the {trials} simulated trials (the same seeds) that every line has. Useless: signals per 100 presses \
-         without which a twin of the trial, with the same random streams, makes no more errors about their target. Fewer belief \
+        "Concepts that acted by themselves in the {trials} simulated trials (the same seeds) that every line has. A proposal of k presses is one \
+         signal with k contents. Useless: signals per 100 presses \
+         without which a twin of the trial, with the same random streams, makes no more errors about their target (of a proposal: no more errors \
+         in its next k presses). Fewer belief \
          related errors: share per press of the human, against no signals. Offline: what the analysis of unassisted trials says for \
          the same parameter; a replayed signal changes nothing that follows."
     );

@@ -65,6 +65,7 @@ fn wizard(facts: &Facts) -> Markup {
     html! {
         @if facts.has("scripted wizard") {
             " The wizard was a script that observes kitchen, presses and gaze, but no estimate: " (all(facts, "scripted wizard")) "."
+            @if facts.has("script's offers") { " With advice, it also reads the assistant's offers: " (all(facts, "script's offers")) "." }
         }
         @if facts.has("wizard saw") {
             " The wizard saw " (all(facts, "wizard saw"))

@@ -3,7 +3,7 @@
 use super::trial_column::{TrialColumn, plain};
 use crate::session::study_arm::StudyArm;
 
-/// The arm by what was done, the planned one, and what the wizard was allowed to see.
+/// The arm by what was done, the planned one, what the wizard was allowed to see, and the contents of signals.
 pub(super) fn arms() -> Vec<TrialColumn> {
     vec![
         plain(
@@ -20,6 +20,12 @@ pub(super) fn arms() -> Vec<TrialColumn> {
             "",
             "what the console may show: state (kitchen and gaze), belief (also the estimate) or recommendation (also advice)",
             |t| t.wizard_sees.name().into(),
+        ),
+        plain(
+            "signal_contents",
+            "contents",
+            "contents of the signals: a proposal of k presses has k, any other signal one",
+            |t| t.signal_contents.into(),
         ),
     ]
 }

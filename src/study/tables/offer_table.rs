@@ -22,7 +22,7 @@ impl OfferRow<'_> {
 
     fn target(&self) -> String {
         match self.act() {
-            OfferedAct::Signal(signal) => signal.target().to_string(),
+            OfferedAct::Signal(signal) => signal.target().unwrap_or_default().to_string(),
             OfferedAct::Presses(presses) => presses.join(" "),
         }
     }
@@ -32,7 +32,7 @@ fn kind_name(what: &OfferedAct) -> &'static str {
     match what {
         OfferedAct::Signal(Signal::ShowRecipe(_)) => "recipe",
         OfferedAct::Signal(Signal::Highlight(_)) => "highlight",
-        OfferedAct::Presses(_) => "proposal",
+        OfferedAct::Signal(Signal::Propose(_)) | OfferedAct::Presses(_) => "proposal",
     }
 }
 

@@ -287,7 +287,8 @@ fn work() -> Vec<TrialColumn> {
         plain(
             "useful_signals",
             "signals",
-            "signals without which a twin of the simulated trial makes more errors about their target; empty: not judged",
+            "signals without which a twin of the simulated trial makes more errors about their target (of a proposal: in its next presses); \
+             empty: not judged",
             |t| t.useful_signals.into(),
         ),
         plain("useless_signals", "signals", "all other signals; empty: not judged", |t| {

@@ -19,6 +19,24 @@ fn analysed(recording: &Path) -> Trial {
     analysis.trial
 }
 
+/// A proposal of DEV is useful if the twin errs in its next presses, by a slip, too.
+#[test]
+fn proposals_of_simulated_trials_are_judged_by_the_next_presses() {
+    let mut files = read_session(Path::new("sessions/default.toml")).expect("the default session");
+    files.spec.trial.condition = Condition::Assistant;
+    (files.spec.trial.presses, files.spec.seed) = (200, 9702);
+    (files.spec.assistant.concept, files.spec.assistant.proposed_presses) = (ConceptName::Dev, 2);
+    files.spec.robot.arm = ArmKind::Timed;
+    let figures = run(&files, 3, Shard::WHOLE, &folder("twins-dev"));
+    let trials: Vec<Trial> = figures.recordings.iter().map(|recording| analysed(Path::new(recording))).collect();
+    let sum = |of: fn(&Trial) -> u64| trials.iter().map(of).sum::<u64>();
+    let (signals, contents) = (sum(|trial| trial.signals), sum(|trial| trial.signal_contents));
+    let useful = sum(|trial| trial.useful_signals.expect("it comes out the same again"));
+    assert!(0 < useful && useful < signals, "{useful} of {signals} useful");
+    assert!(signals < contents && contents <= 2 * signals, "{signals} proposals of {contents} presses");
+    assert!(trials.iter().all(|trial| (trial.acting.concept, trial.acting.parameter) == ("dev", Some(2.0))));
+}
+
 /// ToM sends many signals: some of them prevent errors, others are about beliefs that do no harm.
 #[test]
 fn signals_of_simulated_trials_are_useful_or_useless_and_those_of_trials_that_come_out_otherwise_unknown() {

@@ -5,15 +5,17 @@ use std::sync::Arc;
 
 use tomcom::base::time::SessionTime;
 use tomcom::communication::Sender;
+use tomcom::edge::files::read_session;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{DishId, LocationId};
 use tomcom::run::simulate::Shard;
 use tomcom::run::verify::verify;
 use tomcom::session::admit::hygiene;
 use tomcom::session::settings::Condition;
+use tomcom::session::study_arm::StudyArm;
 use tomcom::session::{Event, Session, Stamped};
-use tomcom::wizard::ScriptedWizard;
-use tomcom::wizard::settings::{WizardKind, WizardSpec};
+use tomcom::wizard::settings::{OfferReading, WizardKind, WizardSpec};
+use tomcom::wizard::{ScriptedWizard, WizardAction};
 
 use super::{events, folder, paper, run};
 
@@ -38,8 +40,8 @@ fn a_scripted_wizard_signals_in_its_trials_and_comes_out_the_same_again() {
         assert!(found.verified, "{recording}: {:?}", found.difference);
     }
     assert!(signals > 0 && signals == figures.signals as usize, "{signals} signals");
-    let conditions: Vec<Condition> = figures.conditions.iter().map(|one| one.condition).collect();
-    assert_eq!(conditions, [Condition::None, Condition::Wizard]);
+    let arms: Vec<StudyArm> = figures.arms.iter().map(|one| one.arm).collect();
+    assert_eq!(arms, [StudyArm::None, StudyArm::Wizard]);
 }
 
 #[test]
@@ -50,7 +52,7 @@ fn a_wizard_who_sees_nothing_says_nothing_and_no_hand_signals_in_its_place() {
     // A wizard who is a person is not there in a simulation.
     files.spec.wizard = WizardSpec { kind: WizardKind::Person, sees_errors: 1.0, ..files.spec.wizard };
     let figures = run(&files, 2, Shard::WHOLE, &folder("person"));
-    assert!(figures.conditions.iter().all(|one| one.condition == Condition::None));
+    assert!(figures.arms.iter().all(|one| one.arm == StudyArm::None));
 
     let mut spec = paper(120).spec;
     (spec.trial.condition, spec.plan) = (Condition::Wizard, None);
@@ -96,14 +98,108 @@ fn a_wizard_tells_what_was_not_looked_at_and_nothing_that_was() {
         }
         let mut signals = Vec::new();
         while let Some(due) = wizard.next_due() {
-            signals.extend(wizard.act(due, filled, &mut cost).map(|signal| (due, signal)));
+            match wizard.act(due, filled, &mut cost) {
+                Some(WizardAction::Send(signal)) => signals.push((due, signal)),
+                Some(other) => panic!("nothing is offered: {other:?}"),
+                None => {}
+            }
         }
         signals
     };
     assert_eq!(said(true), []);
     let signals = said(false);
     let [(at, signal)] = &signals[..] else { panic!("one signal: {signals:?}") };
-    assert_eq!(signal.target(), "cooking_pot");
+    assert_eq!(signal.target(), Some("cooking_pot"));
     let after_s = at.secs_since(second(1.0));
     assert!((after_s - spec.overlooked_after_s - spec.reaction_s).abs() < 1e-6, "after {after_s} s");
+}
+
+/// A scripted wizard who judges nothing by itself.
+fn reader(offers: OfferReading, rest_s: f64) -> ScriptedWizard {
+    let kitchen = Arc::new(paper(1).kitchen.kitchen);
+    let spec = WizardSpec {
+        kind: WizardKind::Scripted,
+        reaction_spread: 0.0,
+        rest_s,
+        offers: Some(offers),
+        ..WizardSpec::default()
+    };
+    let mut wizard = ScriptedWizard::new(kitchen.clone(), spec, false, 1, 0).reading_offers(1, 0);
+    wizard.on_trial_start(kitchen.empty_state());
+    wizard
+}
+
+/// What a wizard does until it has nothing to do.
+fn deeds(wizard: &mut ScriptedWizard) -> Vec<(f64, WizardAction)> {
+    let kitchen = Arc::new(paper(1).kitchen.kitchen);
+    let (state, mut cost) = (kitchen.empty_state(), CostToGo::new(kitchen));
+    let mut deeds = Vec::new();
+    while let Some(due) = wizard.next_due() {
+        deeds.extend(wizard.act(due, state, &mut cost).map(|deed| (due.as_secs_f64(), deed)));
+    }
+    deeds
+}
+
+#[test]
+fn an_offer_is_taken_after_the_time_of_reading_or_left() {
+    let second = SessionTime::from_secs_f64;
+    let takes = |takes, reads_s| OfferReading { takes, reads_s };
+    let mut wizard = reader(takes(1.0, 2.0), 5.0);
+    wizard.on_offer(second(10.0), 7);
+    wizard.postpone(second(30.0));
+    assert_eq!(deeds(&mut wizard), [(42.0, WizardAction::TakeOffer(7))]);
+    // The next offer takes the place of the one before.
+    wizard.on_offer(second(50.0), 8);
+    wizard.on_offer(second(51.0), 9);
+    assert_eq!(deeds(&mut wizard), [(53.0, WizardAction::TakeOffer(9))]);
+    // Nobody reads within the time in which a key means the offer before.
+    wizard.on_offer(second(60.0), 10);
+    let mut quick = reader(takes(1.0, 0.0), 5.0);
+    quick.on_offer(second(60.0), 10);
+    assert_eq!(deeds(&mut quick), [(60.3, WizardAction::TakeOffer(10))]);
+    let mut stubborn = reader(takes(0.0, 2.0), 5.0);
+    stubborn.on_offer(second(10.0), 7);
+    assert_eq!(deeds(&mut stubborn), []);
+    // After a signal it rests.
+    let mut tired = reader(takes(1.0, 2.0), 5.0);
+    tired.on_signal(second(9.0), LocationId(0), paper(1).kitchen.kitchen.empty_state());
+    tired.on_offer(second(10.0), 7);
+    assert_eq!(deeds(&mut tired), [(14.0, WizardAction::TakeOffer(7))]);
+}
+
+/// The plan of arms with a scripted wizard: the same script with and without advice.
+#[test]
+fn a_scripted_wizard_takes_offers_in_the_arm_with_advice_alone() {
+    let mut files = read_session(Path::new("sessions/arms.toml")).expect("the plan of arms");
+    files.spec.wizard.kind = WizardKind::Scripted;
+    (files.spec.seed, files.spec.trial.presses) = (9701, 160);
+    (files.spec.assistant.rollout.rollouts, files.spec.human.inference.beliefs) = (64, 128);
+    let figures = run(&files, 5, Shard::WHOLE, &folder("arms"));
+    let arms: Vec<StudyArm> = figures.arms.iter().map(|one| one.arm).collect();
+    let wanted = [StudyArm::None, StudyArm::Wizard, StudyArm::WizardWithAdvice, StudyArm::TomCom, StudyArm::Tom];
+    assert_eq!(arms, wanted);
+    for recording in &figures.recordings {
+        let (header, events) = events(Path::new(recording));
+        let arm = header.session.step.as_ref().and_then(|step| step.arm).expect("an arm");
+        let visible: Vec<u64> = events
+            .iter()
+            .filter(|stamped| matches!(&stamped.event, Event::OfferOpened(advice) if advice.visible))
+            .map(|stamped| stamped.seq)
+            .collect();
+        let taken: Vec<u64> = events
+            .iter()
+            .filter_map(|stamped| match stamped.event {
+                Event::SignalShown { offer, .. } => offer,
+                _ => None,
+            })
+            .collect();
+        match arm {
+            StudyArm::WizardWithAdvice => {
+                assert!(!taken.is_empty() && taken.iter().all(|offer| visible.contains(offer)), "{recording}");
+            }
+            _ => assert!(visible.is_empty() && taken.is_empty(), "{recording}: {arm:?}"),
+        }
+        let found = verify(Path::new(recording)).expect("readable");
+        assert!(found.verified, "{recording}: {:?}", found.difference);
+    }
 }

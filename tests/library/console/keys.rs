@@ -31,7 +31,7 @@ fn each_signal_has_a_key_that_sends_it_once() {
                 assert_eq!(location.kind, LocationKind::Hand(Agent::Human), "{}: {}", location.name, stage.notice());
                 continue;
             };
-            assert_eq!(signal.target(), location.name);
+            assert_eq!(signal.target(), Some(location.name.as_str()));
             sent.push(signal);
             for _ in 0..40 {
                 stage.wait(0.03);

@@ -13,7 +13,7 @@ use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, Loc
 use tomcom::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::{HumanModel, InferenceModel};
-use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::observation::{Observation, Observed, ProposedPresses};
 
 use super::looks_at_nothing;
 
@@ -141,7 +141,7 @@ fn any_number(random: &mut Stream) -> f64 {
 /// Something that may happen in a session, or cannot happen at all.
 fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observed {
     let agent = if random.random::<bool>() { Agent::Human } else { Agent::Robot };
-    match random.random_range(0..12) {
+    match random.random_range(0..13) {
         0 => Observed::Started { state: any_state(kitchen, random) },
         1 => Observed::Paused,
         2 => Observed::Resumed,
@@ -158,6 +158,11 @@ fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observ
                 after: after.unwrap_or(before),
                 effective: after.is_some(),
             })
+        }
+        12 => {
+            let buttons = kitchen.buttons[Agent::Human.index()].len();
+            let button = |_| ButtonId(random.random_range(0..buttons) as u8);
+            Observed::Proposed(ProposedPresses::new((0..3).map(button)))
         }
         _ => {
             let [x, y, confidence] = [(); 3].map(|()| any_number(random));

@@ -10,6 +10,7 @@ mod grid;
 mod laws;
 mod observed;
 mod particles;
+mod proposals;
 mod recorded;
 mod unknown_gaze;
 mod world;

@@ -176,7 +176,7 @@ fn a_noticed_signal_makes_the_aspect_right() {
         assert!(bench.p_truth("recipe of tuna nigiri") < 0.5);
         let order = bench.location("order_1");
         let signal = Signal::ShowRecipe("order_1".to_string());
-        bench.one.on_signal(bench.now, order, &signal, bench.state);
+        bench.one.on_signal(bench.now, Some(order), &signal);
         bench.pass(0.45);
         assert!(bench.p_truth("recipe of tuna nigiri") < 0.5, "nobody reads as fast as that");
         bench.pass(1.2);
@@ -189,7 +189,7 @@ fn a_noticed_signal_makes_the_aspect_right() {
     bench.put("cooking_pot", "rice cooked");
     let pot = bench.location("cooking_pot");
     for _ in 0..5 {
-        bench.one.on_signal(bench.now, pot, &Signal::Highlight("cooking_pot".to_string()), bench.state);
+        bench.one.on_signal(bench.now, Some(pot), &Signal::Highlight("cooking_pot".to_string()));
         bench.pass(2.0);
     }
     assert!(bench.p_truth("cooking_pot") > 0.9);
@@ -205,7 +205,7 @@ fn nothing_else_is_seen_or_pressed_while_a_signal_is_read() {
         bench.order("order_1", "tuna nigiri");
         bench.pass(20.0);
         let (order, counter) = (bench.location("order_1"), AspectId(bench.location("counter").0));
-        bench.one.on_signal(bench.now, order, &Signal::ShowRecipe("order_1".to_string()), bench.state);
+        bench.one.on_signal(bench.now, Some(order), &Signal::ShowRecipe("order_1".to_string()));
         bench.pass(0.6);
         let busy = bench.now.as_secs_f64();
         if bench.p_truth("recipe of tuna nigiri") < 0.96 {
@@ -232,10 +232,10 @@ fn after_useless_signals_the_next_ones_are_noticed_less() {
             bench.order("order_1", "tuna nigiri");
             let (order, hand) = (bench.location("order_1"), bench.location("human_hand"));
             for _ in 0..useless {
-                bench.one.on_signal(bench.now, hand, &Signal::Highlight("human_hand".to_string()), bench.state);
+                bench.one.on_signal(bench.now, Some(hand), &Signal::Highlight("human_hand".to_string()));
                 bench.pass(4.0);
             }
-            bench.one.on_signal(bench.now, order, &Signal::ShowRecipe("order_1".to_string()), bench.state);
+            bench.one.on_signal(bench.now, Some(order), &Signal::ShowRecipe("order_1".to_string()));
             bench.pass(1.6);
             bench.p_truth("recipe of tuna nigiri") > 0.9
         };
@@ -283,9 +283,9 @@ fn a_signal_taken_back_in_time_is_not_read() {
         let mut bench = Bench::new(&ignorant, seed);
         bench.order("order_1", "tuna nigiri");
         let order = bench.location("order_1");
-        bench.one.on_signal(bench.now, order, &Signal::ShowRecipe("order_1".to_string()), bench.state);
+        bench.one.on_signal(bench.now, Some(order), &Signal::ShowRecipe("order_1".to_string()));
         bench.pass(0.3);
-        bench.one.on_signal_end(bench.now);
+        bench.one.on_signal_end(false);
         let before = bench.p_truth("recipe of tuna nigiri");
         bench.pass(0.3);
         assert!(bench.p_truth("recipe of tuna nigiri") <= before.max(0.5), "seed {seed}");
@@ -346,4 +346,36 @@ fn a_pause_only_postpones() {
         bench.presses.iter().map(|(_, button)| *button).collect::<Vec<_>>()
     };
     assert_eq!(play(false), play(true));
+}
+
+#[test]
+fn a_noticed_proposal_is_followed_whatever_is_believed_and_says_nothing() {
+    let always = |median| Population { follows_proposal: TraitSpread { median, sigma: 0.0 }, ..Population::default() };
+    // Crab has nothing to do with the order.
+    let share = |population: &Population, is_outdated: bool| {
+        let mut followed = 0;
+        for seed in 0..100 {
+            let mut bench = Bench::new(population, seed);
+            bench.order("order_1", "tuna nigiri");
+            bench.pass(10.0);
+            let crab = bench.kitchen.button_named(Agent::Human, "take crab").expect("a button");
+            let (presses, reasons) = (bench.presses.len(), bench.reasons.len());
+            bench.one.on_signal(bench.now, None, &Signal::Propose(vec!["take crab".to_string()]));
+            bench.pass(1.6);
+            if is_outdated {
+                bench.one.on_signal_end(true);
+            }
+            bench.pass(5.0);
+            let made = bench.presses[presses..].iter().position(|(_, button)| *button == crab);
+            followed += usize::from(made.is_some());
+            if let Some(made) = made.filter(|_| !is_outdated) {
+                assert_eq!(bench.reasons[reasons + made].origin, Some(PressOrigin::Plan), "seed {seed}");
+            }
+        }
+        followed
+    };
+    let (all, none) = (share(&always(0.999_999), false), share(&always(0.0), false));
+    assert!((60..=90).contains(&all), "{all} of 100, of whom some do not notice it");
+    assert!(none < 15 && all > none + 50, "{none} of 100 by themselves");
+    assert!(share(&always(0.999_999), true) < all, "what is out of date is not made");
 }

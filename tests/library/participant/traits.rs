@@ -37,7 +37,7 @@ fn told(keeps_own_recipe: f64) -> usize {
         let mut bench = Bench::new(&population, seed);
         bench.order("order_1", "tuna nigiri");
         let order = bench.location("order_1");
-        bench.one.on_signal(bench.now, order, &Signal::ShowRecipe("order_1".to_string()), bench.state);
+        bench.one.on_signal(bench.now, Some(order), &Signal::ShowRecipe("order_1".to_string()));
         bench.pass(1.6);
         bench.p_truth("recipe of tuna nigiri") > 0.9
     };
@@ -69,7 +69,7 @@ fn misremembered_recipes_are_sure_and_wrong_until_they_are_shown() {
     let order = bench.location("order_1");
     // One of these is noticed.
     for _ in 0..8 {
-        bench.one.on_signal(bench.now, order, &Signal::ShowRecipe("order_1".to_string()), bench.state);
+        bench.one.on_signal(bench.now, Some(order), &Signal::ShowRecipe("order_1".to_string()));
         bench.pass(2.0);
     }
     assert!(bench.p_truth("recipe of tuna nigiri") > 0.9, "a signal corrects it");

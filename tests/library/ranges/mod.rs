@@ -43,6 +43,9 @@ fn every_setting() -> toml::Table {
         answers_wrong = { median = 0.5, sigma = 0.4 }
         answers_from = 0.4
         answer_s = { median = 2.0, sigma = 0.4 }
+        follows_proposal = { median = 0.5, sigma = 0.4 }
+        [human.signal]
+        follows = 0.5
         [probes]
         per_trial = 0
         least_questions = 1
@@ -68,7 +71,8 @@ fn every_setting() -> toml::Table {
     "#;
     let given: tomcom::session::SessionSpec = toml::from_str(text).expect("a session");
     let mut all = toml::Table::try_from(given).expect("settings are TOML");
-    let wizard = tomcom::wizard::settings::WizardSpec::default();
+    let offers = Some(tomcom::wizard::settings::OfferReading::default());
+    let wizard = tomcom::wizard::settings::WizardSpec { offers, ..Default::default() };
     all.insert("wizard".to_string(), toml::Value::try_from(wizard).expect("settings are TOML"));
     let plan = all["plan"].as_table_mut().expect("a plan");
     // Those are written to recordings; a file may leave them out.

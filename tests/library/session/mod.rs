@@ -7,6 +7,7 @@ mod orders;
 mod probe_questions;
 mod probe_trials;
 mod probes;
+mod proposals;
 mod robot;
 mod trial;
 

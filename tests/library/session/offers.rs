@@ -71,7 +71,7 @@ fn changes(engine: &mut Engine, inputs: &[(f64, Event)]) -> Vec<(String, f64)> {
             let what = match &stamped.event {
                 Event::OfferOpened(_) => engine.session().offers.find(stamped.seq).and_then(|offer| {
                     let signal = offer.signal()?;
-                    Some(format!("opens {}", signal.target()))
+                    Some(format!("opens {}", signal.target().expect("a location")))
                 }),
                 Event::OfferClosed { reason, .. } => Some(reason.name().to_string()),
                 _ => None,
@@ -181,7 +181,7 @@ fn enter_means_what_was_read() {
     let target = |engine: &Engine, seconds: f64| {
         let meant = offers::enter(engine.session(), at(seconds)).map(|(offer, event)| {
             assert!(matches!(&event, Event::SignalShown { offer: Some(seq), accepted: None, .. } if *seq == offer.seq));
-            offer.signal().expect("a signal").target().to_string()
+            offer.signal().and_then(Signal::target).expect("a location").to_string()
         });
         meant.unwrap_or_else(|reason| reason)
     };

@@ -161,7 +161,7 @@ fn signals_of_the_wizard_keep_apart_and_a_new_one_replaces_the_shown_one() {
     assert!(refused(&mut engine, 1.5, highlight("plate")).contains("too soon"));
     assert!(refused(&mut engine, 2.0, highlight("counter")).contains("shown already"));
     check(&mut engine, &[(2.1, highlight("plate"))]);
-    let shown = engine.session().shown.as_ref().map(|shown| shown.signal.target().to_string());
+    let shown = engine.session().shown.as_ref().and_then(|shown| shown.signal.target().map(str::to_string));
     assert_eq!(shown.as_deref(), Some("plate"));
     // Taken back, it may be sent again; so may the one that was replaced.
     check(&mut engine, &[(2.2, Event::SignalEnded { reason: SignalEnd::TakenBack })]);

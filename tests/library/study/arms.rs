@@ -272,3 +272,23 @@ fn a_repeated_trial_counts_once_and_one_arm_is_no_comparison() {
     let alone = simulated(&FOUR[..1], &[1.0], 6, 3);
     assert_eq!(all(&alone), None);
 }
+
+#[test]
+fn the_letters_of_groups_are_told() {
+    let mut trials = simulated(&FOUR[..3], &[1.0; 3], 12, 9703);
+    for trial in &mut trials {
+        let period = trial.period.expect("a trial");
+        // A stands for the plan's first condition.
+        let index = FOUR.iter().position(|arm| *arm == trial.study_arm).expect("an arm") as u32;
+        let first = (index + 4 - period) % 3;
+        trial.group = Some((0..3).map(|place| ["A", "B", "C"][((first + place) % 3) as usize]).collect());
+    }
+    let found = compare_arms(&trials.iter().collect::<Vec<_>>()).expect("a comparison").groups;
+    assert_eq!(found.iter().map(|one| one.participants).sum::<usize>(), 12);
+    for one in &found {
+        let arm = |letter: char| FOUR[letter as usize - 'A' as usize];
+        assert!(one.order.iter().copied().eq(one.group.chars().map(|letter| Some(arm(letter)))), "{one:?}");
+    }
+    let told: Vec<String> = found.iter().map(|one| one.describe()).collect();
+    assert!(told.iter().any(|one| one.starts_with("BCA: wizard, ToM-Com, unassisted (")), "{told:?}");
+}

@@ -1,7 +1,6 @@
 //! Concepts that acted by themselves on the same seeds.
 
-use tomcom::communication::concept::ConceptName;
-use tomcom::session::settings::Condition;
+use tomcom::session::study_arm::StudyArm;
 use tomcom::study::acting_arm::ActingArm;
 use tomcom::study::live_arms::live_arms;
 use tomcom::study::trial_statistics::Trial;
@@ -9,10 +8,10 @@ use tomcom::study::trial_statistics::Trial;
 use super::{near, trial};
 
 /// A trial of 200 presses of the human in an arm, with this number of belief related errors and signals.
-fn acting(arm: (Condition, ConceptName, f64), participant: &str, related: u64, signals: u64) -> Trial {
-    let (condition, concept, parameter) = arm;
-    let acting = ActingArm::from_settings(condition, concept, parameter);
-    let mut trial = Trial { acting, signals, ..trial(participant, 1, condition, related) };
+fn acting((arm, parameter): (StudyArm, f64), participant: &str, related: u64, signals: u64) -> Trial {
+    let acting = ActingArm::from_settings(arm, parameter);
+    let mut trial =
+        Trial { acting, signals, signal_contents: 2 * signals, ..trial(participant, 1, arm.condition(), related) };
     let beliefs = trial.beliefs.as_mut().expect("beliefs");
     (beliefs.errors, beliefs.lengths) = (related, vec![related as u32]);
     trial
@@ -20,9 +19,9 @@ fn acting(arm: (Condition, ConceptName, f64), participant: &str, related: u64, s
 
 #[test]
 fn arms_are_compared_over_the_trials_that_all_of_them_have() {
-    let none = (Condition::None, ConceptName::TomCom, 1.5);
-    let tom_com = (Condition::Assistant, ConceptName::TomCom, 1.5);
-    let tom = (Condition::Assistant, ConceptName::Tom, 0.5);
+    let none = (StudyArm::None, 1.5);
+    let tom_com = (StudyArm::TomCom, 1.5);
+    let tom = (StudyArm::Tom, 0.5);
     let trials = [
         acting(tom, "S001", 5, 40),
         acting(tom, "S002", 5, 60),
@@ -44,6 +43,7 @@ fn arms_are_compared_over_the_trials_that_all_of_them_have() {
     near(found[1].prevented.expect("an arm without signals"), 0.5);
     near(found[1].interruptions_per_100.expect("presses"), 2.5);
     near(found[2].interruptions_per_100.expect("presses"), 25.0);
+    near(found[2].contents_per_100.expect("presses"), 50.0);
     assert_eq!((found[1].useless_per_100, found[0].useless_share), (None, None), "nobody judged, or no signals");
     near(found[0].useless_per_100.expect("no signals, none useless"), 0.0);
     assert_eq!((found[0].prevented, found[1].prevented_offline), (None, None));
@@ -55,12 +55,9 @@ fn arms_are_compared_over_the_trials_that_all_of_them_have() {
 #[test]
 fn useless_signals_count_where_every_trial_with_signals_was_judged() {
     let arm = |useful: [Option<u64>; 2]| {
-        let none = [("S001", 20), ("S002", 12)]
-            .map(|(code, related)| acting((Condition::None, ConceptName::TomCom, 1.5), code, related, 0));
-        let acted = [("S001", useful[0]), ("S002", useful[1])].map(|(code, useful_signals)| Trial {
-            useful_signals,
-            ..acting((Condition::Assistant, ConceptName::TomCom, 1.5), code, 5, 8)
-        });
+        let none = [("S001", 20), ("S002", 12)].map(|(code, related)| acting((StudyArm::None, 1.5), code, related, 0));
+        let acted = [("S001", useful[0]), ("S002", useful[1])]
+            .map(|(code, useful_signals)| Trial { useful_signals, ..acting((StudyArm::TomCom, 1.5), code, 5, 8) });
         live_arms(&none.iter().chain(&acted).collect::<Vec<_>>(), &[]).remove(1)
     };
     let judged = arm([Some(6), Some(4)]);
@@ -72,10 +69,11 @@ fn useless_signals_count_where_every_trial_with_signals_was_judged() {
 
 #[test]
 fn one_arm_or_arms_without_common_trials_are_not_compared() {
-    let none = acting((Condition::None, ConceptName::TomCom, 1.5), "S001", 20, 0);
-    let tom = acting((Condition::Assistant, ConceptName::Tom, 0.5), "S002", 5, 40);
+    let none = acting((StudyArm::None, 1.5), "S001", 20, 0);
+    let tom = acting((StudyArm::Tom, 0.5), "S002", 5, 40);
     assert!(live_arms(&[&none, &none], &[]).is_empty());
     assert!(live_arms(&[&none, &tom], &[]).is_empty());
-    // Proposals of DEV are not shown, so it is no arm.
-    assert_eq!(ActingArm::from_settings(Condition::Assistant, ConceptName::Dev, 1.5), None);
+    // DEV by the number of presses that it proposes.
+    let dev = ActingArm::from_settings(StudyArm::Dev, 3.0);
+    assert_eq!((dev.concept, dev.parameter), ("dev", Some(3.0)));
 }

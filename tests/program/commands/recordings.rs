@@ -133,7 +133,7 @@ fn a_folder_is_listed_and_is_no_recording_where_one_is_meant() {
     assert_eq!(rows[3]["reason"], "excluded: interrupted");
     let whole = figures(&["replay", &format!("{out}/seed7-S001"), "--format", "json"], 0);
     assert_eq!((&rows[1]["errors"], &rows[1]["trial_s"]), (&whole["errors"], &whole["trial_s"]));
-    assert_eq!(rows[1]["condition"], "none");
+    assert_eq!((&rows[1]["condition"], &rows[1]["arm"]), (&"none".into(), &"none".into()));
     let told = String::from_utf8_lossy(&check(&["list", out], 0).stdout).into_owned();
     assert!(told.contains("excluded    seed7-S003  (excluded: interrupted)"), "{told}");
     assert!(told.ends_with(&format!("4 recordings in {out}\n")), "{told}");

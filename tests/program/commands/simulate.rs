@@ -101,6 +101,29 @@ states = 2
 least_rollouts = 2
 ";
 
+/// A wizard who is a person is not there: of a plan, the conditions are named that have no signals.
+#[test]
+#[serial]
+fn simulate_tells_which_conditions_of_a_plan_have_no_signals() {
+    let folder = folder("absent");
+    let path = |name: &str| folder.join(name).to_str().expect("a path in UTF-8").to_string();
+    let [session, out] = ["session.toml", "out"].map(path);
+    let layout = fs::canonicalize("layouts/sushi.toml").expect("the layout is there");
+    let plan = "[console]\nvisibility = \"state\"\n[plan]\nname = \"absent\"\nparticipants = 1\n\
+                conditions = [\"none\", \"wizard\", \"wizard+advice\"]\n";
+    let told = |wizard: &str, seed: &str| {
+        fs::write(&session, format!("layout = {layout:?}\n{QUICK}{plan}{wizard}")).expect("the session can be written");
+        let output = check(&["simulate", &session, "--out", &out, "--seed", seed], 0);
+        [output.stderr, output.stdout].map(|text| String::from_utf8_lossy(&text).into_owned())
+    };
+    let [aside, summary] = told("", "9704");
+    assert!(aside.contains("\"wizard\" and \"wizard+advice\"") && aside.contains("without signals"), "{aside}");
+    assert!(!summary.contains("wizard with advice"), "{summary}");
+    let [aside, summary] = told("[wizard]\nkind = \"scripted\"\n", "9705");
+    assert_eq!(aside, "");
+    assert!(summary.contains("  wizard: ") && summary.contains("  wizard with advice: "), "{summary}");
+}
+
 #[test]
 #[serial]
 fn simulate_tells_what_holds_at_the_console_alone() {

@@ -200,13 +200,14 @@ const Stage = (() => {
     replay(parts.why, "says");
   }
 
-  function drawSignal(signal) {
+  function drawSignal(signal, contents) {
     parts.locations.forEach(({ made }, index) => {
       made.classList.toggle("highlight", Boolean(signal && signal.highlight === index));
       made.classList.toggle("asked", Boolean(signal && signal.recipe && signal.recipe.order === index));
     });
-    const recipe = signal && signal.recipe;
-    parts.recipe.classList.toggle("open", Boolean(recipe));
+    const recipe = signal && signal.recipe, next = signal && signal.next;
+    parts.recipe.classList.toggle("open", Boolean(recipe || next));
+    if (next) drawProposal(next, contents);
     if (!recipe) return;
     put(parts.recipe, parts.cards[recipe.order]);
     const dish = element("figure", "of", Art.dish(scene, recipe.dish));
@@ -218,6 +219,31 @@ const Stage = (() => {
     });
     parts.recipe.replaceChildren(dish, ...items);
     fitWords(parts.recipe);
+  }
+
+  /** Proposed presses, where there is most room: the picture and the name of each button. */
+  function drawProposal(next, contents) {
+    put(parts.recipe, parts.free);
+    const head = element("figure", "of");
+    head.append(text("figcaption", "", scene.words.proposes));
+    const presses = next.map((index) => {
+      const { picture, label } = pictureOf(scene.buttons[index], contents);
+      const made = element("figure", "", picture);
+      made.append(text("figcaption", "", label));
+      return made;
+    });
+    parts.recipe.replaceChildren(head, ...presses);
+    fitWords(parts.recipe);
+  }
+
+  /** What a button of the human looks like in a proposal, and what it is called there. */
+  function pictureOf({ does, at, label }, contents) {
+    const named = (what) => scene.words[`proposes ${does}`].replace("#", what);
+    if (does === "take") return { picture: Art.item(scene, scene.storages[at].item), label: named(scene.storages[at].label) };
+    const spot = scene.locations[at], wanted = contents[at] && contents[at].dish;
+    if (does === "serve" && wanted) return { picture: Art.dish(scene, wanted), label: named(scene.dishes[wanted].label) };
+    const picture = Art.place(spot.kind === "place" ? spot.look && spot.look.shape : spot.kind, 100);
+    return { picture, label: does === "use" ? named(spot.label) : label };
   }
 
   /** Makes the words smaller until no name is broken and none is higher than its line. */
@@ -281,7 +307,7 @@ const Stage = (() => {
     drawPresses(sight.presses);
     drawIntention(sight.intention);
     if (sight.contents.length) Robot.hold(sight.contents, contentOf);
-    if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal);
+    if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal, sight.contents);
     if (!shown || JSON.stringify([shown.stage, shown.practice, shown.question, shown.tutorial, shown.probe]) !== JSON.stringify([sight.stage, sight.practice, sight.question, sight.tutorial, sight.probe])) drawSheet(sight, left);
     drawTarget(sight);
     parts.served.textContent = sight.served ? `✓ ${sight.served}` : "";

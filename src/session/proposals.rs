@@ -1,0 +1,39 @@
+//! Proposed presses on the display: which are left, and when they are out of date.
+
+use super::session_state::Session;
+use super::timeline_entry::TimelineEvent;
+use crate::communication::{Signal, unavailable};
+use crate::kitchen::Agent;
+
+/// Names of the proposed presses on the display that are still to be made; `None` if none are on the display. Once another button was pressed, none are left.
+pub fn left(session: &Session) -> Option<&[String]> {
+    let Signal::Propose(presses) = &session.shown.as_ref()?.signal else { return None };
+    let since = session.timeline.iter().rev().take_while(|entry| !matches!(entry.what, TimelineEvent::Signal { .. }));
+    let mut made: Vec<&str> = since
+        .filter_map(|entry| match entry.what {
+            TimelineEvent::Press { agent: Agent::Human, button, .. } => {
+                Some(session.kitchen.button(Agent::Human, button).name.as_str())
+            }
+            _ => None,
+        })
+        .collect();
+    made.reverse();
+    let is_followed = made.len() <= presses.len() && made.iter().zip(presses).all(|(made, proposed)| *made == proposed);
+    Some(if is_followed { &presses[made.len()..] } else { &[] })
+}
+
+/// Whether the proposal on the display is out of date: its presses were made, another one was made, or the next one would do nothing.
+pub fn is_outdated(session: &Session) -> bool {
+    let Some(left) = left(session) else { return false };
+    unavailable(&session.kitchen, session.state, &Signal::Propose(left.to_vec())).is_some()
+}
+
+/// Whether presses have been proposed since the human's last press: an error gets one proposal.
+pub fn was_made(session: &Session) -> bool {
+    let newest = session.timeline.iter().rev().find(|entry| match &entry.what {
+        TimelineEvent::Press { agent, .. } => *agent == Agent::Human,
+        TimelineEvent::Signal { signal, .. } => matches!(signal, Signal::Propose(_)),
+        _ => false,
+    });
+    newest.is_some_and(|entry| matches!(entry.what, TimelineEvent::Signal { .. }))
+}

@@ -1,0 +1,44 @@
+//! The starting groups of a study with their orders of conditions: what the letters of a group's name stand for.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+
+use super::trial_statistics::Trial;
+use crate::session::study_arm::StudyArm;
+
+/// A starting group as its trials show it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct GroupOrder {
+    /// The group's name, a letter for each trial: "BAC".
+    pub group: String,
+    /// The condition of each trial, by the plan where there is one, else by what was done; `None` for a trial that is missing.
+    pub order: Vec<Option<StudyArm>>,
+    /// Number of its participants.
+    pub participants: usize,
+}
+
+/// The groups of these trials, by their names.
+pub fn group_orders(trials: &[&Trial]) -> Vec<GroupOrder> {
+    let mut groups: BTreeMap<&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>)> = BTreeMap::new();
+    for trial in trials {
+        let (Some(group), Some(period)) = (&trial.group, trial.period) else { continue };
+        let (order, participants) = groups.entry(group).or_default();
+        order.insert(period, trial.planned_arm.unwrap_or(trial.study_arm));
+        participants.insert(&trial.participant);
+    }
+    let one = |(group, (order, participants)): (&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>))| GroupOrder {
+        group: group.to_string(),
+        order: (1..=group.chars().count() as u32).map(|period| order.get(&period).copied()).collect(),
+        participants: participants.len(),
+    };
+    groups.into_iter().map(one).collect()
+}
+
+impl GroupOrder {
+    /// The group in words: "BAC: wizard, unassisted, ToM-Com (2)".
+    pub fn describe(&self) -> String {
+        let order: Vec<&str> = self.order.iter().map(|arm| arm.map_or("?", StudyArm::title)).collect();
+        format!("{}: {} ({})", self.group, order.join(", "), self.participants)
+    }
+}

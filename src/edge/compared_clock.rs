@@ -131,7 +131,7 @@ mod tests {
     /// time; and by how much Pupil time was behind the true one then.
     fn time_sync() -> Vec<[f64; 4]> {
         let numbers = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect::<Vec<f64>>();
-        let table = include_str!("../../../tests/pupil/time_sync.csv");
+        let table = include_str!("../../tests/pupil/time_sync.csv");
         table.lines().skip(1).map(|line| numbers(line).try_into().expect("four cells")).collect()
     }
 

@@ -48,7 +48,8 @@ fn fields(event: &Event) -> Map<String, Value> {
     fields
 }
 
-/// A value as a part of a code: a word, or the name and content of a variant (`highlight/cooking_pot`); `None` for anything else.
+/// A value as a part of a code: a word, several of them, or the name and content of a variant (`highlight/cooking_pot`); `None` for
+/// anything else.
 fn part_text(value: &Value) -> Option<String> {
     match value {
         Value::String(word) => Some(word.clone()),
@@ -56,6 +57,7 @@ fn part_text(value: &Value) -> Option<String> {
             let (name, content) = fields.iter().next()?;
             Some(format!("{name}/{}", part_text(content)?))
         }
+        Value::Array(parts) => Some(parts.iter().map(part_text).collect::<Option<Vec<_>>>()?.join("/")),
         _ => None,
     }
 }

@@ -124,6 +124,7 @@ fn signal_labels(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<String> {
     let label = |signal: Signal| match signal {
         Signal::ShowRecipe(order) => format!("show_recipe/{order}"),
         Signal::Highlight(location) => format!("highlight/{location}"),
+        Signal::Propose(presses) => format!("propose/{}", presses.join("/")),
     };
     session_signals(spec, kitchen).into_iter().map(label).collect()
 }

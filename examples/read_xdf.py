@@ -36,7 +36,7 @@ for name, table in sorted(tables.items()):
 if "events" in tables:
     events = pandas.DataFrame.from_records([json.loads(event) for event in tables["events"]["event"]])
     events["time"] = tables["events"]["time"]
-    for recording in events["recording"].dropna():
+    for recording in events["recording"].dropna().unique():
         print(f"recording: {recording}")
 if "presses" in tables:
     presses = tables["presses"]

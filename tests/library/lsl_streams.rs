@@ -20,6 +20,9 @@ use tomcom::session::settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, Ls
 use tomcom::session::tracker::TrackerEvent;
 use tomcom::session::{Event, Session, SessionSpec, Stamped};
 
+/// Name of the recording.
+const RECORDING: &str = "2026-03-14-P07-1";
+
 /// The default session, which sends these streams.
 fn spec(outlets: &[LslOutlet]) -> SessionSpec {
     let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
@@ -40,7 +43,7 @@ fn sent(name: &str, outlets: &[LslOutlet]) -> (Vec<StreamSample>, Vec<Value>, Se
     let mut follower = Follower::new(session.clone(), CostToGo::new(session.kitchen.clone())).without_causes();
     let mut wanted = session;
     wanted.spec.lsl = spec(outlets).lsl;
-    let (mut maker, mut samples) = (SampleMaker::new(&wanted), Vec::new());
+    let (mut maker, mut samples) = (SampleMaker::new(&wanted, RECORDING), Vec::new());
     while let Some(line) = log.next_line().expect("a line") {
         let event = line.stamped;
         follower.apply(&event).expect("it applies");
@@ -72,7 +75,11 @@ fn numbers(sample: &StreamSample) -> &[f64] {
 fn every_event_but_samples_is_a_marker_with_the_fields_of_the_log() {
     for name in ["format-1-hand", "format-1-people", "format-2-offers", "format-2-probes"] {
         let (samples, events, _) = sent(name, &LslOutlet::ALL);
-        let of = |outlet| samples.iter().filter(move |sample| sample.outlet == outlet);
+        let is_event = |sample: &&StreamSample| match &sample.values {
+            SampleValues::Texts(texts) => !texts[0].contains(RECORDING),
+            SampleValues::Numbers(_) => true,
+        };
+        let of = |outlet| samples.iter().filter(is_event).filter(move |sample| sample.outlet == outlet);
         let is_sample = |event: &&Value| event["kind"] == "gaze" || event["kind"] == "robot_moves";
         let wanted: Vec<&Value> = events.iter().filter(|event| !is_sample(event)).collect();
         let told: Vec<&StreamSample> = of(LslOutlet::Events).collect();
@@ -98,7 +105,7 @@ fn every_event_but_samples_is_a_marker_with_the_fields_of_the_log() {
 fn codes_name_what_an_event_is_about() {
     let (samples, _, _) = sent("format-2-offers", &[LslOutlet::Markers]);
     let codes: Vec<&str> = samples.iter().map(|sample| texts(sample)[0].as_str()).collect();
-    assert_eq!(codes[0], "trial_started");
+    assert_eq!(codes[..2], [&format!("recording/{RECORDING}"), "trial_started"]);
     for wanted in ["press/human/", "press/robot/", "robot_intends/", "order_shown/", "offer_opened/", "advised"] {
         assert!(codes.iter().any(|code| code.starts_with(wanted)), "{wanted} in {codes:?}");
     }
@@ -246,10 +253,10 @@ fn streams_are_named_after_the_participant_and_described_with_the_layout() {
     assert!(!samples.is_empty() && samples.iter().all(|sample| sample.outlet == LslOutlet::Gaze));
     let mut session = LogReader::open(Path::new("tests/golden/format-1-people.jsonl")).expect("a recording").session();
     session.spec.lsl = spec(&[LslOutlet::Markers]).lsl;
-    let opening = SampleMaker::new(&session).opening("2026-03-14-P07-1", &session);
+    let opening = SampleMaker::new(&session, RECORDING).opening(&session, session.time);
     assert_eq!(
         opening.iter().map(|sample| texts(sample)[0].as_str()).collect::<Vec<_>>(),
-        ["recording/2026-03-14-P07-1"]
+        [format!("recording/{RECORDING}")]
     );
 }
 
@@ -289,7 +296,10 @@ fn a_library_that_is_missing_or_another_one_is_named_with_a_remedy() {
     assert!(matches!(none, LslError::Missing(_)), "{none}");
     #[cfg(target_os = "linux")]
     {
-        let other = load(Some(&library("libc.so.6"))).expect_err("another library");
-        assert!(other.to_string().contains("libc.so.6 is no liblsl"), "{other}");
+        let maps = fs::read_to_string("/proc/self/maps").expect("the libraries of this process");
+        let mut paths = maps.lines().filter_map(|line| Some(&line[line.find('/')?..]));
+        let libc = paths.find(|path| path.contains("libc.so") || path.contains("libc-")).expect("the C library");
+        let other = load(Some(&library(libc))).expect_err("another library");
+        assert!(other.to_string().contains("is no liblsl") && other.to_string().contains("it lacks lsl_"), "{other}");
     }
 }

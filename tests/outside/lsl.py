@@ -154,7 +154,7 @@ def check_events(streams, events):
     assert numpy.ptp(offsets) < OFF_S, f"events are up to {1000 * numpy.ptp(offsets):.3f} ms off"
     codes = list(zip(streams["markers"]["time_stamps"], texts(streams["markers"])))[-len(told):]
     for (stamp, code), (at, event) in zip(codes, told):
-        assert code.split("/")[0] == event["kind"] and abs(stamp - at) < 1e-9, (code, event)
+        assert code.split("/")[0] == event["kind"] and abs(stamp - at) < OFF_S, (code, event)
         if event["kind"] == "press":
             assert code == f"press/{event['agent']}/{event['button']}", code
     return first, float(numpy.median(offsets)), numpy.ptp(offsets), len(told)

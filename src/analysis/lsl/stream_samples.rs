@@ -41,6 +41,8 @@ pub enum SampleValues {
 #[derive(Clone, Debug)]
 pub struct SampleMaker {
     outlets: Vec<LslOutlet>,
+    /// Name of the recording.
+    recording: String,
     /// The signals by channel.
     signals: Vec<Signal>,
     /// The last sample of beliefs, and its time.
@@ -48,15 +50,21 @@ pub struct SampleMaker {
 }
 
 impl SampleMaker {
-    /// A maker of the samples of the streams that the session sends.
-    pub fn new(session: &Session) -> SampleMaker {
+    /// A maker of the samples of the streams that the session sends, in a recording with this name.
+    pub fn new(session: &Session, recording: &str) -> SampleMaker {
         let outlets = session.spec.lsl.as_ref().map_or(Vec::new(), |lsl| lsl.outlets.clone());
-        SampleMaker { outlets, signals: session_signals(&session.spec, &session.kitchen), believed: None }
+        SampleMaker {
+            outlets,
+            recording: recording.to_string(),
+            signals: session_signals(&session.spec, &session.kitchen),
+            believed: None,
+        }
     }
 
-    /// Samples at the beginning of a recording with this name: which recording the following events belong to. They are no events.
-    pub fn opening(&self, recording: &str, session: &Session) -> Vec<StreamSample> {
-        let (spec, time) = (&session.spec, session.time);
+    /// Samples that say which recording the following events belong to; they are no events. They open a recording, and come again with
+    /// its trial, since a recorder may have been started between.
+    pub fn opening(&self, session: &Session, time: SessionTime) -> Vec<StreamSample> {
+        let (spec, recording) = (&session.spec, &self.recording);
         let told = json!({
             "kind": "recording",
             "recording": recording,
@@ -80,6 +88,9 @@ impl SampleMaker {
     ) -> Vec<StreamSample> {
         let mut samples: Vec<StreamSample> = Vec::new();
         for stamped in events {
+            if stamped.event == Event::TrialStarted {
+                samples.extend(self.opening(session, stamped.time));
+            }
             samples.extend(self.event_samples(stamped, session, judged));
         }
         let by_gaze = events.iter().all(|stamped| stamped.event.is_sample());

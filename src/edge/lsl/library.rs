@@ -1,6 +1,7 @@
 //! liblsl, loaded when a session asks for it: its functions, and what they make, as values that are used safely. This is the only file
 //! of the crate with code that the compiler cannot check.
 
+use std::error::Error;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::path::Path;
 
@@ -170,7 +171,12 @@ impl LslLibrary {
 
 fn open(path: &Path) -> Result<Library, LslError> {
     // SAFETY: loading a library runs its initialisers; the session file, or the system, names it as liblsl.
-    unsafe { Library::new(path) }.map_err(|reason| LslError::Missing(reason.to_string()))
+    unsafe { Library::new(path) }.map_err(|error| {
+        // The error itself only names the function of the system that failed.
+        let reason = error.source().map_or(error.to_string(), ToString::to_string);
+        let place = path.display().to_string();
+        LslError::Missing(if reason.contains(&place) { reason } else { format!("{place}: {reason}") })
+    })
 }
 
 /// A text for the library; it ends at its first zero byte, of which ours have none.

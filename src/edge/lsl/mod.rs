@@ -12,7 +12,7 @@ mod library;
 mod lsl_error;
 mod outlet_thread;
 
-use std::path::Path;
+use std::path::absolute;
 
 use crate::analysis::lsl::SOURCE;
 use crate::session::settings::{LslGazeSpec, LslSpec};
@@ -27,8 +27,10 @@ pub use outlet_thread::{LslCounts, LslStreams, TimedSample};
 /// # Errors
 /// There is none, or it is too old.
 pub fn load(spec: Option<&LslSpec>) -> Result<LslLibrary, LslError> {
-    let path = spec.and_then(|spec| spec.library.as_deref()).map(Path::new);
-    LslLibrary::load(path, &configuration::configuration())
+    let path = spec.and_then(|spec| spec.library.as_deref());
+    // The system's loader would look for a bare name elsewhere.
+    let path = path.map(|path| absolute(path).unwrap_or_else(|_| path.into()));
+    LslLibrary::load(path.as_deref(), &configuration::configuration())
 }
 
 /// The predicate that finds a stream of gaze: its name and type, and none of this program's own.

@@ -32,9 +32,9 @@ impl LslStreaming {
     ) -> Result<Option<LslStreaming>, String> {
         let streams = desk.lsl.streams(session).map_err(|error| error.to_string())?;
         let open = |streams: Rc<LslStreams>| {
-            let (maker, told) = (SampleMaker::new(session), streams.counts());
+            let (maker, told) = (SampleMaker::new(session, recording), streams.counts());
             let streaming = LslStreaming { maker, streams, told };
-            streaming.send(streaming.maker.opening(recording, session), clock);
+            streaming.send(streaming.maker.opening(session, session.time), clock);
             streaming
         };
         Ok(streams.map(open))

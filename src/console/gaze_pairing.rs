@@ -21,7 +21,8 @@ impl GazePairing {
 
     /// Address and code for the list of checks, while no gaze arrives.
     pub fn check(&self, session: &Session, now: SessionTime) -> Option<PreflightCheck> {
-        let found = format!("another computer sends to {}, pairing code {}", self.address, self.code);
+        // The code first: on a small screen the line is cut.
+        let found = format!("pairing code {}; send to {}", self.code, self.address);
         session.gaze_hz(now).is_none().then(|| PreflightCheck::ok("gaze pairing", found))
     }
 }

@@ -151,7 +151,7 @@ def check_tobii(tomcom, folder):
     to = f"{outer_address()}:{PORT + 1}"
     with operate(tomcom, folder, PORT + 1, 'gaze_listen = "0.0.0.0"\n') as console:
         console.key("\x06")
-        console.wait_for(r"gaze pairing.*pairing code [A-Z0-9]{6}")
+        console.wait_for(r"gaze pairing +pairing code [A-Z0-9]{6}")
         shown = plain(console.text())
         assert to in shown, f"{to}:\n{shown}"
         code = re.search(r"pairing code ([A-Z0-9]{6})", shown)[1]

@@ -230,8 +230,13 @@ fn how_a_tracker_pairs_is_shown_until_its_gaze_arrives() {
     assert_eq!((check(&stage), is_shown(&stage)), (None, [false; 3]), "programs of this computer need not pair");
     let (address, code) = ("192.168.1.5:50021".to_string(), "ABC234".to_string());
     stage.model.gaze_pairing = Some(GazePairing { address, code });
-    let found = "another computer sends to 192.168.1.5:50021, pairing code ABC234";
-    assert_eq!((check(&stage), is_shown(&stage)), (Some(found.to_string()), [true; 3]));
+    let found = "pairing code ABC234; send to 192.168.1.5:50021";
+    assert_eq!(check(&stage), Some(found.to_string()));
+    stage.control('f');
+    assert!(SIZES.iter().all(|size| stage.screen(*size).contains(found)), "the list of checks");
+    stage.key(KeyCode::Esc);
+    stage.at(0.1, Event::TrialStarted);
+    assert_eq!(is_shown(&stage), [true; 3], "the gaze panel");
     for step in 0..50 {
         stage.look(1.0 + 0.01 * f64::from(step), 0.5, 0.5);
     }

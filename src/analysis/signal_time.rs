@@ -1,19 +1,35 @@
 //! How long signals stood on the participant's display.
 
+use super::wizard_log::clock_at;
 use crate::base::time::SessionTime;
-use crate::session::{Session, TimelineEvent};
+use crate::session::{Event, Session, Stamped};
 
-/// Seconds of the trial's clock with a signal on the display. At most one is there at a time: a new one takes the place of the last.
-pub fn signal_seconds(session: &Session) -> f64 {
-    let (mut shown, mut seconds): (Option<SessionTime>, f64) = (None, 0.0);
-    for entry in &session.timeline {
-        let ends = match entry.what {
-            TimelineEvent::Signal { .. } => shown.replace(entry.time),
-            TimelineEvent::SignalEnded(_) => shown.take(),
-            _ => None,
-        };
-        seconds += ends.map_or(0.0, |since| session.age(since, entry.time).as_secs_f64());
+/// When signals appeared on the display (true) and vanished (false), in session time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SignalTimes {
+    changes: Vec<(SessionTime, bool)>,
+}
+
+impl SignalTimes {
+    /// Takes the next event of a session.
+    pub fn note(&mut self, stamped: &Stamped) {
+        match stamped.event {
+            Event::SignalShown { .. } => self.changes.push((stamped.time, true)),
+            Event::SignalEnded { .. } => self.changes.push((stamped.time, false)),
+            _ => {}
+        }
     }
-    // The end of the trial takes the last one off the display.
-    seconds + shown.map_or(0.0, |since| session.age(since, session.time).as_secs_f64())
+
+    /// Seconds of the trial's clock with a signal on the display, after the last event of the session. At most one is there at a time: a
+    /// new one takes the place of the last, and the end of the trial takes it off.
+    pub fn seconds(&self, session: &Session) -> f64 {
+        let end = session.trial_clock(session.time);
+        let (mut shown, mut seconds): (Option<SessionTime>, f64) = (None, 0.0);
+        for &(time, appears) in &self.changes {
+            let now = clock_at(session, time).min(end);
+            let since = if appears { shown.replace(now) } else { shown.take() };
+            seconds += since.map_or(0.0, |since| now.secs_since(since));
+        }
+        seconds + shown.map_or(0.0, |since| end.secs_since(since))
+    }
 }

@@ -12,7 +12,7 @@ use crate::edge::file_error::FileError;
 use crate::edge::files::{SessionFiles, read_session};
 use crate::edge::{pool_file, power_files};
 use crate::run::pool::{self, PoolRequest};
-use crate::run::power::{self, PowerRequest};
+use crate::run::power_measurement::{self, PowerRequest};
 use crate::run::simulate::Shard;
 use crate::run::study::describe_arms;
 use crate::session::settings::ArmKind;
@@ -175,8 +175,8 @@ pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
     sizes.sort_unstable();
     sizes.dedup();
     let request = PowerRequest { sizes, studies: args.studies, effect };
-    let bar = progress(power::blocks(&request, &pool), "blocks of studies");
-    let found = power::measure(&request, &pool, args.pool.source(), || bar.inc(1))?;
+    let bar = progress(power_measurement::blocks(&request, &pool), "blocks of studies");
+    let found = power_measurement::measure(&request, &pool, args.pool.source(), || bar.inc(1))?;
     bar.finish_and_clear();
     if let Some(file) = &args.csv {
         power_files::write_table(file, &found)?;

@@ -44,8 +44,8 @@ pub fn check_power(table: Option<&Path>, picture: Option<&Path>) -> FileResult<(
         Some(path) => overwrite::check(path, what, is_own).map_err(|reason| unwritable(path, reason)),
         None => Ok(()),
     };
-    check(table, "a table of tomcom power", &|head| overwrite::first_line(head) == names.as_bytes())?;
-    check(picture, "a picture of tomcom power", &|head| head.starts_with(b"<svg "))
+    check(table, "a table of power", &|head| overwrite::first_line(head) == names.as_bytes())?;
+    check(picture, "a picture of power", &|head| head.starts_with(b"<svg "))
 }
 
 /// Writes the table: a row for each number of participants and test (CSV).

@@ -43,7 +43,7 @@ pub mod plan;
 #[cfg(feature = "cli")]
 pub mod pool;
 #[cfg(feature = "cli")]
-pub mod power;
+pub mod power_measurement;
 #[cfg(feature = "cli")]
 pub mod recording_list;
 #[cfg(feature = "cli")]

@@ -9,17 +9,17 @@ use super::engine::Engine;
 use super::headless;
 use super::parallel::WorkerPool;
 use super::simulate::Shard;
-use crate::analysis::signal_time::signal_seconds;
+use crate::analysis::signal_time::SignalTimes;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::communication::settings::Shadow;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::SessionFiles;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::session::SessionSpec;
 use crate::session::plan::{Participants, Study};
 use crate::session::settings::Condition;
 use crate::session::study_arm::StudyArm;
+use crate::session::{SessionSpec, Stamped};
 use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, SimulationPool, TrialCounts};
 
 /// Request of a pool.
@@ -157,7 +157,12 @@ impl PoolStudy<'_> {
     fn simulate(&self, kitchen: &Arc<Kitchen>, item: PoolItem, cost: CostToGo) -> (PoolTrial, CostToGo) {
         let (spec, arm, trial) = self.settings(item);
         let mut engine = Engine::new(kitchen.clone(), spec, trial, cost);
-        headless::run(&mut engine, |_| Ok::<(), Infallible>(())).unwrap_or_else(|never| match never {});
+        let mut signals = SignalTimes::default();
+        let keep = |stamped: &Stamped| {
+            signals.note(stamped);
+            Ok::<(), Infallible>(())
+        };
+        headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
         let follower = engine.into_follower();
         let summary = TrialSummary::from_follower(&follower);
         // Simulated participants tell what they believed before every press.
@@ -170,7 +175,7 @@ impl PoolStudy<'_> {
             lengths: beliefs.sequences.iter().map(|sequence| sequence.length()).collect(),
             orders: summary.served.len() as u64,
             signals: summary.signals,
-            signal_s: signal_seconds(&follower.session),
+            signal_s: signals.seconds(&follower.session),
             seconds: summary.seconds,
         };
         let group = self.study.group(item.participant as usize).name;

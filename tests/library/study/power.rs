@@ -8,7 +8,7 @@ use rand_distr::{Distribution, Gamma, Normal, Poisson};
 use tomcom::base::rng::stream;
 use tomcom::edge::pool_file::{read_pool, write_pool};
 use tomcom::edge::power_files::{check_power, write_picture, write_table};
-use tomcom::run::power::{PowerRequest, measure};
+use tomcom::run::power_measurement::{PowerRequest, measure};
 use tomcom::session::plan::{PrimaryOutcome, StudyAims, orders};
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;

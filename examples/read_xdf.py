@@ -36,7 +36,8 @@ for name, table in sorted(tables.items()):
 if "events" in tables:
     events = pandas.DataFrame.from_records([json.loads(event) for event in tables["events"]["event"]])
     events["time"] = tables["events"]["time"]
-    for recording in events["recording"].dropna().unique():
+    # Each recording and its trial begin with a sample that names it, which is no event.
+    for recording in events.loc[events["kind"] == "recording", "recording"].unique() if "recording" in events else []:
         print(f"recording: {recording}")
 if "presses" in tables:
     presses = tables["presses"]

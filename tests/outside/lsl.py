@@ -5,6 +5,7 @@ them into XDF in a process of its own, and pyxdf reads that file.
 """
 
 import argparse
+import atexit
 import json
 import math
 import os
@@ -81,7 +82,9 @@ def session(folder, condition="assistant", gaze=True, library=LIBRARY, channel="
 
 def tracker(folder, hz=200, name="tracker"):
     journal = folder / f"{name}.jsonl"
-    return subprocess.Popen([sys.executable, "-c", TRACKER, name, str(hz), journal], stderr=subprocess.DEVNULL), journal
+    sender = subprocess.Popen([sys.executable, "-c", TRACKER, name, str(hz), journal], stderr=subprocess.DEVNULL)
+    atexit.register(sender.kill)
+    return sender, journal
 
 
 def begin(tomcom, folder, **settings):
@@ -264,8 +267,13 @@ def check_both_ways(tomcom, folder, seconds, hz):
     finally:
         sender.kill()
         if consumer:
-            consumer.send_signal(signal.SIGINT)
-            consumer.wait(10)
+            consumer.kill()
+            consumer.wait()
+    check_recorded(tomcom, folder, recording, journal, f"LSL for {seconds} s at {hz} Hz")
+
+
+def check_recorded(tomcom, folder, recording, journal, title):
+    """What a session and its recorder left behind."""
     verify(tomcom, recording)
     events, streams = events_of(recording), streams_of(folder / "session.xdf")
     assert set(streams) == {*OUTLETS, "tracker"}, set(streams)
@@ -278,7 +286,7 @@ def check_both_ways(tomcom, folder, seconds, hz):
     assert printed.count(" press/") > 0.8 * len(presses) and "session_ended" in printed and "has ended" in printed, printed[-500:]
     check_example(folder / "session.xdf", recording, streams)
     print(
-        f"LSL for {seconds} s at {hz} Hz: {told} events, {gaze} gaze samples and {moves} of the arm in the XDF file, none lost, times within "
+        f"{title}: {told} events, {gaze} gaze samples and {moves} of the arm in the XDF file, none lost, times within "
         f"{1000 * spread_s:.3f} ms; {sent} samples of the tracker, in and out again within {1000 * off_s:.3f} ms; the recording verifies",
         flush=True,
     )

@@ -18,10 +18,10 @@ use super::population::{chance, rare_chance};
 use super::simulated::SimulatedParticipant;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::kitchen::{Agent, ButtonId, DishId, LocationId, OrderContent, State};
+use crate::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 
-/// Where the page shows proposed presses, in fractions of the display: at no place of the task.
-const PROPOSAL_AT: [f64; 2] = [0.5, 0.5];
+/// Number of steps along each side of the display in the search for room.
+const ROOM_STEPS: usize = 20;
 
 /// Least share of a participant's signals that it still notices when all of them were useless.
 const LEAST_HEED: f64 = 0.3;
@@ -56,7 +56,7 @@ impl SimulatedParticipant {
         let Some((_, location, signal)) = self.signals.pending.take_if(|_| is_due) else { return };
         let kitchen = self.kitchen.clone();
         self.rethink = true;
-        let point = location.map_or(PROPOSAL_AT, |location| kitchen.location(location).display.centre());
+        let point = location.map_or_else(|| roomiest(&kitchen), |location| kitchen.location(location).display.centre());
         self.eyes.look_at(now, point);
         self.attention.looking_at = location;
         let is_useful = match (signal, location) {
@@ -126,4 +126,18 @@ impl SimulatedParticipant {
             self.intent.lose();
         }
     }
+}
+
+/// Where the page shows proposed presses: the point of the display that is farthest from all locations and storages, as a fraction of its
+/// width and height.
+fn roomiest(kitchen: &Kitchen) -> [f64; 2] {
+    let at = |step: usize| step as f64 / ROOM_STEPS as f64;
+    // The corners belong to the tags.
+    let inside = || 2..ROOM_STEPS - 1;
+    let points = inside().flat_map(|x| inside().map(move |y| [at(x), at(y)]));
+    let areas =
+        || kitchen.locations.iter().map(|one| one.display).chain(kitchen.storages.iter().map(|one| one.display));
+    let room_m =
+        |point: &[f64; 2]| areas().map(|area| area.distance_m(*point, kitchen.display_m)).fold(f64::INFINITY, f64::min);
+    points.max_by(|a, b| room_m(a).total_cmp(&room_m(b))).unwrap_or([0.5, 0.5])
 }

@@ -183,7 +183,7 @@ fn what_the_wizard_said_is_left_out_of_the_estimate_for_the_window_and_no_longer
         let (files, silent) = pressed_on(name, &[]);
         let (known_silent, _) = asked(&files, &silent, window);
         let kitchen = &files.kitchen.kitchen;
-        let place = |signal: &Signal| signal.location(&kitchen).expect("a location");
+        let place = |signal: &Signal| signal.location(kitchen).expect("a location");
         // Nobody looks at the order, so what it wants stays unknown.
         let (press, signal) = (5, Signal::ShowRecipe(kitchen.location(kitchen.orders[0]).name.clone()));
         let (files, told) = pressed_on(name, &[(2.0 * f64::from(press) + 1.9, signal.clone())]);

@@ -250,10 +250,10 @@ const Art = (() => {
       const first = 50 + (step * (names.length - 1)) / 2;
       return svg(names.map((name, i) => `<g transform="translate(50 ${first - i * step}) scale(${scale}) translate(-50 -50)">${picture(name, scene.items[name], false)}</g>`).join(""));
     },
-    /** The furniture of a place that is `w` wide where it is 100 high. */
-    place(shape, w) {
+    /** The furniture of a place that is `w` wide where it is 100 high; it fills its box, or keeps its shape in it. */
+    place(shape, w, keeps = false) {
       const draw = PLACES[shape] || PLACES.counter;
-      return svg(draw(w), `0 0 ${number(w)} 100`, 'preserveAspectRatio="none"');
+      return svg(draw(w), `0 0 ${number(w)} 100`, keeps ? "" : 'preserveAspectRatio="none"');
     },
     /** A tag's cells: rows of "#" and " ". */
     tag(rows) {

@@ -242,7 +242,7 @@ const Stage = (() => {
     if (does === "take") return { picture: Art.item(scene, scene.storages[at].item), label: named(scene.storages[at].label) };
     const spot = scene.locations[at], wanted = contents[at] && contents[at].dish;
     if (does === "serve" && wanted) return { picture: Art.dish(scene, wanted), label: named(scene.dishes[wanted].label) };
-    const picture = Art.place(spot.kind === "place" ? spot.look && spot.look.shape : spot.kind, 100);
+    const picture = Art.place(spot.kind === "place" ? spot.look && spot.look.shape : spot.kind, 150, true);
     return { picture, label: does === "use" ? named(spot.label) : label };
   }
 

@@ -15,10 +15,12 @@ fn folder(name: &str) -> (PathBuf, String) {
     fs::create_dir_all(&folder).expect("a folder");
     let text = fs::read_to_string("sessions/paper.toml").expect("the paper's session");
     let root = format!("\"{}/", env!("CARGO_MANIFEST_DIR"));
+    // As tomcom simulate sets them, so that recordings have the digest of the plan.
+    let text = text.replace("[trial]", "[trial]\ncondition = \"none\"") + "\n[assistant]\nshadow = \"off\"\n";
     let text = text.replace("\"../", &root).replace("presses = 304", "presses = 40");
+    let text = text.replace("participants = 14", "participants = 4").replace("block = 14", "block = 4");
     let plan = folder.join("short.toml");
-    fs::write(&plan, text.replace("participants = 14", "participants = 4").replace("block = 14", "block = 4"))
-        .expect("written");
+    fs::write(&plan, text).expect("written");
     (folder, plan.display().to_string())
 }
 

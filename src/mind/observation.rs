@@ -42,6 +42,11 @@ pub enum Observed {
         /// The location that the signal is about.
         location: LocationId,
     },
+    /// The human has not pressed for longer than usual.
+    Waited {
+        /// Share of its own intervals between presses that are longer.
+        longer: f64,
+    },
     /// The trial stands still: nothing is read or forgotten until it goes on.
     Paused,
     /// The trial goes on.

@@ -1,4 +1,4 @@
-//! The update of the estimate by the likelihood of a press.
+//! The update of the estimate by the likelihood of what the human does: of a press, or of waiting.
 //!
 //! p(a | b) is a softmax over expected costs to go, so the posterior has no closed form. Belief samples represent the prior,
 //! each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of Dir(alpha + n_j) with
@@ -25,10 +25,23 @@ const SPREAD: f64 = 0.4;
 /// Marks an aspect that is not drawn because the decision does not depend on it.
 pub const UNDRAWN: u8 = u8::MAX;
 
+/// What the human does, as evidence of its belief b.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HumanAct {
+    /// It presses a button. Likelihood: p(a | b, a press), times 1 - p(wait | b) where waiting is evidence.
+    Presses(ButtonId),
+    /// It has not pressed for longer than usual. Likelihood: l + (1 - l) p(wait | b), where l is the share of its intervals that are
+    /// longer: it still thinks, or has decided to wait.
+    Waits {
+        /// Share of its own intervals that are longer.
+        longer: f64,
+    },
+}
+
 /// Likelihood of a press and quality of the samples behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// ln p(a) under the estimate before the press, in nats.
+    /// ln p(a), given that a press is made, under the estimate before the press, in nats.
     pub log_p: f64,
     /// Number of belief samples drawn.
     pub beliefs: usize,
@@ -54,6 +67,8 @@ pub struct Sampler {
     /// Weight of each belief sample before and after multiplication with its likelihood p(a | belief).
     pub(super) priors: Vec<f64>,
     posteriors: Vec<f64>,
+    /// Weight of each belief sample before, where waiting is evidence times the chance that a press is made.
+    pressing: Vec<f64>,
     pub(super) worlds: DistinctWorlds,
     /// The distinct worlds of each belief sample, in consecutive ranges.
     pub(super) runs: Vec<Run>,
@@ -110,7 +125,7 @@ struct Alike {
     draws: u32,
 }
 
-/// The models that define the likelihood of a press.
+/// The models that define the likelihood of an act.
 pub struct EvidenceModel<'a> {
     /// The kitchen.
     pub kitchen: &'a Kitchen,
@@ -128,13 +143,13 @@ impl Sampler {
         Sampler { wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(), ..Sampler::default() }
     }
 
-    /// Updates the estimate by the likelihood of a press of the human, and by the looks that nobody saw before it.
+    /// Updates the estimate by the likelihood of an act of the human, and by the looks that nobody saw before it.
     pub fn weigh(
         &mut self,
         model: &EvidenceModel,
         cost: &mut CostToGo,
         belief: &mut DirichletBelief,
-        button: ButtonId,
+        act: HumanAct,
         looks: Option<&UnseenLooks>,
         random: &mut Stream,
     ) -> Evidence {
@@ -148,9 +163,9 @@ impl Sampler {
                 self.look(model, looks, old, random);
                 self.worlds.rate(cost, wanted * states);
             }
-            self.weigh_samples(model, button, old);
+            self.weigh_samples(model, act, old);
             while self.rate_again(cost, states) {
-                self.weigh_samples(model, button, 0);
+                self.weigh_samples(model, act, 0);
             }
             let evidence = self.evidence();
             let can_double = wanted * 2 <= model.inference.max_beliefs;
@@ -178,6 +193,7 @@ impl Sampler {
         self.runs.clear();
         self.priors.clear();
         self.posteriors.clear();
+        self.pressing.clear();
         self.looks.clear();
         self.news.clear();
         self.read_sums.clear();
@@ -278,14 +294,29 @@ impl Sampler {
         }
     }
 
-    /// Multiplies the weights of the belief samples from index `from` on by p(a | belief).
-    fn weigh_samples(&mut self, model: &EvidenceModel, button: ButtonId, from: usize) {
+    /// Multiplies the weights of the belief samples from index `from` on by the likelihood of an act.
+    fn weigh_samples(&mut self, model: &EvidenceModel, act: HumanAct, from: usize) {
         self.posteriors.truncate(from);
+        self.pressing.truncate(from);
         for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
-            let likelihood = model.choice.press_likelihood(self.sum_costs(sample, &mut sums, model), button);
-            self.posteriors.push(prior * likelihood);
+            let sums = self.sum_costs(sample, &mut sums, model);
+            let waits = || model.choice.wait_likelihood(self.sum_here(sample), sums);
+            let (pressing, likelihood) = match act {
+                HumanAct::Presses(button) if model.inference.waiting => {
+                    (prior * (1.0 - waits()), model.choice.press_likelihood(sums, button))
+                }
+                HumanAct::Presses(button) => (*prior, model.choice.press_likelihood(sums, button)),
+                HumanAct::Waits { longer } => (*prior, longer + (1.0 - longer) * waits()),
+            };
+            self.pressing.push(pressing);
+            self.posteriors.push(pressing * likelihood);
         }
+    }
+
+    /// Cost to go of the present state, summed over the draws of a belief sample.
+    fn sum_here(&self, sample: &Sample) -> u32 {
+        self.runs_of(sample).iter().map(|run| run.draws * u32::from(self.worlds.here(run.world))).sum()
     }
 
     /// Cost to go after each button of the human, summed over the draws of a belief sample.
@@ -323,7 +354,7 @@ impl Sampler {
     }
 
     fn evidence(&self) -> Evidence {
-        let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
+        let (before, total): (f64, f64) = (self.pressing.iter().sum(), self.posteriors.iter().sum());
         let squares: f64 = self.posteriors.iter().map(|p| p * p).sum();
         Evidence { log_p: (total / before).ln(), beliefs: self.posteriors.len(), effective: total * total / squares }
     }

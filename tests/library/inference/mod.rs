@@ -12,6 +12,7 @@ mod observed;
 mod particles;
 mod recorded;
 mod unknown_gaze;
+mod waiting;
 mod world;
 
 use tomcom::mind::model::{HumanModel, LookingModel};

@@ -1,4 +1,5 @@
-//! The assistant of a session: answers a request for advice after every press and every order change.
+//! The assistant of a session: answers a request for advice after every press and every order change, and at other moments where
+//! the session's settings say so.
 
 use super::follower::Follower;
 use crate::base::time::SessionTime;
@@ -10,7 +11,7 @@ use crate::communication::situation::{RobotIntent, Situation};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{AspectId, State};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::session::{Event, Session};
+use crate::session::Session;
 
 /// A request for advice: the session after an event and all its immediate consequences.
 #[derive(Clone, Debug)]
@@ -33,7 +34,8 @@ pub struct AdviceRequest {
 
 impl AdviceRequest {
     /// The request after the event with this sequence number and time.
-    pub fn from_follower(follower: &Follower, seq: u64, time: SessionTime) -> AdviceRequest {
+    pub fn from_follower(follower: &mut Follower, seq: u64, time: SessionTime) -> AdviceRequest {
+        let belief = follower.belief_for_advice(time);
         let session = &follower.session;
         let robot = match session.robot.intention {
             _ if session.robot.stopped || session.robot.held && session.robot.driven_to.is_none() => RobotIntent::Still,
@@ -44,7 +46,6 @@ impl AdviceRequest {
             None => RobotIntent::Free,
         };
         let (state, robot_press_s) = (session.state, session.spec.robot.press_s);
-        let belief = follower.filter.belief().clone();
         let signals = follower.repeats.allowed(&session.kitchen, session.spec.signals.own_hand);
         let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
         let changed = session.changed_at(time).map(AspectId::of_location).collect();
@@ -99,12 +100,4 @@ impl Advisor {
     pub fn answer(&mut self, question: &AdviceRequest) -> Recommendation {
         self.concept.advise(&mut self.cost, &question.moment())
     }
-}
-
-/// Whether advice is requested after this kind of event: a press of either agent, or a change of the task without a press.
-pub fn changes_task(event: &Event) -> bool {
-    matches!(
-        event,
-        Event::Press { .. } | Event::OrderShown { .. } | Event::OrderCleared { .. } | Event::KitchenCorrected { .. }
-    )
 }

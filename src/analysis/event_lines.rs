@@ -55,6 +55,10 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         }
         Event::OrderShown { order, dish } => format!("{} wants {}", said(order), kitchen.worded(dish)),
         Event::OrderCleared { order } => format!("{} is cleared", said(order)),
+        Event::HumanWaits { silent_ns } => {
+            format!("participant has not pressed for {:.1} s, unusually long", silent_ns.as_secs_f64())
+        }
+        Event::SeemsUnaware { aspect } => format!("participant seems unaware of {}, by its gaze", said(aspect)),
         Event::RobotIntends { button, .. } => format!("robot sets out for {}", said(button)),
         Event::RobotAborts { button, reason } => format!("robot gives up {}: {}", said(button), reason.words()),
         Event::RobotIdles { reason: IdleReason::NoOrder } => "robot idles: no order".to_string(),

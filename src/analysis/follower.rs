@@ -2,10 +2,11 @@
 //! and replays use the same code.
 
 use crate::base::time::SessionTime;
-use crate::communication::Signal;
+use crate::communication::recommendation::aspects_told;
 use crate::communication::repeats::Repeats;
+use crate::communication::{Signal, unavailable};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Change, Kitchen, Press, State};
+use crate::kitchen::{Agent, AspectId, Change, Kitchen, Press, State};
 use crate::measures::JudgedPress;
 use crate::measures::attribution::{Attributor, Cause};
 use crate::measures::errors::PressJudge;
@@ -15,8 +16,11 @@ use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::{BeliefFilter, Evidence};
 use crate::mind::observation::{Observation, Observed, ProposedPresses};
 use crate::mind::recorded_estimate::EstimateWitness;
+use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
+use crate::session::gaze_awareness::GazeAwareness;
 use crate::session::probes::{OpenProbe, ProbeEvent, ProbeSubject};
+use crate::session::silence::USUAL_SHARE;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{Applied, Event, Session, Stamped, apply};
 
@@ -38,6 +42,10 @@ pub struct Follower {
     pub(crate) cost: CostToGo,
     judge: PressJudge,
     attributor: Attributor,
+    /// What the human seems unaware of by its gaze.
+    awareness: GazeAwareness,
+    /// Session time of the last update of the estimate.
+    updated_at: Option<SessionTime>,
     /// Recorded belief of the participant before its next press.
     belief: Option<Belief>,
     /// Cause that the participant recorded for its next press, should it be an error.
@@ -119,6 +127,8 @@ impl Follower {
             cost,
             judge,
             attributor,
+            awareness: GazeAwareness::default(),
+            updated_at: None,
             belief,
             told_cause,
             finds_causes,
@@ -130,6 +140,19 @@ impl Follower {
     /// The estimate at `now`, with the unknown gaze since the last event.
     pub fn belief_at(&mut self, now: SessionTime) -> DirichletBelief {
         self.filter.at(now, &mut self.cost)
+    }
+
+    /// The estimate from which a request for advice at `now` starts. Most requests follow an event that has just updated it.
+    pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
+        match self.updated_at {
+            Some(updated) if updated >= now => self.filter.belief().clone(),
+            _ => self.belief_at(now),
+        }
+    }
+
+    /// The aspect of which the human seems unaware since the last gaze sample, if the assistant has not been asked since.
+    pub fn unaware(&self) -> Option<AspectId> {
+        self.awareness.unaware()
     }
 
     /// Applies the next event.
@@ -167,7 +190,31 @@ impl Follower {
             _ => {}
         }
         self.estimate(stamped, &applied.change);
+        self.watch_gaze(&stamped.event);
         Ok(applied)
+    }
+
+    /// Updates what the human seems unaware of, where the assistant is asked by gaze.
+    fn watch_gaze(&mut self, event: &Event) {
+        let session = &self.session;
+        if !session.spec.notes_unawareness() || !session.is_running() {
+            return;
+        }
+        let belief = self.filter.belief();
+        match event {
+            Event::TrialStarted => self.awareness = GazeAwareness::default(),
+            Event::Gaze(sample) if session.gaze.fault.is_none() => {
+                let (kitchen, state) = (&session.kitchen, session.state);
+                let tells = |signal: &Signal, aspect| {
+                    unavailable(kitchen, state, signal).is_none()
+                        && aspects_told(kitchen, state, signal).contains(&aspect)
+                };
+                let signals = || self.repeats.allowed(kitchen, session.spec.signals.own_hand);
+                self.awareness.looked(session, belief, sample, |aspect| signals().iter().any(|one| tells(one, aspect)));
+            }
+            event if leads_to_advice(session, event) => self.awareness.asked(session, belief),
+            _ => {}
+        }
     }
 
     /// Updates the estimate by an event that has just been applied.
@@ -181,6 +228,7 @@ impl Follower {
         let belief = human_press.map(|_| self.filter.belief().clone());
         let began = self.timing.as_ref().map(|timing| (timing.now_ns)());
         self.filter.observe(&observation, &mut self.cost);
+        self.updated_at = Some(stamped.time);
         if let (Some(timing), Some(began)) = (&mut self.timing, began) {
             let took_ns = (timing.now_ns)().saturating_sub(began);
             match what {
@@ -241,6 +289,9 @@ impl Follower {
                 let over = self.session.probes.over.last()?;
                 let teaches = self.session.spec.probes.as_ref().map_or(0.0, |probes| probes.teaches);
                 Some(Observed::Thawed { by: stamped.time - over.begun, asked: self.asked_about(over), teaches })
+            }
+            Event::HumanWaits { .. } if self.session.spec.human.inference.waiting => {
+                Some(Observed::Waited { longer: 1.0 - USUAL_SHARE })
             }
             Event::SignalShown { signal: Signal::Propose(presses), .. } => {
                 let button = |name: &String| self.session.kitchen.button_named(Agent::Human, name);

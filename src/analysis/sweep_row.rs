@@ -9,6 +9,8 @@ use super::trial_summary::SimulationSummary;
 pub struct TrialErrors {
     /// The human's presses that were errors.
     pub errors: u64,
+    /// Those that are belief related; `None` where the participant's beliefs are not known.
+    pub related: Option<u64>,
     /// Presses of the human.
     pub human_actions: u64,
 }
@@ -32,32 +34,65 @@ pub struct SweepRow {
     pub mean_sequence_length: Option<f64>,
     /// Presses of both agents per served order; null: none was served.
     pub presses_per_order: Option<f64>,
+    /// Belief related errors per 100 presses of the human; null: the participants' beliefs are not known.
+    pub related_per_100: Option<f64>,
+    /// Errors per 100 presses of the human fewer than in the first row with signals: mean over the same trials.
+    pub fewer_than_first: Option<f64>,
+    /// Standard error of that mean.
+    pub fewer_error: Option<f64>,
+    /// Belief related errors per 100 presses of the human fewer than in the first row with signals: mean over the same trials.
+    pub related_fewer_than_first: Option<f64>,
+    /// Standard error of that mean.
+    pub related_fewer_error: Option<f64>,
 }
 
+/// The same trials under two settings, in the same order.
+type PairedTrials<'a> = [&'a [TrialErrors]; 2];
+
 impl SweepRow {
-    /// The row of these settings. `paired`: the same trials without signals, and with them.
+    /// The row of these settings. `paired`: the same trials without signals, and with them. `with_first`: the same trials of the first row
+    /// with signals, and of this row.
     pub fn new(
         settings: &[(&str, String)],
         figures: &SimulationSummary,
-        paired: Option<[&[TrialErrors]; 2]>,
+        paired: Option<PairedTrials>,
+        with_first: Option<PairedTrials>,
     ) -> SweepRow {
-        let per_100 = |number: u64, presses: u64| 100.0 * number as f64 / presses.max(1) as f64;
-        let rate = |trial: &TrialErrors| per_100(trial.errors, trial.human_actions);
-        let spared: Vec<f64> = paired.map_or(Vec::new(), |[before, after]| {
-            before.iter().zip(after).map(|(before, after)| rate(before) - rate(after)).collect()
-        });
-        let count = spared.len() as f64;
-        let mean = (count > 0.0).then(|| spared.iter().sum::<f64>() / count);
-        let squares = mean.map(|mean| spared.iter().map(|one| (one - mean) * (one - mean)).sum::<f64>());
+        let errors = |trial: &TrialErrors| Some(trial.errors);
+        let related = |trial: &TrialErrors| trial.related;
+        let (spared_per_100, spared_error) = fewer(paired, errors);
+        let (fewer_than_first, fewer_error) = fewer(with_first, errors);
+        let (related_fewer_than_first, related_fewer_error) = fewer(with_first, related);
         SweepRow {
             settings: settings.iter().map(|(name, value)| (name.to_string(), value.as_str().into())).collect(),
             trials: figures.trials,
             errors_per_100: per_100(figures.errors, figures.human_actions),
             signals_per_100: per_100(figures.signals, figures.human_actions),
-            spared_per_100: mean,
-            spared_error: squares.filter(|_| count > 1.0).map(|squares| (squares / (count - 1.0) / count).sqrt()),
+            spared_per_100,
+            spared_error,
             mean_sequence_length: figures.beliefs.mean_sequence_length,
             presses_per_order: figures.presses_per_order,
+            related_per_100: figures.beliefs.belief_related_errors.map(|errors| per_100(errors, figures.human_actions)),
+            fewer_than_first,
+            fewer_error,
+            related_fewer_than_first,
+            related_fewer_error,
         }
     }
+}
+
+fn per_100(number: u64, presses: u64) -> f64 {
+    100.0 * number as f64 / presses.max(1) as f64
+}
+
+/// By how much there are fewer per 100 presses of the human in the second of two paired trials: mean, and its standard error.
+fn fewer(paired: Option<PairedTrials>, number: impl Fn(&TrialErrors) -> Option<u64>) -> (Option<f64>, Option<f64>) {
+    let rate = |trial: &TrialErrors| number(trial).map(|number| per_100(number, trial.human_actions));
+    let Some([before, after]) = paired else { return (None, None) };
+    let each = before.iter().zip(after).map(|(before, after)| Some(rate(before)? - rate(after)?));
+    let Some(each) = each.collect::<Option<Vec<f64>>>().filter(|each| !each.is_empty()) else { return (None, None) };
+    let count = each.len() as f64;
+    let mean = each.iter().sum::<f64>() / count;
+    let squares = each.iter().map(|one| (one - mean) * (one - mean)).sum::<f64>();
+    (Some(mean), (count > 1.0).then(|| (squares / (count - 1.0) / count).sqrt()))
 }

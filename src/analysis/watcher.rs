@@ -1,4 +1,4 @@
-//! Compares assistants with the signals that were sent: asks each concept after every press and order change of a session, as
+//! Compares assistants with the signals that were sent: asks each concept at the moments at which the assistant of a session is asked, as
 //! the engine does, and collects its hypothetical signals.
 //!
 //! A concept is asked with a counterfactual estimate that leaves out every signal sent within the window. Otherwise a wizard who
@@ -10,7 +10,6 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::advisor::changes_task;
 use super::advisor::{AdviceRequest, Advisor};
 use super::follower::Follower;
 use crate::base::time::SessionTime;
@@ -28,6 +27,7 @@ use crate::measures::matching::CommunicationEvent;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::BeliefFilter;
 use crate::mind::observation::{Observation, Observed};
+use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
 use crate::session::settings::Condition;
 use crate::session::wizard_screen::VisibleScreen;
@@ -163,7 +163,7 @@ impl ComparisonFollower {
             _ => {}
         }
         self.forget_what_was_said();
-        if self.follower.session.is_running() && changes_task(&stamped.event) {
+        if leads_to_advice(&self.follower.session, &stamped.event) {
             self.to_ask = Some((stamped.seq, stamped.time));
         }
         Ok(change)
@@ -241,9 +241,9 @@ impl ComparisonFollower {
     fn ask(&mut self) {
         let Some((seq, time)) = self.to_ask.take().filter(|_| self.follower.session.is_running()) else { return };
         self.asked += 1;
+        let question = AdviceRequest::from_follower(&mut self.follower, seq, time);
         let session = &self.follower.session;
         let (kitchen, own_hand) = (session.kitchen.clone(), session.spec.signals.own_hand);
-        let question = AdviceRequest::from_follower(&self.follower, seq, time);
         let belief = estimate(&self.follower, &self.counterfactuals);
         let shown = &self.shown;
         let answer = |voice: &mut Voice| {

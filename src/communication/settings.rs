@@ -19,6 +19,12 @@ pub struct AssistantSpec {
     pub belief_threshold: f64,
     /// Number of presses that DEV proposes after an error.
     pub proposed_presses: usize,
+    /// Whether it is also asked when the human has not pressed for unusually long (`human_waits`).
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub asks_in_silence: bool,
+    /// Whether it is also asked when, by the gaze alone, the human seems to believe something wrong (`seems_unaware`).
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub asks_by_gaze: bool,
     /// How finely the planner computes.
     pub rollout: RolloutModel,
 }
@@ -43,6 +49,8 @@ impl Default for AssistantSpec {
             // The definition of a false belief.
             belief_threshold: 0.5,
             proposed_presses: 1,
+            asks_in_silence: false,
+            asks_by_gaze: false,
             rollout: RolloutModel::default(),
         }
     }

@@ -154,6 +154,13 @@ impl ChoiceModel {
         pressed / total + self.anywhere
     }
 
+    /// p(wait | b), from the same sums as [`ChoiceModel::press_likelihood`] and the cost to go of the present state, summed alike.
+    pub fn wait_likelihood(&self, here: u32, sums: &[u32]) -> f64 {
+        let draws = self.weights.len().saturating_sub(1).max(1);
+        let ChoiceWeights { wait, total, .. } = self.weights(here, sums, draws as u32);
+        wait / (wait + total)
+    }
+
     /// p(a | b) of every button, given that one is pressed, from the same sums as [`ChoiceModel::press_likelihood`].
     pub fn press_probabilities(&self, sums: &[u32]) -> [f64; MAX_BUTTONS] {
         let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
@@ -172,7 +179,8 @@ impl ChoiceModel {
     }
 
     /// The weights of all choices. `here` is the cost to go of the present state and `sums[x]` that after button x, both in presses
-    /// and summed over `draws` drawn worlds. Needs a model from [`ChoiceModel::up_to_draws`].
+    /// and summed over `draws` drawn worlds. Needs a model with the
+    /// weights of so many draws.
     #[inline]
     pub fn weights(&self, here: u32, sums: &[u32], draws: u32) -> ChoiceWeights {
         let least = sums.iter().copied().min().unwrap_or(0);

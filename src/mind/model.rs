@@ -23,7 +23,7 @@ pub struct HumanModel {
     pub decision: DecisionModel,
     /// How signals are noticed and read.
     pub signal: SignalModel,
-    /// How finely the belief is inferred: no property of people.
+    /// How the belief is inferred: no property of people.
     pub inference: InferenceModel,
 }
 
@@ -200,7 +200,7 @@ impl Default for SignalModel {
     }
 }
 
-/// Sample sizes of the inference from one press.
+/// How the belief is inferred: from which evidence, and the sample sizes of the inference from one press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InferenceModel {
@@ -214,11 +214,21 @@ pub struct InferenceModel {
     pub max_beliefs: usize,
     /// Number of worlds from which a press of the robot is predicted.
     pub predictions: usize,
+    /// Whether waiting is evidence: who believes that nothing is useful now, waits; who presses, believes that something is.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub waiting: bool,
 }
 
 impl Default for InferenceModel {
     fn default() -> Self {
-        InferenceModel { beliefs: 256, states: 32, min_effective: 32.0, max_beliefs: 512, predictions: 64 }
+        InferenceModel {
+            beliefs: 256,
+            states: 32,
+            min_effective: 32.0,
+            max_beliefs: 512,
+            predictions: 64,
+            waiting: false,
+        }
     }
 }
 

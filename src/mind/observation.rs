@@ -76,6 +76,11 @@ pub enum Observed {
     },
     /// The display proposes presses. That says nothing about contents and recipes; it matters for what the next presses say about beliefs.
     Proposed(ProposedPresses),
+    /// The human has not pressed for longer than usual.
+    Waited {
+        /// Share of its own intervals between presses that are longer.
+        longer: f64,
+    },
     /// The trial stands still: nothing is read or forgotten until it goes on.
     Paused,
     /// The trial goes on.

@@ -19,7 +19,7 @@ mod robot;
 use std::sync::Arc;
 
 use self::agents::{gaze_gaps, scripted_wizard, simulated_participant, trial_robot};
-use crate::analysis::advisor::{AdviceRequest, Advisor, changes_task};
+use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::analysis::follower::Follower;
 use crate::arm::worker::Robot;
 use crate::base::time::SessionTime;
@@ -32,12 +32,14 @@ use crate::mind::dirichlet::DirichletBelief;
 use crate::participant::gaze_gaps::GazeGaps;
 use crate::participant::{ParticipantAction, SimulatedParticipant};
 use crate::session::admit::{admit, hygiene};
+use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
 use crate::session::event::{EndReason, SignalEnd};
 use crate::session::offers;
 use crate::session::orders::OrderList;
 use crate::session::probes::ProbeEvent;
 use crate::session::settings::ParticipantKind;
+use crate::session::silence;
 use crate::session::timers::TimerQueue;
 use crate::session::{Applied, Effect, Event, Header, Session, SessionSpec, Stamped, Timer};
 use crate::wizard::{ScriptedWizard, WizardAction};
@@ -296,6 +298,7 @@ impl Engine {
             Timer::EndTrial => Event::TrialEnded { reason: EndReason::Time },
             Timer::EndTrialByOrders => Event::TrialEnded { reason: EndReason::Orders },
             Timer::EndTrialByPresses => Event::TrialEnded { reason: EndReason::Presses },
+            Timer::HumanWaits => Event::HumanWaits { silent_ns: silence::lasted(self.session(), now) },
             Timer::ReviewOffer => return self.review_offer(now),
         };
         self.record_own(now, event);
@@ -304,9 +307,10 @@ impl Engine {
     /// Applies immediate consequences, then opens or closes offers and requests advice.
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
+        self.note_unawareness(now);
         self.review_offer(now);
         if let Some((seq, time)) = self.to_ask.take().filter(|_| self.session().is_running()) {
-            let request = AdviceRequest::from_follower(&self.follower, seq, time);
+            let request = AdviceRequest::from_follower(&mut self.follower, seq, time);
             self.asked = Some(request.clone());
             self.questions.push(request);
         }
@@ -347,7 +351,7 @@ impl Engine {
         self.tell_participant(&stamped, &change);
         self.tell_wizard(&stamped, &change);
         let robots = self.tell_robot(&stamped, &change);
-        if self.session().is_running() && self.session().spec.asks_assistant() && changes_task(&stamped.event) {
+        if self.session().spec.asks_assistant() && leads_to_advice(self.session(), &stamped.event) {
             self.to_ask = Some((stamped.seq, now));
         }
         let advice = match &stamped.event {

@@ -85,7 +85,7 @@ impl Replay {
             }
             // At the next gaze sample the robot has chosen its press.
             if let (Event::Gaze(_), Some(seq)) = (stamped.event, pressed) {
-                return Ok(Some(AdviceRequest::from_follower(&self.follower, seq, stamped.time)));
+                return Ok(Some(AdviceRequest::from_follower(&mut self.follower, seq, stamped.time)));
             }
         }
         Ok(None)

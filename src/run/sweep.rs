@@ -13,7 +13,7 @@ use crate::analysis::kitchen_summary::plan_lengths;
 use crate::analysis::sweep_row::{SweepRow, TrialErrors};
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
 use crate::communication::concept::ConceptName;
-use crate::communication::settings::Shadow;
+use crate::communication::settings::{AssistantSpec, Shadow};
 use crate::edge::file_error::FileError;
 use crate::edge::log::WriteError;
 use crate::edge::overwrite;
@@ -42,10 +42,14 @@ enum Knob {
     Radius,
     /// Whether the assistant uses the gaze.
     Gaze,
+    /// At which moments the assistant is asked besides presses and changes of the task.
+    Asks,
+    /// Whether waiting is evidence.
+    Waiting,
 }
 
 /// Names of the settings.
-const KNOBS: [(&str, Knob); 7] = [
+const KNOBS: [(&str, Knob); 9] = [
     ("cost", Knob::Cost),
     ("threshold", Knob::Threshold),
     ("horizon", Knob::Horizon),
@@ -53,7 +57,13 @@ const KNOBS: [(&str, Knob); 7] = [
     ("tau", Knob::Tau),
     ("radius", Knob::Radius),
     ("gaze", Knob::Gaze),
+    ("asks", Knob::Asks),
+    ("waiting", Knob::Waiting),
 ];
+
+/// The moments at which the assistant is asked: by name, whether also in silence, and whether also by gaze.
+const MOMENTS: [(&str, [bool; 2]); 4] =
+    [("presses", [false, false]), ("silence", [true, false]), ("gaze", [false, true]), ("silence+gaze", [true, true])];
 
 /// One setting with its values: `cost=0.5,1,1.5`.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +84,8 @@ impl FromStr for SweepAxis {
         let (name, knob) = *KNOBS.iter().find(|(known, _)| *known == name).ok_or_else(right)?;
         let values: Vec<String> = values.split(',').map(str::to_string).collect();
         let is_right = |value: &String| match knob {
-            Knob::Gaze => value == "on" || value == "off",
+            Knob::Gaze | Knob::Waiting => value == "on" || value == "off",
+            Knob::Asks => MOMENTS.iter().any(|(name, _)| name == value),
             Knob::Horizon | Knob::Rollouts => value.parse::<usize>().is_ok(),
             _ => value.parse::<f64>().is_ok_and(f64::is_finite),
         };
@@ -86,9 +97,10 @@ impl FromStr for SweepAxis {
             None => Ok(SweepAxis { name, knob, values }),
             Some(wrong) => {
                 let right = match knob {
-                    Knob::Gaze => "on and off",
-                    Knob::Horizon | Knob::Rollouts => "whole numbers",
-                    _ => "numbers",
+                    Knob::Gaze | Knob::Waiting => "on and off".to_string(),
+                    Knob::Asks => MOMENTS.map(|(name, _)| name).join(", "),
+                    Knob::Horizon | Knob::Rollouts => "whole numbers".to_string(),
+                    _ => "numbers".to_string(),
                 };
                 Err(format!("\"{wrong}\": {name} takes {right}"))
             }
@@ -113,6 +125,12 @@ impl SweepAxis {
             Knob::Radius => spec.human.perception.radius_deg = number,
             Knob::Gaze if value == "off" => spec.participant.gaze = GazeSource::None,
             Knob::Gaze => {}
+            Knob::Asks => {
+                let moments = MOMENTS.iter().find(|(name, _)| *name == value).map(|(_, moments)| *moments);
+                let AssistantSpec { asks_in_silence, asks_by_gaze, .. } = &mut spec.assistant;
+                [*asks_in_silence, *asks_by_gaze] = moments.unwrap_or_default();
+            }
+            Knob::Waiting => spec.human.inference.waiting = value == "on",
         }
     }
 }
@@ -159,13 +177,16 @@ pub fn sweep(
     unassisted.out = simulation.out.join("unassisted");
     let (before, figures) = of_cell(&unassisted, &done)?;
     let mut moved = figures.moved.clone();
-    let mut rows = vec![SweepRow::new(&Cell::new(), &figures, None)];
+    let mut rows = vec![SweepRow::new(&Cell::new(), &figures, None, None)];
+    let mut first = None;
     for (cell, spec) in cells.iter().zip(specs) {
         let mut one = simulation.clone();
         one.files.spec = spec;
         one.out = simulation.out.join(folder_of(cell));
         let (trials, figures) = of_cell(&one, &done)?;
-        rows.push(SweepRow::new(cell, &figures, Some([&before, &trials])));
+        let with_first = first.as_ref().map(|first: &Vec<TrialErrors>| [&first[..], &trials]);
+        rows.push(SweepRow::new(cell, &figures, Some([&before, &trials]), with_first));
+        first.get_or_insert(trials);
         moved.extend(figures.moved);
     }
     write_table(&table, axes, &rows).map_err(unwritable)?;
@@ -214,7 +235,7 @@ fn check_axes(spec: &SessionSpec, axes: &[SweepAxis]) -> Result<(), RunError> {
     let of = |knob: Knob| match knob {
         Knob::Cost | Knob::Horizon | Knob::Rollouts => Some(ConceptName::TomCom),
         Knob::Threshold => Some(ConceptName::Tom),
-        Knob::Tau | Knob::Radius | Knob::Gaze => None,
+        Knob::Tau | Knob::Radius | Knob::Gaze | Knob::Asks | Knob::Waiting => None,
     };
     for axis in axes {
         let Some(concept) = of(axis.knob).filter(|concept| decides != Some(*concept)) else { continue };
@@ -259,7 +280,8 @@ fn of_cell(
     each_trial(&simulation, done, |trial| {
         moved.extend(trial.moved.map(|log| log.display().to_string()));
         let TrialSummary { errors, human_actions, .. } = trial.figures;
-        trials.push(TrialErrors { errors, human_actions });
+        let related = trial.figures.beliefs.as_ref().map(|beliefs| beliefs.related);
+        trials.push(TrialErrors { errors, related, human_actions });
         sums.add(trial.arm, &trial.figures, &plan_lengths);
         Ok(())
     })?;
@@ -270,13 +292,18 @@ fn of_cell(
 type SweepColumn = (&'static str, fn(&SweepRow) -> Option<f64>);
 
 /// The columns of numbers; nothing stands where a value is not known.
-const NUMBERS: [SweepColumn; 6] = [
+const NUMBERS: [SweepColumn; 11] = [
     ("errors_per_100", |row| Some(row.errors_per_100)),
     ("signals_per_100", |row| Some(row.signals_per_100)),
     ("spared_per_100", |row| row.spared_per_100),
     ("spared_error", |row| row.spared_error),
     ("mean_sequence_length", |row| row.mean_sequence_length),
     ("presses_per_order", |row| row.presses_per_order),
+    ("related_per_100", |row| row.related_per_100),
+    ("fewer_than_first", |row| row.fewer_than_first),
+    ("fewer_error", |row| row.fewer_error),
+    ("related_fewer_than_first", |row| row.related_fewer_than_first),
+    ("related_fewer_error", |row| row.related_fewer_error),
 ];
 
 fn setting(row: &SweepRow, axis: &SweepAxis) -> String {
@@ -299,30 +326,35 @@ fn write_table(path: &Path, axes: &[SweepAxis], rows: &[SweepRow]) -> std::io::R
 
 /// The table as text.
 pub fn describe(figures: &SweepSummary, axes: &[SweepAxis]) -> String {
-    let settings: String = axes.iter().map(|axis| format!("{:>10}", axis.name)).collect();
+    let settings: String = axes.iter().map(|axis| format!("{:>13}", axis.name)).collect();
     let mut text = describe_moved(&figures.moved);
     text += &format!(
-        "{settings}{:>12}{:>12}{:>18}{:>10}{:>15}\n",
-        "errors/100", "signals/100", "errors spared", "sequence", "presses/order"
+        "{settings}{:>12}{:>12}{:>18}{:>10}{:>15}{:>13}{:>18}\n",
+        "errors/100", "signals/100", "errors spared", "sequence", "presses/order", "related/100", "related fewer"
     );
     let number = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
     for (index, row) in figures.rows.iter().enumerate() {
         let settings: String = match index {
-            0 => format!("{:>width$}", "no signals", width = 10 * axes.len()),
-            _ => axes.iter().map(|axis| format!("{:>10}", setting(row, axis))).collect(),
+            0 => format!("{:>width$}", "no signals", width = 13 * axes.len()),
+            _ => axes.iter().map(|axis| format!("{:>13}", setting(row, axis))).collect(),
         };
-        let spared =
-            row.spared_per_100.map_or("-".to_string(), |mean| format!("{mean:.2} ± {}", number(row.spared_error, 2)));
+        let with_error = |mean: Option<f64>, error: Option<f64>| {
+            mean.map_or("-".to_string(), |mean| format!("{mean:.2} ± {}", number(error, 2)))
+        };
+        let spared = with_error(row.spared_per_100, row.spared_error);
+        let fewer = with_error(row.related_fewer_than_first, row.related_fewer_error);
         text += &format!(
-            "{settings}{:>12}{:>12}{spared:>18}{:>10}{:>15}\n",
+            "{settings}{:>12}{:>12}{spared:>18}{:>10}{:>15}{:>13}{fewer:>18}\n",
             number(Some(row.errors_per_100), 1),
             number(Some(row.signals_per_100), 1),
             number(row.mean_sequence_length, 2),
             number(row.presses_per_order, 1),
+            number(row.related_per_100, 2),
         );
     }
     text + &format!(
-        "per 100 presses of the human; spared: mean and standard error over trials\n{}\n",
+        "per 100 presses of the human; spared, fewer: mean and standard error over trials; related: belief related errors, and how many \
+         fewer there are than in the first line with signals\n{}\n",
         figures.table.display()
     )
 }

@@ -63,6 +63,7 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             let is_open = session.offers.unclosed().is_some_and(|open| open.seq == *offer);
             refuse_if(!is_open, "that offer is not open")
         }
+        Event::HumanWaits { .. } | Event::SeemsUnaware { .. } => refuse_if(phase != Phase::Running, "no trial runs"),
         Event::Advised(_) => {
             refuse_if(phase != Phase::Running, "no trial runs")?;
             refuse_if(!session.spec.asks_assistant(), "nobody asks the assistant in this session")
@@ -181,6 +182,8 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         Event::Press { agent, .. } => *agent == Agent::Human && participant.kind != ParticipantKind::Simulated,
         Event::OrderShown { .. }
         | Event::OrderCleared { .. }
+        | Event::HumanWaits { .. }
+        | Event::SeemsUnaware { .. }
         | Event::RobotIntends { .. }
         | Event::RobotAborts { .. }
         | Event::RobotIdles { .. }

@@ -6,7 +6,7 @@ use super::gaze_samples::take_sample;
 use super::phase::Phase;
 use super::session_state::{Served, Session, ShownSignal};
 use super::timeline_entry::TimelineEvent;
-use super::{accuracy_check, offers, probes, protocol, robot_changes, trial_clock};
+use super::{accuracy_check, offers, probes, protocol, robot_changes, silence, trial_clock};
 use crate::base::time::SessionTime;
 use crate::communication::offer::{GAP, HOLD, OfferBook, OfferEnd};
 use crate::communication::recommendation::Recommendation;
@@ -50,6 +50,8 @@ pub enum Timer {
     EndTrialByOrders,
     /// A time of the rules of offers has passed: one may open or close.
     ReviewOffer,
+    /// The human has not pressed for unusually long.
+    HumanWaits,
 }
 
 /// An event that the session cannot accept: the log is damaged or was written by another program.
@@ -176,6 +178,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         Event::Protocol(event) => protocol::apply(session, event),
         Event::Unblinded { .. } => session.unblinded = true,
         Event::Screen(_) => session.has_console = true,
+        Event::HumanWaits { .. } | Event::SeemsUnaware { .. } => {}
         Event::Preflight { .. } | Event::Display(_) | Event::SignalDrawn { .. } => {}
         Event::ClockJumped { .. } | Event::ParticipantBelieves(_) | Event::BeliefEstimated(_) => {}
         Event::SessionEnded => close(session, now, &mut effects),
@@ -370,6 +373,11 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
     let no_effect = kitchen.no_effect(session.state, agent, button);
     session.presses[agent.index()] += 1;
     session.note(now, TimelineEvent::Press { agent, button, no_effect });
+    if agent == Agent::Human && session.spec.notes_silence() {
+        effects.push(Effect::Cancel(Timer::HumanWaits));
+        let waits = |after| Effect::At { time: now + after, timer: Timer::HumanWaits };
+        effects.extend(silence::unusual_after(session).map(waits));
+    }
     if press.effective {
         update(session, now, |state| *state = press.after);
         if let (ButtonAction::Serve(order), OrderContent::Dish(dish)) =

@@ -101,6 +101,17 @@ pub enum Event {
         /// The order's location, by its name.
         order: String,
     },
+    /// The human has not pressed for unusually long by its own intervals. Recorded only where something depends on it: where the
+    /// assistant is asked in silence, or waiting is evidence.
+    HumanWaits {
+        /// Time since its last press, without pauses.
+        silent_ns: SessionTime,
+    },
+    /// By its gaze, the human seems to believe an aspect wrong. Recorded only where the assistant is asked by gaze.
+    SeemsUnaware {
+        /// The aspect, by its name.
+        aspect: String,
+    },
     /// The robot starts a press and will touch the button at `until_ns` unless it is interrupted.
     RobotIntends {
         /// The button's name.
@@ -265,6 +276,8 @@ impl Event {
             Event::Press { .. } => "press",
             Event::OrderShown { .. } => "order_shown",
             Event::OrderCleared { .. } => "order_cleared",
+            Event::HumanWaits { .. } => "human_waits",
+            Event::SeemsUnaware { .. } => "seems_unaware",
             Event::RobotIntends { .. } => "robot_intends",
             Event::RobotAborts { .. } => "robot_aborts",
             Event::RobotIdles { .. } => "robot_idles",

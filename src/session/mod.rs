@@ -11,17 +11,19 @@
 //!   all of them together.
 //! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `tutorial_state`, `protocol_state`, `probe_state` with `probe_schedule`; `session_state`, all of them
 //!   together.
-//! - What can happen when, and what it changes: `trial_clock`, `unseen_changes`, `robot_changes`, [`accuracy_check`], [`gaze_samples`], [`tutorial`], [`protocol`], [`probes`] with [`probe_sampling`],
-//!   `interventions`; [`admit`] and [`mod@apply`], all of them together. On these stand the rules of [`offers`] and [`proposals`]. Beside them [`preflight_checks`], and the [`timers`] that [`apply()`] sets.
+//! - What can happen when, and what it changes: `trial_clock`, [`silence`], `unseen_changes`, `robot_changes`, [`accuracy_check`], [`gaze_samples`], [`tutorial`], [`protocol`], [`probes`] with [`probe_sampling`],
+//!   `interventions`; [`admit`] and [`mod@apply`], all of them together. On these stand the rules of [`offers`], [`proposals`], [`advice_moments`] and [`gaze_awareness`]. Beside them [`preflight_checks`], and the [`timers`] that [`apply()`] sets.
 
 pub mod accuracy_check;
 pub mod admit;
+pub mod advice_moments;
 pub mod answer_value;
 pub mod apply;
 pub mod battery;
 mod condition;
 mod console_settings;
 pub mod event;
+pub mod gaze_awareness;
 mod gaze_check;
 pub mod gaze_samples;
 mod gaze_status;
@@ -55,6 +57,7 @@ mod session_file;
 mod session_state;
 mod setting_checks;
 pub mod settings;
+pub mod silence;
 pub mod stream_settings;
 pub mod study_arm;
 mod timeline_entry;

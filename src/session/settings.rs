@@ -159,6 +159,17 @@ impl SessionSpec {
         self.trial.condition == Condition::Assistant || self.assistant.shadow == Shadow::On
     }
 
+    /// Whether it is recorded that the human does not press for unusually long: where the assistant is asked then, or where waiting is
+    /// evidence.
+    pub fn notes_silence(&self) -> bool {
+        self.human.inference.waiting || self.assistant.asks_in_silence && self.asks_assistant()
+    }
+
+    /// Whether it is recorded that the human seems to believe something wrong by the gaze alone.
+    pub fn notes_unawareness(&self) -> bool {
+        self.assistant.asks_by_gaze && self.asks_assistant()
+    }
+
     /// Whether the signals come from a scripted wizard.
     pub fn scripts_wizard(&self) -> bool {
         self.trial.condition == Condition::Wizard && self.wizard.kind == WizardKind::Scripted

@@ -17,6 +17,9 @@ use crate::measures::JudgedPress;
 use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::sequences::Episode;
 
+/// Session time is in nanoseconds.
+const NANOS_PER_MS: u64 = 1_000_000;
+
 /// True errors and false beliefs of a trial.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialTruth {
@@ -79,6 +82,8 @@ pub struct PreventionCounts {
     pub prevented: u64,
     /// Number of useless signals or proposals.
     pub useless: u64,
+    /// Sum over the useful signals of the time from the signal to the first error that it prevents, in milliseconds; 0 for proposals.
+    pub lead_ms: u64,
     /// Number of human presses outside of false belief episodes.
     pub outside: u64,
     /// Number of human presses with a useless signal right before them.
@@ -98,6 +103,7 @@ impl Default for PreventionCounts {
             related: 0,
             prevented: 0,
             useless: 0,
+            lead_ms: 0,
             outside: 0,
             false_presses: 0,
             false_inside: 0,
@@ -127,6 +133,7 @@ impl PreventionCounts {
             related: self.related + other.related,
             prevented: self.prevented + other.prevented,
             useless: self.useless + other.useless,
+            lead_ms: self.lead_ms + other.lead_ms,
             outside: self.outside + other.outside,
             false_presses: self.false_presses + other.false_presses,
             false_inside: self.false_inside + other.false_inside,
@@ -142,6 +149,12 @@ impl PreventionCounts {
             tpr: self.prevented as f64 / self.related as f64,
             signals_per_100: 100.0 * self.signals as f64 / presses,
         })
+    }
+
+    /// Mean time from a useful signal to the first error that it prevents, in seconds; `None` without useful signals.
+    pub fn lead_s(&self) -> Option<f64> {
+        let useful = self.signals - self.useless;
+        (useful > 0).then(|| self.lead_ms as f64 / 1000.0 / useful as f64)
     }
 
     /// The share of useless ones among all signals; `None` without signals.
@@ -206,7 +219,7 @@ impl TrialTruth {
         let mut is_told = vec![false; self.spells.len()];
         let mut is_false = vec![false; self.presses.len()];
         for signal in sent {
-            let (mut is_useful, mut about) = (false, Vec::new());
+            let (mut prevents_at, mut about) = (None::<SessionTime>, Vec::new());
             for (index, false_belief) in self.spells.iter().enumerate() {
                 if !signal.aspects.contains(&false_belief.aspect) || !false_belief.is_open(signal.time) {
                     continue;
@@ -217,16 +230,20 @@ impl TrialTruth {
                 }
                 for (press, is_prevented) in self.presses.iter().zip(&mut is_prevented) {
                     if press.time > signal.time && false_belief.caused(press) {
-                        (is_useful, *is_prevented) = (true, true);
+                        *is_prevented = true;
+                        prevents_at = Some(prevents_at.map_or(press.time, |first| first.min(press.time)));
                     }
                 }
             }
             let is_harmless = !about.is_empty() && about.iter().all(|one| !one.harmful);
             count.harmless = count.harmless.map(|harmless| harmless + u64::from(is_harmless));
-            if !is_useful {
-                self.count_useless(&mut count, signal.time);
-                // A signal after the last press precedes no press.
-                is_false.get_mut(signal.press).into_iter().for_each(|press| *press = true);
+            match prevents_at {
+                Some(at) => count.lead_ms += (at - signal.time).0 / NANOS_PER_MS,
+                None => {
+                    self.count_useless(&mut count, signal.time);
+                    // A signal after the last press precedes no press.
+                    is_false.get_mut(signal.press).into_iter().for_each(|press| *press = true);
+                }
             }
         }
         let number = |of: &[bool]| of.iter().filter(|one| **one).count() as u64;

@@ -128,6 +128,10 @@ impl EventCells {
             Event::SignalDrawn { signal } => self.refers_to = Some(*signal),
             Event::SignalEnded { reason } => self.reason = name(reason),
             Event::OfferClosed { offer, reason } => (self.refers_to, self.reason) = (Some(*offer), name(reason)),
+            Event::HumanWaits { silent_ns } => {
+                (self.agent, self.value) = ("human".to_string(), Some(silent_ns.as_secs_f64()));
+            }
+            Event::SeemsUnaware { aspect } => (self.agent, self.item) = ("human".to_string(), aspect.clone()),
             Event::ClockJumped { by_ms } => self.value = Some(*by_ms as f64),
             Event::Screen(screen) => {
                 self.what = name(&screen.visibility);

@@ -23,8 +23,17 @@ pub struct DistinctWorlds {
 struct RatedWorld {
     world: World,
     draws: u32,
-    /// Cost to go after each button with its fidelity, once computed.
-    after: Option<([u8; MAX_BUTTONS], Fidelity)>,
+    /// Its costs to go, once computed.
+    costs: Option<WorldCosts>,
+}
+
+/// The costs to go of a world.
+#[derive(Clone, Copy, Debug)]
+struct WorldCosts {
+    here: u8,
+    /// After each button of the human.
+    after: [u8; MAX_BUTTONS],
+    fidelity: Fidelity,
 }
 
 impl DistinctWorlds {
@@ -46,7 +55,7 @@ impl DistinctWorlds {
         loop {
             match self.slots[slot] {
                 0 => {
-                    self.known.push(RatedWorld { world, draws: times, after: None });
+                    self.known.push(RatedWorld { world, draws: times, costs: None });
                     self.slots[slot] = self.known.len() as u32;
                     return self.known.len() as u32 - 1;
                 }
@@ -68,11 +77,11 @@ impl DistinctWorlds {
             if f64::from(rated.draws) >= COUNTS * draws as f64 { Fidelity::PlanBound } else { Fidelity::LowerBound }
         };
         for index in 0..self.known.len() {
-            if let Some(later) = self.known.get(index + AHEAD).filter(|later| later.after.is_none()) {
+            if let Some(later) = self.known.get(index + AHEAD).filter(|later| later.costs.is_none()) {
                 cost.prefetch(fidelity(later), later.world.state, &later.world.recipes, Agent::Human);
             }
             let rated = &mut self.known[index];
-            if rated.after.is_none() {
+            if rated.costs.is_none() {
                 rated.rate(cost, fidelity(rated));
             }
         }
@@ -84,7 +93,7 @@ impl DistinctWorlds {
     pub fn rate_again(&mut self, cost: &mut CostToGo, weights: &[f64], sum: f64) -> bool {
         let mut any = false;
         for (rated, &weight) in self.known.iter_mut().zip(weights) {
-            if weight >= COUNTS * sum && rated.after.is_some_and(|(_, fidelity)| fidelity == Fidelity::LowerBound) {
+            if weight >= COUNTS * sum && rated.costs.is_some_and(|costs| costs.fidelity == Fidelity::LowerBound) {
                 rated.rate(cost, Fidelity::PlanBound);
                 any = true;
             }
@@ -107,13 +116,19 @@ impl DistinctWorlds {
     #[inline]
     pub fn after(&self, index: u32) -> &[u8; MAX_BUTTONS] {
         const UNKNOWN: [u8; MAX_BUTTONS] = [0; MAX_BUTTONS];
-        self.known[index as usize].after.as_ref().map_or(&UNKNOWN, |(after, _)| after)
+        self.known[index as usize].costs.as_ref().map_or(&UNKNOWN, |costs| &costs.after)
+    }
+
+    /// Cost to go of a world whose costs have been computed.
+    #[inline]
+    pub fn here(&self, index: u32) -> u8 {
+        self.known[index as usize].costs.map_or(0, |costs| costs.here)
     }
 }
 
 impl RatedWorld {
     fn rate(&mut self, cost: &mut CostToGo, fidelity: Fidelity) {
-        self.after =
-            Some((cost.decision_with(fidelity, self.world.state, &self.world.recipes, Agent::Human).after, fidelity));
+        let decision = cost.decision_with(fidelity, self.world.state, &self.world.recipes, Agent::Human);
+        self.costs = Some(WorldCosts { here: decision.here, after: decision.after, fidelity });
     }
 }

@@ -1,4 +1,4 @@
-//! The update of the estimate by the likelihood of a press.
+//! The update of the estimate by the likelihood of what the human does: of a press, or of waiting.
 //!
 //! p(a | b) is a softmax over expected costs to go, so the posterior has no closed form. Belief samples represent the prior,
 //! each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of Dir(alpha + n_j) with
@@ -56,10 +56,23 @@ impl PressMixture {
     }
 }
 
+/// What the human does, as evidence of its belief b.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HumanAct {
+    /// It presses a button. Likelihood: that of the mixture, times 1 - p(wait | b) where waiting is evidence.
+    Presses(PressMixture),
+    /// It has not pressed for longer than usual. Likelihood: l + (1 - l) p(wait | b), where l is the share of its intervals that are
+    /// longer: it still thinks, or has decided to wait.
+    Waits {
+        /// Share of its own intervals that are longer.
+        longer: f64,
+    },
+}
+
 /// Likelihood of a press and quality of the samples behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// ln p(a) under the estimate before the press, in nats.
+    /// ln p(a), given that a press is made, under the estimate before the press, in nats.
     pub log_p: f64,
     /// Number of belief samples drawn.
     pub beliefs: usize,
@@ -85,6 +98,8 @@ pub struct Sampler {
     /// Weight of each belief sample before and after multiplication with its likelihood p(a | belief).
     pub(super) priors: Vec<f64>,
     posteriors: Vec<f64>,
+    /// Weight of each belief sample before, where waiting is evidence times the chance that a press is made.
+    pressing: Vec<f64>,
     pub(super) worlds: DistinctWorlds,
     /// The distinct worlds of each belief sample, in consecutive ranges.
     pub(super) runs: Vec<Run>,
@@ -141,7 +156,7 @@ struct Alike {
     draws: u32,
 }
 
-/// The models that define the likelihood of a press.
+/// The models that define the likelihood of an act.
 pub struct EvidenceModel<'a> {
     /// The kitchen.
     pub kitchen: &'a Kitchen,
@@ -159,13 +174,13 @@ impl Sampler {
         Sampler { wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(), ..Sampler::default() }
     }
 
-    /// Updates the estimate by the likelihood of a press of the human, and by the looks that nobody saw before it.
+    /// Updates the estimate by the likelihood of an act of the human, and by the looks that nobody saw before it.
     pub fn weigh(
         &mut self,
         model: &EvidenceModel,
         cost: &mut CostToGo,
         belief: &mut DirichletBelief,
-        press: PressMixture,
+        act: HumanAct,
         looks: Option<&UnseenLooks>,
         random: &mut Stream,
     ) -> Evidence {
@@ -179,9 +194,9 @@ impl Sampler {
                 self.look(model, looks, old, random);
                 self.worlds.rate(cost, wanted * states);
             }
-            self.weigh_samples(model, press, old);
+            self.weigh_samples(model, act, old);
             while self.rate_again(cost, states) {
-                self.weigh_samples(model, press, 0);
+                self.weigh_samples(model, act, 0);
             }
             let evidence = self.evidence();
             let can_double = wanted * 2 <= model.inference.max_beliefs;
@@ -209,6 +224,7 @@ impl Sampler {
         self.runs.clear();
         self.priors.clear();
         self.posteriors.clear();
+        self.pressing.clear();
         self.looks.clear();
         self.news.clear();
         self.read_sums.clear();
@@ -309,14 +325,29 @@ impl Sampler {
         }
     }
 
-    /// Multiplies the weights of the belief samples from index `from` on by p(a | belief).
-    fn weigh_samples(&mut self, model: &EvidenceModel, press: PressMixture, from: usize) {
+    /// Multiplies the weights of the belief samples from index `from` on by the likelihood of an act.
+    fn weigh_samples(&mut self, model: &EvidenceModel, act: HumanAct, from: usize) {
         self.posteriors.truncate(from);
+        self.pressing.truncate(from);
         for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
-            let choice = model.choice.press_likelihood(self.sum_costs(sample, &mut sums, model), press.button);
-            self.posteriors.push(prior * press.likelihood(choice));
+            let sums = self.sum_costs(sample, &mut sums, model);
+            let waits = || model.choice.wait_likelihood(self.sum_here(sample), sums);
+            let (pressing, likelihood) = match act {
+                HumanAct::Presses(press) => {
+                    let presses = if model.inference.waiting { 1.0 - waits() } else { 1.0 };
+                    (prior * presses, press.likelihood(model.choice.press_likelihood(sums, press.button)))
+                }
+                HumanAct::Waits { longer } => (*prior, longer + (1.0 - longer) * waits()),
+            };
+            self.pressing.push(pressing);
+            self.posteriors.push(pressing * likelihood);
         }
+    }
+
+    /// Cost to go of the present state, summed over the draws of a belief sample.
+    fn sum_here(&self, sample: &Sample) -> u32 {
+        self.runs_of(sample).iter().map(|run| run.draws * u32::from(self.worlds.here(run.world))).sum()
     }
 
     /// Cost to go after each button of the human, summed over the draws of a belief sample.
@@ -354,7 +385,7 @@ impl Sampler {
     }
 
     fn evidence(&self) -> Evidence {
-        let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
+        let (before, total): (f64, f64) = (self.pressing.iter().sum(), self.posteriors.iter().sum());
         let squares: f64 = self.posteriors.iter().map(|p| p * p).sum();
         Evidence { log_p: (total / before).ln(), beliefs: self.posteriors.len(), effective: total * total / squares }
     }

@@ -34,7 +34,7 @@ use crate::kitchen::{
     Agent, AspectId, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent,
 };
 pub use evidence::Evidence;
-use evidence::{EvidenceModel, PressMixture, Sampler};
+use evidence::{EvidenceModel, HumanAct, PressMixture, Sampler};
 use exchange::Exchange;
 use look_news::UnseenLooks;
 use perception::GazeReader;
@@ -184,6 +184,7 @@ impl BeliefFilter {
                 self.see_changes(now, state);
                 self.show(now, state);
             }
+            Observed::Waited { longer } => self.weigh_waiting(longer, cost),
             Observed::Told { location } => self.told(location),
             Observed::Paused => self.forgot = None,
             Observed::Resumed => {
@@ -312,7 +313,15 @@ impl BeliefFilter {
         }
         let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
         let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
-        self.sampler.weigh(&model, cost, &mut self.belief, press, looks.as_ref(), random)
+        self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Presses(press), looks.as_ref(), random)
+    }
+
+    /// Updates the belief by the likelihood of having waited.
+    fn weigh_waiting(&mut self, longer: f64, cost: &mut CostToGo) {
+        let mut random = stream(self.seed, "waiting", self.presses);
+        let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
+        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
+        self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Waits { longer }, None, &mut random);
     }
 
     fn show(&mut self, now: SessionTime, state: State) {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rand::RngExt;
 
-use super::person::Particle;
+use super::person::{Particle, press_chances, wait_chance};
 use super::plausible_looks::{self, PlausibleLooks};
 use super::reading_effect::GazeFollower;
 use crate::base::rng::Stream;
@@ -31,6 +31,8 @@ pub struct Particles {
     pub of: Vec<Particle>,
     sight: GazeFollower,
     presence: GazePresence,
+    /// For each belief, the chance that a press is made rather than waited, where waiting is evidence: at the last press of the human.
+    pub pressing: Vec<f64>,
     /// What each belief looks at while the gaze is unknown, once it has been computed after the last event.
     unseen: Option<PlausibleLooks>,
     shown: State,
@@ -46,8 +48,9 @@ impl Particles {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
         let (doubt, sight, presence) = (prior.clone(), GazeFollower::default(), GazePresence::new(&model));
-        let (of, unseen, forgot, proposed) = (Vec::new(), None, None, ProposedPresses::default());
-        Particles { kitchen, model, prior, doubt, of, sight, presence, unseen, shown, forgot, proposed }
+        let (of, pressing, unseen, forgot) = (Vec::new(), Vec::new(), None, None);
+        let proposed = ProposedPresses::default();
+        Particles { kitchen, model, prior, doubt, of, sight, presence, pressing, unseen, shown, forgot, proposed }
     }
 
     /// Starts the trial in `state` with `count` beliefs drawn from the prior.
@@ -109,7 +112,7 @@ impl Particles {
         }
     }
 
-    /// Updates every belief with an event. Returns p(a | b) of each belief for a press of the human, else 1.
+    /// Updates every belief with an event. Returns the likelihood of a press of the human, or of its waiting, for each belief; else 1.
     pub fn experience(&mut self, observation: &Observation, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
         let now = observation.time;
         if let Observed::Gaze { sample, taken } = observation.what {
@@ -151,6 +154,7 @@ impl Particles {
                 self.see_changes(now, state, random);
                 self.show(now, state);
             }
+            Observed::Waited { longer } => return self.human_waited(longer, cost, random),
             Observed::Told { location } => self.told(location, random),
             Observed::Paused | Observed::Frozen => self.forgot = None,
             Observed::Resumed => self.go_on(now),
@@ -204,7 +208,7 @@ impl Particles {
         random: &mut Stream,
     ) -> Vec<f64> {
         let doubt: Vec<Vec<f64>> = self.doubt.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect();
-        let (decision, states) = (&self.model.decision, self.model.inference.states);
+        let (decision, inference) = (&self.model.decision, &self.model.inference);
         let follows = self.model.signal.follows;
         // A proposed press is made because of the proposal, or chosen as any other one.
         let [proposed, chosen] = match self.proposed.next() {
@@ -213,12 +217,25 @@ impl Particles {
         };
         self.proposed.pressed(button);
         let mut weights = Vec::with_capacity(self.of.len());
+        self.pressing.clear();
         for person in &mut self.of {
-            let chances = person.press_chances(&self.kitchen, cost, decision, states, random);
-            weights.push(proposed + chosen * chances[button.index()]);
+            let (here, after) = person.prospects(&self.kitchen, cost, inference.states, random);
+            let presses = if inference.waiting { 1.0 - wait_chance(decision, here, &after) } else { 1.0 };
+            self.pressing.push(presses);
+            weights
+                .push(presses * (proposed + chosen * press_chances(&self.kitchen, decision, &after)[button.index()]));
             person.pressed(&self.kitchen, &doubt, button, effective);
         }
         weights
+    }
+
+    fn human_waited(&self, longer: f64, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
+        let (decision, states) = (&self.model.decision, self.model.inference.states);
+        let waited = |person: &Particle| {
+            let (here, after) = person.prospects(&self.kitchen, cost, states, random);
+            longer + (1.0 - longer) * wait_chance(decision, here, &after)
+        };
+        self.of.iter().map(waited).collect()
     }
 
     fn robot_pressed(&mut self, cost: &mut CostToGo, random: &mut Stream) {

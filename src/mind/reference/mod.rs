@@ -63,7 +63,7 @@ impl ReferenceFilter {
         }
     }
 
-    /// ln p of the last press of the human under the estimate before it, in nats.
+    /// ln p of the last press of the human, given that a press is made, under the estimate before it, in nats.
     pub fn log_p(&self) -> Option<f64> {
         self.log_p
     }
@@ -83,7 +83,7 @@ impl ReferenceFilter {
         let weights = self.people.experience(observation, cost, &mut random);
         self.looked = is_gaze;
         if matches!(observation.what, Observed::Pressed(press) if press.agent == Agent::Human) {
-            self.log_p = Some((weights.iter().sum::<f64>() / weights.len() as f64).ln());
+            self.log_p = Some((weights.iter().sum::<f64>() / self.people.pressing.iter().sum::<f64>()).ln());
         }
         if !is_gaze {
             self.project(&weights, &mut random);

@@ -325,6 +325,14 @@ pub fn press_chances(kitchen: &Kitchen, model: &DecisionModel, expected: &[f64])
     chances
 }
 
+/// p(wait | b), from the expected cost to go of the present state and after each button.
+pub fn wait_chance(model: &DecisionModel, here: f64, after: &[f64]) -> f64 {
+    let weight = |q: f64| (model.tau * (q + here)).exp();
+    let wait = weight(-(here + model.wait_cost));
+    let pressing: f64 = after.iter().map(|after| weight(-(1.0 + after))).sum();
+    wait / (wait + pressing)
+}
+
 /// A value drawn from weights that sum to about 1.
 pub fn pick(weights: &[f64], random: &mut Stream) -> usize {
     let mut left = random.random::<f64>() * weights.iter().sum::<f64>();

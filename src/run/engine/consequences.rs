@@ -43,6 +43,15 @@ impl Engine {
         }
     }
 
+    /// Records what the human seems unaware of by its gaze.
+    pub(super) fn note_unawareness(&mut self, now: SessionTime) {
+        let unaware = self.follower.unaware().filter(|_| self.session().is_running());
+        if let Some(aspect) = unaware {
+            let aspect = self.session().kitchen.aspects[aspect.index()].name.clone();
+            self.record_own(now, Event::SeemsUnaware { aspect });
+        }
+    }
+
     /// The signal that the assistant sends because of its recommendation, if it is allowed. An error gets one proposal, while it is the
     /// human's last press.
     pub(super) fn acted_on(&self, advice: &Recommendation) -> Option<Event> {

@@ -2,7 +2,6 @@
 //! planner runs once per decision; all costs of communication are then applied to the same benefits.
 
 use crate::analysis::advisor::AdviceRequest;
-use crate::analysis::advisor::changes_task;
 use crate::analysis::follower::Follower;
 use crate::analysis::watcher::follows_at_once;
 use crate::base::time::SessionTime;
@@ -14,6 +13,7 @@ use crate::communication::settings::AssistantSpec;
 use crate::communication::tom::TomConcept;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Change};
+use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
 use crate::session::{Applied, Event, Session, Stamped};
 use crate::study::prevention::{ConceptSignal, TrialTruth};
@@ -29,7 +29,7 @@ struct SweptConcept {
     sent: Vec<ConceptSignal>,
 }
 
-/// Replays a session and evaluates all concepts after every press and order change, as the assistant does live.
+/// Replays a session and evaluates all concepts when the assistant is asked.
 #[derive(Debug)]
 pub struct ConceptSweep {
     /// The session, with the estimate.
@@ -85,7 +85,7 @@ impl ConceptSweep {
             }
             swept.repeats.update(&session.kitchen, session.state, self.follower.filter.belief());
         }
-        if session.is_running() && changes_task(&stamped.event) {
+        if leads_to_advice(session, &stamped.event) {
             self.pending = Some((stamped.seq, stamped.time));
         }
         Ok(change)
@@ -94,10 +94,10 @@ impl ConceptSweep {
     /// Evaluates every concept in the present state.
     fn evaluate(&mut self) {
         let Some((seq, time)) = self.pending.take().filter(|_| self.follower.session.is_running()) else { return };
+        let question = AdviceRequest::from_follower(&mut self.follower, seq, time);
         let session = &self.follower.session;
         let (kitchen, state) = (&session.kitchen, session.state);
         let own_hand = session.spec.signals.own_hand;
-        let question = AdviceRequest::from_follower(&self.follower, seq, time);
         let moment = question.moment();
         let benefits = self.planner.advise(&mut self.cost, &moment).options;
         let deviations = self.tom.advise(&mut self.cost, &moment).options;

@@ -1,5 +1,6 @@
 //! Table of the prevention counts of communication concepts.
 
+use crate::communication::concept::ConceptName;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::prevention::PreventionCounts;
 use crate::study::roc::SweptTrial;
@@ -61,6 +62,12 @@ impl TableRow for ConceptRow<'_> {
             Self::column("beliefs_from", "", "as in trials: recorded, consensus or raters", |row| {
                 row.trial.beliefs.as_ref().map(|beliefs| beliefs.basis.name()).into()
             }),
+            Self::column(
+                "lead_s",
+                "s",
+                "mean time from a useful signal to the first error that it would have prevented; empty without useful signals, and for dev",
+                |row| row.swept.count.lead_s().filter(|_| row.swept.concept != ConceptName::Dev).into(),
+            ),
         ]
     }
 }

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use tomcom::analysis::sweep_row::SweepRow;
 use tomcom::edge::log::LOG_NAME;
 use tomcom::run::simulate::{Shard, SimulationRequest};
 use tomcom::run::sweep::{SweepAxis, TABLE_NAME, sweep, trials};
@@ -91,6 +92,13 @@ fn a_sweep_has_a_line_for_every_combination_and_pairs_the_same_trials() {
         assert_eq!((dear.signals_per_100, dear.spared_per_100), (0.0, Some(0.0)), "who says nothing changes nothing");
     }
     assert_eq!(figures.rows[0].spared_per_100, None);
+    let fewer = |row: &SweepRow| (row.fewer_than_first, row.related_fewer_than_first);
+    assert!(figures.rows[..2].iter().all(|row| fewer(row) == (None, None)), "nothing to compare with");
+    for row in &figures.rows[2..] {
+        let (spared, first) = (row.spared_per_100.expect("paired"), figures.rows[1].spared_per_100.expect("paired"));
+        assert!((row.fewer_than_first.expect("paired") - (spared - first)).abs() < 1e-9, "{row:?}");
+        assert!(row.related_fewer_than_first.is_some() && row.related_per_100.is_some(), "{row:?}");
+    }
     let table = fs::read_to_string(out.join(TABLE_NAME)).expect("a table");
     assert_eq!(table.lines().count(), 6, "{table}");
     assert!(table.starts_with("condition,trials,cost,gaze,errors_per_100,"), "{table}");
@@ -101,6 +109,9 @@ fn a_sweep_has_a_line_for_every_combination_and_pairs_the_same_trials() {
     assert!(verify(&blind).expect("readable").verified);
     assert_eq!(sweep(&simulation, &axes, || ()).expect("it is there"), figures, "what is there is read");
     for wrong in ["cost", "cost=", "cost=a", "cost=nan", "horizon=1.5", "gaze=maybe", "colour=red"] {
+        assert!(wrong.parse::<SweepAxis>().is_err(), "{wrong}");
+    }
+    for wrong in ["asks=seldom", "waiting=1"] {
         assert!(wrong.parse::<SweepAxis>().is_err(), "{wrong}");
     }
     let axis = |text: &str| text.parse::<SweepAxis>().expect("an axis");

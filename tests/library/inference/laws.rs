@@ -115,7 +115,8 @@ fn check_proper(dirichlet: &Dirichlet, story: &str) {
 
 /// Coarse, for tests of many presses.
 fn coarse() -> HumanModel {
-    let inference = InferenceModel { beliefs: 8, states: 4, min_effective: 2.0, max_beliefs: 16, predictions: 8 };
+    let inference =
+        InferenceModel { beliefs: 8, states: 4, min_effective: 2.0, max_beliefs: 16, predictions: 8, waiting: false };
     HumanModel { inference, ..HumanModel::default() }
 }
 
@@ -146,6 +147,7 @@ fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observ
         1 => Observed::Paused,
         2 => Observed::Resumed,
         3 => Observed::Displayed { state: any_state(kitchen, random) },
+        12 => Observed::Waited { longer: random.random() },
         4 => Observed::Told { location: LocationId(random.random_range(0..kitchen.locations.len()) as u8) },
         5..=7 => {
             let button = ButtonId(random.random_range(0..kitchen.buttons[agent.index()].len()) as u8);
@@ -410,7 +412,14 @@ fn a_signal_makes_certain_what_it_is_about_as_often_as_it_is_noticed() {
 
 #[test]
 fn too_few_effective_samples_are_met_with_more() {
-    let inference = InferenceModel { beliefs: 32, states: 8, min_effective: 30.0, max_beliefs: 256, predictions: 8 };
+    let inference = InferenceModel {
+        beliefs: 32,
+        states: 8,
+        min_effective: 30.0,
+        max_beliefs: 256,
+        predictions: 8,
+        waiting: false,
+    };
     let mut bench = Bench::new("sushi", HumanModel { inference, ..HumanModel::default() });
     bench.order(0.5, "order_1", "salmon nigiri");
     bench.look(1.0, 6.0, "order_1", 120.0);

@@ -13,6 +13,7 @@ mod particles;
 mod proposals;
 mod recorded;
 mod unknown_gaze;
+mod waiting;
 mod world;
 
 use tomcom::mind::model::{HumanModel, LookingModel};

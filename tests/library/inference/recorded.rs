@@ -1,11 +1,12 @@
 //! The fast filter against the plain reference on recorded steps.
 
+use tomcom::base::time::SessionTime;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Press};
 use tomcom::mind::dirichlet::DirichletBelief;
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::Observed;
+use tomcom::mind::observation::{Observation, Observed};
 use tomcom::mind::reference::ReferenceFilter;
 
 use super::observed::recorded;
@@ -23,24 +24,48 @@ fn mean_distance(one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
 
 #[test]
 fn the_fast_filter_and_the_reference_agree_on_recorded_steps() {
-    agree(|_| true);
+    agree(false, |_| true);
 }
 
 #[test]
 fn they_agree_without_gaze() {
-    agree(|what| !matches!(what, Observed::Gaze { .. }));
+    agree(false, |what| !matches!(what, Observed::Gaze { .. }));
+}
+
+#[test]
+fn they_agree_where_waiting_is_evidence() {
+    agree(true, |_| true);
+}
+
+/// After every third press of the human, a second later, it has waited for longer than usual.
+fn with_waits(observations: Vec<Observation>) -> Vec<Observation> {
+    let is_own = |what: &Observed| matches!(what, Observed::Pressed(Press { agent: Agent::Human, .. }));
+    let own = observations.iter().filter(|one| is_own(&one.what)).step_by(3);
+    let waits: Vec<Observation> = own
+        .map(|one| Observation {
+            time: one.time + SessionTime::from_secs_f64(1.0),
+            what: Observed::Waited { longer: 0.2 },
+        })
+        .collect();
+    let mut all = [observations, waits].concat();
+    all.sort_by_key(|one| one.time);
+    all
 }
 
 /// Holds the two against each other on recorded steps, as far as they are `kept`.
-fn agree(kept: impl Fn(&Observed) -> bool) {
+fn agree(waiting: bool, kept: impl Fn(&Observed) -> bool) {
     for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
         let kitchen = kitchen(layout);
         let mut observations = recorded(&kitchen, 21, 45);
         observations.retain(|observation| kept(&observation.what));
+        if waiting {
+            observations = with_waits(observations);
+        }
         let mut cost = CostToGo::new(kitchen.clone());
         // Many samples, so that the two are compared and not their chances.
         let mut model = HumanModel::default();
         (model.inference.beliefs, model.inference.predictions) = (1024, 256);
+        model.inference.waiting = waiting;
         let mut fast = BeliefFilter::new(kitchen.clone(), model.clone(), 1);
         let mut reference = ReferenceFilter::new(kitchen.clone(), model, 1);
         let (mut sum, mut most, mut steps) = (0.0, 0.0_f64, 0);
@@ -48,6 +73,10 @@ fn agree(kept: impl Fn(&Observed) -> bool) {
         for observation in &observations {
             fast.observe(observation, &mut cost);
             reference.observe(observation, &mut cost);
+            if let Observed::Waited { .. } = observation.what {
+                let apart = mean_distance(&means(fast.belief()), &means(&reference.belief()));
+                (sum, most, steps) = (sum + apart, most.max(apart), steps + 1);
+            }
             if let Observed::Pressed(Press { agent, .. }) = observation.what {
                 let apart = mean_distance(&means(fast.belief()), &means(&reference.belief()));
                 (sum, most, steps) = (sum + apart, most.max(apart), steps + 1);

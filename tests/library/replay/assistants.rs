@@ -82,6 +82,41 @@ fn each_concept_acts_by_itself_and_comes_out_the_same_again() {
 }
 
 #[test]
+fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
+    for name in SESSIONS {
+        let mut files = session(name);
+        files.spec.robot.arm = ArmKind::Timed;
+        files.spec.trial.condition = Condition::Assistant;
+        files.spec.trial.seconds = 90.0;
+        (files.spec.assistant.asks_in_silence, files.spec.assistant.asks_by_gaze) = (true, true);
+        files.spec.human.inference.waiting = true;
+        (files.spec.assistant.rollout.rollouts, files.spec.assistant.rollout.states) = (8, 8);
+        let out = folder("other-moments");
+        simulate(&SimulationRequest { files, trials: 2, shard: Shard::WHOLE, out: out.clone() }, || ())
+            .expect("the folder can be written");
+        let mut counts = [0; 3];
+        for trial in ["seed1-S001", "seed1-S002"] {
+            let log = out.join(trial).join(LOG_NAME);
+            let found = verify(&log).expect("a recording");
+            assert!(found.verified, "{name}: {:?}", found.difference);
+            let mut reader = LogReader::open(&log).expect("a recording");
+            let mut asked = Vec::new();
+            while let Some(line) = reader.next_line().expect("a line") {
+                match line.stamped.event {
+                    Event::HumanWaits { .. } => counts[0] += 1,
+                    Event::SeemsUnaware { .. } => counts[1] += 1,
+                    Event::Advised(advice) => counts[2] += usize::from(asked.contains(&advice.for_seq)),
+                    _ => continue,
+                }
+                asked.push(line.stamped.seq);
+            }
+        }
+        println!("{name}: silences, aspects unaware of, and advice after these: {counts:?}");
+        assert!(counts.iter().all(|&count| count > 0), "{name}: {counts:?}");
+    }
+}
+
+#[test]
 fn advice_that_was_not_given_is_no_verified_advice() {
     let log = assisted("default.toml", "assisted-changed", ConceptName::TomCom).join("seed1-S001").join(LOG_NAME);
     let text = fs::read_to_string(&log).expect("a recording");

@@ -1,5 +1,6 @@
 //! What a running session does: the trial's clock, pauses, the robot, signals, and the judgement of presses.
 
+mod advice_moments;
 mod files;
 mod judgement;
 mod offers;

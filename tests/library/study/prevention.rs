@@ -91,6 +91,16 @@ fn a_signal_is_useful_only_as_the_first_about_an_episode_with_an_error_to_follow
 }
 
 #[test]
+fn the_lead_of_a_signal_is_the_time_until_the_first_error_that_it_prevents() {
+    let lead = |signals: &[ConceptSignal]| truth().count_signals(signals).lead_s();
+    near(lead(&[sent(2.6, &[0])]).expect("useful"), 0.4);
+    // The second is useless, and has no lead.
+    near(lead(&[sent(2.6, &[0]), sent(4.0, &[0])]).expect("one useful"), 0.4);
+    assert_eq!(lead(&[sent(6.5, &[0])]), None, "after the last error");
+    assert_eq!(lead(&[]), None);
+}
+
+#[test]
 fn a_proposal_is_one_interruption_and_useless_if_no_press_that_it_spares_is_an_error() {
     let counts: Vec<[u64; 4]> = (1..=3)
         .map(|k| truth().count_proposals(k))

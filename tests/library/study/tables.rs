@@ -41,7 +41,7 @@ const PUBLISHED: [(Table, &str); 10] = [
     (
         Table::Concepts,
         "recording participant concept parameter presses signals related prevented outside false_presses false_inside harmless \
-         contents useless",
+         contents useless beliefs_from lead_s",
     ),
     (
         Table::Actions,

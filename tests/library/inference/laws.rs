@@ -10,12 +10,11 @@ use tomcom::edge::files::read_kitchen;
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State};
-use tomcom::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::{HumanModel, InferenceModel};
 use tomcom::mind::observation::{Observation, Observed, ProposedPresses};
 
-use super::looks_at_nothing;
+use super::{check_proper, looks_at_nothing};
 
 const KITCHENS: [&str; 2] = ["sushi", "burger"];
 
@@ -102,15 +101,6 @@ impl Bench {
             assert!(evidence.effective >= 1.0 - 1e-9, "{story}: {evidence:?}");
         }
     }
-}
-
-fn check_proper(dirichlet: &Dirichlet, story: &str) {
-    let sum: f64 = dirichlet.mean().iter().sum();
-    assert!((sum - 1.0).abs() < 1e-9, "{story}: the mean sums to {sum}");
-    let least = dirichlet.mean().iter().copied().fold(f64::INFINITY, f64::min);
-    assert!(least >= 0.1 * LEAST_MEAN, "{story}: a value has {least}");
-    let precision = dirichlet.precision();
-    assert!((PRECISIONS[0]..=PRECISIONS[1]).contains(&precision), "{story}: precision {precision}");
 }
 
 /// Coarse, for tests of many presses.

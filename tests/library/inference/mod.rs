@@ -16,10 +16,21 @@ mod unknown_gaze;
 mod waiting;
 mod world;
 
+use tomcom::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom::mind::model::{HumanModel, LookingModel};
 
 /// A human who looks at nothing while the gaze is unknown.
 fn looks_at_nothing() -> HumanModel {
     let looking = LookingModel { looks_hz: 0.0, other_looks_hz: 0.0, capture: 0.0, ..LookingModel::default() };
     HumanModel { looking, ..HumanModel::default() }
+}
+
+/// Holds a Dirichlet against what every one must be.
+fn check_proper(dirichlet: &Dirichlet, story: &str) {
+    let sum: f64 = dirichlet.mean().iter().sum();
+    assert!((sum - 1.0).abs() < 1e-9, "{story}: the mean sums to {sum}");
+    let least = dirichlet.mean().iter().copied().fold(f64::INFINITY, f64::min);
+    assert!(least >= 0.1 * LEAST_MEAN, "{story}: a value has {least}");
+    let precision = dirichlet.precision();
+    assert!((PRECISIONS[0]..=PRECISIONS[1]).contains(&precision), "{story}: precision {precision}");
 }

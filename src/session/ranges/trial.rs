@@ -117,7 +117,7 @@ pub(super) const RANGES: [NumberRange; 50] = [
     NumberRange::real("plan.familiarisation.seconds", [0.1, DAY_S], SECONDS, LONGEST).recorded(ABOVE_0),
     NumberRange::whole("plan.familiarisation.orders", [1.0, COUNT], "orders", "0 would be no criterion"),
     NumberRange::real("plan.familiarisation.error_rate", [0.0, 1.0], "", "it is a share of presses"),
-    NumberRange::whole("plan.questionnaire.after", [1.0, 5.0], "", "participants have one to five trials"),
+    NumberRange::whole("plan.questionnaire.after", [1.0, 6.0], "", "participants have one to six trials"),
     NumberRange::real(
         "plan.aims.margin",
         [1.01, 10.0],

@@ -132,7 +132,7 @@ fn any_number(random: &mut Stream) -> f64 {
 /// Something that may happen in a session, or cannot happen at all.
 fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observed {
     let agent = if random.random::<bool>() { Agent::Human } else { Agent::Robot };
-    match random.random_range(0..13) {
+    match random.random_range(0..14) {
         0 => Observed::Started { state: any_state(kitchen, random) },
         1 => Observed::Paused,
         2 => Observed::Resumed,
@@ -151,7 +151,7 @@ fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observ
                 effective: after.is_some(),
             })
         }
-        12 => {
+        13 => {
             let buttons = kitchen.buttons[Agent::Human.index()].len();
             let button = |_| ButtonId(random.random_range(0..buttons) as u8);
             Observed::Proposed(ProposedPresses::new((0..3).map(button)))

@@ -85,7 +85,7 @@ fn the_groups_are_balanced_in_every_block_and_belong_to_plan_and_seed() {
 /// Williams (1949): of any two conditions each follows the other directly in as many orders, and each stands in every place equally often.
 #[test]
 fn the_orders_of_conditions_are_balanced_for_what_a_trial_leaves_to_the_next() {
-    for (count, number) in [(1, 1), (2, 2), (3, 6), (4, 4), (5, 10)] {
+    for (count, number) in [(1, 1), (2, 2), (3, 6), (4, 4), (5, 10), (6, 6)] {
         let orders = orders_of_conditions(count);
         assert_eq!(orders.len(), number, "{count} conditions");
         let (mut places, mut pairs) = (BTreeMap::new(), BTreeMap::new());

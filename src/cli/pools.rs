@@ -62,7 +62,9 @@ pub(super) struct PowerArgs {
 /// Each participant has a trial in every condition. Prints a table with errors, belief related errors, lengths of error sequences, orders,
 /// signals and the time with a signal on the display, with intervals, and the contrasts between conditions. Nothing is recorded.
 #[derive(Debug, Args)]
-#[command(after_help = "Example: tomcom arms sessions/all-arms.toml --participants 60 --seed 1\nMore: docs/planning.md")]
+#[command(
+    after_help = "Example: tomcom arms sessions/all-arms.toml --participants 60 --seed 1\nMore: docs/planning.md"
+)]
 pub(super) struct ArmsArgs {
     #[command(flatten)]
     pool: PoolArgs,

@@ -60,7 +60,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     }
     let folder = path.parent().unwrap_or(Path::new("."));
     if let Some(file) = &mut spec.tracker.file {
-        *file = path.parent().unwrap_or(Path::new(".")).join(&*file).display().to_string();
+        *file = folder.join(&*file).display().to_string();
     }
     if let Some(library) = spec.lsl.as_mut().and_then(|lsl| lsl.library.as_mut()) {
         *library = folder.join(&*library).display().to_string();
@@ -100,17 +100,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
         let remedy = "the path of a layout file, relative to the session file";
         return Err(missing(path, &text, ("layout", 0, &spec.layout), reason, remedy));
     }
-    let keys = match &spec.console.keys {
-        Some(name) => {
-            let keys_path = path.parent().unwrap_or(Path::new(".")).join(name);
-            let text = std::fs::read_to_string(&keys_path).map_err(|reason| {
-                let remedy = "the path of a key file, relative to the session file; tomcom keys prints one";
-                missing(path, &text, ("console.keys", 0, name), reason, remedy)
-            })?;
-            Some(FileText { path: keys_path.display().to_string(), text })
-        }
-        None => None,
-    };
+    let keys = read_keys(path, &text, &spec)?;
     let mut kitchen = read_kitchen_with(&layout_path, keys.as_ref())?;
     kitchen.layout.path.clone_from(&spec.layout);
     if let Some(probes) = &spec.probes {
@@ -118,6 +108,17 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     }
     let tutorial = read_tutorial(path, &text, &spec, &kitchen.kitchen)?;
     Ok(SessionFiles { spec, kitchen, keys, questionnaires, tutorial })
+}
+
+/// Reads the session's file of keys, if it names one.
+fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Option<FileText>> {
+    let Some(name) = &spec.console.keys else { return Ok(None) };
+    let path = session.parent().unwrap_or(Path::new(".")).join(name);
+    let keys = std::fs::read_to_string(&path).map_err(|reason| {
+        let remedy = "the path of a key file, relative to the session file; tomcom keys prints one";
+        missing(session, text, ("console.keys", 0, name), reason, remedy)
+    })?;
+    Ok(Some(FileText { path: path.display().to_string(), text: keys }))
 }
 
 /// Reads the questionnaires of a plan, in its order and in the session's language.

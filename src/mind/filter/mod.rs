@@ -8,6 +8,7 @@ mod distinct;
 mod evidence;
 mod exchange;
 mod gamma;
+mod human_act;
 mod look_news;
 mod moments;
 mod own_press;
@@ -34,8 +35,9 @@ use crate::kitchen::{
     Agent, AspectId, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent,
 };
 pub use evidence::Evidence;
-use evidence::{EvidenceModel, HumanAct, PressMixture, Sampler};
+use evidence::{EvidenceModel, Sampler};
 use exchange::Exchange;
+use human_act::{HumanAct, PressMixture};
 use look_news::UnseenLooks;
 use perception::GazeReader;
 use serving::Serving;

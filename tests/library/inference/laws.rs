@@ -14,7 +14,7 @@ use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::{HumanModel, InferenceModel};
 use tomcom::mind::observation::{Observation, Observed, ProposedPresses};
 
-use super::{check_proper, looks_at_nothing};
+use super::{any_number, any_state, check_proper, looks_at_nothing};
 
 const KITCHENS: [&str; 2] = ["sushi", "burger"];
 
@@ -108,25 +108,6 @@ fn coarse() -> HumanModel {
     let inference =
         InferenceModel { beliefs: 8, states: 4, min_effective: 2.0, max_beliefs: 16, predictions: 8, waiting: false };
     HumanModel { inference, ..HumanModel::default() }
-}
-
-fn any_state(kitchen: &Kitchen, random: &mut Stream) -> State {
-    let mut state = kitchen.empty_state();
-    for (index, aspect) in kitchen.aspects[..kitchen.locations.len()].iter().enumerate() {
-        state.set_code(LocationId(index as u8), aspect.values[random.random_range(0..aspect.values.len())]);
-    }
-    state
-}
-
-/// Numbers that no tracker should send, among usual ones.
-fn any_number(random: &mut Stream) -> f64 {
-    match random.random_range(0..8) {
-        0 => f64::NAN,
-        1 => f64::INFINITY,
-        2 => -1e300,
-        3 => random.random::<f64>() * 4.0 - 2.0,
-        _ => random.random::<f64>(),
-    }
 }
 
 /// Something that may happen in a session, or cannot happen at all.

@@ -16,6 +16,9 @@ mod unknown_gaze;
 mod waiting;
 mod world;
 
+use rand::RngExt;
+use tomcom::base::rng::Stream;
+use tomcom::kitchen::{Kitchen, LocationId, State};
 use tomcom::mind::dirichlet::{Dirichlet, LEAST_MEAN, PRECISIONS};
 use tomcom::mind::model::{HumanModel, LookingModel};
 
@@ -33,4 +36,24 @@ fn check_proper(dirichlet: &Dirichlet, story: &str) {
     assert!(least >= 0.1 * LEAST_MEAN, "{story}: a value has {least}");
     let precision = dirichlet.precision();
     assert!((PRECISIONS[0]..=PRECISIONS[1]).contains(&precision), "{story}: precision {precision}");
+}
+
+/// Any contents of all locations.
+fn any_state(kitchen: &Kitchen, random: &mut Stream) -> State {
+    let mut state = kitchen.empty_state();
+    for (index, aspect) in kitchen.aspects[..kitchen.locations.len()].iter().enumerate() {
+        state.set_code(LocationId(index as u8), aspect.values[random.random_range(0..aspect.values.len())]);
+    }
+    state
+}
+
+/// Numbers that no tracker should send, among usual ones.
+fn any_number(random: &mut Stream) -> f64 {
+    match random.random_range(0..8) {
+        0 => f64::NAN,
+        1 => f64::INFINITY,
+        2 => -1e300,
+        3 => random.random::<f64>() * 4.0 - 2.0,
+        _ => random.random::<f64>(),
+    }
 }

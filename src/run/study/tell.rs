@@ -189,6 +189,11 @@ fn of_effect(effect: &AssistanceEffect) -> String {
     )
 }
 
+/// "p = 0.123", or "p < 0.001".
+fn p_value(p: f64) -> String {
+    if p < 0.001 { "p < 0.001".to_string() } else { format!("p = {p:.3}") }
+}
+
 /// The contrasts of the primary outcome between arms.
 pub fn describe_arms(found: &ArmComparison) -> String {
     let mut text = format!(
@@ -200,14 +205,14 @@ pub fn describe_arms(found: &ArmComparison) -> String {
     for one in &found.contrasts {
         let [low, high] = one.interval;
         text += &format!(
-            "  {} to {}: ratio {:.2} ({low:.2} to {high:.2}), t({:.1}) = {:.2}, p = {:.3}, corrected {:.3}\n",
+            "  {} to {}: ratio {:.2} ({low:.2} to {high:.2}), t({:.1}) = {:.2}, {}, corrected: {}\n",
             one.arm.name(),
             one.against.name(),
             one.ratio,
             one.contrast.df,
             one.contrast.t,
-            one.contrast.p,
-            one.p_holm
+            p_value(one.contrast.p),
+            p_value(one.p_holm)
         );
     }
     for one in &found.non_inferiority {

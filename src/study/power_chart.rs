@@ -9,16 +9,20 @@ use crate::session::study_arm::StudyArm;
 
 /// Size of the picture, in pixels.
 const SIZE: [f64; 2] = [720.0, 420.0];
+/// Least distance of names at the ends of lines, as a share of the picture's height.
+const APART: f64 = 0.05;
 
 /// The picture: a line with its band for each test against the arm that all others are compared with.
 pub fn power(found: &PowerSummary) -> String {
     let sizes: Vec<f64> = found.sizes.iter().map(|size| size.participants as f64).collect();
     let (first, last) = (sizes.first().copied().unwrap_or(0.0), sizes.last().copied().unwrap_or(1.0));
+    let mut names: Vec<(f64, &str)> = Vec::new();
+    let has_anova = found.needed.iter().any(|needed| needed.test.method == TestMethod::MixedAnova);
     let (title, label, line, most) = match found.is_null() {
         true => ("Type I error by number of participants", "studies that find an effect", ALPHA, 0.2),
         false => ("Power by number of participants", "power", WANTED, 1.0),
     };
-    let x = PlotAxis::between("participants", first.min(last - 1.0), last + 0.2 * (last - first).max(1.0));
+    let x = PlotAxis::between("participants", 0.0, 1.25 * last);
     let mut chart = SvgChart::new(SIZE[0], SIZE[1], x, PlotAxis::between(label, 0.0, most));
     chart.line("thin ideal", &[(first, line), (last, line)]);
     for (index, needed) in found.needed.iter().enumerate() {
@@ -40,12 +44,28 @@ pub fn power(found: &PowerSummary) -> String {
         for (x, share) in &points {
             chart.point(class, *x, *share, &format!("{}, {x} participants: {share:.3}", test.title()));
         }
-        if let Some((x, share)) = points.last() {
-            let name = if test.method == TestMethod::MixedAnova { "paper's test" } else { test.arm.title() };
-            chart.words("strong", *x, *share, true, name);
-        }
+        let name = match (test.method, has_anova) {
+            (TestMethod::MixedAnova, _) => "paper's test",
+            (_, true) => "mixed model",
+            (_, false) => test.arm.title(),
+        };
+        names.extend(points.last().map(|(_, share)| (*share, name)));
+    }
+    for (y, name) in apart(names, APART * most, most) {
+        chart.words("strong", last, y, true, name);
     }
     document(&chart.finish(title), STYLE)
+}
+
+/// Names at the ends of lines, at least `gap` apart and at most `most` high.
+fn apart(mut names: Vec<(f64, &str)>, gap: f64, most: f64) -> Vec<(f64, &str)> {
+    names.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut highest = most;
+    for (y, _) in &mut names {
+        *y = y.min(highest);
+        highest = *y - gap;
+    }
+    names
 }
 
 /// The class of a test's colour: the paper's test and the mixed model differ, and so do arms.

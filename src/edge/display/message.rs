@@ -127,7 +127,7 @@ pub fn read(text: &str) -> Option<FromPage> {
 }
 
 /// Whether a text names something.
-fn is_text(text: &String) -> bool {
+fn is_text(text: &str) -> bool {
     !text.is_empty() && text.len() <= MAX_TEXT && !text.chars().any(char::is_control)
 }
 
@@ -142,7 +142,7 @@ fn is_reply(reply: &PageReply) -> bool {
         PageReply::Believe { choice, items, sure, .. } => {
             *choice != Some(0)
                 && items.len() <= MAX_ITEMS
-                && items.iter().all(is_text)
+                && items.iter().all(|item| is_text(item))
                 && sure.is_none_or(|sure| (1..=3).contains(&sure))
         }
         PageReply::Next | PageReply::Consent | PageReply::Confirm => true,

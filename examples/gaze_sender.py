@@ -38,9 +38,11 @@ class GazeSender:
         if self.code:
             connection.sendall(json.dumps({"pair": self.code}).encode() + b"\n")
             answer = json.loads(connection.makefile().readline() or "{}")
+            if answer.get("checked") is False and answer.get("wait_s"):
+                # A wrong code came from here before; this one has not been looked at.
+                raise OSError(f"no code is checked for {answer['wait_s']} s, after wrong ones")
             if not answer.get("paired"):
-                sys.exit(f"tomcom does not take the pairing code {self.code}; its list of checks (^f) shows the right one. "
-                         f"It checks no other from here for {answer.get('wait_s', 0)} s")
+                sys.exit(f"tomcom does not take the pairing code {self.code}; its list of checks (^f) shows the right one")
         print(f"sends to {self.to[0]}:{self.to[1]}", flush=True)
         return connection
 
@@ -67,5 +69,7 @@ def arguments(description):
 
 def sender(options):
     """The connection that these options name."""
-    host, port = options.to.rsplit(":", 1)
+    host, _, port = options.to.rpartition(":")
+    if not host or not port.isdigit():
+        sys.exit(f"--to {options.to}: an address with a port, such as 192.168.1.10:50021")
     return GazeSender((host, int(port)), options.pair)

@@ -20,7 +20,7 @@ def follow(seconds):
             continue
         # Without recovery the end of the program is noticed, and the next session is looked for.
         inlet = StreamInlet(streams[0], recover=False)
-        print(f"# {inlet.info().name()} on {inlet.info().hostname()}", flush=True)
+        print(f"# {streams[0].name()} on {streams[0].hostname()}", flush=True)
         try:
             while time.monotonic() < until:
                 sample, stamp = inlet.pull_sample(timeout=0.5)

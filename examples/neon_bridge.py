@@ -70,7 +70,13 @@ def kitchen_of(options):
         with open(options.layout, encoding="utf-8") as answer:
             return json.load(answer)
     command = [options.tomcom, "kitchen", options.layout, "--format", "json"]
-    return json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
+    try:
+        asked = subprocess.run(command, capture_output=True, text=True)
+    except FileNotFoundError:
+        sys.exit(f"no program {options.tomcom}: say where it is with --tomcom, or give the .json file that it printed")
+    if asked.returncode != 0:
+        sys.exit(asked.stderr)
+    return json.loads(asked.stdout)
 
 
 def main():
@@ -80,7 +86,10 @@ def main():
     parser.add_argument("--device", metavar="ADDRESS", help="the phone's address, where the network does not tell it")
     options = parser.parse_args()
     corners = tag_corners(kitchen_of(options))
-    device = Device(options.device, 8080) if options.device else discover_one_device(max_search_duration_seconds=10)
+    try:
+        device = Device(options.device, 8080) if options.device else discover_one_device(max_search_duration_seconds=10)
+    except Exception as reason:  # aiohttp's, which the package passes on
+        sys.exit(f"no Neon at {options.device}: {reason}; the Companion app shows the address under Streaming")
     if device is None:
         sys.exit("no Neon in this network: start the Companion app, or give the address that it shows under Streaming as --device")
     mapper, clock, tomcom = DisplayMapper(device.get_calibration(), corners), PhoneClock(device), sender(options)

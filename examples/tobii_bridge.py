@@ -12,8 +12,12 @@ import queue
 import statistics
 import sys
 
-import tobii_research
 from gaze_sender import arguments, sample, sender
+
+try:
+    import tobii_research
+except ModuleNotFoundError:
+    tobii_research = None
 
 # Tobii's clocks count microseconds.
 US_PER_S = 1e6
@@ -37,6 +41,8 @@ def main():
     parser = arguments(__doc__)
     parser.add_argument("--serial", help="the tracker's serial number, if there are several")
     options = parser.parse_args()
+    if tobii_research is None:
+        sys.exit("Tobii's SDK is missing: pip install tobii-research, with a version of Python that it names")
     found = [tracker for tracker in tobii_research.find_all_eyetrackers() if options.serial in (None, tracker.serial_number)]
     if not found:
         sys.exit("no Tobii eye tracker is found: connect it, and look for it in Eye Tracker Manager")

@@ -118,15 +118,15 @@ impl PoolArgs {
         let spec = &mut files.spec;
         spec.robot.arm = self.arm.map_or(spec.robot.arm, ArmKind::from);
         spec.require_built().map_err(|missing| FileError::not_built(&self.plan, missing))?;
-        if let Some(out) = &self.out {
-            pool_file::check_pool(out)?;
-        }
         let pool = match self.from.is_empty() {
             false => self.read(files)?,
             true => {
                 files.spec.seed = self.seed.unwrap_or(files.spec.seed);
                 let request =
                     PoolRequest { files, participants: self.participants, shard: self.shard, arms, unassisted };
+                if let Some(out) = &self.out {
+                    pool_file::check_pool(out, &request.header(&self.plan)?)?;
+                }
                 let bar = progress(request.trials(&self.plan)?, "trials");
                 let pool = pool::simulate(&request, &self.plan, || bar.inc(1))?;
                 bar.finish_and_clear();
@@ -154,8 +154,11 @@ impl PoolArgs {
         let wanted = request.header(&self.plan)?;
         if wanted.digest != pool.header.digest {
             let found = format!("a pool of another plan or other settings ({})", pool.header.digest);
-            let remedy =
-                format!("a pool of {} as it is now ({}), also with its --arm", self.plan.display(), wanted.digest);
+            let remedy = format!(
+                "a pool of {} as it is now ({}), simulated with the same --arm",
+                self.plan.display(),
+                wanted.digest
+            );
             return Err(wrong_argument(&self.from[0], found, &remedy));
         }
         Ok(pool)

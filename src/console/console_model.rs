@@ -36,6 +36,8 @@ const NOTICE_S: f64 = 4.0;
 
 /// Largest number of senders of gaze that give a notice.
 const REFUSED: usize = 16;
+/// Least time between two notices about the same sender of gaze, in seconds.
+const REFUSED_AGAIN_S: f64 = 10.0;
 /// Number of gaze samples in the trail of the gaze map.
 const TRAIL: usize = 240;
 
@@ -165,8 +167,8 @@ pub struct ConsoleModel {
     pub trail: VecDeque<(SessionTime, GazeSample)>,
     /// Number of rejected senders of gaze: connections and datagrams that are not a tracker's.
     pub rejected_senders: u64,
-    /// Notices that were given of senders that nobody let in.
-    refused_senders: Vec<String>,
+    /// Notices that were given of senders that nobody let in, and when last.
+    refused_senders: Vec<(String, SessionTime)>,
     /// How senders of gaze at other computers pair, if they do.
     pub gaze_pairing: Option<GazePairing>,
     /// State of the participant's display, if there is one.
@@ -288,15 +290,19 @@ impl ConsoleModel {
         }
     }
 
-    /// Counts senders of gaze that nobody let in, the last one at this address and for this reason. Each address gives one notice for a
-    /// reason, and no more than a few do.
+    /// Counts senders of gaze that nobody let in, the last one at this address and for this reason. Each address gives a notice for a
+    /// reason now and then, and no more than a few do.
     pub fn refuse_sender(&mut self, address: &str, why: &str, senders: u64) {
         self.rejected_senders += senders;
         let told = format!("gaze from {address} is rejected: {why}");
-        if self.refused_senders.len() < REFUSED && !self.refused_senders.contains(&told) {
-            self.warn(told.clone());
-            self.refused_senders.push(told);
+        let (now, is_full) = (self.clock, self.refused_senders.len() == REFUSED);
+        match self.refused_senders.iter_mut().find(|(other, _)| *other == told) {
+            Some((_, at)) if now.secs_since(*at) < REFUSED_AGAIN_S => return,
+            Some((_, at)) => *at = now,
+            None if is_full => return,
+            None => self.refused_senders.push((told.clone(), now)),
         }
+        self.warn(told);
     }
 
     /// Adds a gaze sample to the trail of the gaze map.

@@ -13,7 +13,7 @@ use tokio::time::timeout;
 
 use super::connection_table::ConnectionPlace;
 use super::gaze_gate::{Admission, GazeGate};
-use super::gaze_input::GazeNews;
+use super::gaze_input::{GazeNews, SenderRefusal};
 use super::gaze_line::{begins_object, code_in, parse};
 
 /// Longest line, in bytes.
@@ -178,7 +178,11 @@ impl SampleReader<'_> {
         self.is_paired = verdict.is_ok();
         let answer = match verdict {
             Ok(()) => "{\"paired\": true}\n".to_string(),
-            Err(wait) => format!("{{\"paired\": false, \"wait_s\": {}}}\n", wait.as_secs_f64().ceil()),
+            Err((why, wait)) => format!(
+                "{{\"paired\": false, \"checked\": {}, \"wait_s\": {}}}\n",
+                why == SenderRefusal::WrongCode,
+                wait.as_secs_f64().ceil()
+            ),
         };
         // Whoever does not take the answer is told by the end of the connection.
         let _ = timeout(ANSWER, self.stream.write_all(answer.as_bytes())).await;

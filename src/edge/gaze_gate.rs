@@ -64,8 +64,8 @@ impl GazeGate {
     /// Checks the code of a sender that has to send one; tells of the sender if it is not let in.
     ///
     /// # Errors
-    /// It is not let in; the code of its address is not checked again for so long.
-    pub fn pair(&mut self, from: IpAddr, code: Option<&str>, now: Instant) -> Result<(), Duration> {
+    /// It is not let in, for this reason; the code of its address is not checked again for so long.
+    pub fn pair(&mut self, from: IpAddr, code: Option<&str>, now: Instant) -> Result<(), (SenderRefusal, Duration)> {
         let verdict = match (&mut self.desk, code) {
             (Some(desk), Some(code)) => Some(desk.attempt(from, None, code, now)),
             _ => None,
@@ -77,7 +77,7 @@ impl GazeGate {
             None => (SenderRefusal::Unpaired, Duration::ZERO),
         };
         self.refuse(from, why, now);
-        Err(wait)
+        Err((why, wait))
     }
 
     /// The lines of a datagram that are read; `None` if its sender is not let in. A datagram with the code as its first line pairs its

@@ -11,8 +11,6 @@ use super::file_error::{FileError, FileResult, read_text};
 use super::{overwrite, replace_file};
 use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, SimulationPool};
 
-/// How a pool's file begins.
-const HEAD: &[u8] = b"{\"pool\":";
 const REMEDY: &str = "a pool that tomcom power or tomcom arms wrote with --out";
 
 /// Reads the parts of a pool and joins them.
@@ -58,20 +56,22 @@ fn parsed<T: DeserializeOwned>(line: &str) -> Result<T, String> {
     serde_json::from_str(line).map_err(|error| format!("a line that is none of a pool: {error}"))
 }
 
-/// Checks that a pool can be written to this path.
+/// Checks that a pool with this header can be written to this path. Pools are dear: none is replaced by another one.
 ///
 /// # Errors
-/// There is a file that is no pool.
-pub fn check_pool(path: &Path) -> FileResult<()> {
-    overwrite::check(path, "a pool", |head| head.starts_with(HEAD)).map_err(|reason| unwritable(path, reason))
+/// There is a file that is not this pool.
+pub fn check_pool(path: &Path, header: &PoolHeader) -> FileResult<()> {
+    let own = line(header);
+    let is_own = |head: &[u8]| overwrite::first_line(head) == own.trim_end().as_bytes();
+    overwrite::check(path, "the same pool", is_own).map_err(|reason| unwritable(path, reason))
 }
 
 /// Writes a pool, as a whole or not at all.
 ///
 /// # Errors
-/// There is a file that is no pool, or the folder cannot be written to.
+/// There is a file that is not this pool, or the folder cannot be written to.
 pub fn write_pool(path: &Path, pool: &SimulationPool) -> FileResult<()> {
-    check_pool(path)?;
+    check_pool(path, &pool.header)?;
     let mut text = line(&pool.header);
     for trial in pool.trials() {
         text += &line(&trial);

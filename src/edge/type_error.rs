@@ -34,6 +34,10 @@ pub(super) fn in_words(message: &str) -> (String, Option<String>) {
         () if let Some(name) = found.strip_prefix("missing field ") => {
             return (format!("no {}", quoted(name)), Some(format!("{} = …", name.trim_matches('`'))));
         }
+        () if found == "invalid IP address syntax" => {
+            let right = "an address of a computer, such as \"192.168.1.20\", without a name or port";
+            return ("a text that is no address".to_string(), Some(right.to_string()));
+        }
         () if let Some(name) = found.strip_prefix("duplicate key") => format!("a setting twice{name}"),
         () => return (message.to_string(), None),
     };
@@ -100,6 +104,11 @@ mod tests {
             ("unknown variant `all`, expected one of `state`, `belief`", "\"all\"", "one of \"state\", \"belief\""),
             ("unknown field `len`, expected `seed` or `trial`", "\"len\", which is no setting here", "seed or trial"),
             ("missing field `layout`", "no \"layout\"", "layout = …"),
+            (
+                "invalid IP address syntax",
+                "a text that is no address",
+                "an address of a computer, such as \"192.168.1.20\", without a name or port",
+            ),
         ];
         for (message, found, right) in cases {
             assert_eq!(words(message), (found.to_string(), right.to_string()));

@@ -189,7 +189,7 @@ fn stream(session: &Session) -> PreflightCheck {
         TrackerConnection::Lost { reason, .. } => reason.clone(),
         TrackerConnection::Unknown => format!("no stream {wanted} in the Lab Streaming Layer"),
     };
-    let remedy = "start what sends it; tomcom doctor lists the streams and channels that there are";
+    let remedy = "start what sends it, or set name, x, y and confidence under [lsl.gaze]; tomcom doctor lists streams and channels";
     PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy)
 }
 

@@ -188,6 +188,7 @@ pub fn describe(found: &PowerSummary) -> String {
             text += &format!("  {:>3} participants {}\n", size.participants, in_numbers(&any));
         }
     }
+    text += "Power is that of finding a difference, in either direction; that of showing a concept to be not worse than the wizard is not worked out.\n";
     text + "Participants are simulated: the answer is about them, and about people as far as they are like them.\n"
 }
 
@@ -224,6 +225,11 @@ fn power_in_words(found: &PowerSummary, needed: &NeededParticipants, index: usiz
         (Some(enough), None) => {
             format!(
                 "  {enough} participants are needed for a power of {WANTED}; the pool is too small to be sure of it."
+            )
+        }
+        (None, _) if found.sizes.last().is_some_and(|size| size.tests[index].found.interval[1] >= WANTED) => {
+            format!(
+                "  The pool is too small to tell whether {largest} participants are enough for a power of {WANTED}."
             )
         }
         (None, _) => format!("  {largest} participants are not enough for a power of {WANTED}."),

@@ -22,7 +22,7 @@ pub fn power(found: &PowerSummary) -> String {
         true => ("Type I error by number of participants", "studies that find an effect", ALPHA, 0.2),
         false => ("Power by number of participants", "power", WANTED, 1.0),
     };
-    let x = PlotAxis::between("participants", 0.0, 1.25 * last);
+    let x = PlotAxis::between("participants", 0.0, 1.4 * last);
     let mut chart = SvgChart::new(SIZE[0], SIZE[1], x, PlotAxis::between(label, 0.0, most));
     chart.line("thin ideal", &[(first, line), (last, line)]);
     for (index, needed) in found.needed.iter().enumerate() {
@@ -47,7 +47,7 @@ pub fn power(found: &PowerSummary) -> String {
         let name = match (test.method, has_anova) {
             (TestMethod::MixedAnova, _) => "paper's test",
             (_, true) => "mixed model",
-            (_, false) => test.arm.title(),
+            (_, false) => test.arm.name(),
         };
         names.extend(points.last().map(|(_, share)| (*share, name)));
     }

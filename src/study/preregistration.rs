@@ -62,7 +62,7 @@ impl Preregistration {
     /// In words: that it is preregistered, or what differs.
     pub fn words(&self) -> String {
         let before = match self.recordings_before {
-            0 => "before the first recording".to_string(),
+            0 => "when no recording of it was there".to_string(),
             number => format!("when {} of it there", count(number, "recording was", "recordings were")),
         };
         let frozen = format!("the plan \"{}\" was frozen {before}, SHA-256 {}", self.plan, self.digest);

@@ -217,12 +217,19 @@ async fn another_computer_pairs_with_the_code_and_sends_then() {
     let pairing = format!("{{\"pair\": \"{}\"}}\n", code.to_lowercase());
 
     // Nothing is read of who does not know it, and a wrong code is told to both ends.
-    assert_eq!(answers(to, &[SAMPLE]).await, "{\"paired\": false, \"wait_s\": 0}\n");
+    assert_eq!(answers(to, &[SAMPLE]).await, "{\"paired\": false, \"checked\": false, \"wait_s\": 0}\n");
     assert_eq!(next(&mut listener).await, refused(SenderRefusal::Unpaired, 1));
     tokio::time::sleep(Duration::from_millis(150)).await;
-    assert_eq!(answers(to, &[b"{\"pair\": \"WRONG2\"}\n"]).await, "{\"paired\": false, \"wait_s\": 1}\n");
+    assert_eq!(
+        answers(to, &[b"{\"pair\": \"WRONG2\"}\n"]).await,
+        "{\"paired\": false, \"checked\": true, \"wait_s\": 1}\n"
+    );
     assert_eq!(next(&mut listener).await, refused(SenderRefusal::WrongCode, 1));
-    assert_eq!(answers(to, &[pairing.as_bytes()]).await, "{\"paired\": false, \"wait_s\": 1}\n", "locked");
+    assert_eq!(
+        answers(to, &[pairing.as_bytes()]).await,
+        "{\"paired\": false, \"checked\": false, \"wait_s\": 1}\n",
+        "locked"
+    );
     tokio::time::sleep(Duration::from_millis(1100)).await;
 
     let mut tracker = TcpStream::connect(to).await.expect("connected");

@@ -124,7 +124,7 @@ fn a_plan_is_frozen_once_and_the_study_says_whether_it_is_that_one() {
         done(&[&["study", &recordings, "--skip", "concepts,events", "--frozen", &file], extra].concat())
     };
     let text = study(&[]);
-    assert!(text.contains("Preregistered: the plan \"paper\" was frozen before the first recording"), "{text}");
+    assert!(text.contains("Preregistered: the plan \"paper\" was frozen when no recording of it was there"), "{text}");
     assert!(text.contains(&digest), "{text}");
     let report = fs::read_to_string(Path::new(&recordings).join("study/report.html")).expect("a report");
     assert!(report.contains("Preregistered") && report.contains(&digest), "the report says so");

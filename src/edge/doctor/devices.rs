@@ -111,22 +111,33 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
     let Ok(library) = lsl::load(spec.lsl.as_ref()) else {
         return PreflightCheck::new("gaze", PreflightVerdict::Failed, "no liblsl", "see lsl above");
     };
-    let told = |found: &FoundStream| {
+    let streams = lsl::streams_of_numbers(library, STREAM_S);
+    let there: Vec<(&FoundStream, Vec<String>)> =
+        streams.iter().map(|found| (found, lsl::channel_names(found, STREAM_S).unwrap_or_default())).collect();
+    let told = |(found, channels): &(&FoundStream, Vec<String>)| {
         let [name, content, host] = found.identity();
-        let channels = lsl::channel_names(found, STREAM_S).unwrap_or_default().join(", ");
-        (name.clone(), content.clone(), format!("\"{name}\" of type \"{content}\" on {host}: {channels}"))
+        format!("\"{name}\" of type \"{content}\" on {host}: {}", channels.join(", "))
     };
-    let there: Vec<(String, String, String)> = lsl::streams_of_numbers(library, STREAM_S).iter().map(told).collect();
-    let is_wanted = |(name, content, _): &&(String, String, String)| {
+    let is_wanted = |(found, _): &&(&FoundStream, Vec<String>)| {
+        let [name, content, _] = found.identity();
         let is = |wanted: &Option<String>, found: &String| wanted.as_ref().is_none_or(|wanted| wanted == found);
-        is(&wanted.name, name) && is(&wanted.content, content)
+        is(&wanted.name, &name) && is(&wanted.content, &content)
     };
-    if let Some((_, _, told)) = there.iter().find(is_wanted) {
-        return PreflightCheck::ok("gaze", told.clone());
+    if let Some(one) = there.iter().find(is_wanted) {
+        let remedy = "x, y and confidence under [lsl.gaze]: labels of channels, or their numbers from 1";
+        return match lsl::missing_channel(wanted, &one.1) {
+            None => PreflightCheck::ok("gaze", told(one)),
+            Some(missing) => {
+                let found = format!("no channel \"{missing}\"; there is {}", told(one));
+                PreflightCheck::new("gaze", PreflightVerdict::Failed, found, remedy)
+            }
+        };
     }
-    let others: Vec<&str> = there.iter().map(|(_, _, told)| told.as_str()).collect();
-    let others = if others.is_empty() { "nor any other of numbers".to_string() } else { others.join("; ") };
-    let found = format!("no stream {}; {others}", wanted.title());
+    let others: Vec<String> = there.iter().map(told).collect();
+    let found = match others.is_empty() {
+        true => format!("no stream {}, and no other stream of numbers", wanted.title()),
+        false => format!("no stream {}; there is {}", wanted.title(), others.join("; ")),
+    };
     PreflightCheck::new("gaze", PreflightVerdict::Failed, found, "start what sends it; name and type under [lsl.gaze]")
 }
 

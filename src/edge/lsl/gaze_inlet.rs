@@ -70,6 +70,25 @@ pub fn channel_names(found: &FoundStream, patience_s: f64) -> Option<Vec<String>
     Some(labels.into_iter().enumerate().map(name).collect())
 }
 
+/// The channel that the settings name and that is not among these; `None` if all are there.
+pub fn missing_channel(stream: &LslGazeSpec, labels: &[String]) -> Option<String> {
+    channels(stream, labels).err()
+}
+
+/// Places of x, y and confidence among the channels.
+///
+/// # Errors
+/// The name of a channel that is not there.
+fn channels(stream: &LslGazeSpec, labels: &[String]) -> Result<GazeChannels, String> {
+    let place = |name: &String| {
+        let by_number = name.parse::<usize>().ok().filter(|number| (1..=labels.len()).contains(number));
+        let by_label = labels.iter().position(|label| label == name);
+        by_label.or(by_number.map(|number| number - 1)).ok_or_else(|| name.clone())
+    };
+    let confidence = stream.confidence.as_ref().map(place).transpose()?;
+    Ok(GazeChannels { x: place(&stream.x)?, y: place(&stream.y)?, confidence })
+}
+
 /// A way out of reading: nobody listens any more.
 struct NobodyListens;
 
@@ -113,7 +132,7 @@ impl GazeInlet {
         }
         let Some(inlet) = found.connect(CONNECT_S) else { return Ok(None) };
         let Some(labels) = inlet.labels(CONNECT_S) else { return Ok(None) };
-        let channels = match self.channels(&labels) {
+        let channels = match channels(&self.stream, &labels) {
             Ok(channels) => channels,
             Err(missing) => {
                 let there: Vec<&str> = labels.iter().map(String::as_str).filter(|label| !label.is_empty()).collect();
@@ -126,20 +145,6 @@ impl GazeInlet {
         self.complaint = None;
         self.pass(&inlet, &channels)?;
         Ok(Some(format!("the stream {name} on {host} ended")))
-    }
-
-    /// Places of x, y and confidence among the channels.
-    ///
-    /// # Errors
-    /// The name of a channel that is not there.
-    fn channels(&self, labels: &[String]) -> Result<GazeChannels, String> {
-        let place = |name: &String| {
-            let by_number = name.parse::<usize>().ok().filter(|number| (1..=labels.len()).contains(number));
-            let by_label = labels.iter().position(|label| label == name);
-            by_label.or(by_number.map(|number| number - 1)).ok_or_else(|| name.clone())
-        };
-        let confidence = self.stream.confidence.as_ref().map(place).transpose()?;
-        Ok(GazeChannels { x: place(&self.stream.x)?, y: place(&self.stream.y)?, confidence })
     }
 
     /// Passes samples on until the stream is lost.

@@ -17,7 +17,7 @@ use std::path::absolute;
 use crate::analysis::lsl::SOURCE;
 use crate::session::settings::{LslGazeSpec, LslSpec};
 
-pub use gaze_inlet::{InletEnd, channel_names, follow};
+pub use gaze_inlet::{InletEnd, channel_names, follow, missing_channel};
 pub use library::{FoundStream, LslLibrary};
 pub use lsl_error::LslError;
 pub use outlet_thread::{LslCounts, LslStreams, TimedSample};

@@ -170,8 +170,13 @@ fn of_similarity(who: &str, found: &Similarity) -> String {
 
 fn of_effect(effect: &AssistanceEffect) -> String {
     let (Some(test), Some(pearson)) = (effect.assistance(), effect.pearson) else {
-        let [with, without] = effect.groups;
-        return format!("effect of assistance: cannot be computed from {} pairs of trials\n", with + without);
+        return match effect.groups.iter().sum::<usize>() {
+            0 => String::new(),
+            pairs => format!(
+                "effect of assistance: cannot be computed from {}\n",
+                count(pairs as u64, "pair of trials", "pairs of trials")
+            ),
+        };
     };
     let p = effect.permutation_p.map_or("-".to_string(), |p| format!("{p:.4}"));
     let bounded = effect.reduction.filter(|found| found.low.is_finite() && found.high.is_finite());

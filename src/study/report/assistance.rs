@@ -14,26 +14,15 @@ use crate::study::trial_statistics::Trial;
 
 /// Section on the effect of assistance: charts, means by condition, and tests.
 pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
-    let key = keys(&[("first", "assisted first"), ("second", "unassisted first")]);
-    let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
-    let pictures = html! {
-        (captions.figure(charts::errors_by_condition(trials), html! {
-            "Errors by condition. A line joins the two trials of a participant; black is the mean of the participants\u{2019} rates. \
-             The table states the share of all presses pooled." (key)
-        }))
-        (captions.figure(charts::improvements(trials), "Reduction of errors per 100 presses from the first to the second \
-            trial. Practice changes both groups alike; a difference between the groups is the effect of assistance."))
-        (captions.figure(charts::press_durations(trials), html! {
-            "Median seconds between presses, which indicate experience." (of_conditions)
-        }))
-        (captions.figure(charts::sequence_lengths(&figures.conditions), html! {
-            "Mean number of error sequences per trial, by length." (of_conditions)
-        }))
-    };
+    let headline = figures.effects.first();
+    if figures.conditions.len() > 2 {
+        // Two conditions are compared in the pictures and tests; more of them in a section of their own.
+        return section("Errors and times", scroll(conditions(captions, figures)));
+    }
+    let pictures = pictures(captions, figures, trials);
     if pictures.0.is_empty() {
         return nothing();
     }
-    let headline = figures.effects.first();
     let content = html! {
         (scroll(conditions(captions, figures)))
         div class="figures" { (pictures) } "\n"
@@ -51,6 +40,26 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
         }
     };
     section(if figures.conditions.len() > 1 { "Does assistance help?" } else { "Errors and times" }, content)
+}
+
+/// Charts of two conditions.
+fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
+    let key = keys(&[("first", "assisted first"), ("second", "unassisted first")]);
+    let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
+    html! {
+        (captions.figure(charts::errors_by_condition(trials), html! {
+            "Errors by condition. A line joins the two trials of a participant; black is the mean of the participants\u{2019} rates. \
+             The table states the share of all presses pooled." (key)
+        }))
+        (captions.figure(charts::improvements(trials), "Reduction of errors per 100 presses from the first to the second \
+            trial. Practice changes both groups alike; a difference between the groups is the effect of assistance."))
+        (captions.figure(charts::press_durations(trials), html! {
+            "Median seconds between presses, which indicate experience." (of_conditions)
+        }))
+        (captions.figure(charts::sequence_lengths(&figures.conditions), html! {
+            "Mean number of error sequences per trial, by length." (of_conditions)
+        }))
+    }
 }
 
 fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {

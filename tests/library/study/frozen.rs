@@ -109,7 +109,9 @@ fn the_report_says_preregistered_with_the_digest_or_what_differs() {
     let all = recordings(&plan);
     let same = page(&all);
     assert!(
-        same.contains("Preregistered: the plan &quot;arms&quot; was frozen before the first recording, SHA-256 abc123"),
+        same.contains(
+            "Preregistered: the plan &quot;arms&quot; was frozen when no recording of it was there, SHA-256 abc123"
+        ),
         "{same}"
     );
     let fewer = page(&all[1..]);

@@ -207,6 +207,7 @@ const Stage = (() => {
     });
     const recipe = signal && signal.recipe, next = signal && signal.next;
     parts.recipe.classList.toggle("open", Boolean(recipe || next));
+    parts.recipe.classList.toggle("proposal", Boolean(next));
     if (next) drawProposal(next, contents);
     if (!recipe) return;
     put(parts.recipe, parts.cards[recipe.order]);
@@ -221,15 +222,15 @@ const Stage = (() => {
     fitWords(parts.recipe);
   }
 
-  /** Proposed presses, where there is most room: the picture and the name of each button. */
+  /** Proposed presses, where there is most room: the picture, the name and the key of each button. */
   function drawProposal(next, contents) {
     put(parts.recipe, parts.free);
     const head = element("figure", "of");
     head.append(text("figcaption", "", scene.words.proposes));
-    const presses = next.map((index) => {
+    const presses = next.map((index, place) => {
       const { picture, label } = pictureOf(scene.buttons[index], contents);
       const made = element("figure", "", picture);
-      made.append(text("figcaption", "", label));
+      made.append(text("figcaption", "", next.length > 1 ? `${place + 1}. ${label}` : label), key(scene.buttons[index]));
       return made;
     });
     parts.recipe.replaceChildren(head, ...presses);

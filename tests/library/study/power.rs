@@ -269,6 +269,8 @@ fn shards_are_joined_in_any_order_and_nothing_else_is() {
     );
     let other = folder.join("other.jsonl");
     write_pool(&other, &made_up(&TWO, 10, 0.5, 9)).expect("written");
+    let dear = write_pool(&other, &pool).expect_err("another pool is there").to_string();
+    assert!(dear.contains("not the same pool"), "{dear}");
     assert!(refused(&[one, other]).contains("other.jsonl: found a part of another pool"));
 }
 
@@ -287,7 +289,7 @@ fn table_and_picture_take_the_place_of_their_own_kind_alone() {
     assert!(rows.starts_with("participants,method,arm,against,studies,rejected,"), "{rows}");
     let drawn = fs::read_to_string(&picture).expect("text");
     assert!(drawn.starts_with("<svg ") && drawn.contains("xmlns=\"http://www.w3.org/2000/svg\""), "{drawn}");
-    assert!(drawn.contains("ToM-Com") && drawn.contains("Power by number of participants"), "{drawn}");
+    assert!(drawn.contains("tom-com") && drawn.contains("Power by number of participants"), "{drawn}");
     fs::write(&picture, "<html>").expect("written");
     assert!(check_power(None, Some(&picture)).is_err() && check_power(Some(&picture), None).is_err());
 }

@@ -92,6 +92,11 @@ impl FileError {
     pub fn unreadable(path: &Path, reason: io::Error, remedy: &str) -> FileError {
         FileError::Unreadable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
     }
+
+    /// An error of a file that was to be written under a name that the user chose.
+    pub fn unwritable(path: &Path, reason: io::Error) -> FileError {
+        FileError::unreadable(path, reason, "another name for the file, in a folder that can be written to")
+    }
 }
 
 /// The error about a file that a session file names and that cannot be read: the path of the setting, which of them it is (0

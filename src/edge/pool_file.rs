@@ -1,6 +1,5 @@
 //! Files of pools of simulated participants: JSON Lines ([`crate::study::simulation_pool`]).
 
-use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -63,7 +62,7 @@ fn parsed<T: DeserializeOwned>(line: &str) -> Result<T, String> {
 pub fn check_pool(path: &Path, header: &PoolHeader) -> FileResult<()> {
     let own = line(header);
     let is_own = |head: &[u8]| overwrite::first_line(head) == own.trim_end().as_bytes();
-    overwrite::check(path, "the same pool", is_own).map_err(|reason| unwritable(path, reason))
+    overwrite::check(path, "the same pool", is_own).map_err(|reason| FileError::unwritable(path, reason))
 }
 
 /// Writes a pool, as a whole or not at all.
@@ -76,14 +75,10 @@ pub fn write_pool(path: &Path, pool: &SimulationPool) -> FileResult<()> {
     for trial in pool.trials() {
         text += &line(&trial);
     }
-    replace_file::replace(path, text.as_bytes()).map_err(|reason| unwritable(path, reason))
+    replace_file::replace(path, text.as_bytes()).map_err(|reason| FileError::unwritable(path, reason))
 }
 
 fn line(value: &impl Serialize) -> String {
     // Headers and trials have string keys and finite numbers.
     serde_json::to_string(value).unwrap_or_default() + "\n"
-}
-
-fn unwritable(path: &Path, reason: io::Error) -> FileError {
-    FileError::unreadable(path, reason, "another name for the file, in a folder that can be written to")
 }

@@ -41,7 +41,7 @@ fn method(method: TestMethod) -> &'static str {
 pub fn check_power(table: Option<&Path>, picture: Option<&Path>) -> FileResult<()> {
     let names = COLUMNS.map(|(name, _)| name).join(",");
     let check = |path: Option<&Path>, what: &str, is_own: &dyn Fn(&[u8]) -> bool| match path {
-        Some(path) => overwrite::check(path, what, is_own).map_err(|reason| unwritable(path, reason)),
+        Some(path) => overwrite::check(path, what, is_own).map_err(|reason| FileError::unwritable(path, reason)),
         None => Ok(()),
     };
     check(table, "a table of power", &|head| overwrite::first_line(head) == names.as_bytes())?;
@@ -64,7 +64,7 @@ pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
         let bytes = table.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
         replace_file::replace(path, &bytes)
     };
-    write().map_err(|reason| unwritable(path, reason))
+    write().map_err(|reason| FileError::unwritable(path, reason))
 }
 
 /// Writes the picture (SVG).
@@ -72,9 +72,6 @@ pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
 /// # Errors
 /// The file cannot be written.
 pub fn write_picture(path: &Path, found: &PowerSummary) -> FileResult<()> {
-    replace_file::replace(path, power_chart::power(found).as_bytes()).map_err(|reason| unwritable(path, reason))
-}
-
-fn unwritable(path: &Path, reason: io::Error) -> FileError {
-    FileError::unreadable(path, reason, "another name for the file, in a folder that can be written to")
+    replace_file::replace(path, power_chart::power(found).as_bytes())
+        .map_err(|reason| FileError::unwritable(path, reason))
 }

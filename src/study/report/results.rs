@@ -19,7 +19,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     let row = |what: &str, here: String, paper: &str| cells([&what, &here, &paper]);
     let per_trial = (figures.trials > 0).then(|| totals.actions as f64 / figures.trials as f64);
     let matched = figures.similarity.as_ref().and_then(|found| found.signal.recall);
-    let rows = [
+    let mut rows = vec![
         row("participants", figures.participants.to_string(), "14"),
         row("trials", figures.trials.to_string(), "28"),
         row("presses of both agents", totals.actions.to_string(), "8515"),
@@ -41,14 +41,16 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
         row("mean seconds to recover from a sequence", number(totals.mean_recovery_s, 1), UNKNOWN),
     ];
     // Where nothing can be tested, as with more than two conditions, there is nothing to compare.
-    let tested = [
-        row("assistance: p of the mixed ANOVA", p_value(figures.anova.map(|test| test.p)), "0.014"),
-        row("assistance: Pearson r", number(figures.pearson.map(|found| found.r), 2), "0.64"),
-        row("assistance: p of r", p_value(figures.pearson.map(|found| found.p)), "0.014"),
-    ];
-    let matches = [row("wizard signals matched by ToM-Com", percent(matched), "74 %")];
-    let rows: Vec<Vec<Markup>> =
-        [&rows[..], figures.anova.map_or(&[], |_| &tested[..]), matched.map_or(&[], |_| &matches[..])].concat();
+    if let Some(test) = figures.anova {
+        rows.extend([
+            row("assistance: p of the mixed ANOVA", p_value(Some(test.p)), "0.014"),
+            row("assistance: Pearson r", number(figures.pearson.map(|found| found.r), 2), "0.64"),
+            row("assistance: p of r", p_value(figures.pearson.map(|found| found.p)), "0.014"),
+        ]);
+    }
+    if matched.is_some() {
+        rows.push(row("wizard signals matched by ToM-Com", percent(matched), "74 %"));
+    }
     let caption =
         "All trials together. Paper: Buehler, Adamy and Weisswange (2021); its 6.9 % is per press of both agents.";
     section("Comparison with the paper", captions.table(caption, &["", "here", "paper"], &rows))

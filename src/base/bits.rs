@@ -1,6 +1,6 @@
-//! Sets of small numbers, one bit each.
+//! Bit sets: sets of small integers, one bit per integer.
 
-/// The positions of the bits that are set, from the lowest up.
+/// The positions of the set bits, in ascending order.
 #[inline]
 pub fn ones(mut bits: u32) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {

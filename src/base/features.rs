@@ -2,26 +2,26 @@
 
 use std::fmt;
 
-/// A part of the crate that a build can leave out; each is a Cargo feature of this name.
+/// An optional part of the crate; each is a Cargo feature of this name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
     /// The wizard's console in the terminal.
     Console,
     /// The server of the participant's display.
     Display,
-    /// Recordings as MCAP.
+    /// Export of recordings as MCAP files.
     Mcap,
-    /// The arm that presses buttons in a physics simulation, and its kinematics.
+    /// The simulated robot arm that presses buttons in a physics simulation, and its kinematics.
     Physics,
-    /// Streams for Rerun's viewers.
+    /// Streams of a session for Rerun's 3D viewers.
     Rerun,
 }
 
 impl Feature {
-    /// All optional parts.
+    /// All optional parts of the crate.
     pub const ALL: [Feature; 5] = [Feature::Console, Feature::Display, Feature::Mcap, Feature::Physics, Feature::Rerun];
 
-    /// Whether this build contains the part.
+    /// Whether this build of the program contains the optional part.
     pub const fn is_built(self) -> bool {
         match self {
             Feature::Console => cfg!(feature = "console"),
@@ -43,7 +43,7 @@ impl Feature {
         }
     }
 
-    /// What a build without the part cannot do, in words.
+    /// What a build without this optional part cannot do, in words.
     pub const fn lacks(self) -> &'static str {
         match self {
             Feature::Console => "no session can be run or looked at in the terminal",
@@ -54,10 +54,9 @@ impl Feature {
         }
     }
 
-    /// `Err` in a build without it.
+    /// Checks that this build contains the optional part.
     ///
-    /// # Errors
-    /// This build does not have the part.
+    /// # Errors This build does not contain the part.
     pub const fn require(self) -> Result<(), NotBuilt> {
         if self.is_built() { Ok(()) } else { Err(NotBuilt(self)) }
     }
@@ -75,13 +74,13 @@ impl fmt::Display for Feature {
     }
 }
 
-/// The build lacks a part that was asked for.
+/// Error: this build does not contain the optional part (Cargo feature) that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("built without {0}: {lacks}", lacks = .0.lacks())]
 pub struct NotBuilt(pub Feature);
 
 impl NotBuilt {
-    /// What to do about it.
+    /// How to get a build that contains the missing part, in words.
     pub fn remedy(self) -> String {
         format!("cargo build --release --features {}, or a build with the default features", self.0.key())
     }

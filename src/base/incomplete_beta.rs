@@ -4,7 +4,7 @@
 const MAX_TERMS: u32 = 1000;
 /// Relative change of the continued fraction at which it has converged.
 const CONVERGED: f64 = 1e-14;
-/// Stands for a denominator of 0 in the continued fraction.
+/// Replaces a denominator of 0 in the continued fraction (Lentz's method).
 const TINY: f64 = 1e-300;
 
 /// I_x(a, b): the probability that a variate of the beta distribution with parameters `a` and `b`, both above 0, is at most `x`. With
@@ -17,7 +17,7 @@ pub fn regularized_incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
     if x <= 0.0 || b <= 0.0 {
         return 0.0;
     }
-    // The fraction converges fast below the mean; above it the reflected one does.
+    // The continued fraction converges fast below the mean of the distribution; above it, its mirror image does.
     if x > (a + 1.0) / (a + b + 2.0) {
         return 1.0 - below_mean(1.0 - x, b, a);
     }

@@ -1,80 +1,82 @@
-//! Ranges of the numbers in settings files, and the check of a file's numbers against a table of them.
+//! Allowed ranges of the numbers in settings files, and the check of a settings file against a table of ranges.
 
 use std::fmt;
 use std::ops::Range;
 
 use serde::Serialize;
 
-/// The bounds of a value above 0.
+/// The bounds of a number that must be above 0.
 pub const ABOVE_0: [f64; 2] = [f64::MIN_POSITIVE, f64::MAX];
-/// The bounds of a value that is at least 0.
+/// The bounds of a number that must be 0 or above.
 pub const NOT_NEGATIVE: [f64; 2] = [0.0, f64::MAX];
-/// Any number between 0 and 1, without them.
+/// The bounds of a number between 0 and 1, both excluded.
 pub const INSIDE_0_AND_1: [f64; 2] = [f64::MIN_POSITIVE, 1.0 - f64::EPSILON / 2.0];
-/// Any number.
+/// The bounds of a number that may have any finite value.
 pub const ANY: [f64; 2] = [f64::MIN, f64::MAX];
 
-/// The range of one number of a settings file.
+/// The allowed range of one number of a settings file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NumberRange {
-    /// The setting with the tables around it, from outside: `human.decision.tau`. A `*` stands for any one name.
+    /// The number's path in the settings, from the outermost table on: `human.decision.tau`. A `*` stands for any one
+    /// name.
     pub path: &'static str,
-    /// The least allowed value.
+    /// The least allowed value, included.
     pub least: f64,
-    /// The greatest allowed value.
+    /// The greatest allowed value, included.
     pub most: f64,
-    /// Only whole numbers are allowed.
+    /// Whether only whole numbers are allowed.
     pub is_whole: bool,
-    /// What it is counted or measured in; empty: it has no unit.
+    /// The unit of the number; empty if it has none.
     pub unit: &'static str,
-    /// Why not less and not more.
+    /// Why values below or above the range are not allowed.
     pub reason: &'static str,
-    /// The least and the most that the header of a recording may have: what the program took when files had other ranges.
+    /// Bounds for the same number in the header of a recording, which may be wider: earlier versions of the program
+    /// allowed other ranges in files.
     pub recorded: [f64; 2],
 }
 
-/// A number outside of its range.
+/// Error: a number of a settings file is outside of its allowed range.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("found {found}, wanted {remedy}")]
 pub struct OutOfRange {
-    /// The setting with the tables around it.
+    /// The number's path in the settings, from the outermost table on.
     pub path: String,
-    /// What was found: `tau = -3`.
+    /// The number as it was found: `tau = -3`.
     pub found: String,
-    /// What would be right.
+    /// What the number would have to be.
     pub remedy: String,
-    /// Where in the file's text, in bytes, if a text was looked at.
+    /// Position of the number in the file's text, in bytes, if a text was checked.
     pub place: Option<Range<usize>>,
 }
 
 impl NumberRange {
-    /// The range of a number with decimals, from the least to the most; recordings have the same.
+    /// The allowed range of a decimal number; recordings have the same range as files.
     pub const fn real(path: &'static str, range: [f64; 2], unit: &'static str, reason: &'static str) -> NumberRange {
         NumberRange { path, least: range[0], most: range[1], is_whole: false, unit, reason, recorded: range }
     }
 
-    /// The same of a whole number.
+    /// The allowed range of a whole number; recordings have the same range as files.
     pub const fn whole(path: &'static str, range: [f64; 2], unit: &'static str, reason: &'static str) -> NumberRange {
         NumberRange { path, least: range[0], most: range[1], is_whole: true, unit, reason, recorded: range }
     }
 
-    /// The same for files; recordings may have these.
+    /// This range for files, with bounds of its own for the headers of recordings.
     pub const fn recorded(self, recorded: [f64; 2]) -> NumberRange {
         NumberRange { recorded, ..self }
     }
 
-    /// Whether a file may have this number.
+    /// Whether a settings file may have this value.
     pub fn holds(&self, value: f64) -> bool {
         (self.least..=self.most).contains(&value)
     }
 
-    /// Whether the header of a recording may have it.
+    /// Whether the header of a recording may have this value.
     pub fn may_be_recorded(&self, value: f64) -> bool {
         let [least, most] = self.recorded;
         (least..=most).contains(&value)
     }
 
-    /// What is said of a number outside of the range.
+    /// The error message for a value outside of the range.
     pub fn violation(&self, path: &str, value: f64) -> OutOfRange {
         let key = path.rsplit('.').next().unwrap_or(path);
         OutOfRange {
@@ -97,14 +99,14 @@ impl NumberRange {
     }
 }
 
-/// A number as people write it: with an exponent where it would have many zeros.
+/// A number as people write it: in exponent notation where it would have many zeros.
 fn written(value: f64) -> String {
     let size = value.abs();
     if size >= 1e16 || (size > 0.0 && size < 1e-6) { format!("{value:e}") } else { value.to_string() }
 }
 
 impl fmt::Display for NumberRange {
-    /// In words: "a number from 0.01 to 100 per press: …".
+    /// The range in words: "a number from 0.01 to 100 per press: …".
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let number = if self.is_whole { "a whole number" } else { "a number" };
         write!(out, "{number} from {} to {}", self.least, self.most)?;
@@ -115,16 +117,15 @@ impl fmt::Display for NumberRange {
     }
 }
 
-/// The range of the number with this path.
+/// The range of the number with this path, from a table of ranges.
 pub fn range_of<'a>(ranges: &'a [NumberRange], path: &str) -> Option<&'a NumberRange> {
     ranges.iter().find(|range| range.is_of(path))
 }
 
-/// All numbers in settings with their paths, in the order of the settings; the numbers of a list have the path of the list.
-/// `around` are the tables around the settings: "human", or none.
+/// All numbers of a settings object with their paths, in the order of the settings; the numbers of a list have the path
+/// of the list. `around` is the path of the tables that contain the settings ("human"), or empty.
 ///
-/// # Errors
-/// A whole number that no TOML file can hold.
+/// # Errors A whole number that no TOML file can hold.
 pub fn numbers(settings: &impl Serialize, around: &str) -> Result<Vec<(String, f64)>, OutOfRange> {
     let value = toml::Value::try_from(settings).map_err(|error| OutOfRange {
         path: around.to_string(),
@@ -152,18 +153,16 @@ fn collect(value: &toml::Value, path: &str, found: &mut Vec<(String, f64)>) {
     }
 }
 
-/// Checks that all these numbers of a settings file lie within their ranges.
+/// Checks that all these numbers of a settings file lie within their allowed ranges.
 ///
-/// # Errors
-/// The first number that does not.
+/// # Errors The first number outside of its range.
 pub fn check_file(ranges: &[NumberRange], numbers: &[(String, f64)]) -> Result<(), OutOfRange> {
     check(ranges, numbers, NumberRange::holds)
 }
 
-/// Whether the header of a recording may have all these numbers.
+/// Checks that the header of a recording may have all these numbers.
 ///
-/// # Errors
-/// The first one that it may not have.
+/// # Errors The first number outside of its range.
 pub fn check_recorded(ranges: &[NumberRange], numbers: &[(String, f64)]) -> Result<(), OutOfRange> {
     check(ranges, numbers, NumberRange::may_be_recorded)
 }

@@ -10,7 +10,8 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, |_, _| false)
 }
 
-/// The same for text of several lines: ends of lines and tabs stay. Values in JSON stay the same.
+/// A text of several lines made printable: control characters are escaped, but ends of lines and tabs stay. A JSON text
+/// keeps its values.
 pub fn printable_lines(text: &str) -> Cow<'_, str> {
     escaped(text, |letter, next| matches!(letter, '\n' | '\t') || (letter == '\r' && next == Some('\n')))
 }
@@ -27,7 +28,7 @@ fn escaped(text: &str, stays: impl Fn(char, Option<char>) -> bool) -> Cow<'_, st
             '\n' => out.push_str("\\n"),
             '\r' => out.push_str("\\r"),
             '\t' => out.push_str("\\t"),
-            // None of them is beyond U+FFFF; writing to a string cannot fail.
+            // No control character lies beyond U+FFFF; writing to a string cannot fail.
             letter => drop(write!(out, "\\u{:04x}", u32::from(letter))),
         }
     }

@@ -1,10 +1,10 @@
-//! Named random streams: every use of chance draws from a stream of its own, named and seeded, so that one part of the
-//! program never changes the draws of another, and trial k does not depend on how many trials there are.
+//! Named random streams: every use of randomness draws from a stream of its own, named and seeded. One part of the
+//! program therefore never changes the draws of another, and trial k does not depend on the number of trials.
 
 use rand::SeedableRng;
 pub use rand_chacha::ChaCha8Rng as Stream;
 
-/// The stream called `name` of the run with this `seed`; `index` tells trials, rollouts or participants apart.
+/// The random stream called `name` of the run with this `seed`; `index` tells trials, rollouts or participants apart.
 pub fn stream(seed: u64, name: &str, index: u64) -> Stream {
     let mut key = mix(seed ^ 0x746f_6d63_6f6d);
     for byte in name.bytes() {
@@ -13,12 +13,12 @@ pub fn stream(seed: u64, name: &str, index: u64) -> Stream {
     Stream::seed_from_u64(mix(key ^ mix(index)))
 }
 
-/// The seed for everything that depends on one trial alone.
+/// The random seed for everything that depends on this trial alone.
 pub fn of_trial(seed: u64, trial: u64) -> u64 {
     mix(seed ^ mix(trial))
 }
 
-/// The finaliser of SplitMix64 (Steele, Lea and Flood 2014): a bijection that spreads every bit.
+/// Mixes a 64-bit number: the finaliser of SplitMix64 (Steele, Lea and Flood 2014), a bijection that spreads every bit.
 pub fn mix(value: u64) -> u64 {
     let mut z = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

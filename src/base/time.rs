@@ -1,11 +1,11 @@
-//! Session time: nanoseconds since the session began. Device time and wall clock are kept apart from it.
+//! Session time: nanoseconds since the session began. Eye trackers' clocks and the wall clock are kept apart from it.
 
 use std::fmt;
 use std::ops::{Add, Sub};
 
 use serde::{Deserialize, Serialize};
 
-/// A moment of a session, in nanoseconds since it began.
+/// A time within a session, in nanoseconds since the session began.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct SessionTime(pub u64);
@@ -14,17 +14,17 @@ impl SessionTime {
     /// The beginning of the session.
     pub const ZERO: SessionTime = SessionTime(0);
 
-    /// The moment `seconds` after the beginning; negative values and NaN give zero.
+    /// The session time `seconds` after the beginning; negative values and NaN give zero.
     pub fn from_secs_f64(seconds: f64) -> Self {
         SessionTime((seconds.max(0.0) * 1e9).round() as u64)
     }
 
-    /// Seconds since the beginning.
+    /// Seconds since the session began.
     pub fn as_secs_f64(self) -> f64 {
         self.0 as f64 / 1e9
     }
 
-    /// Seconds from `earlier` to this moment, zero if `earlier` is later.
+    /// Seconds from `earlier` to this time; zero if `earlier` is later.
     pub fn secs_since(self, earlier: SessionTime) -> f64 {
         (self - earlier).as_secs_f64()
     }
@@ -45,7 +45,7 @@ impl Sub for SessionTime {
 }
 
 impl fmt::Display for SessionTime {
-    /// Minutes and seconds, as on the console's clock: `6:42`.
+    /// Session time in minutes and seconds, as on the console's clock: `6:42`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let seconds = self.0 / 1_000_000_000;
         write!(f, "{}:{:02}", seconds / 60, seconds % 60)

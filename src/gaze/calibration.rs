@@ -1,22 +1,24 @@
-//! How true gaze is: targets on the wall display, and how far from them the samples are that were taken meanwhile.
+//! Accuracy check of an eye tracker: targets on the wall display, and the angular distance of gaze samples from the
+//! shown target.
 
 use serde::{Deserialize, Serialize};
 
 use super::GazeSample;
 
-/// Where the targets are, in fractions of the display: the centre first.
+/// Positions of the accuracy check's targets, in fractions of the display: the centre first.
 pub const TARGETS: [[f64; 2]; 5] = [[0.5, 0.5], [0.2, 0.25], [0.8, 0.25], [0.8, 0.75], [0.2, 0.75]];
-/// How long a target is shown, in seconds.
+/// Time for which the accuracy check shows a target, in seconds.
 pub const TARGET_S: f64 = 1.8;
-/// Samples count from this time after the target appears, in seconds: until then the eyes are on their way.
+/// Gaze samples of the accuracy check count from this time after the target appears, in seconds: before, the eyes are
+/// moving to the target.
 pub const SETTLE_S: f64 = 0.7;
-/// A target with fewer samples was not looked at, or not seen by the tracker.
+/// A target with fewer gaze samples does not count: the participant did not look at it, or the tracker lost the eyes.
 pub const LEAST_SAMPLES: usize = 10;
-/// A check with fewer targets says nothing about the display.
+/// An accuracy check with fewer valid targets gives no result.
 const LEAST_TARGETS: usize = 3;
-/// Gaze is good up to this accuracy, in degrees: locations are 0.15 m apart, which is 4.3 degrees seen from 2 m.
+/// Largest mean angular error of good gaze, in degrees: locations are 0.15 m apart, which is 4.3 degrees seen from 2 m.
 pub const GOOD_DEG: f64 = 2.0;
-/// Gaze is usable up to this accuracy, in degrees.
+/// Largest mean angular error of usable gaze, in degrees.
 pub const USABLE_DEG: f64 = 3.0;
 
 /// The result of a gaze accuracy check. Degrees are of visual angle, seen from the configured distance in front of the
@@ -24,26 +26,26 @@ pub const USABLE_DEG: f64 = 3.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GazeAccuracy {
-    /// Mean angle from target to gaze, over the targets (accuracy).
+    /// Accuracy: mean angle between target and gaze, over the targets, in degrees.
     pub accuracy_deg: f64,
-    /// Accuracy in degrees after the offset is subtracted.
+    /// Accuracy after the constant offset is subtracted, in degrees.
     pub corrected_deg: f64,
-    /// Root mean square of the angles from one sample to the next (precision; Holmqvist et al. 2012).
+    /// Precision: root mean square of the angles between successive samples, in degrees (Holmqvist et al. 2012).
     pub precision_deg: f64,
-    /// Offset to add to gaze, in fractions of the display: mean over targets of the distance between target and median
-    /// gaze.
+    /// Correction to add to gaze, in fractions of the display: mean over the targets of the vector from median gaze to
+    /// target.
     pub offset: [f64; 2],
-    /// By target, in the order in which they were shown.
+    /// The result for each target, in the order in which the targets were shown.
     pub targets: Vec<TargetAccuracy>,
 }
 
-/// The result at one target.
+/// The result of a gaze accuracy check at one target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TargetAccuracy {
-    /// Samples with enough confidence.
+    /// Number of gaze samples with sufficient confidence.
     pub samples: usize,
-    /// None if there were too few samples.
+    /// Mean angle between target and gaze in degrees; none if there were too few samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy_deg: Option<f64>,
 }
@@ -51,14 +53,14 @@ pub struct TargetAccuracy {
 /// The size of the display and the viewing distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewingGeometry {
-    /// Width and height of the display in metres.
+    /// Width and height of the wall display in metres.
     pub display_m: [f64; 2],
-    /// From the eyes to the display, in metres.
+    /// Distance from the eyes to the wall display, in metres.
     pub distance_m: f64,
 }
 
 impl ViewingGeometry {
-    /// The angle in degrees between two display points (fractions).
+    /// The visual angle in degrees between two display points (fractions of width and height).
     pub fn angle_deg(&self, a: [f64; 2], b: [f64; 2]) -> f64 {
         let ray = |point: [f64; 2]| {
             let [x, y] = [0, 1].map(|axis| (point[axis] - 0.5) * self.display_m[axis]);
@@ -67,13 +69,13 @@ impl ViewingGeometry {
         let (a, b) = (ray(a), ray(b));
         let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
         let dot: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
-        // Unlike the arc cosine of the product, exact for small angles.
+        // The arc tangent is exact for small angles, unlike the arc cosine of the dot product.
         cross.iter().map(|part| part * part).sum::<f64>().sqrt().atan2(dot).to_degrees()
     }
 }
 
-/// What samples say that were taken while targets were looked at; `samples` by target, of each with enough confidence, in
-/// the order in which they were taken. Nothing if too few targets have enough of them.
+/// The gaze accuracy from samples that were taken while targets were shown. `samples` has a list per target: samples
+/// with sufficient confidence, in order of time. `None` if too few targets have enough samples.
 pub fn measure(viewing: &ViewingGeometry, targets: &[[f64; 2]], samples: &[Vec<GazeSample>]) -> Option<GazeAccuracy> {
     let looked: Vec<([f64; 2], &Vec<GazeSample>)> =
         targets.iter().copied().zip(samples).filter(|(_, samples)| samples.len() >= LEAST_SAMPLES).collect();
@@ -112,7 +114,7 @@ pub fn measure(viewing: &ViewingGeometry, targets: &[[f64; 2]], samples: &[Vec<G
     })
 }
 
-/// Rounds to thousandths: a check is not more precise.
+/// Rounds to three decimals: a gaze accuracy check is not more precise.
 fn thousandths(value: f64) -> f64 {
     (value * 1e3).round() / 1e3
 }

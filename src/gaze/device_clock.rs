@@ -1,52 +1,56 @@
-//! Estimates the offset of a tracker's clock from the arrival times of its samples, and follows the clock when it is set.
+//! Estimates the offset of an eye tracker's clock from the arrival times of its samples, and detects when the tracker's
+//! clock was set.
 
 use crate::base::time::SessionTime;
 
-/// Length of the window whose shortest delay counts, in seconds: longer than a network delay, shorter than the time in
-/// which clocks drift by a millisecond.
+/// Length of the time window whose shortest delay gives the clock offset, in seconds: longer than a network delay,
+/// shorter than the time in which clocks drift by a millisecond.
 const WINDOW_S: f64 = 10.0;
-/// A sample that is off by more than this is in doubt, in seconds: it was delayed, its time stamp is wrong, or the clock was set.
+/// A gaze sample whose clock offset differs by more than this is in doubt, in seconds: it was delayed, its time stamp
+/// is wrong, or the tracker's clock was set.
 const DOUBT_S: f64 = 0.05;
-/// Samples in doubt agree on a new offset if they are no further apart than this, in seconds.
+/// Samples in doubt agree on a new clock offset if their offsets differ by no more than this, in seconds.
 const AGREE_S: f64 = 0.01;
-/// Number of samples that have to agree before the clock is taken as set.
+/// Number of samples that have to agree before the tracker's clock counts as set.
 const AGREEING: u32 = 5;
-/// For how long they have to agree, in seconds. A clock that was set back looks like a network that delays samples, which takes
-/// longer to tell apart; no delay makes samples look too early.
+/// Time for which samples have to agree that the tracker's clock was set back, in seconds. A network that delays
+/// samples looks the same and takes longer to rule out; no delay makes samples look too early.
 const BACK_S: f64 = 0.4;
 const AHEAD_S: f64 = 0.1;
 
-/// Maps device time to session time. The offset comes from the samples with the shortest delay in this window and the
-/// previous one (Cristian 1989). A single wrong time stamp changes nothing; a clock that was set is followed once samples agree.
+/// Maps an eye tracker's device time to session time. The offset comes from the samples with the shortest delay in the
+/// present time window and the previous one (Cristian 1989). A single wrong time stamp changes nothing; when the
+/// tracker's clock was set, the mapping follows once samples agree.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DeviceClock {
-    /// Arrival less device time, in nanoseconds: the least of the window before, and of this one.
+    /// Least difference between arrival and device time in the previous time window, in nanoseconds; the next field has
+    /// that of the present window.
     before: Option<i128>,
     least: Option<i128>,
     since: SessionTime,
     doubt: Option<Doubt>,
 }
 
-/// Consecutive samples that are off in the same direction.
+/// Consecutive gaze samples whose clock offset deviates in the same direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Doubt {
-    /// Whether they come from a clock that is ahead.
+    /// Whether the samples suggest that the tracker's clock was set ahead.
     is_ahead: bool,
-    /// Arrival of the first of them, and of the first that agrees with the present least offset.
+    /// Arrival times of the first deviating sample, and of the first one that agrees with the present least offset.
     since: SessionTime,
     agreed_since: SessionTime,
-    /// The least offset of them, in nanoseconds.
+    /// The least clock offset of the deviating samples, in nanoseconds.
     least: i128,
-    /// How many agree with it.
+    /// Number of samples that agree with the least offset.
     agreeing: u32,
 }
 
-/// The device's clock was set.
+/// The eye tracker's clock was set during the session.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClockStep {
-    /// By how much it went ahead, in nanoseconds; negative: back.
+    /// By how much the tracker's clock was set ahead, in nanoseconds; negative if it was set back.
     pub by_ns: i64,
-    /// Arrival of the first sample whose session time was uncertain until now.
+    /// Arrival of the first gaze sample whose session time was uncertain until the clock step was detected.
     pub uncertain_since: SessionTime,
 }
 
@@ -55,8 +59,8 @@ const fn ns(seconds: f64) -> i128 {
 }
 
 impl DeviceClock {
-    /// The session time at which a sample with this device time was taken, never later than its arrival; and whether the clock
-    /// turned out to have been set.
+    /// The session time at which a sample with this device time was taken, never later than its arrival; and the clock
+    /// step, if the tracker's clock turned out to have been set.
     pub fn session_time(&mut self, device_ns: u64, arrived: SessionTime) -> (SessionTime, Option<ClockStep>) {
         let offset = i128::from(arrived.0) - i128::from(device_ns);
         let step = match self.offset() {
@@ -84,7 +88,7 @@ impl DeviceClock {
         self.least = self.least.map(|least| least.min(offset));
     }
 
-    /// Takes a sample that is off; the step, if enough of them agree now.
+    /// Handles a sample whose clock offset deviates; returns the clock step once enough samples agree.
     fn question(&mut self, offset: i128, known: i128, arrived: SessionTime) -> Option<ClockStep> {
         let is_ahead = offset < known;
         let fresh = Doubt { is_ahead, since: arrived, agreed_since: arrived, least: offset, agreeing: 1 };

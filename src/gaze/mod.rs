@@ -1,8 +1,9 @@
-//! Gaze: samples on the wall display and the locations that they may have read.
+//! Gaze: samples on the wall display, and the locations that the participant may have looked at.
 //!
-//! All sources lead to the same event with three times: arrival (the event's time), the tracker's time, and the session time at which the
-//! sample was taken. Faults are judged when an event is applied, so a recording keeps every sample and a replay judges the same way.
-//! Recorded gaze stays raw; an accepted offset is corrected where gaze is used.
+//! All gaze sources lead to the same event with three times: arrival (the event's time), the tracker's time, and the
+//! session time at which the sample was taken. Faults are judged when an event is applied, so a recording keeps every
+//! sample and a replay judges the same way. Recorded gaze stays raw; an accepted offset is corrected where gaze is
+//! used.
 
 pub mod calibration;
 pub mod device_clock;
@@ -15,20 +16,20 @@ use serde::{Deserialize, Serialize};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Kitchen, LocationId};
 
-/// Samples below this confidence are useless (Pupil Labs) and are not used for reading.
+/// Gaze samples below this confidence are not used by the belief filter (recommendation of Pupil Labs).
 pub const MIN_CONFIDENCE: f64 = 0.6;
 
 /// One gaze sample, in display coordinates: fractions of width and height, origin at the top left, y down.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GazeSample {
-    /// Fraction of the display's width; outside 0 to 1 the gaze is beside the display.
+    /// Horizontal position as a fraction of the display's width; outside 0 to 1 the gaze is beside the display.
     pub x: f64,
-    /// Fraction of the display's height, downwards.
+    /// Vertical position as a fraction of the display's height, downwards.
     pub y: f64,
-    /// 0 to 1.
+    /// The tracker's confidence in the sample, 0 to 1.
     pub confidence: f64,
-    /// Time on the tracker's clock in nanoseconds, if the tracker reports it.
+    /// Time of the sample on the tracker's clock in nanoseconds, if the tracker reports it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub device_ns: Option<u64>,
     /// Session time at which the sample was taken, if the offset of the tracker's clock is known; otherwise the arrival
@@ -38,20 +39,20 @@ pub struct GazeSample {
 }
 
 impl GazeSample {
-    /// A sample without a device time.
+    /// A gaze sample without a device time.
     pub fn new(x: f64, y: f64, confidence: f64) -> GazeSample {
         GazeSample { x, y, confidence, device_ns: None, taken_ns: None }
     }
 
-    /// The sample as it is recorded: places to a hundred thousandth of the display (15 um on a wall display, far below
-    /// what any tracker resolves), confidence to a thousandth.
+    /// The gaze sample as it is recorded: position to a hundred thousandth of the display (15 um on a wall display, far
+    /// below what any tracker resolves), confidence to a thousandth.
     pub fn rounded(self) -> GazeSample {
         let to = |value: f64, parts: f64| (value * parts).round() / parts;
         GazeSample { x: to(self.x, 1e5), y: to(self.y, 1e5), confidence: to(self.confidence, 1e3), ..self }
     }
 }
 
-/// The location nearest to a display point, and its distance in metres (0 inside its area).
+/// The location nearest to a point of the wall display, and its distance in metres (0 inside the location's area).
 pub fn nearest_location(kitchen: &Kitchen, point: [f64; 2]) -> Option<(LocationId, f64)> {
     let distance = |index: usize| kitchen.locations[index].display.distance_m(point, kitchen.display_m);
     let nearest = (0..kitchen.locations.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;

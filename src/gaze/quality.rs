@@ -1,80 +1,81 @@
 //! Faults of real gaze streams, counted by kind: clocks that jump back, duplicates, pauses, invalid numbers, changing
-//! rates. No faulty sample may reach the belief estimate.
+//! rates. No faulty gaze sample may reach the belief estimate.
 
 use serde::{Deserialize, Serialize};
 
 use super::GazeSample;
 use crate::base::time::SessionTime;
 
-/// Samples older than this are not read, in seconds: the display may have shown something else when they were taken.
+/// The belief filter ignores gaze samples older than this, in seconds: the display may have shown something else when
+/// they were taken.
 pub const TOO_OLD_S: f64 = 0.5;
-/// Upper limit of a tracker's sampling rate, in Hz.
+/// Upper limit of an eye tracker's sampling rate, in Hz.
 pub const MAX_HZ: f64 = 2000.0;
-/// Number of samples that may arrive at once after a pause.
+/// Number of gaze samples that may arrive at once after a pause.
 const BURST: f64 = 1000.0;
-/// Number of recent samples among which duplicates are detected.
+/// Number of recent gaze samples among which duplicates are detected.
 const RECENT: usize = 32;
 
-/// Why a recorded sample is not read.
+/// Why the belief filter ignores a recorded gaze sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GazeFault {
-    /// The same sample came a little earlier.
+    /// The same gaze sample had arrived shortly before.
     Duplicate,
-    /// It was taken too long ago.
+    /// The gaze sample was taken too long before it arrived.
     TooOld,
-    /// A sample that was taken later came before it.
+    /// A gaze sample that was taken later had arrived before.
     OutOfOrder,
 }
 
-/// How many samples were recorded and not read, by kind.
+/// Number of gaze samples that were recorded but ignored by the belief filter, by kind of fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct FaultCounts {
-    /// Samples that came a second time.
+    /// Number of duplicate gaze samples.
     pub duplicate: u64,
-    /// Samples that were older than [`TOO_OLD_S`] when they arrived.
+    /// Number of gaze samples that were older than [`TOO_OLD_S`] when they arrived.
     pub too_old: u64,
-    /// Samples that were taken before one that had arrived already.
+    /// Number of gaze samples that arrived after one that was taken later.
     pub out_of_order: u64,
 }
 
 impl FaultCounts {
-    /// All of them.
+    /// Number of faulty samples of all kinds.
     pub fn sum(self) -> u64 {
         self.duplicate + self.too_old + self.out_of_order
     }
 }
 
-/// Input from a tracker that cannot be recorded, counted since the session began.
+/// Number of inputs from an eye tracker that cannot be recorded, by kind, since the session began.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DropCounts {
-    /// Malformed messages, lines and samples: broken, wrongly typed, not a number.
+    /// Malformed messages, lines and gaze samples: truncated, of a wrong type, not a number.
     pub malformed: u64,
-    /// Samples beyond [`MAX_HZ`].
+    /// Gaze samples above the highest accepted rate, [`MAX_HZ`].
     pub too_frequent: u64,
-    /// Samples that arrived faster than they could be processed.
+    /// Gaze samples that arrived faster than they could be processed.
     pub overrun: u64,
 }
 
 impl DropCounts {
-    /// All of them.
+    /// Number of dropped inputs of all kinds.
     pub fn sum(self) -> u64 {
         self.malformed + self.too_frequent + self.overrun
     }
 }
 
-/// Detects faults of a stream, sample by sample. Only samples with a device time are checked.
+/// Detects faults of a gaze stream, sample by sample. Only samples with a device time are checked.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SampleChecker {
     newest: Option<SessionTime>,
     recent: Vec<(Option<u64>, [u64; 2])>,
     next: usize,
-    /// Faults found so far, by kind.
+    /// Number of faults found so far, by kind.
     pub counts: FaultCounts,
 }
 
 impl SampleChecker {
-    /// The fault of a sample that arrived now; none if the sample can be read.
+    /// The fault of a gaze sample that arrived now; none if the sample can be used.
     pub fn judge(&mut self, sample: &GazeSample, arrived: SessionTime) -> Option<GazeFault> {
         let taken = sample.taken_ns?.min(arrived);
         let mark = (sample.device_ns, [sample.x.to_bits(), sample.y.to_bits()]);
@@ -100,7 +101,7 @@ impl SampleChecker {
     }
 }
 
-/// Limits the sampling rate to what a tracker can send.
+/// Limits the rate of gaze samples to what a tracker can send.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateLimit {
     left: f64,
@@ -114,7 +115,7 @@ impl Default for RateLimit {
 }
 
 impl RateLimit {
-    /// Whether a sample that arrives now may pass.
+    /// Whether a gaze sample that arrives now is within the rate limit.
     pub fn admits(&mut self, now: SessionTime) -> bool {
         self.left = (self.left + now.secs_since(self.at) * MAX_HZ).min(BURST);
         self.at = self.at.max(now);

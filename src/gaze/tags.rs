@@ -1,57 +1,57 @@
-//! The tags on the wall display by which an eye tracker finds it: AprilTags of the family tag36h11, one in each corner.
+//! The printed markers on the wall display by which an eye tracker finds it: AprilTags of the family tag36h11, one in
+//! each corner.
 //!
-//! Pupil Labs asks for at least four tags with unique ids, a black edge of at least 8 cm at 2 m, and a white border of one
-//! cell around it.
+//! Pupil Labs asks for at least four tags with unique ids, a black edge of at least 8 cm at 2 m, and a white border of
+//! one cell around each tag.
 
 use crate::kitchen::{DisplayArea, Kitchen};
 
-/// The ids of the corners' tags: top left, top right, bottom right, bottom left.
+/// The AprilTag ids of the display's corners: top left, top right, bottom right, bottom left.
 pub const IDS: [u16; 4] = [0, 1, 2, 3];
-/// Smallest and largest edge of the black square, in millimetres; the largest that fits is used.
+/// Smallest and largest edge of an AprilTag's black square, in millimetres; the largest that fits is used.
 const EDGE_MM: (u32, u32) = (80, 100);
-/// Cells of the black square's side: six of data, and the black border.
+/// Cells along a side of an AprilTag's black square: six of data, and the black border.
 const BLACK_CELLS: usize = 8;
-/// Cells of a whole tag's side, with the white border.
+/// Cells along a side of a whole AprilTag, with the white border.
 pub const CELLS: usize = 10;
-/// The data of the tags with these ids: six rows of six bits, the first bit top left, 1 for white (Olson 2011; Wang and
-/// Olson 2016).
+/// The data bits of the AprilTags with these ids: six rows of six bits, the first bit top left, 1 for white (Olson
+/// 2011; Wang and Olson 2016).
 const DATA: [u64; 4] = [0xd_5d62_8584, 0xd_97f1_8b49, 0xd_d280_910e, 0xe_479e_9c98];
 
-/// A tag on the wall display.
+/// An AprilTag on the wall display.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisplayTag {
-    /// In the family tag36h11.
+    /// The tag's id in the family tag36h11.
     pub id: u16,
-    /// With its white border, in fractions of the display.
+    /// The tag's area with its white border, in fractions of the display.
     pub area: DisplayArea,
-    /// The black square, in fractions of the display.
+    /// The area of the tag's black square, in fractions of the display.
     pub black: DisplayArea,
 }
 
-/// The tags of a wall display.
+/// The AprilTags of a wall display, one in each corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DisplayTags {
-    /// Top left, top right, bottom right, bottom left.
+    /// The tags of the corners: top left, top right, bottom right, bottom left.
     pub corners: [DisplayTag; 4],
-    /// The length of the black edges, in metres.
+    /// Length of the edge of a tag's black square, in metres.
     pub edge_m: f64,
 }
 
-/// Tags that do not fit on a display.
+/// Error: AprilTags do not fit on a kitchen's wall display.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found}")]
 pub struct TagError {
-    /// What does not fit, and where.
+    /// Which tag does not fit, and what is in its place.
     pub found: String,
-    /// What would be right.
+    /// What would have to change, in words.
     pub remedy: String,
 }
 
 impl DisplayTags {
-    /// The largest tags that the corners of a kitchen's display have room for beside locations and storages.
+    /// The largest AprilTags that fit into the corners of a kitchen's wall display beside locations and storages.
     ///
-    /// # Errors
-    /// Something lies where the smallest tags would be.
+    /// # Errors A location or storage lies where the smallest tag would be.
     pub fn place(kitchen: &Kitchen) -> Result<DisplayTags, TagError> {
         let locations = kitchen.locations.iter().map(|location| (location.label(), location.display));
         let storage = |storage: &crate::kitchen::Storage| {
@@ -100,8 +100,8 @@ impl DisplayTags {
         DisplayTags { corners, edge_m }
     }
 
-    /// The corners of Pupil's default surface, the hull of the black corners of all tags, in fractions of the display: top
-    /// left, top right, bottom right, bottom left.
+    /// The corners of Pupil's default surface, which is the convex hull of the black squares of all tags, in fractions
+    /// of the display: top left, top right, bottom right, bottom left.
     pub fn hull(&self) -> [[f64; 2]; 4] {
         let [top_left, top_right, bottom_right, bottom_left] = self.corners.map(|tag| tag.black);
         [
@@ -114,13 +114,14 @@ impl DisplayTags {
 }
 
 impl DisplayTag {
-    /// The corners of the black square, in fractions of the display: top left, top right, bottom right, bottom left.
+    /// The corners of the tag's black square, in fractions of the display: top left, top right, bottom right, bottom
+    /// left.
     pub fn black_corners(&self) -> [[f64; 2]; 4] {
         let DisplayArea { x, y, w, h } = self.black;
         [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]
     }
 
-    /// The cells of a tag: rows from the top, cells from the left; true is black.
+    /// The cells of the AprilTag: rows from the top, cells from the left; true is black.
     pub fn cells(&self) -> [[bool; CELLS]; CELLS] {
         let data = IDS.iter().position(|id| *id == self.id).map_or(0, |index| DATA[index]);
         let mut cells = [[false; CELLS]; CELLS];

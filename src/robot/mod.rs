@@ -1,4 +1,5 @@
-//! The robot: its task policy, and what is recorded of its arm. The arms that carry the policy out are in `crate::arm`.
+//! The robot: its task policy, and its recorded activity. The simulated arms that carry the policy out are in
+//! `crate::arm`.
 
 pub mod moment;
 pub mod policy;
@@ -11,27 +12,27 @@ use self::safety::SafetyMode;
 use crate::base::time::SessionTime;
 use crate::kitchen::ButtonId;
 
-/// Why the robot gave up a press.
+/// Why the robot abandoned a press that it had begun or planned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AbortReason {
-    /// When the arm was about to touch the button, pressing it was no longer useful.
+    /// When the arm was about to touch the button, pressing it no longer brought the orders nearer.
     NoLongerUseful,
     /// The wizard stopped the robot.
     Stopped,
-    /// The wizard skipped this press.
+    /// The wizard skipped this press of the robot.
     Skipped,
-    /// The wizard chose another press.
+    /// The wizard chose another press for the robot.
     Driven,
-    /// The button is out of the arm's reach.
+    /// The button is outside of the arm's workspace.
     OutOfReach,
-    /// The pose at the button is singular.
+    /// The arm's pose at the button is singular.
     Singular,
-    /// Every path to the button is blocked by an obstacle or by the arm itself.
+    /// Every path of the arm to the button is blocked by an obstacle or by the arm itself.
     Obstructed,
-    /// A hand was in the way for too long.
+    /// A hand was in the arm's way for too long.
     HandInTheWay,
-    /// The button was pressed down and did not click.
+    /// The arm pushed the button down, but the button did not click.
     NoClick,
     /// The arm measured a contact force above the threshold and stopped.
     Contact,
@@ -40,7 +41,7 @@ pub enum AbortReason {
 }
 
 impl AbortReason {
-    /// Every reason, in the order in which tables count them.
+    /// Every reason for an abandoned press, in the order in which tables count them.
     pub const ALL: [AbortReason; 11] = [
         AbortReason::NoLongerUseful,
         AbortReason::Stopped,
@@ -55,13 +56,13 @@ impl AbortReason {
         AbortReason::Fault,
     ];
 
-    /// Whether only the simulated arm can have this reason.
+    /// Whether only the arm in the physics simulation can have this reason.
     pub fn is_of_physics(self) -> bool {
         use AbortReason::{Driven, NoLongerUseful, Skipped, Stopped};
         !matches!(self, NoLongerUseful | Stopped | Skipped | Driven)
     }
 
-    /// In words, after "gives up the press:".
+    /// The reason in words, after "gives up the press:".
     pub fn words(self) -> &'static str {
         match self {
             AbortReason::NoLongerUseful => "no longer useful",
@@ -79,46 +80,46 @@ impl AbortReason {
     }
 }
 
-/// Why the robot does nothing.
+/// Why the robot waits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IdleReason {
-    /// No order is present.
+    /// No order is shown.
     NoOrder,
-    /// No press of the robot brings the orders nearer; the human has to act.
+    /// No press of the robot reduces the cost to go; the human has to act.
     HumanTurn,
-    /// The wizard skipped the only press that would help, a moment ago.
+    /// The wizard skipped the only useful press of the robot a moment ago.
     Skipped,
 }
 
-/// Something that the robot does at one time.
+/// An activity of the robot, as it is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RobotActivity {
-    /// Starts a press.
+    /// The robot begins a press.
     Intend {
-        /// The button that it goes for.
+        /// The button that the robot is going to press.
         button: ButtonId,
-        /// When the arm will touch the button.
+        /// The session time at which the arm will touch the button.
         until: SessionTime,
     },
-    /// Presses the button that it set out for.
+    /// The robot presses the button to which it was moving.
     Press(ButtonId),
-    /// Gives up the press that it set out for, or was about to.
+    /// The robot abandons the press of this button, for this reason.
     Abort(ButtonId, AbortReason),
-    /// Becomes idle, or stays idle for another reason.
+    /// The robot becomes idle, or stays idle for another reason.
     Idle(IdleReason),
     /// A sample of the arm's motion.
     Move(ArmSample),
-    /// The safety mode changed.
+    /// The safety mode of the arm changed.
     Safety {
-        /// The mode from now on.
+        /// The safety mode from now on.
         mode: SafetyMode,
-        /// The contact force that caused the change, in newtons, if a contact did.
+        /// The contact force that caused the change of the safety mode, in newtons, if a contact did.
         force_n: Option<f64>,
-        /// The faulty joint that caused the change, if one did; 1 is the first.
+        /// The number of the faulty joint that caused the change of the safety mode, if one did; 1 is the first.
         joint: Option<u8>,
     },
-    /// Somebody touched the arm.
+    /// Somebody touched the robot's arm.
     Touched {
         /// The force of the contact in newtons.
         force_n: f64,

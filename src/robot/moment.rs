@@ -1,44 +1,44 @@
-//! A recorded sample of the simulated arm, as plain data without the physics.
+//! A recorded sample of the simulated arm's motion, as plain data without the physics.
 
 use serde::{Deserialize, Serialize};
 
-/// The number of joints that move.
+/// The number of joints of the robot arm.
 pub const JOINTS: usize = 6;
-/// The joints in the arm's URDF, from the base on.
+/// Names of the joints in the arm's URDF, from the base on.
 pub const JOINT_NAMES: [&str; JOINTS] = ["shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3"];
-/// Angles of the joints, from the base on, in radians.
+/// Joint angles of the robot arm, from the base on, in radians.
 pub type JointAngles = [f64; JOINTS];
 
 /// Phase of the arm's motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ArmPhase {
-    /// Nothing: it stands above the buttons.
+    /// The arm rests above the buttons.
     #[default]
     Rests,
-    /// Comes up from a button.
+    /// The arm comes up from a button.
     Retracts,
-    /// On its way over the buttons.
+    /// The arm moves above the buttons to its target.
     Travels,
-    /// Above its button, ready to press.
+    /// The arm stands above its button, ready to press.
     Hovers,
-    /// Down on its button.
+    /// The arm pushes its button down.
     Presses,
 }
 
-/// A sample of the arm's motion, as it is recorded.
+/// A sample of the robot arm's motion, as it is recorded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ArmSample {
-    /// What the arm was doing.
+    /// The phase of the arm's motion.
     pub phase: ArmPhase,
-    /// Joint angles in radians, from the base on, to a ten thousandth.
+    /// Joint angles in radians, from the base on, rounded to a ten thousandth.
     pub joints: JointAngles,
-    /// The greatest force that it felt since it was told last, from a button or from somebody, in newtons.
+    /// The greatest contact force since the previous sample, on a button or a person, in newtons.
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub force_n: f64,
-    /// The middle of the human's hand, in the frame of the arm's base, in metres.
+    /// The centre of the human's hand, in the frame of the arm's base, in metres.
     pub hand_m: [f64; 3],
-    /// The distance of the human's hand from the arm, in metres.
+    /// The distance between the human's hand and the arm, in metres.
     pub hand_away_m: f64,
 }
 

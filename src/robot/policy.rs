@@ -1,4 +1,5 @@
-//! The robot's task policy (paper, "Robot task policy"): backwards from the current goal, one of the best presses at random.
+//! The robot's task policy (paper, "Robot task policy"): it plans backwards from the current goal and takes one of the
+//! best presses at random.
 
 use rand::RngExt;
 
@@ -7,16 +8,16 @@ use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Recipes, State};
 
-/// What the robot does next.
+/// The decision of the robot's task policy: a press, or waiting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PolicyDecision {
-    /// It sets out for this button of the robot.
+    /// The robot presses this button next.
     Press(ButtonId),
-    /// It waits, for this reason.
+    /// The robot waits, for this reason.
     Idle(IdleReason),
 }
 
-/// The presses of the robot that bring the goal nearer: those after which the cost to go is one less.
+/// The presses of the robot that lower the cost to go by one.
 pub fn best_presses(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -29,8 +30,8 @@ pub fn best_presses(
     buttons.filter(|button| nearer >> button.0 & 1 == 1).collect()
 }
 
-/// Of these presses those for the order that is nearer to being served, which is the one that the human works on as a rule;
-/// all of them if none is for it, or if both orders are as near.
+/// Of these best presses, those for the order that is nearer to completion, on which the human mostly works; all of
+/// them if none is for that order, or if both orders are equally near.
 fn for_the_nearer_order(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -57,8 +58,8 @@ fn for_the_nearer_order(
     if helping.is_empty() { presses } else { helping }
 }
 
-/// What the robot may press in this state if these are the recipes, each as likely; nothing if no press brings the goal
-/// nearer.
+/// The presses among which the robot would choose in this state, all equally likely, if these were the recipes; none if
+/// no press lowers the cost to go.
 pub fn choices(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -70,7 +71,7 @@ pub fn choices(
     chosen(kitchen, cost, fidelity, state, recipes, best)
 }
 
-/// Of these best presses those that the robot decides between.
+/// Of these best presses, those among which the robot chooses at random.
 pub fn chosen(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -80,13 +81,13 @@ pub fn chosen(
     best: Vec<ButtonId>,
 ) -> Vec<ButtonId> {
     let best = for_the_nearer_order(kitchen, cost, fidelity, state, recipes, best);
-    // What serves no order is thrown away: put down somewhere, it would soon be in the way again.
+    // Useless contents are thrown away: put down somewhere, they would soon be in the way again.
     let trash = best.iter().copied().find(|&button| kitchen.button(Agent::Robot, button).action == ButtonAction::Trash);
     trash.map_or(best, |trash| vec![trash])
 }
 
-/// Decides for the state as it truly is: of several best presses one at random, idle if none brings the goal nearer.
-/// Those of `skipped` are left out.
+/// The robot's decision in the true state: one of its best presses at random, idle if no press lowers the cost to go.
+/// Presses in `skipped` are left out.
 pub fn decide(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -105,7 +106,7 @@ pub fn decide(
     }
     match chosen(kitchen, cost, Fidelity::Exact, state, &recipes, best)[..] {
         [] => PolicyDecision::Idle(IdleReason::HumanTurn),
-        // What is thrown away is no choice, and draws nothing.
+        // Throwing away is never a random choice, so no random number is drawn.
         [only] if kitchen.button(Agent::Robot, only).action == ButtonAction::Trash => PolicyDecision::Press(only),
         ref choices => PolicyDecision::Press(choices[random.random_range(0..choices.len())]),
     }

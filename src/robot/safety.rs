@@ -1,34 +1,37 @@
-//! The safety modes of the arm, and the force that stops it (power and force limiting, ISO/TS 15066, 5.5.5).
+//! The safety modes of the robot arm, and the contact force that stops it (power and force limiting, ISO/TS 15066,
+//! 5.5.5).
 
 use serde::{Deserialize, Serialize};
 
-/// Contact with more force than this stops the arm at normal speed, in newtons.
+/// Contact force above which the arm stops at normal speed, in newtons.
 pub const STOP_N: f64 = 60.0;
-/// The same where a hand is near and the arm moves slowly, in newtons: less force is felt there.
+/// Contact force above which the arm stops while it moves slowly near a hand, in newtons: contacts of a slow arm are
+/// weaker.
 pub const STOP_REDUCED_N: f64 = 20.0;
-/// A hand nearer than this slows the arm, in metres.
+/// Distance of the human's hand below which the arm moves slowly, in metres.
 pub const SLOWS_M: f64 = 0.25;
-/// The controller's safety modes, as the maker names them; those that the program has a use for.
+/// Safety modes of the robot arm's controller, named as by the manufacturer (Universal Robots); only those that the
+/// program uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SafetyMode {
-    /// Nobody is near: full speed.
+    /// Nobody is near: the arm moves at full speed.
     #[default]
     Normal,
-    /// A hand is near: slower.
+    /// A hand is near: the arm moves slowly.
     Reduced,
-    /// The arm felt somebody, and stays where it is until the wizard lets it go on.
+    /// The arm stopped after a contact, and stays where it is until the wizard releases it.
     ProtectiveStop,
-    /// A hand is in the way: it waits until the hand is gone.
+    /// A hand is in the way: the arm waits until the hand is gone.
     Safeguard,
-    /// The wizard stopped it.
+    /// The wizard stopped the arm.
     EmergencyStop,
-    /// A joint does not do what it is told to.
+    /// A joint of the arm does not follow its command.
     Fault,
 }
 
 impl SafetyMode {
-    /// In words, as the maker writes it.
+    /// The safety mode in words, as the manufacturer writes it.
     pub fn name(self) -> &'static str {
         match self {
             SafetyMode::Normal => "NORMAL",
@@ -40,17 +43,17 @@ impl SafetyMode {
         }
     }
 
-    /// Whether it takes the wizard's key to go on.
+    /// Whether the arm stays stopped until the wizard releases it.
     pub fn is_stopped(self) -> bool {
         self.has_stopped_itself() || self == SafetyMode::EmergencyStop
     }
 
-    /// Whether the arm stopped without the wizard.
+    /// Whether the arm stopped by itself, without the wizard.
     pub fn has_stopped_itself(self) -> bool {
         matches!(self, SafetyMode::ProtectiveStop | SafetyMode::Fault)
     }
 
-    /// With how much force the arm stops.
+    /// Contact force above which the arm stops in this safety mode, in newtons.
     pub fn threshold_n(self) -> f64 {
         match self {
             SafetyMode::Normal => STOP_N,

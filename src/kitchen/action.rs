@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::content::ContentId;
 use super::location::LocationId;
 
-/// An index into the buttons of one agent.
+/// Identifies a button: an index into the buttons of one agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ButtonId(pub u8);
 
@@ -17,54 +17,55 @@ impl ButtonId {
     }
 }
 
-/// Action of a button.
+/// What a button does when it is pressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ButtonAction {
-    /// Take this item from the own storage into the empty hand.
+    /// Take this item from the agent's own storage into its empty hand.
     Take(ContentId),
-    /// Pick up, put down or stack at a location.
+    /// Pick up, put down or stack: exchanges contents between the agent's hand and this location.
     Use(LocationId),
-    /// Apply the process with this index: to the hand if it has no place, else to what lies there.
+    /// Apply the processing step with this index: to the content of the hand if the step has no place, else to the
+    /// content of its place.
     Process(u8),
-    /// Throw away the content of the own hand.
+    /// Throw away the content of the agent's hand.
     Trash,
-    /// Serve this order location from the plate.
+    /// Serve the order at this location from the plate.
     Serve(LocationId),
 }
 
-/// A physical button as one agent has it.
+/// A physical button of one agent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Button {
-    /// "take rice", "cutting_board", "cut", "trash", "serve 1".
+    /// Name of the button: "take rice", "cutting_board", "cut", "trash", "serve 1".
     pub name: String,
-    /// What a press of it does.
+    /// What a press of the button does.
     pub action: ButtonAction,
-    /// Its place on the table in metres, in the frame of the robot's base.
+    /// Position of the button on the table in metres, in the frame of the robot's base.
     pub at_m: [f64; 2],
-    /// The human's key for it.
+    /// The key on the human's keyboard that presses this button.
     pub key: Option<char>,
-    /// The number of the human's gamepad button for it.
+    /// Number of the button on the human's gamepad that presses this button.
     pub gamepad: Option<u8>,
-    /// The colour of its cap, which the display shows, too.
+    /// The colour of the button's cap, which the display shows, too.
     pub colour: Option<ButtonColour>,
-    /// The name of its area on the table; buttons of one area stand together, as on the display.
+    /// The name of the button's area on the table; buttons of one area stand together, as on the display.
     pub area: Option<String>,
 }
 
-/// Colour of a button's cap: those in which arcade buttons are sold.
+/// Colour of a button's cap: the colours in which arcade buttons are sold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ButtonColour {
-    /// Red.
+    /// A red button cap.
     Red,
-    /// Yellow.
+    /// A yellow button cap.
     Yellow,
-    /// Green.
+    /// A green button cap.
     Green,
-    /// Blue.
+    /// A blue button cap.
     Blue,
-    /// White.
+    /// A white button cap.
     White,
-    /// Black.
+    /// A black button cap.
     Black,
 }

@@ -1,4 +1,4 @@
-//! The two agents.
+//! The two agents of the task: human and robot.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Agent {
-    /// The participant.
+    /// The human participant.
     Human,
     /// The robot that cooks with the participant.
     Robot,
@@ -22,7 +22,7 @@ impl Agent {
         self as usize
     }
 
-    /// The agent's partner.
+    /// The other agent: the robot for the human, the human for the robot.
     pub fn other(self) -> Agent {
         match self {
             Agent::Human => Agent::Robot,
@@ -30,7 +30,7 @@ impl Agent {
         }
     }
 
-    /// "human" or "robot", as logs and tables write it.
+    /// The agent's name in logs and tables: "human" or "robot".
     pub fn name(self) -> &'static str {
         match self {
             Agent::Human => "human",

@@ -1,14 +1,15 @@
-//! State aspects, about which the human can hold false beliefs: one per location (its content), one per dish (its recipe).
+//! State aspects, about which the human can hold false beliefs: one aspect per location (its content), and one per dish
+//! (its recipe).
 
 use super::dish::DishId;
 use super::location::LocationId;
 
-/// An index into [`super::Kitchen::aspects`].
+/// Identifies a state aspect: an index into [`super::Kitchen::aspects`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AspectId(pub u8);
 
 impl AspectId {
-    /// The aspect of a location's content: locations come first among the aspects.
+    /// The state aspect that is the content of this location: locations come first among the aspects.
     pub fn of_location(location: LocationId) -> AspectId {
         AspectId(location.0)
     }
@@ -23,29 +24,29 @@ impl AspectId {
 /// Kind of a state aspect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AspectKind {
-    /// The content of a location; values are the bytes of [`super::State::code`].
+    /// The content of a location; its possible values are the bytes of [`super::State::code`].
     Location(LocationId),
-    /// The recipe of a dish; values are full stacks, the true one first.
+    /// The recipe of a dish; its possible values are stacks of ingredients, the true recipe first.
     Recipe(DishId),
 }
 
 /// One state aspect and its possible values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aspect {
-    /// The location's name, or "recipe of DISH".
+    /// Name of the state aspect: that of its location, or "recipe of DISH".
     pub name: String,
-    /// The location or the dish that it is about.
+    /// The location or the dish that the state aspect is about.
     pub kind: AspectKind,
-    /// The possible values, as codes (see [`AspectKind`]).
+    /// The possible values of the aspect, as codes (see [`AspectKind`]).
     pub values: Vec<u8>,
-    /// The name of each value in logs and tables: "rice cooked".
+    /// The name of each possible value in logs and tables: "rice cooked".
     pub labels: Vec<String>,
-    /// How screens and reports word each value: "cooked rice".
+    /// How screens and reports word each possible value: "cooked rice".
     pub wordings: Vec<String>,
 }
 
 impl Aspect {
-    /// The index of a value by its code.
+    /// The index of a possible value, from its code.
     pub fn index_of(&self, code: u8) -> Option<usize> {
         self.values.iter().position(|&value| value == code)
     }

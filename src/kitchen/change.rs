@@ -1,4 +1,4 @@
-//! What an event changed in the kitchen, with every name resolved.
+//! The change of the kitchen's state by an event, with every name resolved.
 
 use super::action::ButtonId;
 use super::agent::Agent;
@@ -6,31 +6,31 @@ use super::compiled::Kitchen;
 use super::location::LocationId;
 use super::state::State;
 
-/// A press of either agent, and what it did.
+/// A press of a button by either agent, with the state before and after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Press {
-    /// Who pressed.
+    /// The agent that pressed.
     pub agent: Agent,
-    /// The button, in the list of that agent's buttons.
+    /// The pressed button, as an index into that agent's buttons.
     pub button: ButtonId,
-    /// The kitchen before the press.
+    /// The state of the kitchen before the press.
     pub before: State,
-    /// The kitchen after the press; the same as before if the press had no effect.
+    /// The state of the kitchen after the press; the same as before if the press had no effect.
     pub after: State,
-    /// Whether the button's action was available.
+    /// Whether the button's action was available, so that the press had an effect.
     pub effective: bool,
 }
 
-/// What an applied event did to the kitchen.
+/// What an event of the session changed in the kitchen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
     /// The event does not change the kitchen.
     None,
     /// The trial started with an empty kitchen.
     TrialStarted {
-        /// The state until then.
+        /// The state before the trial started.
         before: State,
-        /// The empty kitchen.
+        /// The state of the empty kitchen.
         after: State,
     },
     /// An agent pressed a button during the trial.
@@ -40,23 +40,23 @@ pub enum Change {
         /// How many presses each agent has made, this one included, indexed by [`Agent::index`].
         presses: [u32; 2],
     },
-    /// A press while no trial ran: it has no effect and does not count.
+    /// An agent pressed a button while no trial ran: the press has no effect and does not count.
     UncountedPress {
-        /// Who pressed.
+        /// The agent that pressed.
         agent: Agent,
-        /// The button, in the list of that agent's buttons.
+        /// The pressed button, as an index into that agent's buttons.
         button: ButtonId,
     },
-    /// An order appeared, or stopped showing that it was served.
+    /// An order appeared, or an order that had been served disappeared.
     Order {
-        /// The order's location.
+        /// The location of the order.
         order: LocationId,
-        /// The state before the change.
+        /// The state before the order changed.
         before: State,
-        /// The state after the change.
+        /// The state after the order changed.
         after: State,
     },
-    /// The wizard corrected what the program believes of a location.
+    /// The wizard corrected the content of a location in the program's state, which differed from the real one.
     Correction {
         /// The location that was corrected.
         location: LocationId,
@@ -68,7 +68,7 @@ pub enum Change {
 }
 
 impl Kitchen {
-    /// What a press does to `state` under the true recipes.
+    /// The press of this button by this agent in `state`, and its effect under the true recipes.
     pub fn try_press(&self, state: State, agent: Agent, button: ButtonId) -> Press {
         let after = self.press(state, &self.true_recipes(), agent, button);
         Press { agent, button, before: state, after: after.unwrap_or(state), effective: after.is_some() }
@@ -76,14 +76,14 @@ impl Kitchen {
 }
 
 impl Press {
-    /// The kitchen after the press if it had an effect.
+    /// The state of the kitchen after the press, if the press had an effect.
     pub fn result(&self) -> Option<State> {
         self.effective.then_some(self.after)
     }
 }
 
 impl Change {
-    /// A press of either agent that counts.
+    /// The press of either agent, if the event is one that counts.
     pub fn press(&self) -> Option<Press> {
         match self {
             Change::Press { press, .. } => Some(*press),
@@ -91,12 +91,12 @@ impl Change {
         }
     }
 
-    /// A press of the human that counts.
+    /// The press of the human, if the event is one that counts.
     pub fn human_press(&self) -> Option<Press> {
         self.press().filter(|press| press.agent == Agent::Human)
     }
 
-    /// The kitchen before and after, if the event concerns the kitchen and changed something.
+    /// The state of the kitchen before and after the event, if the event can change the kitchen.
     pub fn states(&self) -> Option<(State, State)> {
         let (before, after) = match self {
             Change::None | Change::UncountedPress { .. } => return None,

@@ -1,4 +1,4 @@
-//! The compiled kitchen with its look-ups.
+//! The compiled kitchen: its tables, and look-ups by name and id.
 
 use super::action::{Button, ButtonAction, ButtonId};
 use super::agent::Agent;
@@ -15,31 +15,32 @@ use crate::base::rng::mix;
 /// A compiled kitchen: tables over contents, locations, buttons and dishes. It never changes after loading.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kitchen {
-    /// Identifier, from the layout file.
+    /// Identifier of the kitchen, from the layout file.
     pub name: String,
-    /// Title on screens.
+    /// Title of the kitchen on screens.
     pub title: String,
     /// Size of the wall display in metres, width and height.
     pub display_m: [f64; 2],
     /// Height of the table in the frame of the robot's base, in metres.
     pub table_height_m: f64,
-    /// How long an order shows `served`, in seconds.
+    /// Time for which an order is shown as served, in seconds.
     pub served_shown_s: f64,
-    /// Time from serving to the next order, in seconds.
+    /// Time from serving an order to the next order, in seconds.
     pub new_order_after_s: f64,
     /// Every content; index 0 is "empty", then the ingredient items, then the stacks by size.
     pub contents: Vec<Content>,
-    /// How contents are worded, by language.
+    /// How contents are worded on screens, by language.
     pub words: KitchenWords,
-    /// The locations, order locations first, in the order of the file.
+    /// The locations in the order of the layout file, orders first.
     pub locations: Vec<Location>,
     /// The buttons of the human and of the robot, indexed by [`Agent::index`] and [`ButtonId`].
     pub buttons: [Vec<Button>; 2],
     /// The storages.
     pub storages: Vec<Storage>,
-    /// The menu.
+    /// The dishes of the menu.
     pub dishes: Vec<Dish>,
-    /// The state aspects: one per location, one per recipe.
+    /// The state aspects, about which beliefs can be false: one per location (its content) and one per dish (its
+    /// recipe).
     pub aspects: Vec<Aspect>,
     /// The processing steps: cutting, cooking and their like.
     pub processes: Vec<Process>,
@@ -60,7 +61,7 @@ impl Kitchen {
         State::default()
     }
 
-    /// The true recipes.
+    /// The true recipes of all dishes.
     pub fn true_recipes(&self) -> Recipes {
         let mut recipes = Recipes::default();
         for (index, dish) in self.dishes.iter().enumerate() {
@@ -69,7 +70,7 @@ impl Kitchen {
         recipes
     }
 
-    /// The number of joint values of all aspects, |S| of the paper.
+    /// The number of joint values of all state aspects, |S| of the paper.
     pub fn state_count(&self) -> u128 {
         self.aspects.iter().map(|aspect| aspect.values.len() as u128).product()
     }
@@ -125,7 +126,7 @@ impl Kitchen {
         self.buttons[agent.index()].iter().position(|button| button.name == name).map(|index| ButtonId(index as u8))
     }
 
-    /// A content in words, by its name in logs; another name stands for itself.
+    /// How screens word a content, from its name in logs; an unknown name is returned as it is.
     pub fn worded<'a>(&'a self, name: &'a str) -> &'a str {
         self.content_named(name).map_or(name, |content| &self.content(content).wording)
     }
@@ -142,13 +143,13 @@ impl Kitchen {
         }
     }
 
-    /// A fingerprint of a state for logs: equal states have equal marks.
+    /// A fingerprint of a state for logs: equal states have equal fingerprints.
     pub fn state_mark(&self, state: State) -> u64 {
         let bytes = state.bits();
         mix(bytes as u64 ^ mix((bytes >> 64) as u64))
     }
 
-    /// The agent's button nearest to another one of its buttons on the table.
+    /// The agent's button that is nearest to this one on the table.
     pub fn nearest_button(&self, agent: Agent, button: ButtonId) -> Option<ButtonId> {
         let buttons = &self.buttons[agent.index()];
         let own = buttons[button.index()].at_m;
@@ -157,7 +158,7 @@ impl Kitchen {
         others.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).map(|index| ButtonId(index as u8))
     }
 
-    /// The agent's storage button whose symbol looks like that of another one.
+    /// The agent's storage button whose item looks like that of this one.
     pub fn look_alike_button(&self, agent: Agent, button: ButtonId) -> Option<ButtonId> {
         let ButtonAction::Take(item) = self.button(agent, button).action else { return None };
         let alike = &self.content(item).look_alikes;
@@ -166,7 +167,7 @@ impl Kitchen {
         buttons.iter().position(|other| is_alike(other.action)).map(|index| ButtonId(index as u8))
     }
 
-    /// Index of the true value of an aspect; 0 if the location holds a content that it cannot hold.
+    /// Index of the true value of a state aspect; 0 if the location holds a content that is not allowed there.
     pub fn true_value(&self, state: State, aspect: AspectId) -> usize {
         let aspect = &self.aspects[aspect.index()];
         match aspect.kind {
@@ -175,7 +176,7 @@ impl Kitchen {
         }
     }
 
-    /// Sets an aspect to the value with this index, in a state or in recipes.
+    /// Sets a state aspect to the value with this index, in the state or in the recipes.
     #[inline]
     pub fn set_value(&self, state: &mut State, recipes: &mut Recipes, aspect: AspectId, value: usize) {
         let aspect = &self.aspects[aspect.index()];
@@ -185,7 +186,7 @@ impl Kitchen {
         }
     }
 
-    /// The aspect of a dish's recipe: recipes follow the locations.
+    /// The state aspect that is the recipe of this dish: recipes follow the locations.
     pub fn aspect_of_dish(&self, dish: DishId) -> AspectId {
         AspectId((self.locations.len() + dish.index()) as u8)
     }

@@ -1,8 +1,8 @@
-//! Contents of a location: empty, an ingredient item, or a stack of items.
+//! Contents of a location: nothing, an item (an ingredient in a state), or a stack of items.
 
 use super::look::Appearance;
 
-/// An index into [`super::Kitchen::contents`]; 0 is "empty".
+/// Identifies a content: an index into [`super::Kitchen::contents`]; 0 is "empty".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ContentId(pub u8);
 
@@ -23,25 +23,26 @@ impl ContentId {
     }
 }
 
-/// One content of the kitchen.
+/// Something that a location can hold: nothing, an item, or a stack of items.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Content {
-    /// The name in logs and tables: "rice cooked", "nori + rice cooked", "empty"; a full stack on the menu has its dish's name.
+    /// The content's name in logs and tables: "rice cooked", "nori + rice cooked", "empty"; a stack that is a dish of
+    /// the menu has the dish's name.
     pub name: String,
-    /// How screens and reports word it: "cooked rice", "nori + cooked rice".
+    /// How screens and reports word the content: "cooked rice", "nori + cooked rice".
     pub wording: String,
-    /// The ingredient items in it, in the order of the recipe file; one for an item, none for empty.
+    /// The items in the content, in the order of the recipe file; one for a single item, none for "empty".
     pub items: Vec<ContentId>,
-    /// The ingredient it is made of, as index into the recipe file's list, if it is an item.
+    /// The ingredient of a single item, as an index into the recipe file's list; none for a stack.
     pub ingredient: Option<usize>,
-    /// The contents that look like it: the same with one ingredient exchanged for a look-alike.
+    /// The contents that look similar: the same with one ingredient replaced by a look-alike.
     pub look_alikes: Vec<ContentId>,
-    /// How the display draws it, if it is an item and its file says so.
+    /// How the display draws a single item, if the recipe file says so.
     pub look: Option<Appearance>,
 }
 
 impl Content {
-    /// Whether it is a stack: several items that are carried as one.
+    /// Whether the content is a stack: several items that are carried as one.
     pub fn is_stack(&self) -> bool {
         self.items.len() > 1
     }

@@ -7,29 +7,29 @@ use super::content::Content;
 /// The language of console, Rerun and reports.
 pub const SCREEN_LANGUAGE: &str = "en";
 
-/// Words for items, ingredients and dishes, by language and in a language by name. The screens' language has words for every
-/// item, another one those that the recipe file gives.
+/// Words for items, ingredients and dishes, by language, then by name in logs. The screens' language has words for
+/// every item, another language only those that the recipe file gives.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KitchenWords(BTreeMap<String, BTreeMap<String, String>>);
 
 impl KitchenWords {
-    /// Words by language and name.
+    /// Creates the table from words by language and name.
     pub(super) fn new(languages: BTreeMap<String, BTreeMap<String, String>>) -> KitchenWords {
         KitchenWords(languages)
     }
 
-    /// The words for names in a language; none if the recipe file has none in it.
+    /// The words for names in this language; empty if the recipe file has none for it.
     pub fn in_language(&self, language: &str) -> &BTreeMap<String, String> {
         static NONE: BTreeMap<String, String> = BTreeMap::new();
         self.0.get(language).unwrap_or(&NONE)
     }
 
-    /// A content in words: "cooked rice", "nori + cooked rice". A name without words in the language stands for itself.
-    /// `contents` are those of the kitchen.
+    /// The wording of a content in this language: "cooked rice", "nori + cooked rice". A name without words in the
+    /// language is returned as it is. `contents` are all contents of the kitchen.
     pub fn content(&self, language: &str, content: &Content, contents: &[Content]) -> String {
         let words = self.in_language(language);
         let word = |name: &str| words.get(name).map_or(name, String::as_str).to_string();
-        // A stack on the menu has its dish's name.
+        // A stack that is a dish of the menu has the dish's name.
         match content.items.len() > 1 && content.name.contains(" + ") {
             true => {
                 let items = content.items.iter().map(|item| word(&contents[item.index()].name));

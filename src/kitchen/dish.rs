@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::content::ContentId;
 use super::look::Appearance;
 
-/// An index into [`super::Kitchen::dishes`].
+/// Identifies a dish: an index into [`super::Kitchen::dishes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct DishId(pub u8);
@@ -21,16 +21,16 @@ impl DishId {
 /// A dish of the menu.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dish {
-    /// The name from the recipe file, which orders and screens show.
+    /// The dish's name from the recipe file, which orders and screens show.
     pub name: String,
-    /// Variants of its recipe that people may believe in: full stacks, the true one first.
+    /// Variants of the dish's recipe that people may believe in: stacks of items, the true recipe first.
     pub variants: Vec<ContentId>,
-    /// How the display draws the final product, if its file says so.
+    /// How the display draws the finished dish, if the recipe file says so.
     pub look: Option<Appearance>,
 }
 
 impl Dish {
-    /// The true recipe.
+    /// The true recipe of the dish, as a stack of items.
     pub fn stack(&self) -> ContentId {
         self.variants[0]
     }

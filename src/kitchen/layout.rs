@@ -1,4 +1,4 @@
-//! The layout file: positions on the wall display and on the table, accepted contents, and keys.
+//! The layout file of a kitchen: positions on the wall display and on the table, accepted contents, and keys.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -7,13 +7,13 @@ use super::action::ButtonColour;
 use super::agent::Agent;
 use super::location::DisplayArea;
 
-/// The layout file as written.
+/// The layout file of a kitchen as written.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LayoutSpec {
     /// Identifier of the kitchen.
     pub name: String,
-    /// What screens call the kitchen.
+    /// The kitchen's title on screens.
     pub title: String,
     /// The recipe file, relative to the layout file.
     pub recipes: Spanned<String>,
@@ -35,7 +35,7 @@ pub struct LayoutSpec {
 }
 
 impl LayoutSpec {
-    /// The locations with a signal, and the wizard's key for it.
+    /// The locations about which a signal can be sent, and the wizard's key for it.
     pub fn signal_keys(&self) -> impl Iterator<Item = (&str, &Spanned<char>)> {
         let orders = self.order.iter().map(|order| (&order.name, &order.signal));
         let hands = self.hand.iter().map(|hand| (&hand.name, &hand.signal));
@@ -69,9 +69,9 @@ pub fn is_same_key(a: char, b: char) -> bool {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WallDisplaySpec {
-    /// Width in metres.
+    /// Width of the wall display in metres.
     pub width_m: Spanned<f64>,
-    /// Height in metres.
+    /// Height of the wall display in metres.
     pub height_m: Spanned<f64>,
 }
 
@@ -81,7 +81,7 @@ pub struct WallDisplaySpec {
 pub struct TableSpec {
     /// Height of the table in the frame of the robot's base, in metres.
     pub height_m: f64,
-    /// How long an order shows that it was served, in seconds.
+    /// Time for which an order is shown as served, in seconds.
     pub served_shown_s: Spanned<f64>,
     /// Time from serving an order to the next order at its location, in seconds.
     pub new_order_after_s: Spanned<f64>,
@@ -91,18 +91,19 @@ pub struct TableSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ButtonSpec {
-    /// Its place on the table in metres, in the frame of the robot's base: x towards the human, y to the robot's left.
+    /// Position of the button on the table in metres, in the frame of the robot's base: x towards the human, y to the
+    /// robot's left.
     pub at_m: Spanned<[f64; 2]>,
-    /// The human's key for it; none: the human cannot press it by keyboard.
+    /// The key on the human's keyboard for this button; none: the human cannot press it by keyboard.
     #[serde(default)]
     pub key: Option<Spanned<char>>,
-    /// The number of the gamepad's button (W3C Gamepad), 0 the first.
+    /// Number of the button on the human's gamepad (W3C Gamepad), counted from 0.
     #[serde(default)]
     pub gamepad: Option<Spanned<u8>>,
-    /// The colour of its cap, which the display shows beside what the button does.
+    /// The colour of the button's cap, which the display shows beside the button's action.
     #[serde(default)]
     pub colour: Option<ButtonColour>,
-    /// The name of its area on the table.
+    /// The name of the button's area on the table.
     #[serde(default)]
     pub area: Option<Spanned<String>>,
 }
@@ -113,7 +114,7 @@ pub struct ButtonSpec {
 pub struct OrderSpec {
     /// Identifier of the location.
     pub name: Spanned<String>,
-    /// Its area on the wall display.
+    /// The order's area on the wall display.
     pub display: Spanned<DisplayArea>,
     /// The wizard's key for the signal that shows the recipe of this order.
     #[serde(default)]
@@ -128,9 +129,9 @@ pub struct OrderSpec {
 pub struct HandSpec {
     /// Identifier of the location.
     pub name: Spanned<String>,
-    /// Whose hand it is.
+    /// The agent whose hand it is.
     pub agent: Spanned<Agent>,
-    /// Its area on the wall display.
+    /// The hand's area on the wall display.
     pub display: Spanned<DisplayArea>,
     /// The wizard's key for the signal about this hand.
     #[serde(default)]
@@ -145,22 +146,22 @@ pub struct HandSpec {
 pub struct PlaceSpec {
     /// Identifier of the location.
     pub name: Spanned<String>,
-    /// Items are stacked here: true for exactly one place.
+    /// Whether items are stacked here: true for exactly one place.
     #[serde(default)]
     pub stacks: bool,
-    /// Orders are served from here: true for exactly one place.
+    /// Whether orders are served from here: true for exactly one place.
     #[serde(default)]
     pub serves: bool,
-    /// "anything", "ingredients", "dishes", or a group of the recipe file.
+    /// Contents that the place accepts: "anything", "ingredients", "dishes", or a group of the recipe file.
     pub accepts: Vec<Spanned<String>>,
-    /// Its area on the wall display.
+    /// The place's area on the wall display.
     pub display: Spanned<DisplayArea>,
     /// The wizard's key for the signal about this place.
     #[serde(default)]
     pub signal: Option<Spanned<char>>,
-    /// The button that puts the hand's content down here, or takes up what is here.
+    /// The button that puts the hand's content down here, or picks up the content of the place.
     pub button: ButtonSpec,
-    /// Appearance on the display, a shape and colours.
+    /// Appearance of the place on the display: a shape and colours.
     #[serde(default)]
     pub look: Option<Spanned<String>>,
 }
@@ -169,9 +170,9 @@ pub struct PlaceSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProcessButtonSpec {
-    /// The process, as the recipe file names it.
+    /// The processing step, as the recipe file names it.
     pub name: Spanned<String>,
-    /// Its button.
+    /// The button of the processing step.
     pub button: ButtonSpec,
 }
 
@@ -179,12 +180,12 @@ pub struct ProcessButtonSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StorageSpec {
-    /// The agent who can take from it.
+    /// The agent who can take from the storage.
     pub agent: Agent,
     /// The ingredient, as the recipe file names it.
     pub ingredient: Spanned<String>,
-    /// Its area on the wall display.
+    /// The storage's area on the wall display.
     pub display: Spanned<DisplayArea>,
-    /// The button that takes one piece into the hand.
+    /// The button that takes one piece from the storage into the hand.
     pub button: ButtonSpec,
 }

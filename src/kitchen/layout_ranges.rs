@@ -1,4 +1,5 @@
-//! The ranges of the numbers in layout files. Those of session files are in `session::ranges`; recipe files have no numbers.
+//! The allowed ranges of the numbers in layout files. Those of session files are in `session::ranges`; recipe files
+//! have no numbers.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -10,7 +11,7 @@ const SHOWN: &str = "less is not seen, more is as long as a trial";
 const FRACTION: &str = "fractions of the display, which ends at 1";
 const SIDE: &str = "less is not seen, more does not fit on the display";
 
-/// Of layouts.
+/// The allowed ranges of the numbers in layout files.
 pub const RANGES: [NumberRange; 11] = [
     NumberRange::real("display.width_m", [0.1, 20.0], "m", "from a telephone to a wall"),
     NumberRange::real("display.height_m", [0.1, 20.0], "m", "from a telephone to a wall"),
@@ -25,10 +26,10 @@ pub const RANGES: [NumberRange; 11] = [
     NumberRange::whole("*.*.gamepad", [0.0, 63.0], "", "no gamepad or button box has more buttons"),
 ];
 
-/// Whether a layout file may have all the numbers in this text. What else is wrong with the text is not looked at.
+/// Checks that all numbers in the text of a layout file lie within their allowed ranges. Other errors of the text are
+/// ignored.
 ///
-/// # Errors
-/// The first number outside of its range, with its place.
+/// # Errors The first number outside of its range, with its position.
 pub fn check(text: &str) -> Result<(), OutOfRange> {
     let Ok(document) = DeTable::parse(text) else { return Ok(()) };
     in_table(document.get_ref(), "")

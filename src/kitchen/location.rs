@@ -6,7 +6,7 @@ use super::agent::Agent;
 use super::content::ContentId;
 use super::look::Appearance;
 
-/// An index into [`super::Kitchen::locations`].
+/// Identifies a location: an index into [`super::Kitchen::locations`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LocationId(pub u8);
 
@@ -33,12 +33,13 @@ pub struct DisplayArea {
 }
 
 impl DisplayArea {
-    /// The centre, in the same fractions.
+    /// The centre of the area, in fractions of the display's width and height.
     pub fn centre(self) -> [f64; 2] {
         [self.x + self.w / 2.0, self.y + self.h / 2.0]
     }
 
-    /// The distance in metres from a display point (fractions) to this area, 0 inside, on a display of `display_m`.
+    /// The distance in metres from a display point (in fractions) to this area, 0 inside; `display_m` is the size of
+    /// the display.
     pub fn distance_m(self, point: [f64; 2], display_m: [f64; 2]) -> f64 {
         let outside = |low: f64, length: f64, value: f64| (low - value).max(value - low - length).max(0.0);
         let dx = outside(self.x, self.w, point[0]) * display_m[0];
@@ -46,7 +47,7 @@ impl DisplayArea {
         dx.hypot(dy)
     }
 
-    /// The least distance in metres between two areas, 0 if they touch.
+    /// The least distance in metres between two areas of the display, 0 if they touch.
     pub fn gap_m(self, other: DisplayArea, display_m: [f64; 2]) -> f64 {
         let gap = |a: f64, a_len: f64, b: f64, b_len: f64| (b - a - a_len).max(a - b - b_len).max(0.0);
         let dx = gap(self.x, self.w, other.x, other.w) * display_m[0];
@@ -58,31 +59,31 @@ impl DisplayArea {
 /// Kind of a location.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocationKind {
-    /// Shows an ordered dish.
+    /// An order: shows the ordered dish.
     Order,
     /// The hand of an agent.
     Hand(Agent),
-    /// Holds one item; items are stacked there if it is the board.
+    /// A place that holds one content; on the board, items are stacked.
     Place,
 }
 
-/// A location whose content a person can be wrong about.
+/// A location of the kitchen, about whose content a person can have a false belief.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Location {
     /// Identifier from the layout file: "cooking_pot".
     pub name: String,
     /// Whether it is an order, a hand or a place.
     pub kind: LocationKind,
-    /// Its area on the wall display.
+    /// The location's area on the wall display.
     pub display: DisplayArea,
-    /// The wizard's key for the signal about it.
+    /// The wizard's key for the signal about this location.
     pub signal_key: Option<char>,
-    /// How the display draws it, if its file says so.
+    /// How the display draws the location, if the layout file says so.
     pub look: Option<Appearance>,
 }
 
 impl Location {
-    /// The name as it is written on screens: "assembly board".
+    /// The location's name on screens: "assembly board".
     pub fn label(&self) -> String {
         self.name.replace('_', " ")
     }
@@ -91,12 +92,12 @@ impl Location {
 /// An endless supply of one ingredient, within reach of one agent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Storage {
-    /// The agent who can take from it.
+    /// The agent who can take from the storage.
     pub agent: Agent,
-    /// The ingredient, in the state in which a storage gives it.
+    /// The item that the storage supplies: the ingredient in its first state.
     pub item: ContentId,
-    /// The ingredient's name.
+    /// The ingredient's name on screens.
     pub label: String,
-    /// Its area on the wall display.
+    /// The storage's area on the wall display.
     pub display: DisplayArea,
 }

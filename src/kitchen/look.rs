@@ -1,28 +1,28 @@
-//! How things look on the participant's display: a shape and its colours, as the files say. The shapes are drawn by the page.
+//! Appearance of ingredients, dishes and places on the participant's display: a shape and its colours, from the
+//! kitchen's files. The browser page draws the shapes.
 
 use serde::Serialize;
 
-/// The shapes that the display can draw: of ingredients, of dishes, of places.
+/// The shapes that the participant's display can draw: of ingredients, of dishes, of places.
 pub const SHAPES: [&str; 32] = [
     "grains", "heap", "block", "sheet", "fillet", "slices", "prawn", "claw", "morsels", "bun", "cheese", "patty",
     "grilled", "round", "bell", "rings", "leaf", "jar", "nigiri", "roll", "burger", "toast", "bowl", "board", "plate",
     "counter", "cutting", "pot", "mat", "grill", "shelf", "tray",
 ];
 
-/// How something looks: "fillet #f58a5f".
+/// The appearance of an ingredient, dish or place on the display: "fillet #f58a5f".
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Appearance {
-    /// One of [`SHAPES`].
+    /// The shape: one of [`SHAPES`].
     pub shape: String,
-    /// "#rrggbb"; without any, the shape has its own.
+    /// The colours of the shape as "#rrggbb"; if empty, the shape has its default colours.
     pub colours: Vec<String>,
 }
 
 impl Appearance {
-    /// Reads a shape and up to four colours.
+    /// Reads a shape and up to four colours from text.
     ///
-    /// # Errors
-    /// What would be right.
+    /// # Errors What the text would have to contain.
     pub fn read(text: &str) -> Result<Appearance, String> {
         let mut words = text.split_whitespace();
         let shape = words.next().unwrap_or_default().to_string();

@@ -1,17 +1,17 @@
 //! The kitchen: contents, locations and buttons, the rules of a press, and the cost to go.
 //!
-//! Everything is computed from two files ([`layout::LayoutSpec`] and [`recipe::RecipesSpec`]); nothing here knows sushi.
+//! Everything is computed from two files ([`layout::LayoutSpec`] and [`recipe::RecipesSpec`]); no code depends on a
+//! particular dish.
 //!
 //! The files from the ground up; each imports only from those before it:
 //!
 //! - The parts: `agent`, `look`, [`content`], `location`, `dish`, `process`, [`action`], [`state`], [`aspect`],
-//!   [`content_wording`],
-//!   `transition_tables`.
-//! - The whole: `compiled` ([`Kitchen`] and what can be looked up in it), `rules` (what a press does),
-//!   [`no_effect`] (why it does nothing), [`change`], [`world`].
-//! - How far it is: [`cost_to_go`].
-//! - Where it comes from: [`layout`] and [`recipe`] (the files as written), [`compile`] (from them to a [`Kitchen`], no larger
-//!   than the cost to go can number).
+//!   [`content_wording`], `transition_tables`.
+//! - The whole: `compiled` ([`Kitchen`] and its look-ups), `rules` (effects of presses), [`no_effect`] (why a press has
+//!   no effect), [`change`], [`world`].
+//! - Distance to the goal: [`cost_to_go`].
+//! - Loading: [`layout`] and [`recipe`] (the files as written), [`compile`] (from the files to a [`Kitchen`], whose
+//!   size the keys of the cost to go limit).
 
 pub mod action;
 mod agent;

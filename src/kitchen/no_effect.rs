@@ -1,5 +1,5 @@
-//! Why a press has no effect. The reason follows from the button and the true contents alone, and says no more than a look at the
-//! display tells: nothing about recipes, and nothing about what somebody believes.
+//! Why a press has no effect. The reason follows from the button and the true contents alone, and reveals no more than
+//! the display shows: nothing about recipes, and nothing about beliefs.
 
 use serde::Serialize;
 
@@ -9,35 +9,36 @@ use super::compiled::Kitchen;
 use super::location::LocationId;
 use super::state::{OrderContent, State};
 
-/// Why a press has no effect.
+/// Reason why a press has no effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoEffect {
-    /// The hand holds something, and would have to be empty.
+    /// The agent's hand holds something, but would have to be empty.
     HandFull,
-    /// The hand is empty, and would have to hold something.
+    /// The agent's hand is empty, but would have to hold something.
     HandEmpty,
-    /// Hand and place are empty.
+    /// The agent's hand and the place are both empty.
     BothEmpty,
-    /// The place is empty, and would have to hold something.
+    /// The place is empty, but would have to hold something.
     PlaceEmpty,
-    /// The place holds something, and nothing is stacked there.
+    /// The place is occupied, and items cannot be stacked there.
     PlaceFull,
-    /// What the hand holds is not put down there.
+    /// The place does not accept the content of the hand.
     NotAccepted,
-    /// What the hand holds is not stacked on what is there.
+    /// The content of the hand cannot be stacked on the content of the place.
     NotStacked,
-    /// What is there cannot be processed so.
+    /// The content of the place cannot be processed in this way.
     NotProcessed,
-    /// The order's place shows no order.
+    /// The order location shows no order.
     NoOrder,
-    /// What is on the plate is not served there. Which dish it is, or what is wrong with it, is not said.
+    /// The content of the plate cannot be served for this order. The reason does not say which dish it is, or what is
+    /// wrong with it.
     NotServed,
 }
 
 impl Kitchen {
-    /// Why a press would have no effect in this state with the true recipes; `None` if it would have one. The location is the one
-    /// that the reason is about.
+    /// Why a press would have no effect in this state with the true recipes, and the location that the reason is about;
+    /// `None` if the press would have an effect.
     pub fn no_effect(&self, state: State, agent: Agent, button: ButtonId) -> Option<(NoEffect, LocationId)> {
         if self.press(state, &self.true_recipes(), agent, button).is_some() {
             return None;

@@ -6,12 +6,12 @@ use super::location::LocationId;
 /// A compiled processing step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Process {
-    /// The name from the recipe file: "cut".
+    /// The name of the processing step from the recipe file: "cut".
     pub name: String,
-    /// Location of the process; `None` for the hand of the agent who presses.
+    /// Location of the processing step; `None` for the hand of the agent who presses.
     pub place: Option<LocationId>,
-    /// Which agents can do it, indexed by [`super::Agent::index`].
+    /// Which agents can do the processing step, indexed by [`super::Agent::index`].
     pub agents: [bool; 2],
-    /// Pairs of input item and output item.
+    /// Pairs of input item and output item of the processing step.
     pub steps: Vec<(ContentId, ContentId)>,
 }

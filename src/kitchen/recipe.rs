@@ -1,5 +1,5 @@
-//! The recipe file: ingredients with states and look-alikes, processing steps, the stacking rule, the menu, and possible deviations
-//! of a remembered recipe.
+//! The recipe file of a kitchen: ingredients with states and look-alikes, processing steps, the stacking rule, the
+//! menu, and possible deviations of a remembered recipe.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use toml::Spanned;
 
 use super::agent::Agent;
 
-/// The recipe file as written.
+/// The recipe file of a kitchen as written.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecipesSpec {
@@ -19,49 +19,50 @@ pub struct RecipesSpec {
     /// The processing steps.
     #[serde(default)]
     pub process: Vec<ProcessSpec>,
-    /// What a dish is made of: from each slot at most one item.
+    /// The slots of a dish: a dish has at most one item from each slot.
     pub slot: Vec<SlotSpec>,
     /// Names for sets of items that places can accept.
     #[serde(default)]
     pub group: Vec<GroupSpec>,
     /// The menu.
     pub dish: Vec<DishSpec>,
-    /// What else may be taken for a dish's recipe.
+    /// How people may misremember the recipes of dishes.
     #[serde(default)]
     pub deviation: Vec<DeviationSpec>,
-    /// How items, ingredients and dishes are worded: by language, and in a language by name.
+    /// How items, ingredients and dishes are worded on screens: by language, then by name.
     #[serde(default)]
     pub words: BTreeMap<String, BTreeMap<String, Spanned<String>>>,
 }
 
-/// `[[ingredient]]` of a recipe file.
+/// `[[ingredient]]` of a recipe file: an ingredient with its states.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct IngredientSpec {
     /// The ingredient's name: "salmon".
     pub name: Spanned<String>,
-    /// States in order; a storage supplies the first. Empty for an ingredient with a single state.
+    /// The states of the ingredient in order; a storage supplies the first. Empty for an ingredient with a single
+    /// state.
     #[serde(default)]
     pub states: Vec<Spanned<String>>,
-    /// Ingredients that it can be taken for at a glance.
+    /// Ingredients for which this one can be mistaken at a glance.
     #[serde(default)]
     pub looks_like: Vec<Spanned<String>>,
-    /// Appearance on the display, a shape and colours for each state.
+    /// Appearance of the ingredient on the display: a shape and colours for each state.
     #[serde(default)]
     pub look: Vec<Spanned<String>>,
 }
 
-/// `[[process]]` of a recipe file: a button's press that turns one item into another.
+/// `[[process]]` of a recipe file: a processing step, in which a press turns one item into another.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProcessSpec {
-    /// The process's name: "cut".
+    /// The name of the processing step: "cut".
     pub name: Spanned<String>,
-    /// A place of the layout, or "hand".
+    /// Location of the processing step: a place of the layout, or "hand".
     pub at: Spanned<String>,
-    /// Who can do it.
+    /// The agents who can do the processing step.
     pub agents: Vec<Agent>,
-    /// Which item becomes which.
+    /// The conversions of the processing step: which item becomes which.
     pub steps: Vec<ProcessStepSpec>,
 }
 
@@ -75,7 +76,7 @@ pub struct ProcessStepSpec {
     pub to: Spanned<String>,
 }
 
-/// `[[slot]]` of a recipe file: items that take the same part in a dish.
+/// `[[slot]]` of a recipe file: items that have the same role in a dish.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlotSpec {
@@ -91,19 +92,19 @@ pub struct SlotSpec {
 pub struct GroupSpec {
     /// The group's name.
     pub name: Spanned<String>,
-    /// The items that belong to it, as "ingredient state"; a stack belongs to it if each of its items does.
+    /// The items that belong to the group, as "ingredient state"; a stack belongs to it if each of its items does.
     pub made_of: Vec<Spanned<String>>,
 }
 
-/// `[[dish]]` of a recipe file.
+/// `[[dish]]` of a recipe file: a dish of the menu.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DishSpec {
     /// The dish's name.
     pub name: Spanned<String>,
-    /// What the dish is made of, as "ingredient state": the true recipe.
+    /// The items of the dish, as "ingredient state": the true recipe.
     pub items: Spanned<Vec<Spanned<String>>>,
-    /// Appearance of the final product on the display; it must not reveal the recipe.
+    /// Appearance of the finished dish on the display; it must not reveal the recipe.
     #[serde(default)]
     pub look: Option<Spanned<String>>,
 }
@@ -112,25 +113,25 @@ pub struct DishSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviationSpec {
-    /// The rule applies to dishes with at least one of these items.
+    /// The deviation applies to dishes with at least one of these items.
     pub dishes_with: Vec<Spanned<String>>,
-    /// How the deviations of several slots go together.
+    /// How deviations in several slots may be combined.
     pub combine: DeviationCombination,
-    /// The slots that can be misremembered.
+    /// The slots of a dish that people can misremember.
     pub slots: Vec<DeviationSlotSpec>,
 }
 
-/// A slot of a deviation, with what may be remembered instead.
+/// A slot of a deviation, with the items that people may remember instead.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviationSlotSpec {
-    /// The slot, by its name.
+    /// The slot's name.
     pub slot: Spanned<String>,
     /// The items that may be remembered in this slot.
     pub items: Vec<Spanned<String>>,
 }
 
-/// Combination of deviations in several slots.
+/// How deviations of a remembered recipe in several slots may be combined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum DeviationCombination {
     /// At most one slot deviates from the true recipe.

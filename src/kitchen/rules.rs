@@ -1,4 +1,4 @@
-//! The rules of the task: the state transition of a press, by table look-ups.
+//! The rules of the task: the state transition after a press, by table look-ups.
 
 use super::action::{ButtonAction, ButtonId};
 use super::agent::Agent;
@@ -22,14 +22,14 @@ impl Kitchen {
         (!stack.is_empty()).then_some(stack)
     }
 
-    /// The result of a process; `None` if it does not apply to the content.
+    /// The result of a processing step; `None` if it does not apply to the content.
     #[inline]
     pub fn processed(&self, process: u8, content: ContentId) -> Option<ContentId> {
         let result = self.tables.becomes[usize::from(process) * self.tables.width + content.index()];
         (!result.is_empty()).then_some(result)
     }
 
-    /// The locations whose contents determine the effect of a press; the place comes before the hand.
+    /// The locations whose contents determine the effect of this button; the place comes before the hand.
     pub fn involved(&self, agent: Agent, button: ButtonId) -> Vec<LocationId> {
         let hand = self.hands[agent.index()];
         match self.button(agent, button).action {
@@ -40,21 +40,22 @@ impl Kitchen {
         }
     }
 
-    /// The locations that the human looks at before a press: those that it involves and, before fetching an item, the robot's
-    /// hand, which may be bringing it.
+    /// The locations that the human looks at before a press: those that determine its effect and, before fetching an
+    /// item, the robot's hand, which may be bringing the item.
     pub fn watched(&self, button: ButtonId) -> Vec<LocationId> {
         let fetches = matches!(self.button(Agent::Human, button).action, ButtonAction::Take(_));
         let robots_hand = fetches.then_some(self.hands[Agent::Robot.index()]);
         self.involved(Agent::Human, button).into_iter().chain(robots_hand).collect()
     }
 
-    /// The state after `agent` presses `button`; `None` if the action is not available, when the press has no effect.
+    /// The state after `agent` presses `button`; `None` if the press has no effect.
     #[inline]
     pub fn press(&self, state: State, recipes: &Recipes, agent: Agent, button: ButtonId) -> Option<State> {
         self.act(state, recipes, agent, self.button(agent, button).action)
     }
 
-    /// The state after an action of an agent; `None` if it is not available. `recipes` decides what can be served.
+    /// The state after an action of an agent; `None` if the action is not available. `recipes` decides what can be
+    /// served.
     pub fn act(&self, state: State, recipes: &Recipes, agent: Agent, action: ButtonAction) -> Option<State> {
         let hand = self.hands[agent.index()];
         let held = state.content(hand);
@@ -93,7 +94,7 @@ impl Kitchen {
         Some(next)
     }
 
-    /// Contents of hand and location after the location's button: picked up, put down or stacked.
+    /// Contents of hand and location after a press of the location's button: picked up, put down or stacked.
     #[inline]
     fn exchanged(&self, location: LocationId, held: ContentId, there: ContentId) -> Option<(ContentId, ContentId)> {
         match (held.is_empty(), there.is_empty()) {
@@ -115,7 +116,7 @@ impl Kitchen {
         })
     }
 
-    /// Checks that every location holds something that it can hold; the first one that does not.
+    /// The first location whose content is not allowed there; `None` if there is none.
     pub fn misplaced(&self, state: State) -> Option<LocationId> {
         let is_misplaced = |location: LocationId| match self.location(location).kind {
             LocationKind::Order => usize::from(state.code(location)) >= self.dishes.len() + 2,

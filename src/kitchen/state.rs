@@ -1,4 +1,4 @@
-//! The task state, and believed recipes, in compact form: states are copied and hashed millions of times.
+//! The task state, and believed recipes, in compact form, because they are copied and hashed millions of times.
 
 use super::content::ContentId;
 use super::dish::DishId;
@@ -26,7 +26,7 @@ pub enum OrderContent {
 }
 
 impl OrderContent {
-    /// Its byte in a [`State`].
+    /// The order's byte in a [`State`].
     pub const fn code(self) -> u8 {
         match self {
             OrderContent::None => 0,
@@ -64,38 +64,38 @@ impl State {
         OrderContent::from_code(self.code(location))
     }
 
-    /// Sets what an order shows.
+    /// Sets the content of an order location.
     #[inline]
     pub fn set_order(&mut self, location: LocationId, content: OrderContent) {
         self.set_code(location, content.code());
     }
 
-    /// The byte at a location, whatever its kind: the value of its state aspect.
+    /// The byte of a location, whatever its kind: the value of its state aspect.
     #[inline]
     pub fn code(self, location: LocationId) -> u8 {
         self.0[location.index() & (MAX_LOCATIONS - 1)]
     }
 
-    /// Sets a location's code: that of [`OrderContent::code`] for orders, a [`ContentId`] for other locations.
+    /// Sets the byte of a location: that of [`OrderContent::code`] for orders, a [`ContentId`] for other locations.
     #[inline]
     pub fn set_code(&mut self, location: LocationId, code: u8) {
         self.0[location.index() & (MAX_LOCATIONS - 1)] = code;
     }
 
-    /// All locations as one number, for hashing.
+    /// The contents of all locations as one number, for hashing.
     #[inline]
     pub fn bits(self) -> u128 {
         u128::from_le_bytes(self.0)
     }
 }
 
-/// For every dish, the full stack that somebody believes to be its recipe.
+/// For every dish, the stack of items that somebody believes to be its recipe.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(align(16))]
 pub struct Recipes([u8; MAX_DISHES]);
 
 impl Recipes {
-    /// The full stack that is taken for this dish's recipe.
+    /// The stack of items that is believed to be this dish's recipe.
     #[inline]
     pub fn get(&self, dish: DishId) -> ContentId {
         ContentId(self.0[dish.index() & (MAX_DISHES - 1)])
@@ -107,7 +107,7 @@ impl Recipes {
         u128::from_le_bytes(self.0)
     }
 
-    /// Sets the full stack that is taken for this dish's recipe.
+    /// Sets the stack of items that is believed to be this dish's recipe.
     #[inline]
     pub fn set(&mut self, dish: DishId, stack: ContentId) {
         self.0[dish.index() & (MAX_DISHES - 1)] = stack.0;

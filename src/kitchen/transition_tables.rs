@@ -1,16 +1,17 @@
-//! Tables over contents, from which the kitchen knows what can lie where, what stacks to what, and what a process makes.
+//! Transition tables of a kitchen: which location accepts which content, what two contents give when stacked, and what
+//! a processing step makes of a content.
 
 use super::content::ContentId;
 
-/// Transition tables over contents, computed once.
+/// Transition tables over contents, computed once per kitchen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TransitionTables {
     /// Number of contents.
     pub(super) width: usize,
-    /// `accepts[location * width + content]`: whether the location takes the content when it is empty.
+    /// `accepts[location * width + content]`: whether the location, when empty, accepts the content.
     pub(super) accepts: Vec<bool>,
-    /// `stacks[a * width + b]`: what a and b stacked are; 0 where they do not stack.
+    /// `stacks[a * width + b]`: the stack of a and b; 0 if they cannot be stacked.
     pub(super) stacks: Vec<ContentId>,
-    /// `becomes[process * width + content]`: what the content becomes; 0 where the process does nothing to it.
+    /// `becomes[process * width + content]`: the result of the processing step; 0 if it does not apply to the content.
     pub(super) becomes: Vec<ContentId>,
 }

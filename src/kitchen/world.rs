@@ -1,4 +1,4 @@
-//! Worlds (complete hypotheses of state and recipes) and weighted sets of them.
+//! Worlds (complete hypotheses of kitchen state and recipes) and weighted sets of worlds.
 
 use super::aspect::AspectId;
 use super::compiled::Kitchen;
@@ -9,20 +9,20 @@ use super::state::{Recipes, State};
 pub struct World {
     /// The content of every location.
     pub state: State,
-    /// What is taken for the recipe of every dish.
+    /// For every dish, the stack of items that is believed to be its recipe.
     pub recipes: Recipes,
 }
 
 /// A world with its weight: a probability (`f64`) or a number of draws (`u32`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WeightedWorld<W = f64> {
-    /// The world.
+    /// The hypothesis of state and recipes.
     pub world: World,
-    /// Its probability, or its number of draws.
+    /// The world's probability, or its number of draws.
     pub weight: W,
 }
 
-/// A set of weighted worlds, which approximates a belief. Probabilities sum to 1.
+/// A set of weighted worlds, which approximates a belief (a weighted particle set). Probabilities sum to 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WeightedWorlds<W = f64> {
     /// The worlds with their weights, each world once.
@@ -30,17 +30,17 @@ pub struct WeightedWorlds<W = f64> {
 }
 
 impl World {
-    /// This state with the true recipes.
+    /// The world with this state and the true recipes.
     pub fn with_true_recipes(kitchen: &Kitchen, state: State) -> World {
         World { state, recipes: kitchen.true_recipes() }
     }
 
-    /// The empty kitchen with the true recipes, in which the values of a hypothesis are then set.
+    /// The world with an empty kitchen and the true recipes, as a start from which a hypothesis is set.
     pub fn empty(kitchen: &Kitchen) -> World {
         World::with_true_recipes(kitchen, kitchen.empty_state())
     }
 
-    /// Sets an aspect to the value with this index.
+    /// Sets a state aspect of the world to the value with this index.
     #[inline]
     pub fn set_value(&mut self, kitchen: &Kitchen, aspect: AspectId, value: usize) {
         kitchen.set_value(&mut self.state, &mut self.recipes, aspect, value);
@@ -48,14 +48,14 @@ impl World {
 }
 
 impl WeightedWorlds {
-    /// A belief that is certain of one world.
+    /// The set with a single world: a belief without uncertainty.
     pub fn certain(world: World) -> WeightedWorlds {
         WeightedWorlds { all: vec![WeightedWorld { world, weight: 1.0 }] }
     }
 }
 
 impl WeightedWorlds<u32> {
-    /// Copies another set, reusing this set's memory.
+    /// Copies another set of worlds, reusing this set's memory.
     pub fn copy_from(&mut self, other: &WeightedWorlds<u32>) {
         self.all.clear();
         self.all.extend_from_slice(&other.all);
@@ -69,7 +69,7 @@ impl WeightedWorlds<u32> {
         }
     }
 
-    /// Total number of draws.
+    /// Total number of draws of all worlds.
     pub fn draws(&self) -> u32 {
         self.all.iter().map(|one| one.weight).sum()
     }

@@ -1,4 +1,4 @@
-//! The buttons of both agents.
+//! Builds the buttons of both agents from the layout file.
 
 use toml::Spanned;
 
@@ -12,12 +12,12 @@ use crate::kitchen::location::{Location, LocationId};
 use crate::kitchen::process::Process;
 use crate::kitchen::recipe::RecipesSpec;
 
-/// Largest length of an area's name, in characters.
+/// Largest length of the name of a button's area, in characters.
 const MAX_AREA: usize = 40;
-/// No gamepad or button box has a button of a higher number.
+/// Largest number of a gamepad button; no gamepad or button box has more.
 const MAX_GAMEPAD: u8 = 63;
 
-/// The buttons of both agents: own storage, places, processes, own trash, orders.
+/// The buttons of both agents, in the order: own storages, places, processing steps, own trash, orders.
 pub(super) fn buttons(
     layout: &LayoutSpec,
     spec: &RecipesSpec,
@@ -96,7 +96,7 @@ fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, o
     Ok(Button { name, action, at_m, key, gamepad, colour: spec.colour, area: area(spec)? })
 }
 
-/// The name of the button's area on the table.
+/// The checked name of the button's area on the table.
 fn area(spec: &ButtonSpec) -> Result<Option<String>> {
     let Some(area) = &spec.area else { return Ok(None) };
     let name = area.get_ref();
@@ -108,7 +108,7 @@ fn area(spec: &ButtonSpec) -> Result<Option<String>> {
     Ok(Some(name.clone()))
 }
 
-/// The gamepad's button, each of the human's once.
+/// The checked number of the gamepad button; each number may be given to only one of the human's buttons.
 fn gamepad(agent: Agent, name: &str, spec: &ButtonSpec, others: &[Button]) -> Result<Option<u8>> {
     let Some(number) = spec.gamepad.as_ref().filter(|_| agent == Agent::Human) else { return Ok(None) };
     let twin = others.iter().find(|other| other.gamepad == Some(*number.get_ref()));

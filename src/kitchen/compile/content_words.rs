@@ -1,4 +1,4 @@
-//! The words for contents, from the tables `[words]` of the recipe file.
+//! Reads how contents are worded on screens, from the tables `[words]` of the recipe file.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,11 @@ use crate::kitchen::content::Content;
 use crate::kitchen::content_wording::{KitchenWords, SCREEN_LANGUAGE};
 use crate::kitchen::recipe::RecipesSpec;
 
-/// Largest length of a wording, in characters: longer ones would not fit under a place.
+/// Largest length of the wording of a content, in characters: longer ones would not fit under a place on the screen.
 const MAX_WORDING: usize = 40;
 
-/// The words of all languages: those of the recipe file, and in the screens' language a default for every other item.
+/// The wordings of contents in all languages: those of the recipe file and, in the screens' language, a default for
+/// every other item.
 pub(super) fn content_words(spec: &RecipesSpec, items: &IngredientItems) -> Result<KitchenWords> {
     let mut languages: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     let defaults = (0..items.names.len()).map(|item| (items.names[item].clone(), default_wording(spec, items, item)));
@@ -44,14 +45,14 @@ pub(super) fn content_words(spec: &RecipesSpec, items: &IngredientItems) -> Resu
     Ok(KitchenWords::new(languages))
 }
 
-/// "cooked rice" for "rice" in the state "cooked".
+/// The default wording of an item: "cooked rice" for "rice" in the state "cooked".
 fn default_wording(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> String {
     let ingredient = &spec.ingredient[items.ingredient[item]];
     let name = ingredient.name.get_ref();
     ingredient.states.get(items.state[item]).map_or(name.clone(), |state| format!("{} {name}", state.get_ref()))
 }
 
-/// Two items, or two dishes, that are worded alike could not be told apart on a screen.
+/// Checks that no two items, and no two dishes, are worded alike: they could not be told apart on a screen.
 fn check_distinct(
     spec: &RecipesSpec,
     items: &IngredientItems,
@@ -71,7 +72,7 @@ fn check_distinct(
     Ok(())
 }
 
-/// Fills in how each content is worded on screens.
+/// Sets the wording of each content for screens.
 pub(super) fn word(contents: &mut [Content], words: &KitchenWords) {
     let wordings: Vec<String> =
         contents.iter().map(|content| words.content(SCREEN_LANGUAGE, content, contents)).collect();

@@ -1,4 +1,5 @@
-//! The items of the ingredients, and what can be made of them by stacking.
+//! Enumerates the contents of a kitchen: the items (ingredients in their states), and the stacks that can be made of
+//! them.
 
 use toml::Spanned;
 
@@ -7,16 +8,16 @@ use crate::kitchen::content::{Content, ContentId};
 use crate::kitchen::look::Appearance;
 use crate::kitchen::recipe::{DishSpec, RecipesSpec};
 
-/// At most so many contents: one byte, and one value of it means "none".
+/// Largest number of contents: a content is one byte, and one value of the byte means "none".
 const MAX_CONTENTS: usize = 255;
 const TOO_MANY: &str = "at most 255 items and stacks: fewer ingredients, states or slots";
 
-/// Names of the ingredient items ("rice cooked") and the ids that they get.
+/// The items, which are ingredients in a state ("rice cooked"), with their names and ids.
 pub(super) struct IngredientItems {
     pub(super) names: Vec<String>,
-    /// The ingredient of each item.
+    /// For each item, its ingredient.
     pub(super) ingredient: Vec<usize>,
-    /// The state of each item, as index into its ingredient's states.
+    /// For each item, its state, as an index into the states of its ingredient.
     pub(super) state: Vec<usize>,
 }
 
@@ -63,7 +64,7 @@ impl IngredientItems {
     }
 }
 
-/// Empty, all items, all stacks: pairs first, then larger ones.
+/// All contents: empty, all items, then all stacks, pairs first.
 pub(super) fn contents(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Content>> {
     let item_sets = (0..items.names.len()).map(|index| vec![ContentId(index as u8 + 1)]);
     let mut sets: Vec<Vec<ContentId>> = std::iter::once(Vec::new()).chain(item_sets).collect();
@@ -85,7 +86,7 @@ pub(super) fn contents(spec: &RecipesSpec, items: &IngredientItems) -> Result<Ve
     Ok(contents)
 }
 
-/// How an item looks; an ingredient without looks is drawn by its name.
+/// The appearance of an item on the display; an ingredient without an appearance is shown by its name.
 fn item_look(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> Result<Option<Appearance>> {
     let ingredient = &spec.ingredient[items.ingredient[item]];
     let (looks, states) = (&ingredient.look, ingredient.states.len().max(1));
@@ -97,7 +98,7 @@ fn item_look(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> Result
     looks.get(items.state[item]).map(|text| look(SpecFile::Recipes, text)).transpose()
 }
 
-/// All stacks of two and more, small ones first.
+/// All stacks of two or more items, small ones first.
 fn stacks(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Vec<ContentId>>> {
     let mut stacks: Vec<Vec<ContentId>> = vec![Vec::new()];
     let mut of_slots: Vec<ContentId> = Vec::new();
@@ -144,7 +145,8 @@ pub(super) fn dish_names(spec: &RecipesSpec, items: &IngredientItems) -> Result<
     spec.dish.iter().map(one).collect()
 }
 
-/// The same content with one ingredient exchanged for one that looks like it.
+/// The contents that look like this one: the same content with one ingredient replaced by an ingredient that looks like
+/// it.
 fn look_alikes(
     spec: &RecipesSpec,
     items: &IngredientItems,

@@ -1,4 +1,4 @@
-//! Processing steps, dishes, and the recipes that a memory may take for theirs.
+//! Builds processing steps, dishes, and for each dish the variants of its recipe that people may remember.
 
 use super::contents::IngredientItems;
 use super::places::stored;
@@ -74,7 +74,7 @@ pub(super) fn dishes(spec: &RecipesSpec, items: &IngredientItems, contents: &[Co
     Ok(dishes)
 }
 
-/// The recipes that a memory of `truth` (one item per slot) may take, the true one first.
+/// The variants of a recipe that people may remember instead of `truth` (one item per slot), the true recipe first.
 fn variants(
     deviation: &DeviationSpec,
     spec: &RecipesSpec,
@@ -104,7 +104,8 @@ fn variants(
     Ok(sets)
 }
 
-/// Every dish can be made: what it needs comes from a storage, and every step has somebody who can do it.
+/// Checks that every dish can be made: each item comes from a storage, and every processing step has an agent who can
+/// do it.
 pub(super) fn check_obtainable(
     spec: &RecipesSpec,
     layout: &LayoutSpec,

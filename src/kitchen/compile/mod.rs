@@ -1,8 +1,8 @@
-//! From the two files to a [`Kitchen`]: contents, buttons, recipe variants and state aspects are computed here.
+//! Compiles a [`Kitchen`] from a layout file and a recipe file: contents, buttons, recipe variants and state aspects.
 //!
-//! Errors (`spec_error`) are shared by all steps. The steps in their order: `contents` (items and stacks), `content_words`, `places`
-//! (locations and storages), `dishes` (processes, dishes, variants), `buttons`; transition tables and aspects follow from
-//! them here.
+//! The steps in their order: `contents` (items and stacks), `content_words`, `places` (locations and storages),
+//! `dishes` (processing steps, dishes, variants), `buttons`; transition tables and aspects follow in this file. All
+//! steps share the errors of `spec_error`.
 
 mod buttons;
 mod content_words;
@@ -31,16 +31,16 @@ use super::recipe::RecipesSpec;
 use super::state::OrderContent;
 use super::transition_tables::TransitionTables;
 
-/// At most so many ways to fill the locations other than orders: the keys of the cost to go have so many numbers.
+/// Largest number of joint contents of all locations other than orders: the keys of the cost-to-go cache have a fixed
+/// size.
 const MAX_STATES: u128 = 1 << 39;
-/// At most so many places where something is processed.
+/// Largest number of places where items are processed.
 const MAX_STATIONS: usize = 8;
 
 impl Kitchen {
-    /// Reads a kitchen from the texts of a layout file and of the recipe file that belongs to it.
+    /// Compiles a kitchen from the texts of a layout file and of the recipe file that belongs to it.
     ///
-    /// # Errors
-    /// One of them is not TOML, or describes no kitchen.
+    /// # Errors A text is not TOML, or does not describe a valid kitchen.
     pub fn from_toml(layout: &str, recipes: &str) -> Result<Kitchen> {
         let unreadable = |file: SpecFile| {
             move |error: toml::de::Error| SpecError {
@@ -62,7 +62,8 @@ impl Kitchen {
         Kitchen::compile(&layout, &recipes)
     }
 
-    /// Compiles a kitchen. Errors name the file, the place in it, what was found and what would be right.
+    /// Compiles a kitchen from parsed files. Errors name the file and the position, what was found, and what would be
+    /// right.
     pub fn compile(layout: &LayoutSpec, recipes: &RecipesSpec) -> Result<Kitchen> {
         let items = IngredientItems::read(recipes)?;
         let mut contents = contents::contents(recipes, &items)?;
@@ -114,7 +115,7 @@ impl Kitchen {
     }
 }
 
-/// What the cost to go can number: its keys and its lines have a fixed size.
+/// Checks that the kitchen is not too large for the keys and cache lines of the cost to go, which have a fixed size.
 fn check_size(
     locations: &[Location],
     tables: &TransitionTables,
@@ -192,7 +193,7 @@ fn tables(
     Ok(TransitionTables { width, accepts, stacks, becomes })
 }
 
-/// Marks in `row` what a word of "accepts" lets in.
+/// Marks in `row` the contents that a word of a place's `accepts` list allows there.
 fn accept(
     name: &Spanned<String>,
     spec: &RecipesSpec,
@@ -224,7 +225,7 @@ fn aspects(contents: &[Content], locations: &[Location], dishes: &[Dish], tables
         let dishes = (0..dishes.len()).map(|index| OrderContent::Dish(DishId(index as u8)).code());
         [OrderContent::None.code(), OrderContent::Served.code()].into_iter().chain(dishes).collect()
     };
-    // Name and wording of a value.
+    // The name and the wording of a value of an aspect.
     let said = |kind: LocationKind, code: u8| match (kind, OrderContent::from_code(code)) {
         (LocationKind::Order, OrderContent::None) => ["none", "none"],
         (LocationKind::Order, OrderContent::Served) => ["served", "served"],

@@ -1,4 +1,5 @@
-//! Locations and storages: their roles, and whether gaze can tell them apart on the display.
+//! Builds locations and storages from the layout file, and checks that an eye tracker can tell them apart on the
+//! display.
 
 use toml::Spanned;
 
@@ -11,9 +12,9 @@ use crate::kitchen::location::{DisplayArea, Location, LocationId, LocationKind, 
 use crate::kitchen::recipe::RecipesSpec;
 use crate::kitchen::state::MAX_LOCATIONS;
 
-/// At most so many orders at a time; the cost to go is exact for one and for two.
+/// Largest number of simultaneous orders; the cost to go is exact for one and for two.
 pub const MAX_ORDERS: usize = 2;
-/// Locations on the display keep at least this distance, so that gaze can tell them apart.
+/// Least distance between locations on the display, in metres, so that gaze can tell them apart.
 pub const MIN_GAP_M: f64 = 0.15;
 
 pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
@@ -54,7 +55,8 @@ pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
     Ok(locations)
 }
 
-/// The hands, the board and the plate.
+/// The locations with a special role: both hands, the board where items are stacked, and the plate from which orders
+/// are served.
 pub(super) fn roles(layout: &LayoutSpec, locations: &[Location]) -> Result<([LocationId; 2], LocationId, LocationId)> {
     let find = |kind| locations.iter().position(|location| location.kind == kind).map(|index| LocationId(index as u8));
     let hand = |agent: Agent| {
@@ -86,7 +88,7 @@ pub(super) fn roles(layout: &LayoutSpec, locations: &[Location]) -> Result<([Loc
     Ok((hands, only("stacks", |place| place.stacks)?, only("serves", |place| place.serves)?))
 }
 
-/// Areas must lie on the display and be far enough apart for an eye tracker.
+/// Checks that the areas of all locations lie on the display and are far enough apart for an eye tracker.
 pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m: [f64; 2]) -> Result<()> {
     let spans = layout.order.iter().map(|order| order.display.span());
     let spans = spans.chain(layout.hand.iter().map(|hand| hand.display.span()));
@@ -115,7 +117,7 @@ pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m:
     Ok(())
 }
 
-/// Every signal key is there once.
+/// Checks that no key is assigned to the signals about two locations.
 pub(super) fn check_signal_keys(layout: &LayoutSpec) -> Result<()> {
     let mut seen: Vec<(&str, char)> = Vec::new();
     for (name, key) in layout.signal_keys() {
@@ -152,7 +154,7 @@ pub(super) fn storages(layout: &LayoutSpec, spec: &RecipesSpec, items: &Ingredie
     layout.storage.iter().map(one).collect()
 }
 
-/// The item that a storage of this ingredient gives.
+/// The item that a storage of this ingredient supplies.
 pub(super) fn stored(name: &Spanned<String>, spec: &RecipesSpec, items: &IngredientItems) -> Result<ContentId> {
     let ingredient = spec.ingredient.iter().position(|ingredient| ingredient.name.get_ref() == name.get_ref());
     let item = ingredient.and_then(|ingredient| items.ingredient.iter().position(|&of| of == ingredient));

@@ -1,4 +1,4 @@
-//! What can be wrong with a layout or recipe file, and how it is said.
+//! Errors in a layout or recipe file, with their position and remedy.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use toml::Spanned;
 
 use crate::kitchen::look::Appearance;
 
-/// Which of the two files an error is in.
+/// The file of a kitchen in which an error is: layout or recipes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpecFile {
     /// The layout file.
@@ -15,24 +15,24 @@ pub enum SpecFile {
     Recipes,
 }
 
-/// Something in a layout or recipe file that cannot be.
+/// Error: a layout or recipe file contains something invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{found}")]
 pub struct SpecError {
     /// The file that the error is in.
     pub file: SpecFile,
-    /// Where in the file's text, in bytes.
+    /// Position of the error in the file's text, in bytes.
     pub span: Option<Range<usize>>,
-    /// What was found.
+    /// What the file contains at that position.
     pub found: String,
-    /// What would be right.
+    /// What the file would have to contain instead.
     pub remedy: String,
 }
 
-/// What a step of the compilation gives.
+/// Result of a step of the compilation of a kitchen.
 pub(super) type Result<T> = std::result::Result<T, SpecError>;
 
-/// An error at a place in a file.
+/// An error at a position in a layout or recipe file.
 pub(super) fn wrong(
     file: SpecFile,
     span: Range<usize>,
@@ -42,12 +42,12 @@ pub(super) fn wrong(
     SpecError { file, span: Some(span), found: found.into(), remedy: remedy.into() }
 }
 
-/// An error of a file as a whole.
+/// An error that concerns a layout or recipe file as a whole.
 pub(super) fn wrong_file(file: SpecFile, found: impl Into<String>, remedy: impl Into<String>) -> SpecError {
     SpecError { file, span: None, found: found.into(), remedy: remedy.into() }
 }
 
-/// Reads how something looks.
+/// Reads the appearance of an item, a dish or a place: a shape and its colours.
 pub(super) fn look(file: SpecFile, text: &Spanned<String>) -> Result<Appearance> {
     Appearance::read(text.get_ref())
         .map_err(|remedy| wrong(file, text.span(), format!("look = \"{}\"", text.get_ref()), remedy))

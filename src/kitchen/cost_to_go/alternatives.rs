@@ -1,4 +1,5 @@
-//! All moves that can free a hand or a place: the alternatives that a deviation from the greedy plan tries.
+//! All moves that can free a hand or a place, as alternatives where the cost-to-go planner deviates from its greedy
+//! plan.
 
 use super::moves::{ClearingMove, ClearingMoves};
 use super::needs::TargetNeeds;
@@ -6,7 +7,7 @@ use super::partial_plan::PressPlan;
 use super::task::{AssemblyTask, STORAGE};
 
 impl PressPlan<'_> {
-    /// All moves that can free what the work on a target needs.
+    /// All moves that can free the hands and places that the work on a target dish needs.
     pub(super) fn moves(&self, wants: &TargetNeeds) -> ClearingMoves {
         let mut moves = ClearingMoves::new();
         for agent in 0..2 {
@@ -20,7 +21,7 @@ impl PressPlan<'_> {
         moves
     }
 
-    /// Moves that empty an agent's hand.
+    /// Adds the moves that empty an agent's hand.
     fn empty(&self, wants: &TargetNeeds, agent: usize, moves: &mut ClearingMoves) {
         let hand = self.ground.hands[agent];
         let wanted = wants.hand(agent);
@@ -43,7 +44,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Moves that empty a place.
+    /// Adds the moves that empty a place.
     fn take_away(&self, wants: &TargetNeeds, from: usize, moves: &mut ClearingMoves) {
         for hand in self.ground.hands.into_iter().filter(|&hand| self.state[hand] == 0) {
             let Some((task, _)) = self.task_at(from) else {
@@ -57,7 +58,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Exchanges of two targets' items that need no additional presses.
+    /// Adds exchanges of items between two target dishes that need no additional presses.
     fn exchange(&self, moves: &mut ClearingMoves) {
         let movable = |task: &AssemblyTask| task.bits.count_ones() == 1 && task.at != STORAGE && !self.is_ready(task);
         let way = |task: &AssemblyTask, at: u8| self.goal.way(&self.state, task, at).0;
@@ -71,7 +72,8 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Items that can be taken from a storage early and brought to a free place on their way, so that the hand is not needed later.
+    /// Adds items that can be taken from a storage early and put on a free place on their way to the board, so that the
+    /// hand is free later.
     fn fetch(&self, moves: &mut ClearingMoves) {
         let (ground, goal) = (self.ground, self.goal);
         for (task, of) in self.tasks().filter(|(_, task)| task.at == STORAGE) {

@@ -1,4 +1,4 @@
-//! Assignment of items in the kitchen to parts of targets.
+//! Assigns the items in the kitchen to the parts of the dishes that are still to be served (targets).
 
 use super::classes::{ContentClasses, MAX_TARGETS, USELESS};
 use super::demand::PressDemand;
@@ -7,30 +7,32 @@ use super::ground::KitchenTables;
 use super::task::{AssemblyTask, STORAGE};
 use crate::base::bits::ones;
 
-/// Largest number of parts of all targets together.
+/// Largest number of tasks (items to bring to the board, complete stacks to serve) of all target dishes together.
 pub const MAX_TASKS: usize = 16;
 
-/// An assignment of items to all targets, in the order in which the targets will be served.
+/// An assignment of items to all target dishes, in the order in which the dishes will be served.
 #[derive(Clone, Copy, Debug)]
 pub struct Assignment {
-    /// The tasks, of which the first [`Self::count`] count.
+    /// The tasks; only the first [`Self::count`] are valid.
     pub tasks: [AssemblyTask; MAX_TASKS],
     /// Number of tasks.
     pub count: usize,
-    /// The targets in the order in which they will be served.
+    /// The target dishes in the order in which they will be served.
     pub order: [usize; MAX_TARGETS],
-    /// Locations whose content is used, one bit each.
+    /// Locations whose content the assignment uses, one bit each.
     used: u32,
-    /// Requirements of the tasks, from which the lower bound follows.
+    /// Requirements of the tasks, from which the lower bound of the cost to go follows.
     pub demand: PressDemand,
 }
 
 impl Assignment {
-    /// Assigns items greedily, target by target, by the presses saved compared with fresh items from storages.
+    /// Assigns items greedily, target dish by target dish, by the presses that an item saves compared with a fresh one
+    /// from a storage.
     ///
-    /// Known limit: what is ready on the board is always taken. Where a larger stack of the same target lies elsewhere, clearing the
-    /// board for it can be shorter, and the search, which the bound guides, does not find that way. With nori on the board, nori and salmon on the counter
-    /// and rice on the plate, salmon maki takes 8 presses (the robot takes the nori away and keeps it), and 10 are found.
+    /// Known limit: a usable stack on the board is always taken. Where a larger stack of the same target lies
+    /// elsewhere, clearing the board for that stack can be shorter, and the search, which the lower bound guides, does
+    /// not find that way. With nori on the board, nori and salmon on the counter and rice on the plate, salmon maki
+    /// takes 8 presses (the robot takes the nori away and keeps it), and 10 are found.
     pub fn choose(
         ground: &KitchenTables,
         goal: &ServingGoal,
@@ -63,7 +65,8 @@ impl Assignment {
         PressDemand::from_tasks(ground, goal, state, self.tasks[..self.count].iter().copied())
     }
 
-    /// Where both hands hold the same and one of the two is used: uses the other one, if less has to be cleared then.
+    /// If both hands hold the same content and only one of the two is used: uses the other hand's, if fewer obstacles
+    /// have to be cleared then.
     fn change_hands(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) {
         let [one, other] = ground.hands;
         let both = 1 << one | 1 << other;
@@ -121,9 +124,9 @@ impl Assignment {
         }
     }
 
-    /// Exchanges items between two targets where that saves presses.
+    /// Exchanges items between two target dishes where that saves presses.
     fn exchange(&mut self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) {
-        // Only items that both targets can use can be exchanged.
+        // Only items that both target dishes can use can be exchanged.
         let (mut stored, mut shared) = (0u32, 0u32);
         for (index, task) in self.tasks[..self.count].iter().enumerate().filter(|(_, task)| task.bits.count_ones() == 1)
         {
@@ -142,7 +145,7 @@ impl Assignment {
         let wanted = ones(stored & is_first).fold(0, |wanted, index| wanted | needs(index)) & 3;
         let fits = |task: &AssemblyTask, at: u8| goal.fits(state, task, at);
         let presses = |task: &AssemblyTask, at: u8| u32::from(goal.way(state, task, at).0);
-        // The hand that the first target needs should become free first; a stack on the board stays there.
+        // The hand that the first target dish needs should become free first; a stack on the board stays there.
         let frees = |at: u8| at != STORAGE && wanted & ground.journeys.bit[usize::from(at)] != 0;
         for first in ones((stored | shared) & is_first) {
             for second in ones((stored | shared) & !is_first) {
@@ -181,7 +184,7 @@ impl Assignment {
         complete.min_by_key(|&location| ground.last_presses(location))
     }
 
-    /// Bit set of a target's items that have to be taken from a storage.
+    /// Bit set of a target dish's items that have to be taken from a storage.
     pub fn stored(&self, target: usize) -> u8 {
         let tasks = self.tasks[..self.count].iter();
         tasks.filter(|task| usize::from(task.target) == target && task.at == STORAGE).map(|task| task.bits).sum()

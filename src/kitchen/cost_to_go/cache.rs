@@ -1,4 +1,5 @@
-//! Caches of fixed size. Evicted values are recomputed, so a full cache costs time but never correctness.
+//! Caches of fixed size for costs to go. Evicted values are recomputed, so a full cache costs time but never
+//! correctness.
 
 use crate::base::rng::mix;
 use crate::kitchen::State;
@@ -6,13 +7,14 @@ use crate::kitchen::State;
 /// Largest number of buttons of one agent.
 pub const MAX_BUTTONS: usize = 40;
 
-/// Number of low key bits for the kind of value; all kinds of one state share a bucket.
+/// Number of low bits of a cache key that tell the kind of value; all kinds of value of one state share a bucket.
 pub const KIND_BITS: u32 = 2;
 
-/// Marks an empty entry; larger than any key. It is written to all entries at creation, so that the memory is mapped before use.
+/// Marks an empty cache entry; larger than any key. All entries are written at creation, so that the memory is mapped
+/// before use.
 const EMPTY: u64 = u64::MAX;
 
-/// Eight entries: key with the value in the lowest byte, or [`EMPTY`].
+/// Eight cache entries: each a key with the value in the lowest byte, or [`EMPTY`].
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Bucket([u64; 8]);
@@ -22,7 +24,7 @@ struct Bucket([u64; 8]);
 pub struct ValueCache {
     buckets: Vec<Bucket>,
     mask: u64,
-    /// Counter that selects the entry to evict.
+    /// Counter that selects the cache entry to evict.
     turn: usize,
 }
 
@@ -45,7 +47,7 @@ impl ValueCache {
         self.buckets[self.bucket(key)].0[0]
     }
 
-    /// The value that is kept under this key, if any.
+    /// The cached value of this key, if any.
     #[inline]
     pub fn get(&self, key: u64) -> Option<u32> {
         let Bucket(bucket) = &self.buckets[self.bucket(key)];
@@ -53,7 +55,7 @@ impl ValueCache {
         Some((entry & 0xff) as u32)
     }
 
-    /// Keeps a value under this key; another one may have to go.
+    /// Caches a value under this key; it may evict another value.
     pub fn insert(&mut self, key: u64, value: u32) {
         let bucket = self.bucket(key);
         let Bucket(bucket) = &mut self.buckets[bucket];
@@ -71,9 +73,9 @@ impl ValueCache {
 #[repr(C, align(64))]
 pub struct DecisionCosts {
     state: State,
-    /// Hash of the request; `u32::MAX` for an empty entry.
+    /// Hash of the request (orders, fidelity, agent); `u32::MAX` for an empty entry.
     question: u32,
-    /// Cost to go of the state.
+    /// Cost to go of the present state.
     pub here: u8,
     /// Cost to go after each button; equal to `here` where the press has no effect.
     pub after: [u8; MAX_BUTTONS],
@@ -87,7 +89,7 @@ pub struct DecisionCache {
 }
 
 impl DecisionCache {
-    /// Room for 2^`bits` decisions.
+    /// A cache for 2^`bits` decisions.
     pub fn new(bits: u32) -> DecisionCache {
         let empty = DecisionCosts { state: State::default(), question: u32::MAX, here: 0, after: [0; MAX_BUTTONS] };
         DecisionCache { lines: vec![empty; 1 << bits], mask: (1 << bits) - 1 }
@@ -114,13 +116,13 @@ impl DecisionCache {
         (index, line.question == question && line.state == state)
     }
 
-    /// The entry at this index, whatever it was computed for.
+    /// The cache entry at this index, whatever decision it holds.
     #[inline]
     pub fn get(&self, index: usize) -> &DecisionCosts {
         &self.lines[index]
     }
 
-    /// Replaces the entry at this index.
+    /// Replaces the cache entry at this index.
     pub fn set(&mut self, index: usize, state: State, question: u32, here: u8, after: [u8; MAX_BUTTONS]) {
         self.lines[index] = DecisionCosts { state, question, here, after };
     }

@@ -1,4 +1,4 @@
-//! Execution of a plan: one target after another, with obstacles cleared on the way.
+//! Executes a plan press by press: one target dish after another, clearing obstacles on the way.
 
 use super::classes::ContentClasses;
 use super::demand::PressDemand;
@@ -30,7 +30,7 @@ impl PressPlan<'_> {
             if self.steps == MAX_STEPS {
                 return best;
             }
-            // Bringing a part costs the expected presses; only clearing costs more.
+            // Bringing a part to the board costs the presses of the assignment; only clearing obstacles costs more.
             if self.bring_part(target) {
                 continue;
             }
@@ -57,7 +57,7 @@ impl PressPlan<'_> {
         if self.presses <= limit { self.presses } else { best }
     }
 
-    /// Whether the whole plan is certain to take more than `limit`.
+    /// Whether the complete plan certainly takes more than `limit` presses.
     fn is_over(&self, limit: u32) -> bool {
         let rest = || {
             let tasks = self.tasks().map(|(_, task)| task);
@@ -66,8 +66,9 @@ impl PressPlan<'_> {
         limit < BLOCKED && self.presses + rest() > limit
     }
 
-    /// Does what is certain to be right: serves a complete stack if the way is free, processes parts where they are, and
-    /// brings what the stack on the board needs as long as nothing is in the way. Gives the presses, the state after them, and the target if one was served.
+    /// Does the presses that are certainly optimal: serves a complete stack if the way is free, processes parts where
+    /// they are, and brings the parts of the stack on the board as long as nothing is in the way. Returns the number of
+    /// presses, the state after them, and the target dish if one was served.
     pub fn settle(mut self) -> (u32, ContentClasses, Option<usize>) {
         let order = self.choice.order;
         loop {
@@ -83,7 +84,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Commits the board to a target: presses and state after bringing its first part.
+    /// Commits the board to a target dish: number of presses and state after its first part was brought there.
     pub fn begin(mut self, target: usize) -> Option<(u32, ContentClasses)> {
         let begins = self.begun().is_none() && self.bring_part(target);
         begins.then_some((self.presses, self.state))

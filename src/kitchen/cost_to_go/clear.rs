@@ -1,11 +1,12 @@
-//! The greedy choice of a move that clears an obstacle: throw away, pick up, or put aside.
+//! The greedy choice of a move that clears an obstacle: throw it away, pick it up, or put it aside.
 
 use super::moves::ClearingMove;
 use super::needs::TargetNeeds;
 use super::partial_plan::PressPlan;
 
 impl PressPlan<'_> {
-    /// Clears an obstacle to the work on a target by the move that is usually best (one or two presses); returns whether there is one.
+    /// Clears an obstacle to the work on a target dish by the move that is usually best (one or two presses); returns
+    /// whether there is such a move.
     pub(super) fn clear(&mut self, wants: &TargetNeeds) -> bool {
         let best = self
             .put_down(wants)
@@ -19,7 +20,7 @@ impl PressPlan<'_> {
         best.is_some()
     }
 
-    /// Puts the content of a needed hand down at a place on its way.
+    /// Puts down the content of a hand that is needed, at a place on the content's way to the board.
     fn put_down(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let wanted = (0..2).filter(|&agent| wants.hand(agent));
         wanted.into_iter().find_map(|agent| {
@@ -31,18 +32,18 @@ impl PressPlan<'_> {
         })
     }
 
-    /// Throws away a useless content of a needed hand, or of one of two full hands.
+    /// Throws away a useless content of a hand that is needed, or of one of two full hands.
     fn throw_away(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let hands = self.ground.hands;
         let useless = |agent: usize| self.state[hands[agent]] != 0 && self.task_at(hands[agent]).is_none();
         let needed = (0..2).find(|&agent| wants.needs & (1 << agent) != 0 && useless(agent));
-        // A hand that is needed later comes first; the other may keep its content to the end.
+        // A hand that is needed later is emptied first; the other hand may keep its content to the end.
         let full = (0..2).filter(|&agent| wants.hands_full && useless(agent));
         let full = full.max_by_key(|&agent| (wants.later & (1 << agent) != 0, agent == 0));
         needed.or(full).map(|agent| ClearingMove::Throw { hand: hands[agent] })
     }
 
-    /// Removes a content that blocks the target's parts, if a hand is free.
+    /// Removes a content that blocks the parts of the target dish, if a hand is free.
     fn empty_place(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let ground = self.ground;
         let [human, robot] = ground.hands;
@@ -54,7 +55,7 @@ impl PressPlan<'_> {
             (true, true) => robot,
         };
         let blocking = ground.places().filter(|&location| self.blocks(wants, location));
-        // Order: contents that move along their own way, useless contents, contents that have to be put aside.
+        // Order: contents that move on along their own way, useless contents, contents that have to be put aside.
         let ranked = blocking.filter_map(|from| match self.task_at(from) {
             None => Some((1, ClearingMove::PickUp { from, hand })),
             Some((task, _)) => {
@@ -65,11 +66,12 @@ impl PressPlan<'_> {
         ranked.min_by_key(|&(rank, _)| rank).map(|(_, made)| made)
     }
 
-    /// Moves a part out of the way: along its own way, into a hand, or to another place; with the additional presses.
+    /// Moves a part out of the way: along its own way, into a hand, or to another place; returns the additional presses
+    /// and the move.
     fn put_aside(&self, wants: &TargetNeeds, task: usize, hand: usize) -> Option<(u32, ClearingMove)> {
         let of = self.choice.tasks[task];
         let from = usize::from(of.at);
-        // A part on its own target's board that cannot stay there would come back at once.
+        // A part of the present target dish on the board that cannot stay there would otherwise come back at once.
         let returns =
             usize::from(of.target) == wants.target && from == self.ground.board && self.leads(task, from, hand);
         if returns {
@@ -83,7 +85,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// Removes a content at the place to which the item in a needed hand has to go.
+    /// Removes a content from the place to which the item in a needed hand has to go.
     fn make_way(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let ground = self.ground;
         let needed = (0..2).filter(|&agent| !wants.hands_full && wants.needs & (1 << agent) != 0);
@@ -101,7 +103,7 @@ impl PressPlan<'_> {
         })
     }
 
-    /// Puts down the content of a needed hand, or throws it away if there is no place.
+    /// Puts down the content of a hand that is needed, or throws it away if there is no place for it.
     fn empty_hand(&self, wants: &TargetNeeds) -> Option<ClearingMove> {
         let mut best: Option<(u32, ClearingMove)> = None;
         let mut consider = |rest: u32, made: ClearingMove| {
@@ -116,7 +118,7 @@ impl PressPlan<'_> {
             }
             if of.bits.count_ones() == 1 {
                 let (fresh, _) = self.goal.fresh[usize::from(of.target)][of.bits.trailing_zeros() as usize];
-                // One press to throw it away, plus the presses of a fresh item.
+                // One press to throw the item away, plus the presses of a fresh item.
                 consider((u32::from(fresh) + 1).saturating_sub(self.least(&of)), ClearingMove::Discard { task });
             }
         }

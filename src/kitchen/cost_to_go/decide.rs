@@ -1,7 +1,7 @@
-//! Decisions: the cost to go of a state together with the costs to go after every button.
+//! Decisions: the cost to go of a state together with the costs to go after every button of an agent.
 //!
-//! A press lowers the cost to go by at most 1; a press that another press can undo raises it by at most 1. Together with the lower
-//! bound this decides most buttons without a plan.
+//! A press lowers the cost to go by at most 1; a press that another press can undo raises it by at most 1. Together
+//! with the lower bound this decides most buttons without a plan.
 
 use super::cache::{DecisionCosts, MAX_BUTTONS};
 use super::classes::MAX_TARGETS;
@@ -16,7 +16,8 @@ impl CostToGo {
         self.decision_with(Fidelity::Exact, state, recipes, agent)
     }
 
-    /// The same at a given fidelity. Values of other fidelities are not reused, so that a result never depends on earlier requests.
+    /// Cost to go of the state and after every button of `agent`, at a given fidelity. Values of other fidelities are
+    /// not reused, so that a result never depends on earlier requests.
     #[inline]
     pub fn decision_with(
         &mut self,
@@ -47,7 +48,7 @@ impl CostToGo {
         std::hint::black_box(self.decisions.fetch(state, question));
     }
 
-    /// Bit set of the buttons of `agent` that lower the cost to go.
+    /// Bit set of the buttons of `agent` whose press lowers the cost to go.
     pub fn nearer(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) -> u64 {
         if fidelity != Fidelity::Exact {
             let buttons = self.kitchen.buttons[agent.index()].len();
@@ -66,8 +67,8 @@ impl CostToGo {
         nearer
     }
 
-    /// An equivalent state in which useless contents are replaced by a representative with the same possible presses: its decisions
-    /// are the same, and fewer distinct states remain.
+    /// An equivalent state in which each useless content is replaced by a representative with the same possible
+    /// presses: the decisions are the same, and fewer distinct states have to be cached.
     fn stand_in(&mut self, state: State, targets: &mut [ContentId]) -> State {
         targets.sort_unstable();
         if targets.is_empty() {
@@ -103,7 +104,7 @@ impl CostToGo {
         self.decisions.set(index, state, question, here, after);
     }
 
-    /// Computes all values one by one.
+    /// Computes the values of a decision independently, one by one.
     fn each(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
         let kept = self.kept(state, recipes);
         let nexts = self.nexts(state, kept, recipes, agent);
@@ -116,7 +117,7 @@ impl CostToGo {
         (here, after)
     }
 
-    /// Computes all values from bounds and plans.
+    /// Computes the values of a decision together, from bounds and plans.
     fn close(&mut self, state: State, recipes: &Recipes, agent: Agent) -> (u8, [u8; MAX_BUTTONS]) {
         let kept = self.kept(state, recipes);
         let mut nexts = self.nexts(state, kept, recipes, agent);
@@ -142,8 +143,8 @@ impl CostToGo {
         (here as u8, after)
     }
 
-    /// The states after the agent's buttons with their cache slots. All cache lines are prefetched together. The caller must return
-    /// the buffer after use.
+    /// The states after each of the agent's buttons, with their cache slots. All cache lines are prefetched together.
+    /// The caller must return the buffer after use.
     fn nexts(&mut self, state: State, here: CacheSlot, recipes: &Recipes, agent: Agent) -> Vec<SuccessorState> {
         let kitchen = self.kitchen.clone();
         let mut nexts = std::mem::take(&mut self.nexts);
@@ -165,7 +166,7 @@ impl CostToGo {
         nexts
     }
 
-    /// The key of a state, computed incrementally from that of another state with the same orders.
+    /// The cache key of a state, computed incrementally from that of another state with the same orders.
     #[inline]
     fn moved(&self, slot: usize, key: u64, from: State, to: State) -> u64 {
         let Some(goal) = &self.goals[slot] else { return key };
@@ -181,7 +182,7 @@ impl CostToGo {
         moved
     }
 
-    /// Whether one press of the agent can undo an action.
+    /// Whether one further press of the agent can undo this action.
     fn can_be_undone(&self, state: State, agent: Agent, action: ButtonAction) -> bool {
         let held = state.content(self.kitchen.hands[agent.index()]);
         match action {
@@ -197,7 +198,7 @@ impl CostToGo {
     }
 }
 
-/// Hash of a request: targets in the order of the orders, fidelity, agent.
+/// Hash of a request: target dishes in the order of the orders, fidelity, agent.
 #[inline]
 fn question(targets: &[ContentId; MAX_TARGETS], fidelity: Fidelity, agent: Agent) -> u32 {
     u32::from(targets[0].0) | u32::from(targets[1].0) << 8 | (agent as u32) << 16 | (fidelity as u32) << 17

@@ -1,4 +1,5 @@
-//! The lower bound: least number of presses for a set of tasks, from their journeys and from clearing obstacles.
+//! The lower bound of the cost to go: least number of presses for a set of tasks, from the journeys of the items and
+//! from clearing obstacles.
 
 use super::classes::ContentClasses;
 use super::goal::ServingGoal;
@@ -6,25 +7,25 @@ use super::ground::KitchenTables;
 use super::journeys::JourneyNeeds;
 use super::task::{AssemblyTask, STORAGE};
 
-/// Requirements of a set of tasks: presses, places, targets.
+/// Requirements of a set of tasks: presses, places, target dishes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PressDemand {
-    /// Presses without any obstacle.
+    /// Number of presses if there were no obstacles.
     presses: u32,
-    /// Bit set of the locations whose content is used.
+    /// Bit set of the locations whose content the tasks use.
     used: u32,
-    /// Free hands and places that the journeys require.
+    /// Free hands and places that the journeys of the items require.
     needs: JourneyNeeds,
-    /// By station, the same for the journeys that require this station.
+    /// By processing place (station): free hands and places that the journeys through this station require.
     station_needs: [JourneyNeeds; 8],
-    /// Bit set of the targets that have to be assembled on the board.
+    /// Bit set of the target dishes that have to be assembled on the board.
     assembled: u32,
-    /// Whether anything but the last press is left.
+    /// Whether anything but the last press (serving) remains to be done.
     is_busy: bool,
 }
 
 impl PressDemand {
-    /// The requirements of these tasks with their items at their present places.
+    /// The requirements of these tasks, with their items at their present places.
     pub fn from_tasks(
         ground: &KitchenTables,
         goal: &ServingGoal,
@@ -64,11 +65,11 @@ impl PressDemand {
         }
     }
 
-    /// Lower bound of the number of presses: journeys plus clearing of obstacles.
+    /// Lower bound of the number of presses: those of the journeys plus those for clearing obstacles.
     pub fn bound(&self, ground: &KitchenTables, state: &ContentClasses) -> u32 {
         let unused = |location: usize| state[location] != 0 && self.used & (1 << location) == 0;
         let mut in_the_way = 0;
-        // Every useless content in a hand has to be thrown away, except in a hand that is not needed any more.
+        // Every useless content of a hand has to be thrown away, except in a hand that is not needed any more.
         let mut kept = false;
         if unused(ground.plate) {
             in_the_way += 1;

@@ -1,6 +1,7 @@
-//! A goal: the full stacks that are still to be served, with tables of the use of every content for them.
+//! A goal of the cost to go: the dishes that are still to be served (targets), with tables of the use of every content
+//! for them.
 //!
-//! Only the use of a content for the goal matters for the cost to go: all useless contents are one class, obstacles.
+//! Only the use of a content for the goal matters: all useless contents are one class, obstacles.
 
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, State};
 
@@ -9,18 +10,19 @@ use super::ground::KitchenTables;
 use super::journeys::{JourneyNeeds, JourneyTables, NEVER};
 use super::task::{AssemblyTask, STORAGE};
 
-/// Value of an item at its place for one target, packed into one number so that the maximum of many is found without branches:
-/// a larger gain is better, ties go to the first location.
+/// Value of an item at its place for one target dish, packed into one number so that the maximum of many is found
+/// without branches: a larger gain is better, ties go to the first location.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ItemValue(u32);
 
 impl ItemValue {
-    /// `gain`, in half presses: presses saved compared with a fresh item from a storage, plus the value of freeing its location.
+    /// Packs the value: `gain`, in half presses, is the presses saved compared with a fresh item from a storage, plus
+    /// the value of freeing the item's location.
     fn new(gain: u16, location: u8, fills: u8) -> ItemValue {
         ItemValue(u32::from_be_bytes([(gain >> 8) as u8, gain as u8, !location, fills]))
     }
 
-    /// Bit set of the target's items that it can become; 0 if a storage is nearer.
+    /// Bit set of the target dish's items that this item can become; 0 if a fresh item from a storage is nearer.
     #[inline]
     pub fn fills(self) -> u8 {
         self.0 as u8
@@ -33,57 +35,58 @@ impl ItemValue {
     }
 }
 
-/// A set of targets with its tables over classes.
+/// A set of target dishes with their tables over classes of contents.
 #[derive(Clone, Debug)]
 pub struct ServingGoal {
-    /// The target stacks, in ascending order.
+    /// The stacks to be served, in ascending order of their ids.
     pub targets: Vec<ContentId>,
-    /// The class of each content.
+    /// The equivalence class of each content.
     pub class_of: Vec<u8>,
-    /// A content of each class.
+    /// For each class, one content that belongs to it.
     pub content: Vec<ContentId>,
-    /// Representative of each content: the first content of the same class with the same possible presses.
+    /// Representative of each content: the first content of the same class that allows the same presses.
     pub stands_for: Vec<ContentId>,
-    /// `[target][class]`: bit j if the class can become the j-th item of the target, or has it.
+    /// `[target][class]`: bit j if the class is, or can become, the j-th item of the target dish.
     pub fills: [Vec<u8>; MAX_TARGETS],
-    /// `[target][class]`: the same for classes that can be stacked as they are.
+    /// `[target][class]`: bit j if the class is the j-th item of the target dish and can be stacked as it is.
     pub ready: [Vec<u8>; MAX_TARGETS],
-    /// `[target][location * classes + class]`: presses that bring it onto the board without obstacles.
+    /// `[target][location * classes + class]`: number of presses that bring the item to the board without obstacles.
     pub near: [Vec<u8>; MAX_TARGETS],
-    /// Same index: free hands and places required for that.
+    /// `[target][location * classes + class]`: free hands and places that these presses require.
     pub near_needs: [Vec<JourneyNeeds>; MAX_TARGETS],
-    /// Same index: value of the item.
+    /// `[target][location * classes + class]`: value of the item for the target dish.
     pub offers: [Vec<ItemValue>; MAX_TARGETS],
-    /// `[target][j]`: presses for the j-th item from a storage, and free hands and places required for that.
+    /// `[target][j]`: number of presses that bring the j-th item from a storage to the board, and free hands and places
+    /// required.
     pub fresh: [Vec<(u8, JourneyNeeds)>; MAX_TARGETS],
-    /// For each target the component index of its j-th item.
+    /// For each target dish, the component index of its j-th item.
     pub components: [Vec<usize>; MAX_TARGETS],
-    /// For each target the bits of all its items.
+    /// For each target dish, the bit set of all its items.
     pub complete: [u8; MAX_TARGETS],
-    /// The class that a target itself has.
+    /// For each target dish, the class of its complete stack.
     pub target_class: [u8; MAX_TARGETS],
-    /// `[target][bits]`: the class of a stack of these items of the target.
+    /// `[target][bits]`: the class of a stack of these items of the target dish.
     pub part_class: [Vec<u8>; MAX_TARGETS],
-    /// By class, whether more than one target can use it.
+    /// By class, whether more than one target dish can use it.
     pub is_shared: Vec<bool>,
     /// Classes of the items in the storages, by agent.
     pub takes: [Vec<u8>; 2],
-    /// `[process][class]`: the useful result, else 0.
+    /// `[process][class]`: the class after the processing step, if it is useful, else 0.
     pub becomes: Vec<Vec<u8>>,
-    /// `[below * classes + above]`: the useful stack, else 0.
+    /// `[below * classes + above]`: the class of the stack, if it is useful, else 0.
     pub stacks: Vec<u8>,
     /// The first physical location, and one past the last one.
     first: usize,
     last: usize,
-    /// `[(location - first) * contents + content]`: the class times the location's stride; the sum over the locations is the
-    /// state's key.
+    /// `[(location - first) * contents + content]`: the content's class times the location's stride; the sum over the
+    /// locations is the state's key.
     key_by_content: Vec<u64>,
-    /// `[(location - first) * classes + class]`: the same for classes.
+    /// `[(location - first) * classes + class]`: the class times the location's stride.
     key_by_class: Vec<u64>,
 }
 
 impl ServingGoal {
-    /// The tables for these targets in this kitchen.
+    /// The tables for these target dishes in this kitchen.
     pub fn new(kitchen: &Kitchen, ground: &KitchenTables, targets: Vec<ContentId>) -> ServingGoal {
         let journeys = &ground.journeys;
         let mut content = vec![ContentId::EMPTY];
@@ -153,13 +156,13 @@ impl ServingGoal {
         goal
     }
 
-    /// Whether there are two targets that are not the same.
+    /// Whether there are two different target dishes.
     #[inline]
     pub fn targets_differ(&self) -> bool {
         matches!(self.targets[..], [first, second] if first != second)
     }
 
-    /// Presses of a task if its item is at `at`, and free hands and places required for that.
+    /// Number of presses of a task if its item is at `at`, and free hands and places required for that.
     #[inline]
     pub fn way(&self, state: &ContentClasses, task: &AssemblyTask, at: u8) -> (u8, JourneyNeeds) {
         let target = usize::from(task.target);
@@ -170,7 +173,8 @@ impl ServingGoal {
         (self.near[target][index], self.near_needs[target][index])
     }
 
-    /// Presses that bring an item of a class from a location onto the board for a target, without obstacles.
+    /// Number of presses that bring an item of a class from a location onto the board for a target dish, without
+    /// obstacles.
     #[inline]
     pub fn presses_from(&self, target: u8, location: usize, class: u8) -> u8 {
         self.near[usize::from(target)][location * self.content.len() + usize::from(class)]
@@ -260,7 +264,7 @@ impl ServingGoal {
         }
     }
 
-    /// Key of a state: equal for states that are equivalent for this goal.
+    /// Cache key of a state: equal for states that are equivalent for this goal.
     #[inline]
     pub fn key_of_state(&self, state: State) -> u64 {
         let contents = self.class_of.len();
@@ -268,13 +272,13 @@ impl ServingGoal {
         rows.map(|(row, parts)| parts[state.content(LocationId((self.first + row) as u8)).index()]).sum()
     }
 
-    /// Contribution of a content at a physical location to the key.
+    /// Contribution of a content at a physical location to the state's key.
     #[inline]
     pub fn key_part(&self, location: LocationId, content: ContentId) -> u64 {
         self.key_by_content[(location.index() - self.first) * self.class_of.len() + content.index()]
     }
 
-    /// Key of a state given by classes.
+    /// Cache key of a state that is given by classes.
     #[inline]
     pub fn key_of_classes(&self, state: &ContentClasses) -> u64 {
         let rows = self.key_by_class.chunks_exact(self.content.len());
@@ -297,7 +301,7 @@ impl ServingGoal {
     }
 }
 
-/// Bit set of the target's items that a content has or can become.
+/// Bit set of the target dish's items that a content is, or can become.
 fn worth(kitchen: &Kitchen, journeys: &JourneyTables, target: ContentId, content: usize) -> u8 {
     let candidate = &kitchen.contents[content];
     if candidate.is_stack() {
@@ -312,15 +316,15 @@ fn worth(kitchen: &Kitchen, journeys: &JourneyTables, target: ContentId, content
     bits.sum()
 }
 
-/// Bit set of the target's items in a content; 0 if it also has other items.
+/// Bit set of the target dish's items in a content; 0 if the content also has other items.
 fn ready(kitchen: &Kitchen, target: ContentId, content: ContentId) -> u8 {
     let wanted = &kitchen.content(target).items;
     let bit = |item: &ContentId| wanted.iter().position(|other| other == item).map(|bit| 1 << bit);
     kitchen.content(content).items.iter().map(bit).sum::<Option<u8>>().unwrap_or(0)
 }
 
-/// For each content, the first content of the same class that locations accept, processes change and contents stack with in the
-/// same way. All presses then lead to the same classes and costs to go.
+/// For each content, the first content of the same class that the same locations accept, the same processes change and
+/// the same contents stack with. All presses then lead to the same classes and costs to go.
 fn stands_for(kitchen: &Kitchen, class_of: &[u8]) -> Vec<ContentId> {
     let contents = || (0..kitchen.contents.len()).map(|index| ContentId(index as u8));
     let locations = || (kitchen.orders.len()..kitchen.locations.len()).map(|index| LocationId(index as u8));

@@ -1,4 +1,4 @@
-//! Tables of one kitchen that do not depend on goals.
+//! Tables of one kitchen for the cost to go that hold for all goals.
 
 use std::ops::Range;
 
@@ -7,10 +7,10 @@ use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId};
 use super::classes::ContentClasses;
 use super::journeys::{FreeMask, JourneyTables};
 
-/// Tables of one kitchen that do not depend on goals.
+/// Tables of one kitchen for the cost to go that hold for all goals.
 #[derive(Clone, Debug)]
 pub struct KitchenTables {
-    /// Ways of items through processes onto the board.
+    /// Lengths of the ways of items through processing steps onto the board.
     pub journeys: JourneyTables,
     /// Index of the first physical location.
     pub first: usize,
@@ -22,19 +22,19 @@ pub struct KitchenTables {
     pub board: usize,
     /// The location index of the plate.
     pub plate: usize,
-    /// Places where any content can be put temporarily.
+    /// Places where any content can be put down temporarily.
     spare: Vec<usize>,
     /// Value of freeing each location, in half presses.
     pub in_the_way: Vec<u16>,
-    /// All actions other than taking and serving, once each.
+    /// All actions other than taking from a storage and serving, once each.
     pub moves: Vec<(Agent, ButtonAction)>,
-    /// Location of each process; `None` for the hand.
+    /// Location of each processing step; `None` for one in the hand.
     pub process_place: Vec<Option<usize>>,
-    /// `[location * contents + content]`.
+    /// `[location * contents + content]`: whether the location, when empty, accepts the content.
     accepts: Vec<bool>,
     contents: usize,
     is_hand: Vec<bool>,
-    /// Presses that serve a complete stack from each location, without obstacles.
+    /// By location, the number of presses that serve a complete stack from there, without obstacles.
     last_presses: Vec<u32>,
 }
 
@@ -105,7 +105,7 @@ impl KitchenTables {
         self.accepts[location * self.contents + content.index()]
     }
 
-    /// Presses that serve a complete stack from the location with this index, without obstacles.
+    /// Number of presses that serve a complete stack from the location with this index, without obstacles.
     #[inline]
     pub fn last_presses(&self, location: usize) -> u32 {
         self.last_presses[location]
@@ -127,7 +127,8 @@ impl KitchenTables {
     }
 }
 
-/// All actions other than taking and serving, each once: an action at a place has the same effect for both agents.
+/// All actions other than taking from a storage and serving, each once: an action at a place has the same effect for
+/// both agents.
 fn moves(kitchen: &Kitchen) -> Vec<(Agent, ButtonAction)> {
     let mut moves: Vec<(Agent, ButtonAction)> = Vec::new();
     for agent in Agent::BOTH {

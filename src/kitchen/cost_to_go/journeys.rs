@@ -1,41 +1,44 @@
-//! Journeys: number of presses that bring one item from its place to the board in the form that a recipe needs, for every
-//! combination of free hands and places. One breadth-first search per component and combination, when a kitchen is loaded.
+//! Journeys: number of presses that bring one item from its place to the board in the form that a recipe needs, for
+//! every combination of free hands and places. One breadth-first search per component and combination, when a kitchen
+//! is loaded.
 
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind};
 
-/// Marks an impossible journey.
+/// Marks an impossible journey of an item.
 pub const NEVER: u8 = u8::MAX;
 
-/// Bit mask of what is free: bit 0 the human's hand, bit 1 the robot's hand, then one bit per processing place, and a last bit for
-/// any place where an item can be put temporarily.
+/// Bit mask of what is free: bit 0 the human's hand, bit 1 the robot's hand, then one bit per processing place, and a
+/// last bit for any place where an item can be put down temporarily.
 pub type FreeMask = usize;
 
 /// Tables of journey lengths over (free mask, component, location, content).
 #[derive(Clone, Debug)]
 pub struct JourneyTables {
-    /// Places where something is processed, in the order of their mask bits from bit 2 on.
+    /// Places where items are processed, in the order of their mask bits from bit 2 on.
     pub stations: Vec<LocationId>,
-    /// Mask bit of each location; 0 for locations that are on no journey.
+    /// Mask bit of each location; 0 for locations that no journey of an item uses.
     pub bit: Vec<FreeMask>,
-    /// The bit for a spare place.
+    /// The mask bit for a place where an item can be put down temporarily.
     pub spare_bit: FreeMask,
-    /// All bits.
+    /// The mask in which all hands and places are free.
     pub all_free: FreeMask,
-    /// Items that are part of some full stack; the components.
+    /// The components: items that are part of a dish.
     pub components: Vec<ContentId>,
     contents: usize,
     locations: usize,
-    /// `[((mask * components + component) * locations + location) * contents + content]`, in presses.
+    /// `[((mask * components + component) * locations + location) * contents + content]`: number of presses of the
+    /// journey.
     presses: Vec<u8>,
-    /// `[mask * components + component]`: the same for an item that is still in a storage, taking it included.
+    /// `[mask * components + component]`: number of presses for an item that is still in a storage, including the press
+    /// that takes it.
     storage_presses: Vec<u8>,
 }
 
-/// Free hands and places that a journey requires.
+/// Bit mask of the free hands and places without which the journey of an item is impossible.
 pub type JourneyNeeds = u16;
 
 impl JourneyTables {
-    /// The tables of this kitchen.
+    /// The journey tables of this kitchen.
     pub fn new(kitchen: &Kitchen) -> JourneyTables {
         let mut stations: Vec<LocationId> = kitchen.processes.iter().filter_map(|process| process.place).collect();
         stations.sort_unstable();
@@ -71,30 +74,31 @@ impl JourneyTables {
         journeys
     }
 
-    /// The index of a component.
+    /// The index of an item among the components.
     pub fn component(&self, item: ContentId) -> Option<usize> {
         self.components.iter().position(|&component| component == item)
     }
 
-    /// Presses until `content`, now at `location`, is on the board as this component. `free` must include the item's own place.
+    /// Number of presses until `content`, now at `location`, lies on the board as this component. `free` must include
+    /// the item's own place.
     #[inline]
     pub fn presses(&self, free: FreeMask, component: usize, location: usize, content: u8) -> u8 {
         let row = (free * self.components.len() + component) * self.locations + location;
         self.presses[row * self.contents + usize::from(content)]
     }
 
-    /// Presses until this component, taken from a storage, lies on the board.
+    /// Number of presses until this component, taken from a storage, lies on the board.
     #[inline]
     pub fn storage_presses(&self, free: FreeMask, component: usize) -> u8 {
         self.storage_presses[free * self.components.len() + component]
     }
 
-    /// The single bits of the free mask without which such a journey is impossible.
+    /// The single bits of the free mask without which the journey of this content is impossible.
     pub fn needs(&self, component: usize, location: usize, content: u8) -> JourneyNeeds {
         self.indispensable(|free| self.presses(free | self.bit[location], component, location, content))
     }
 
-    /// The same for an item from a storage.
+    /// The single bits of the free mask without which the journey of an item from a storage is impossible.
     pub fn storage_needs(&self, component: usize) -> JourneyNeeds {
         self.indispensable(|free| self.storage_presses(free, component))
     }
@@ -125,7 +129,8 @@ impl JourneyTables {
         }
     }
 
-    /// Backwards from the component in a hand beside the board; `[location][content]`, the last row is the spare place.
+    /// Number of presses to the board from everywhere, computed backwards from the component in a hand beside the
+    /// board: `[location][content]`; the last row is the spare place.
     fn search(&self, kitchen: &Kitchen, free: FreeMask, component: ContentId) -> Vec<Vec<u8>> {
         let mut presses = vec![vec![NEVER; self.contents]; self.locations + 1];
         for hand in kitchen.hands {

@@ -1,21 +1,22 @@
 //! Cost to go: the least number of presses of both agents, one after another, until the orders are served.
 //!
-//! It is computed backwards from the goal. The tables of `journeys` give, for every part of the target stacks, the number of presses
-//! to the board from every place and for every combination of free hands and places. An `assign::Assignment` chooses which item
-//! becomes which part, which gives a lower bound. A `plan::PressPlan` executes the assignment press by press and clears
-//! obstacles, which gives an upper bound. Where the bounds differ, a bounded `search` over single presses decides. Values are cached
-//! by state classes (see `goal`: all useless contents are one class), whole decisions by state. A value depends on the state and the
-//! recipes only, never on earlier requests.
+//! It is computed backwards from the goal. The tables of `journeys` give, for every part of the dishes to be served
+//! (targets), the number of presses to the board from every place and for every combination of free hands and places.
+//! An `assign::Assignment` chooses which item becomes which part, which gives a lower bound. A `plan::PressPlan`
+//! executes the assignment press by press and clears obstacles, which gives an upper bound. Where the bounds differ, a
+//! bounded `search` over single presses decides. Values are cached by state classes (see `goal`: all useless contents
+//! are one class), whole decisions by state. A value depends on the state and the recipes only, never on earlier
+//! requests.
 //!
 //! The files from the ground up; each imports only from those before it:
 //!
-//! - `fidelity`, `classes`, `task`, `journeys` (way of one item), `cache`, `ground` (tables of a kitchen), `goal` (tables of
-//!   a set of targets), `successors` (single presses).
+//! - `fidelity`, `classes`, `task`, `journeys` (way of one item), `cache`, `ground` (tables of a kitchen), `goal`
+//!   (tables of a set of targets), `successors` (single presses).
 //! - The lower bound: `demand`, `assign`.
-//! - The upper bound: `partial_plan` (a plan in the making), `needs` and `moves` (room for it), `clear` (the move that
-//!   mostly is best), `alternatives` (all others), `carry_out`.
-//! - Both: `rating`. What they leave open: `store` (what was found), `search`.
-//! - What is asked: `value` (of one state), `decide` (of all buttons).
+//! - The upper bound: `partial_plan` (a plan under construction), `needs` and `moves` (how it frees hands and places),
+//!   `clear` (the move that is mostly best), `alternatives` (all other moves), `carry_out` (execution).
+//! - Both bounds: `rating`. Where they differ: `store` (cached results), `search`.
+//! - Queries: `value` (of one state), `decide` (after each button).
 
 mod alternatives;
 mod assign;

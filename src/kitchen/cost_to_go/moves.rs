@@ -1,20 +1,20 @@
-//! Moves of a plan that free a hand or a place.
+//! Moves of a cost-to-go plan that free a hand or a place.
 
 use super::partial_plan::PressPlan;
 use super::task::STORAGE;
 
-/// Largest number of alternative moves.
+/// Largest number of alternative moves in a set.
 const MAX_MOVES: usize = 32;
 
-/// A move of one or two presses that frees a hand or a place.
+/// A move of one or two presses in a cost-to-go plan that frees a hand or a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClearingMove {
-    /// Throws away a useless content of this hand.
+    /// Throws away a useless content of a hand.
     Throw {
         /// The location index of the hand.
         hand: usize,
     },
-    /// Picks up a useless content.
+    /// Picks up a useless content from its place.
     PickUp {
         /// The location index of the content.
         from: usize,
@@ -28,12 +28,12 @@ pub enum ClearingMove {
         /// The location index that the item is brought to.
         to: usize,
     },
-    /// Throws away an item that can be taken anew.
+    /// Throws away the item of a task, which can be taken anew from a storage.
     Discard {
         /// The index of the task.
         task: usize,
     },
-    /// Takes an item of this class from a storage early and brings it to a place on its way.
+    /// Takes an item of this class from a storage early and brings it to a place on its way to the board.
     Fetch {
         /// The index of the task that the item is for.
         task: usize,
@@ -46,12 +46,12 @@ pub enum ClearingMove {
     },
     /// Two tasks exchange their items, without a press.
     Exchange {
-        /// The indices of the two tasks.
+        /// The indices of the two tasks that exchange their items.
         tasks: [usize; 2],
     },
 }
 
-/// A set of distinct moves.
+/// A set of distinct moves that free a hand or a place.
 #[derive(Clone, Copy, Debug)]
 pub struct ClearingMoves {
     all: [ClearingMove; MAX_MOVES],
@@ -59,12 +59,12 @@ pub struct ClearingMoves {
 }
 
 impl ClearingMoves {
-    /// No moves.
+    /// An empty set of moves.
     pub fn new() -> ClearingMoves {
         ClearingMoves { all: [ClearingMove::Throw { hand: 0 }; MAX_MOVES], count: 0 }
     }
 
-    /// Adds a move, unless it is there already or there is no room.
+    /// Adds a move, unless the set contains it already or is full.
     pub fn add(&mut self, other: ClearingMove) {
         if self.count < MAX_MOVES && !self.all().contains(&other) {
             self.all[self.count] = other;
@@ -79,7 +79,7 @@ impl ClearingMoves {
 }
 
 impl PressPlan<'_> {
-    /// Applies a move to the plan.
+    /// Applies a move to the plan and counts its presses.
     pub(super) fn make(&mut self, made: ClearingMove) {
         let ground = self.ground;
         self.presses += match made {

@@ -1,16 +1,16 @@
-//! Requirements of the work on a target, its obstacles, and places for them.
+//! Hands and places that the work on a target dish requires, the obstacles to it, and places for putting them aside.
 
 use super::journeys::FreeMask;
 use super::partial_plan::PressPlan;
 
-/// Requirements of the work on a target.
+/// Hands and places that the work on a target dish requires.
 #[derive(Clone, Copy, Debug)]
 pub struct TargetNeeds {
-    /// The index of the target.
+    /// The index of the target dish.
     pub target: usize,
-    /// Whether parts have to come onto the board.
+    /// Whether parts of the dish still have to be brought to the board.
     pub assembling: bool,
-    /// Free hands and places that the target's parts require.
+    /// Free hands and places that the parts of the dish require.
     pub needs: FreeMask,
     /// Free hands and places that all remaining tasks require.
     pub later: FreeMask,
@@ -26,7 +26,7 @@ impl TargetNeeds {
 }
 
 impl PressPlan<'_> {
-    /// Present requirements of the work on a target.
+    /// The present requirements of the work on a target dish.
     pub(super) fn wants(&self, target: usize) -> TargetNeeds {
         let of_target = || self.tasks().filter(move |(_, task)| usize::from(task.target) == target);
         let complete = self.goal.complete[target];
@@ -38,7 +38,7 @@ impl PressPlan<'_> {
         TargetNeeds { target, assembling, needs, later, hands_full }
     }
 
-    /// Whether the content of a location blocks the target's parts.
+    /// Whether the content of a location blocks the parts of the target dish.
     pub(super) fn blocks(&self, wants: &TargetNeeds, location: usize) -> bool {
         let ground = self.ground;
         match location {
@@ -49,7 +49,7 @@ impl PressPlan<'_> {
         }
     }
 
-    /// The place for putting a part down with the least additional presses: (additional presses, place).
+    /// The place where a part can be put down with the least additional presses: (additional presses, place).
     pub(super) fn best_place(&self, index: usize, needs: FreeMask, through: bool) -> Option<(u32, usize)> {
         let ground = self.ground;
         let task = self.choice.tasks[index];
@@ -82,7 +82,7 @@ impl PressPlan<'_> {
         best.map(|(detour, _, place)| (detour, place))
     }
 
-    /// The occupied place to which a single item has to go next.
+    /// The occupied place to which the single item of a task has to go next.
     pub(super) fn blocked_by(&self, task: usize) -> Option<usize> {
         let ground = self.ground;
         let from = usize::from(self.choice.tasks[task].at);
@@ -92,7 +92,7 @@ impl PressPlan<'_> {
         blocked.find(|&place| self.leads(task, from, place))
     }
 
-    /// Whether moving a single item from one location to another shortens its journey.
+    /// Whether moving the single item of a task from one location to another shortens its journey.
     pub(super) fn leads(&self, task: usize, from: usize, to: usize) -> bool {
         let of = self.choice.tasks[task];
         let class = self.state[usize::from(of.at)];

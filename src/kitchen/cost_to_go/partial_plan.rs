@@ -1,4 +1,5 @@
-//! A plan under construction: places of its tasks' items, and the presses that bring, process and serve them.
+//! A cost-to-go plan under construction: places of its tasks' items, and the presses that bring, process and serve
+//! them.
 
 use super::assign::Assignment;
 use super::classes::ContentClasses;
@@ -7,10 +8,10 @@ use super::ground::KitchenTables;
 use super::journeys::{FreeMask, NEVER};
 use super::task::{AssemblyTask, STORAGE};
 
-/// Length of a plan that got stuck.
+/// Length, in presses, that stands for a plan that cannot be completed.
 pub const BLOCKED: u32 = 1000;
 
-/// A plan under construction.
+/// A cost-to-go plan under construction.
 pub struct PressPlan<'a> {
     pub(super) ground: &'a KitchenTables,
     pub(super) goal: &'a ServingGoal,
@@ -19,7 +20,7 @@ pub struct PressPlan<'a> {
     /// Bit set of the remaining tasks.
     pub(super) open: u32,
     pub(super) presses: u32,
-    /// Number of served targets.
+    /// Number of dishes that the plan has served so far.
     pub(super) served: usize,
     pub(super) steps: usize,
 }
@@ -45,7 +46,8 @@ impl<'a> PressPlan<'a> {
         }
     }
 
-    /// The target to which the board is committed: the only target, or the only one that can use the stack on it.
+    /// The target dish to which the board is committed: the only one, or the only one that can use the stack on the
+    /// board.
     pub(super) fn begun(&self) -> Option<usize> {
         let class = usize::from(self.state[self.ground.board]);
         let mut can_be = (0..self.goal.targets.len()).filter(|&target| self.goal.ready[target][class] != 0);
@@ -69,7 +71,7 @@ impl<'a> PressPlan<'a> {
         })
     }
 
-    /// The first remaining task of a target.
+    /// The first remaining task of a target dish.
     fn first_of(&self, target: usize) -> Option<(usize, AssemblyTask)> {
         self.tasks().find(|(_, task)| usize::from(task.target) == target)
     }
@@ -78,7 +80,7 @@ impl<'a> PressPlan<'a> {
         self.open &= !(1 << index);
     }
 
-    /// Serves the target if its stack is complete and the way is free.
+    /// Serves the target dish if its stack is complete and the way is free.
     pub(super) fn serve(&mut self, target: usize) -> bool {
         let ground = self.ground;
         let complete = self.goal.complete[target];
@@ -103,7 +105,7 @@ impl<'a> PressPlan<'a> {
         self.goal.is_ready(self.ground, &self.state, task)
     }
 
-    /// Whether the board can take parts of this target: it is empty or holds a part of it.
+    /// Whether the board can take parts of this target dish: it is empty or holds a part of the dish.
     pub(super) fn board_is_open(&self, target: usize) -> bool {
         let board = self.ground.board;
         if self.state[board] == 0 {
@@ -113,8 +115,8 @@ impl<'a> PressPlan<'a> {
         self.tasks().any(ours)
     }
 
-    /// Lifts a complete stack off the board while the plate is occupied, so that parts of the next target (possibly the content of the
-    /// plate) can be brought onto the board.
+    /// Lifts a complete stack off the board while the plate is occupied, so that parts of the next target dish
+    /// (possibly the content of the plate) can be brought onto the board.
     pub(super) fn lift(&mut self, target: usize, next: usize) -> bool {
         let ground = self.ground;
         let Some((index, task)) = self.first_of(target) else { return false };
@@ -197,7 +199,7 @@ impl<'a> PressPlan<'a> {
         self.state[board] = self.goal.part_class[target][usize::from(bits)];
     }
 
-    /// Presses of a task with these hands and places free.
+    /// Number of presses of a task while these hands and places are free.
     pub(super) fn bring(&self, task: &AssemblyTask, free: FreeMask) -> u8 {
         let (ground, goal) = (self.ground, self.goal);
         let target = usize::from(task.target);
@@ -217,7 +219,7 @@ impl<'a> PressPlan<'a> {
         ground.journeys.presses(free | ground.journeys.bit[at], component, at, content)
     }
 
-    /// Presses of a task without obstacles.
+    /// Number of presses of a task without obstacles.
     pub(super) fn least(&self, task: &AssemblyTask) -> u32 {
         u32::from(self.goal.way(&self.state, task, task.at).0)
     }

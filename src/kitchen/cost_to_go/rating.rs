@@ -6,16 +6,16 @@ use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 use super::partial_plan::{BLOCKED, PressPlan};
 
-/// The assignments for both serving orders, the one with the smaller lower bound first.
+/// The assignments of items for both serving orders, the one with the smaller lower bound of the cost to go first.
 pub struct AssignmentRating {
     choices: [Assignment; 2],
     count: usize,
-    /// The lower bound.
+    /// The lower bound of the cost to go, in presses.
     pub lower: u32,
 }
 
 impl AssignmentRating {
-    /// The assignments of this state, with the lower bound that follows from them.
+    /// The assignments of items in this state, and the lower bound of the cost to go that follows from them.
     pub fn new(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> AssignmentRating {
         let forwards = Assignment::choose(ground, goal, state, [0, 1]);
         let lower = forwards.demand.bound(ground, state);
@@ -31,7 +31,7 @@ impl AssignmentRating {
         }
     }
 
-    /// The lower bound alone.
+    /// The lower bound of the cost to go alone.
     pub fn bound(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> u32 {
         let of_order = |order| Assignment::choose(ground, goal, state, order).demand.bound(ground, state);
         let forwards = of_order([0, 1]);
@@ -48,7 +48,7 @@ impl AssignmentRating {
         &self.choices[0]
     }
 
-    /// Items that the targets which may be served first need from the storages: a bit set of items for each target.
+    /// Items that the dishes which may be served first need from the storages: a bit set of items for each target dish.
     pub fn wanted(&self) -> [u8; MAX_TARGETS] {
         let mut wanted = [0; MAX_TARGETS];
         for choice in self.choices() {
@@ -63,7 +63,8 @@ impl AssignmentRating {
         self.best_plan(ground, goal, state, most, false)
     }
 
-    /// Length of the best plan, with one deviation (discrepancy) tried where plans do not reach the lower bound.
+    /// Length of the best plan, where plans that do not reach the lower bound are tried again with one deviation from
+    /// the greedy choice (discrepancy).
     pub fn close_upper(&self, ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> u32 {
         let upper = self.upper(ground, goal, state, BLOCKED);
         if upper <= self.lower {
@@ -96,7 +97,7 @@ impl AssignmentRating {
     }
 }
 
-/// Whether the order in which the targets choose their items can matter.
+/// Whether the order in which the target dishes choose their items can matter.
 fn order_counts(goal: &ServingGoal, state: &ContentClasses) -> bool {
     goal.targets_differ() && state.iter().any(|&class| goal.is_shared[usize::from(class)])
 }

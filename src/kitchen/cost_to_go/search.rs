@@ -1,5 +1,5 @@
-//! The bounded best-first search over single presses, for states that bounds and plans do not decide. It stops at states with a
-//! known value and wherever a plan reaches the lower bound.
+//! The bounded best-first search over single presses, for states whose cost to go bounds and plans do not decide. It
+//! stops at states with a known value and wherever a plan reaches the lower bound.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -15,7 +15,7 @@ use super::store::{CostToGo, UNREACHABLE};
 use super::successors::successors;
 use crate::kitchen::{ContentId, State};
 
-/// Limits of a search.
+/// Limits of a best-first search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SearchLimits {
     /// Largest number of expanded states.
@@ -24,29 +24,30 @@ pub struct SearchLimits {
     takes: bool,
 }
 
-/// First limits: sufficient for 99 % of the states met in sessions and 95 % of those after random presses.
+/// Limits of the first search: sufficient for 99 % of the states met in sessions and 95 % of those after random
+/// presses.
 pub const NEAR: SearchLimits = SearchLimits { expansions: 48, takes: false };
-/// Second limits, for states whose result is still two or more presses above the lower bound.
+/// Limits of the second search, for states whose result is still two or more presses above the lower bound.
 pub const FAR: SearchLimits = SearchLimits { expansions: 24, takes: true };
 
-/// Initial capacity: most searches meet fewer states.
+/// Initial capacity of the search's tables: most searches meet fewer states.
 const ROOM: usize = 200;
 
-/// Marks a state without a plan yet.
+/// Marks a state of the search whose plan has not been computed yet.
 const UNSEEN: u32 = u32::MAX;
 
-/// Ranks a state behind all others of its bound whose plans are known.
+/// Ranks a state of the search behind all others with the same bound whose plans are known.
 const LAST: u32 = UNSEEN - 1;
 
-/// An open state of the search.
+/// An open state (node) of the best-first search.
 struct Open {
-    /// Presses so far plus lower bound of the rest.
+    /// Number of presses so far plus lower bound of the remaining ones.
     bound: u32,
-    /// Presses by which its plan exceeds the lower bound, or [`UNSEEN`].
+    /// Number of presses by which the state's plan exceeds the lower bound, or [`UNSEEN`].
     gap: u32,
     /// Number of the state in order of discovery.
     met: usize,
-    /// Presses so far.
+    /// Number of presses so far.
     presses: u32,
     state: ContentClasses,
 }
@@ -78,7 +79,7 @@ impl Ord for Open {
     }
 }
 
-/// One search.
+/// One best-first search over single presses.
 pub struct BestFirstSearch<'a> {
     costs: &'a mut CostToGo,
     slot: usize,
@@ -137,7 +138,8 @@ impl<'a> BestFirstSearch<'a> {
     fn best(mut self, start: &ContentClasses, lower: u32) -> u32 {
         let rating = AssignmentRating::new(&self.costs.ground, self.goal, start);
         self.fidelity(start, rating, 0, lower);
-        // What a plan settles first is nearly always right: the start itself comes last of its bound.
+        // The presses that a plan settles first are nearly always right: the start state itself is expanded last among
+        // equal bounds.
         self.keep(lower, LAST, 0, start);
         let mut expansions = 0;
         while let Some(next) = self.open.pop() {
@@ -208,7 +210,7 @@ impl<'a> BestFirstSearch<'a> {
         if lower >= self.best {
             return;
         }
-        // States off the best path may never be expanded, so their plans are computed later.
+        // States that are not on the best path may never be expanded, so their plans are computed only on demand.
         if lower > bound {
             return self.keep(lower, UNSEEN, presses, state);
         }
@@ -216,7 +218,7 @@ impl<'a> BestFirstSearch<'a> {
         self.fidelity(state, rating, presses, bound);
     }
 
-    /// Computes a state's plan after all certainly optimal presses.
+    /// Computes the plan of a state, from the state after all certainly optimal presses.
     fn fidelity(&mut self, state: &ContentClasses, mut rating: AssignmentRating, presses: u32, bound: u32) {
         let goal = self.goal;
         let plan = PressPlan::new(&self.costs.ground, goal, state, rating.best_choice());
@@ -279,14 +281,14 @@ impl CostToGo {
         }
         self.counts.searches += 1;
         let best = BestFirstSearch::run(self, slot, goal, state, rating.lower, upper, NEAR);
-        // With two targets a plan one press above the bound is common and mostly exact.
+        // With two target dishes, a plan one press above the lower bound is common and mostly exact.
         match best < rating.lower + goal.targets.len() as u32 {
             true => best,
             false => BestFirstSearch::run(self, slot, goal, state, rating.lower, best, FAR),
         }
     }
 
-    /// Value of a state after one of its targets has been served.
+    /// Cost to go of a state after one of its target dishes has been served.
     fn without(&mut self, goal: &ServingGoal, state: &ContentClasses, served: usize) -> u32 {
         let rest = goal.targets.iter().enumerate().filter(|(index, _)| *index != served);
         let rest: Vec<ContentId> = rest.map(|(_, &target)| target).collect();

@@ -1,4 +1,4 @@
-//! The data of a [`CostToGo`]: tables of the kitchen, goals, and caches by state keys.
+//! The data of [`CostToGo`]: tables of the kitchen, goals, and caches by state keys.
 
 use std::sync::Arc;
 
@@ -14,15 +14,15 @@ pub const UNREACHABLE: u32 = 255;
 /// Cache sizes: 2^18 values and 2^15 decisions, 2 MiB each. Larger caches were slower without more hits.
 const CACHE_BITS: u32 = 18;
 const DECISION_BITS: u32 = 15;
-/// Number of key bits for the goal and the kind of value.
+/// Number of bits of a cache key for the goal and the kind of value.
 pub(super) const SLOT_BITS: u32 = 16 + KIND_BITS;
 
-/// Computes costs to go, with caches.
+/// Computes costs to go of a kitchen's states, with caches.
 #[derive(Clone, Debug)]
 pub struct CostToGo {
     pub(super) kitchen: Arc<Kitchen>,
     pub(super) ground: KitchenTables,
-    /// Goals by `[first target * contents + second target]` (0 for no second target), created on demand.
+    /// The goals by `[first target * contents + second target]` (0 for no second target), created on demand.
     pub(super) goals: Vec<Option<Arc<ServingGoal>>>,
     pub(super) cache: ValueCache,
     pub(super) decisions: DecisionCache,
@@ -35,7 +35,7 @@ pub struct CostToGo {
     pub(super) trashes: [bool; 2],
 }
 
-/// Counters of look-ups and computations since the start.
+/// Number of cache look-ups and computations since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EvaluationCounts {
     /// Number of decisions that were not in the cache.
@@ -48,27 +48,27 @@ pub struct EvaluationCounts {
     pub searches: u64,
 }
 
-/// Cache slot of a state's value.
+/// Cache slot of a state's cost to go.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum CacheSlot {
-    /// Under its goal's slot and its key.
+    /// The slot of the goal, and the key of the state.
     At(usize, u64),
-    /// No slot: the value is constant without orders, or if an order cannot be served.
+    /// No slot: the cost to go is constant, because there are no orders or an order cannot be served.
     Always(u32),
 }
 
-/// State after a button, with its bounds.
+/// A state after a press, with bounds of its cost to go.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SuccessorState {
     pub(super) button: usize,
     pub(super) state: State,
     pub(super) kept: CacheSlot,
-    /// Its lower bound and, where requested, the length of its best plan.
+    /// Lower bound of the cost to go and, where requested, the length of the best plan.
     pub(super) bracket: (u32, Option<u32>),
 }
 
 impl CostToGo {
-    /// An evaluator for this kitchen, with empty caches.
+    /// A cost-to-go evaluator for this kitchen, with empty caches.
     pub fn new(kitchen: Arc<Kitchen>) -> CostToGo {
         let ground = KitchenTables::new(&kitchen);
         let goals = vec![None; kitchen.contents.len() * kitchen.contents.len()];
@@ -91,12 +91,12 @@ impl CostToGo {
         }
     }
 
-    /// Counters since the start.
+    /// Counters of cache look-ups and computations since the start.
     pub fn counts(&self) -> EvaluationCounts {
         self.counts
     }
 
-    /// Target stacks of the present orders, in their order, and their number.
+    /// The stacks that the present orders want, in the order of the orders, and their number.
     #[inline]
     pub(super) fn targets(&self, state: State, recipes: &Recipes) -> ([ContentId; MAX_TARGETS], usize) {
         let mut targets = [ContentId::EMPTY; MAX_TARGETS];
@@ -110,7 +110,7 @@ impl CostToGo {
         (targets, count)
     }
 
-    /// Slot of the targets (at least one) and key of the state.
+    /// The slot of the target dishes (at least one) and the key of the state.
     #[inline]
     pub(super) fn key_of_state(&mut self, state: State, targets: &mut [ContentId]) -> Option<(usize, u64)> {
         targets.sort_unstable();
@@ -120,7 +120,7 @@ impl CostToGo {
         Some((slot, goal.key_of_state(state) << SLOT_BITS | (slot << KIND_BITS) as u64))
     }
 
-    /// Cache key of a state's exact value.
+    /// Cache key of a state's exact cost to go.
     pub(super) fn key(&self, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u64 {
         goal.key_of_classes(state) << SLOT_BITS | (slot << KIND_BITS) as u64
     }

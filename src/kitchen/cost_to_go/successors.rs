@@ -1,4 +1,4 @@
-//! Successor states of single presses, over classes.
+//! Successor states of single presses, over classes of contents.
 
 use crate::kitchen::{Agent, ButtonAction};
 
@@ -6,8 +6,8 @@ use super::classes::{ContentClasses, MAX_TARGETS, USELESS};
 use super::goal::ServingGoal;
 use super::ground::KitchenTables;
 
-/// Calls `visit` with every state after one press, without presses that can never help. Only items in `wanted` (a bit set of items
-/// for each target) are taken from a storage.
+/// Calls `visit` with every state after one press, without presses that can never help. Only items in `wanted` (a bit
+/// set of items for each target dish) are taken from a storage.
 pub fn successors(
     ground: &KitchenTables,
     goal: &ServingGoal,

@@ -1,15 +1,15 @@
-//! Tasks of a goal: bringing a part to the board, or serving a complete stack.
+//! Tasks towards a goal of the cost to go: bringing an item to the board, or serving a complete stack.
 
-/// Place of a part that is still in a storage.
+/// Stands for the location of an item that is still in a storage.
 pub const STORAGE: u8 = u8::MAX;
 
-/// A task: a part to bring to the board, or a complete stack to serve.
+/// A task: an item to bring to the board, or a complete stack to serve.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct AssemblyTask {
-    /// The index of the target.
+    /// The index of the target dish.
     pub target: u8,
-    /// Bit set of the target's items in it; all bits for a complete stack.
+    /// Bit set of the target dish's items that the task provides; all bits for a complete stack.
     pub bits: u8,
-    /// Its present location, or [`STORAGE`].
+    /// The present location of the task's item, or [`STORAGE`].
     pub at: u8,
 }

@@ -1,5 +1,5 @@
-//! Single values: number of presses until all orders or one order are served, and whether it is below a limit, which bounds
-//! mostly decide.
+//! Cost to go of single states: number of presses until all orders or one order are served, and whether that number is
+//! below a limit, which bounds mostly decide.
 
 use super::fidelity::Fidelity;
 use super::partial_plan::BLOCKED;
@@ -9,18 +9,19 @@ use super::store::{CacheSlot, CostToGo, UNREACHABLE};
 use crate::kitchen::{ContentId, LocationId, OrderContent, Recipes, State};
 
 impl CostToGo {
-    /// C(s, recipes): presses until all present orders are served; 0 without orders, [`UNREACHABLE`] if they cannot be served.
+    /// C(s, recipes): number of presses until all present orders are served; 0 without orders, [`UNREACHABLE`] if they
+    /// cannot be served.
     pub fn all_orders(&mut self, state: State, recipes: &Recipes) -> u32 {
         let (mut targets, count) = self.targets(state, recipes);
         self.cost(Fidelity::Exact, state, &mut targets[..count])
     }
 
-    /// C_k(s, recipes): presses until the order at this location is served; 0 without an order.
+    /// C_k(s, recipes): number of presses until the order at this location is served; 0 without an order.
     pub fn order(&mut self, state: State, recipes: &Recipes, order: LocationId) -> u32 {
         self.order_with(Fidelity::Exact, state, recipes, order)
     }
 
-    /// The same at a given fidelity.
+    /// Number of presses until the order at this location is served, at a given fidelity.
     pub fn order_with(&mut self, fidelity: Fidelity, state: State, recipes: &Recipes, order: LocationId) -> u32 {
         match state.order(order) {
             OrderContent::Dish(dish) => self.cost(fidelity, state, &mut [recipes.get(dish)]),
@@ -28,7 +29,8 @@ impl CostToGo {
         }
     }
 
-    /// Whether the order's value is below `limit`, where `limit` is at most one press above the value; cheaper than the value.
+    /// Whether the order's cost to go is below `limit`, where `limit` is at most one press above it; cheaper than
+    /// computing the cost to go.
     pub fn order_is_below(
         &mut self,
         fidelity: Fidelity,
@@ -66,7 +68,7 @@ impl CostToGo {
         }
     }
 
-    /// The lower bound of a state and, if that is at most `most`, the length of its best plan.
+    /// The lower bound of a state's cost to go and, if that is at most `most`, the length of its best plan.
     pub(super) fn bracket(&mut self, state: State, kept: CacheSlot, most: u32) -> (u32, Option<u32>) {
         let (slot, key) = match kept {
             CacheSlot::At(slot, key) => (slot, key),
@@ -95,7 +97,7 @@ impl CostToGo {
         (lower, Some(self.keep(Fidelity::PlanBound, key, upper)))
     }
 
-    /// Whether the value of a state is below `limit`, which is at most one press above it.
+    /// Whether the cost to go of a state is below `limit`, which is at most one press above it.
     pub(super) fn is_below(&mut self, limit: u32, state: State, kept: CacheSlot) -> bool {
         if limit == 0 {
             return false;

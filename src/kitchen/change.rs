@@ -96,7 +96,7 @@ impl Change {
         self.press().filter(|press| press.agent == Agent::Human)
     }
 
-    /// The state of the kitchen before and after the event, if the event can change the kitchen.
+    /// The state of the kitchen before and after the event, if the event changed it.
     pub fn states(&self) -> Option<(State, State)> {
         let (before, after) = match self {
             Change::None | Change::UncountedPress { .. } => return None,

@@ -117,7 +117,7 @@ pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m:
     Ok(())
 }
 
-/// Checks that no key is assigned to the signals about two locations.
+/// Checks that no key is assigned to the signals about two locations, and that none is the space bar.
 pub(super) fn check_signal_keys(layout: &LayoutSpec) -> Result<()> {
     let mut seen: Vec<(&str, char)> = Vec::new();
     for (name, key) in layout.signal_keys() {

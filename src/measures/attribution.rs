@@ -1,10 +1,11 @@
 //! Attribution of an error to a cause: a false belief, or a slip.
 //!
-//! An error is belief related if log p(a | b) - log p(a | truth) >= ln 3, with b from before the press and p of the human
-//! model. It is put down to the target whose replacement by the truth lowers p(a | b) most. A single target explains the
-//! error if the press would not be belief related any more; where none does, the best pair is named. Whatever is not
-//! belief related is a slip. Simulated participants do not decide by that model: they record the cause themselves, by repeating
-//! their decision with the truth, and errors of planning are told from slips.
+//! An error is belief related if log p(a | b) - log p(a | truth) >= ln 3, with the belief b from before the press and p
+//! of the human model. It is attributed to the target (a location, or a recipe) whose replacement by the truth lowers
+//! p(a | b) most. A single target explains the error if the press would not be belief related any more; where none
+//! does, the best pair is named. Every error that is not belief related is a slip. Simulated participants do not decide
+//! by that model: they record the cause themselves, by repeating their decision with the truth, and distinguish
+//! planning errors from slips.
 
 use crate::base::rng::stream;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -17,10 +18,11 @@ use crate::mind::{BeliefWitness, ChoiceModel, PressOrigin};
 
 /// Least likelihood ratio of belief to truth for a belief related error.
 pub const LIKELIER: f64 = 3.0;
-/// Least P(false) of a target that can be part of a pair of causes.
+/// Least probability of a false belief about a target that can be part of a pair of causes.
 const DOUBTFUL: f64 = 0.1;
 
-/// A possible cause of an error that a signal can correct; an order and the recipe of its dish are one target.
+/// What a false belief behind an error is about, and a signal can correct; an order and the recipe of its dish are one
+/// target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
     /// An order and the recipe of its dish.
@@ -31,18 +33,20 @@ pub enum Target {
     Recipe(DishId),
 }
 
-/// Cause of an error.
+/// Cause of an error: slip, planning error or false belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
-    /// A slip: the press is not likelier under the belief than under the truth, or by a simulated participant's own record.
+    /// A slip: the press is not likelier under the belief than under the truth, or a simulated participant recorded a
+    /// slip.
     Slip,
-    /// An error of planning: a simulated participant would have pressed the same with true beliefs.
+    /// A planning error: a simulated participant would have pressed the same button with true beliefs.
     Planning,
-    /// A false belief made the press likelier than the truth would have.
+    /// A false belief: it made the press likelier than the truth would have.
     Belief {
-        /// log p(a | b) - log p(a | truth), in nats; infinite where a simulated participant told the cause, no number where raters did.
+        /// log p(a | b) - log p(a | truth), in nats; infinite where a simulated participant recorded the cause, NaN
+        /// where raters coded it.
         gain_nats: f64,
-        /// What was believed wrong.
+        /// What the false belief is about.
         target: Target,
         /// Second target, where a single target does not explain the error.
         with: Option<Target>,
@@ -50,7 +54,7 @@ pub enum Cause {
 }
 
 impl Target {
-    /// All targets in a state.
+    /// All targets that a false belief can be about in a state.
     pub fn all(kitchen: &Kitchen, state: State) -> Vec<Target> {
         let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
         let of_location = |location: LocationId| match (kitchen.location(location).kind, state.order(location)) {
@@ -87,7 +91,8 @@ impl Target {
 }
 
 impl Cause {
-    /// The cause that a simulated participant recorded before its press in `state`; `None` if it recorded none.
+    /// The cause of an error that a simulated participant recorded before its press in `state`; `None` if it recorded
+    /// none.
     pub fn recorded(kitchen: &Kitchen, state: State, witness: &BeliefWitness) -> Option<Cause> {
         match witness.origin? {
             PressOrigin::Plan => return Some(Cause::Planning),
@@ -106,15 +111,15 @@ impl Cause {
 #[derive(Clone, Debug)]
 pub struct Attributor {
     model: DecisionModel,
-    /// Seed of the random streams.
+    /// Seed of the random streams from which worlds are drawn.
     seed: u64,
 }
 
-/// An error during attribution.
+/// Data of the error whose cause is being determined.
 struct Inquiry<'a> {
     kitchen: &'a Kitchen,
     model: ChoiceModel,
-    /// The worlds that represent the belief.
+    /// The worlds that represent the human's belief before the press.
     worlds: WeightedWorlds,
     state: State,
     button: ButtonId,
@@ -151,7 +156,7 @@ impl Inquiry<'_> {
         self.model.probabilities(cost, worlds).press[self.button.index()].ln()
     }
 
-    /// The target, or pair of targets, whose replacement by the truth makes the press unlikely.
+    /// The target, or pair of targets, whose replacement by the truth makes the press unlikely enough.
     fn explain(&self, cost: &mut CostToGo, informed: f64) -> Option<(Target, Option<Target>)> {
         let mut targets = Target::all(self.kitchen, self.state);
         targets.retain(|&target| self.doubt(target) > 0.0);
@@ -183,14 +188,14 @@ impl Inquiry<'_> {
         best
     }
 
-    /// Probability, in the human's belief, that the target differs from the truth.
+    /// Probability that the human's belief about the target differs from the truth.
     fn doubt(&self, target: Target) -> f64 {
         let told = self.told(&self.worlds, target);
         let wrong = self.worlds.all.iter().zip(&told.all).filter(|(held, true_one)| held != true_one);
         wrong.map(|(held, _)| held.weight).sum()
     }
 
-    /// The same worlds with one target replaced by the truth.
+    /// The same worlds with the value of one target replaced by the truth.
     fn told(&self, worlds: &WeightedWorlds, target: Target) -> WeightedWorlds {
         let mut worlds = worlds.clone();
         for aspect in target.aspects(self.kitchen) {

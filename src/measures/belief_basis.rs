@@ -1,25 +1,25 @@
-//! How it is known what a participant believed.
+//! Sources of knowledge about what a participant believed.
 
 use serde::Serialize;
 
-/// Source of the causes of errors, and of false beliefs; the most reliable first.
+/// The source from which an analysis takes causes of errors and false beliefs; the most reliable source first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BeliefBasis {
-    /// Recorded beliefs of a simulated participant.
+    /// Beliefs that a simulated participant recorded.
     Recorded,
-    /// Answers to probes; they tell false beliefs, not the causes of errors.
+    /// Answers to freeze probes; they reveal false beliefs, but not the causes of errors.
     Probes,
-    /// Consensus of two raters for every error.
+    /// Consensus of two raters on the cause of every error.
     Consensus,
-    /// Codes of two raters for every error; an error is belief related if both coded a false belief.
+    /// Codes of two raters for the cause of every error; an error is belief related if both coded a false belief.
     Raters,
-    /// The assistant's estimate; insufficient for headline results.
+    /// The assistant's estimate; not sufficient for the main results of a study.
     Estimate,
 }
 
 impl BeliefBasis {
-    /// Name in tables.
+    /// Name of the source in tables.
     pub fn name(self) -> &'static str {
         match self {
             BeliefBasis::Recorded => "recorded",
@@ -30,7 +30,7 @@ impl BeliefBasis {
         }
     }
 
-    /// The source in words.
+    /// The source of knowledge about beliefs in words.
     pub fn words(self) -> &'static str {
         match self {
             BeliefBasis::Recorded => "the recorded beliefs of simulated participants",

@@ -1,12 +1,13 @@
-//! Detection of false beliefs by an estimate, compared with known beliefs: those that simulated participants record before each
-//! press.
+//! Detection of false beliefs by an estimate, compared with known beliefs: those that simulated participants record
+//! before each press.
 //!
-//! The unit is a press of the human, and what was estimated right before it. An aspect is believed wrong if the
-//! participant's own P(truth) is below 0.5. The area under the ROC of a group (locations, recipes) is that of all its pairs
-//! of a press and an aspect in one pot: the score has to tell an aspect that is believed wrong now both from the others and
-//! from itself at other times. The macro-average is the mean of the two groups, so that the many pairs of one do not hide
-//! the other. Calibration judges the predicted probability of a false belief, which is that of a belief in the truth below one half,
-//! not the expected share of the belief beside the truth. The mean over single aspects is given beside it; it depends much on aspects that are hardly ever wrong.
+//! The unit is a press of the human, with the estimate right before it. A belief about an aspect is false if the
+//! participant's own P(truth) is below 0.5. The area under the ROC curve of a group (locations, recipes) is computed
+//! over all its pairs of a press and an aspect together: the score has to distinguish an aspect that is believed wrong
+//! now both from the others and from itself at other times. The macro-average is the mean of the two groups, so that
+//! the many pairs of one do not hide the other. Calibration judges the predicted probability of a false belief (the
+//! probability that the participant's P(truth) is below 0.5), not the expected probability of wrong values. The mean
+//! over single aspects is reported as well; it depends much on aspects that are hardly ever wrong.
 
 use serde::Serialize;
 
@@ -15,7 +16,8 @@ use super::flags::{AspectGroups, Flags, Thresholds};
 pub use super::press_view::{EstimateView, PressView, TrialView};
 use crate::kitchen::{AspectKind, Kitchen};
 
-/// Calibration uses predictions within this range, since most aspects are obviously right most of the time.
+/// Calibration uses only predicted probabilities within this range, since most aspects are obviously right most of the
+/// time.
 pub const CALIBRATED: [f64; 2] = [0.05, 0.95];
 /// Number of calibration bins.
 pub const CALIBRATION_BINS: usize = 10;
@@ -25,42 +27,43 @@ pub const CALIBRATION_BINS: usize = 10;
 pub struct AspectAuc {
     /// The aspect's name.
     pub aspect: String,
-    /// Null if its belief was never or always false.
+    /// Area under the ROC curve; null if the belief about the aspect was never or always false.
     pub auc: Option<f64>,
-    /// Share of presses before which its belief was false.
+    /// Share of presses before which the belief about the aspect was false.
     pub wrong: f64,
 }
 
-/// Detection of false beliefs; null without an estimate or without known beliefs.
+/// How well an estimate detects false beliefs; values are null without an estimate or without known beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Detection {
-    /// Mean of the areas of locations and recipes.
+    /// Mean of the areas under the ROC curves of locations and recipes.
     pub auc: Option<f64>,
     /// Area under the ROC curve over the locations.
     pub auc_locations: Option<f64>,
     /// Area under the ROC curve over the recipes.
     pub auc_recipes: Option<f64>,
-    /// Area of the baseline on locations, which knows only whether somebody else changed a location since the human last looked at it.
+    /// Area under the ROC curve of the baseline for locations, which knows only whether somebody else changed a
+    /// location since the human last looked at it.
     pub auc_baseline: Option<f64>,
-    /// Area of the baseline on locations, which knows only how long ago somebody else last changed a location: without gaze
-    /// there is no better one.
+    /// Area under the ROC curve of the baseline for locations, which knows only how long ago somebody else last changed
+    /// a location: without gaze there is no better one.
     pub auc_recency: Option<f64>,
-    /// Mean of the areas of single aspects.
+    /// Mean of the areas under the ROC curves of single aspects.
     pub auc_mean_of_aspects: Option<f64>,
-    /// How well episodes are flagged at the chosen thresholds.
+    /// How well the chosen thresholds flag false belief episodes.
     #[serde(flatten)]
     pub flags: Flags,
     /// The expected calibration error of the predicted probabilities of a false belief within [`CALIBRATED`].
     pub ece: Option<f64>,
-    /// The predictions in bins, against what was true.
+    /// Predicted probabilities of a false belief in bins, with the observed frequencies.
     pub calibration: Calibration,
-    /// The area under the ROC curve of each aspect by itself.
+    /// The area under the ROC curve of each aspect separately.
     pub aspects: Vec<AspectAuc>,
 }
 
 impl Detection {
-    /// Compares estimates with beliefs. `thresholds` are the probabilities from which an aspect is flagged; with `None` they are
-    /// chosen on other trials than they are judged on (see [`Flags`]).
+    /// Compares estimates with known beliefs. `thresholds` are the probabilities from which an aspect is flagged; with
+    /// `None` they are chosen on other trials than they are evaluated on (see [`Flags`]).
     pub fn from_trials(kitchen: &Kitchen, trials: &[TrialView], thresholds: Option<Thresholds>) -> Detection {
         let estimated = |press: &PressView, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
         let changed = |press: &PressView, aspect| press.unseen_change.get(aspect).map(|&one| f64::from(u8::from(one)));
@@ -94,10 +97,10 @@ impl Detection {
     }
 }
 
-/// Score of one aspect before a press.
+/// Function that scores one aspect before a press.
 type Score<'a> = &'a dyn Fn(&PressView, usize) -> Option<f64>;
 
-/// Scores of aspects before every press with whether their belief was false; only where both are known.
+/// Scores of aspects before every press, each with whether the belief was false; only where both are known.
 fn scored(trials: &[TrialView], aspects: &[usize], score: Score) -> Vec<(f64, bool)> {
     let one = |press: &PressView, aspect: usize| Some((score(press, aspect)?, press.is_wrong(aspect)?));
     let presses = trials.iter().flatten();
@@ -115,7 +118,7 @@ fn aspects(kitchen: &Kitchen, recipes: bool) -> Vec<usize> {
     (0..kitchen.aspects.len()).filter(|index| is_recipe(index) == recipes).collect()
 }
 
-/// The mean; `None` for an empty list.
+/// The mean of numbers; `None` for an empty list.
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (count, sum) = values.fold((0u32, 0.0), |(count, sum), value| (count + 1, sum + value));
     (count > 0).then(|| sum / f64::from(count))

@@ -1,5 +1,5 @@
-//! Rater codes of error causes. Beliefs of people are unknown, so two raters independently code the errors of a trial, and
-//! Cohen's kappa (1960, "A coefficient of agreement for nominal scales") measures their agreement.
+//! Raters' codes of error causes. The beliefs of people are unknown, so two raters independently code the errors of a
+//! trial, and Cohen's kappa (1960, "A coefficient of agreement for nominal scales") measures their agreement.
 
 use std::collections::BTreeMap;
 
@@ -13,31 +13,31 @@ use crate::kitchen::{Kitchen, LocationKind, OrderContent, State};
 /// Cause of an error as coded by a rater.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Code {
-    /// A false belief; holds the location's name. An order location stands for the recipe of its dish.
+    /// A false belief; contains the location's name. An order location stands for the recipe of its dish.
     Belief(String),
     /// A slip of hand or attention, without a false belief.
     Slip,
-    /// A race: the robot changed the location shortly before the press.
+    /// A race: the robot changed the location shortly before the press, too late for the participant to react.
     Race,
-    /// Another cause.
+    /// Another cause of the error.
     Other,
-    /// Buttons were mixed up: the participant wanted another one.
+    /// Confused buttons: the participant wanted to press another one.
     Buttons,
 }
 
-/// Kinds of causes, without the aspect of a false belief.
+/// Kinds of causes of an error, without what a false belief is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CauseKind {
-    /// Something was believed wrong.
+    /// A false belief.
     Belief,
-    /// The hand or the attention slipped.
+    /// A slip of hand or attention.
     Slip,
-    /// The robot was quicker.
+    /// A race: the robot changed the location before the participant could react.
     Race,
-    /// Another cause.
+    /// Another cause of the error.
     Other,
-    /// Buttons were mixed up.
+    /// Confused buttons: the participant wanted to press another one.
     Buttons,
 }
 
@@ -46,7 +46,7 @@ impl CauseKind {
     pub const ALL: [CauseKind; 5] =
         [CauseKind::Belief, CauseKind::Slip, CauseKind::Race, CauseKind::Other, CauseKind::Buttons];
 
-    /// Name in files.
+    /// Name of the cause in files.
     pub fn name(self) -> &'static str {
         match self {
             CauseKind::Belief => "belief",
@@ -57,7 +57,7 @@ impl CauseKind {
         }
     }
 
-    /// Name in the codebook.
+    /// Name of the cause in the raters' codebook.
     pub fn title(self) -> &'static str {
         match self {
             CauseKind::Belief => "wrong about",
@@ -68,7 +68,7 @@ impl CauseKind {
         }
     }
 
-    /// Definition in the codebook, in one line.
+    /// Definition of the cause in the raters' codebook, in one line.
     pub fn definition(self) -> &'static str {
         match self {
             CauseKind::Belief => "order: or its recipe",
@@ -79,7 +79,7 @@ impl CauseKind {
         }
     }
 
-    /// The definition in two words, for narrow screens; `None` where the title says enough.
+    /// The definition of the cause in two words, for narrow screens; `None` where the title suffices.
     pub fn short_definition(self) -> Option<&'static str> {
         match self {
             CauseKind::Slip => Some("belief right"),
@@ -88,14 +88,14 @@ impl CauseKind {
         }
     }
 
-    /// The kind with this name.
+    /// The kind of cause with this name.
     pub fn named(name: &str) -> Option<CauseKind> {
         CauseKind::ALL.into_iter().find(|kind| kind.name() == name)
     }
 }
 
 impl Code {
-    /// The code of a kind; `aspect` names the location of a false belief and is given for beliefs only.
+    /// The code for a kind of cause; `aspect` names the location of a false belief and is given for false beliefs only.
     pub fn new(kind: CauseKind, aspect: Option<&str>) -> Option<Code> {
         match (kind, aspect) {
             (CauseKind::Belief, Some(aspect)) => Some(Code::Belief(aspect.to_string())),
@@ -107,7 +107,7 @@ impl Code {
         }
     }
 
-    /// The kind of the cause, without what is believed wrong.
+    /// The kind of the cause, without what a false belief is about.
     pub fn kind(&self) -> CauseKind {
         match self {
             Code::Belief(_) => CauseKind::Belief,
@@ -137,7 +137,7 @@ impl Code {
     }
 }
 
-/// Errors and locations that rater codes of one recording can refer to.
+/// Errors and locations to which the raters' codes of one recording can refer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Codable {
     /// Log numbers of the presses that were errors, in ascending order.
@@ -155,7 +155,7 @@ impl Codable {
         }
     }
 
-    /// The fault of a code for the press with this log number and its remedy; `None` for a valid code.
+    /// What is wrong with a code for the press with this log number, and the remedy; `None` for a valid code.
     pub fn fault(&self, press: u64, code: &Code) -> Option<(String, String)> {
         if !self.errors.contains(&press) {
             return Some((format!("press {press}, which was no error"), self.nearest(press)));
@@ -197,7 +197,7 @@ impl Codes {
         Codes(presses.iter().filter_map(|press| Some((press.seq, code(press)?))).collect())
     }
 
-    /// The errors to which both raters gave the same code.
+    /// The errors to which both raters gave the same code, with that code.
     pub fn agreed(&self, other: &Codes) -> Codes {
         let same = self.0.iter().filter(|(press, code)| other.0.get(press) == Some(code));
         Codes(same.map(|(press, code)| (*press, code.clone())).collect())
@@ -213,25 +213,26 @@ pub struct AgreementTable {
     names: Vec<String>,
 }
 
-/// Agreement of two raters.
+/// Agreement of two raters on the causes of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Agreement {
-    /// Errors that both have coded.
+    /// Number of errors that both raters coded.
     pub errors: u64,
-    /// Of these, errors about which both say the same kind of cause.
+    /// Number of errors to which both raters gave the same kind of cause.
     pub same_cause: u64,
-    /// Cohen's kappa of the cause over {belief, slip, race, other, buttons}; null without codes, or if all codes are equal.
+    /// Cohen's kappa of the kind of cause over {belief, slip, race, other, buttons}; null without codes, or if all
+    /// codes are equal.
     pub kappa_cause: Option<f64>,
-    /// Errors that both put down to a false belief.
+    /// Number of errors that both raters attributed to a false belief.
     pub beliefs: u64,
-    /// Of these, errors where both say that the same thing is believed wrong.
+    /// Number of errors that both raters attributed to a false belief about the same location.
     pub same_aspect: u64,
     /// Cohen's kappa of the false belief's location.
     pub kappa_aspect: Option<f64>,
 }
 
 impl AgreementTable {
-    /// Adds the codes of one recording by both raters.
+    /// Adds the codes of one recording by both raters to the table.
     pub fn add(&mut self, one: &Codes, other: &Codes) {
         for (press, a) in &one.0 {
             let Some(b) = other.0.get(press) else { continue };

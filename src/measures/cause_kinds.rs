@@ -1,4 +1,5 @@
-//! Belief related errors by the kind of aspect that was believed wrong, as the paper discusses them: orders, recipes, places.
+//! Belief related errors by the kind of aspect that the false belief is about, as in the paper: orders, recipes,
+//! places.
 
 use serde::Serialize;
 
@@ -10,18 +11,20 @@ use crate::kitchen::{AspectId, Kitchen};
 /// Numbers of belief related errors by kind of aspect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct CauseKindCounts {
-    /// Errors about an order.
+    /// Number of errors from a false belief about an order.
     pub orders: u64,
-    /// Errors about a recipe.
+    /// Number of errors from a false belief about a recipe.
     pub recipes: u64,
-    /// Errors about an ordered dish of which both order and recipe were believed wrong, or nobody knows which of them.
+    /// Number of errors about an ordered dish where both order and recipe were believed wrong, or it is unknown which
+    /// of them.
     pub order_or_recipe: u64,
-    /// Errors about the content of any other location.
+    /// Number of errors from a false belief about the content of any other location.
     pub places: u64,
 }
 
 impl CauseKindCounts {
-    /// Counts of these presses. `episodes` tells which of an order and its recipe was believed wrong at the time of an error.
+    /// Counts these presses. `episodes` tells whether the belief about an order or about its recipe was false at the
+    /// time of an error.
     pub fn from_presses(kitchen: &Kitchen, presses: &[JudgedPress], episodes: &[Episode]) -> CauseKindCounts {
         let mut counts = CauseKindCounts::default();
         for press in presses {

@@ -1,16 +1,16 @@
-//! Consensus codes: what two raters decide together where their codes differ. A consensus is no third rater: agreement is computed
-//! from the raters' own codes alone.
+//! Consensus codes: the causes of errors that two raters settle together where their codes differ. A consensus is not a
+//! third rater: agreement is computed from the raters' own codes alone.
 
 use std::collections::BTreeMap;
 
 use super::cause_codes::{Code, Codes};
 
-/// A code that two raters share, with the codes that it was decided from.
+/// A code that two raters share, with the raters' own codes at the time of the decision.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SettledCode {
-    /// The code of both.
+    /// The code that both raters share.
     pub code: Code,
-    /// The code of each rater at that time; `None` if the rater had not coded the error.
+    /// Each rater's own code at the time of the decision; `None` if the rater had not coded the error.
     pub from: [Option<Code>; 2],
 }
 
@@ -19,33 +19,33 @@ pub struct SettledCode {
 pub struct Consensus {
     /// The two raters, in the order of their codes.
     pub raters: [String; 2],
-    /// The shared codes, decided together or agreed from the beginning.
+    /// The shared codes by press, decided together or equal from the beginning.
     pub settled: BTreeMap<u64, SettledCode>,
 }
 
-/// A rater's code that changed after the error was settled.
+/// A rater's own code that changed after the consensus on the error was reached.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangedCode {
     /// Log number of the erroneous press.
     pub press: u64,
-    /// The rater whose code changed.
+    /// The name of the rater whose code changed.
     pub rater: String,
 }
 
 impl Consensus {
-    /// A consensus in which nothing is settled. The order of the two raters has no meaning.
+    /// A consensus without any settled errors. The order of the two raters has no meaning.
     pub fn new(one: &str, other: &str) -> Consensus {
         let mut raters = [one.to_string(), other.to_string()];
         raters.sort();
         Consensus { raters, settled: BTreeMap::new() }
     }
 
-    /// Its name in tables: "R1+R2". No rater is called that.
+    /// Name of the consensus in tables: "R1+R2". No single rater has such a name.
     pub fn name(&self) -> String {
         self.raters.join("+")
     }
 
-    /// Adds what both raters coded alike.
+    /// Adds the errors that both raters coded alike.
     pub fn with_agreed(mut self, codes: [&Codes; 2]) -> Consensus {
         for (press, code) in codes[0].agreed(codes[1]).0 {
             let from = [Some(code.clone()), Some(code.clone())];
@@ -54,7 +54,7 @@ impl Consensus {
         self
     }
 
-    /// Adds codes that the raters, who have these codes, decide together.
+    /// Adds codes that the two raters decided together; `codes` are their own codes at that time.
     pub fn with_decided(mut self, decided: &Codes, codes: [&Codes; 2]) -> Consensus {
         for (press, code) in &decided.0 {
             let from = codes.map(|codes| codes.0.get(press).cloned());
@@ -63,7 +63,7 @@ impl Consensus {
         self
     }
 
-    /// The raters' codes that changed since they were settled; with any of them the consensus is stale.
+    /// The raters' own codes that changed since the consensus; any of them makes the consensus on its error stale.
     pub fn changed(&self, codes: [&Codes; 2]) -> Vec<ChangedCode> {
         let mut changed = Vec::new();
         for (press, settled) in &self.settled {
@@ -76,7 +76,7 @@ impl Consensus {
         changed
     }
 
-    /// The shared codes for which the raters still have the codes that they were decided from.
+    /// The shared codes whose underlying raters' codes have not changed since.
     pub fn current(&self, codes: [&Codes; 2]) -> Codes {
         let stale = self.changed(codes);
         let holds = |press: &u64| stale.iter().all(|changed| changed.press != *press);
@@ -84,19 +84,19 @@ impl Consensus {
         Codes(settled.map(|(press, settled)| (*press, settled.code.clone())).collect())
     }
 
-    /// Number of errors that both raters had coded alike.
+    /// Number of errors that both raters had coded alike before the discussion.
     pub fn agreed(&self) -> usize {
         self.settled.values().filter(|settled| settled.is_agreed()).count()
     }
 }
 
 impl SettledCode {
-    /// Whether both raters had given this code.
+    /// Whether both raters had given this code by themselves.
     pub fn is_agreed(&self) -> bool {
         self.from.iter().all(|from| from.as_ref() == Some(&self.code))
     }
 
-    /// What is wrong with a code that differs from what both raters said alike; `None` for a valid one.
+    /// Why a shared code is invalid: it contradicts a code on which both raters agreed. `None` for a valid code.
     pub fn fault(&self) -> Option<&'static str> {
         let [one, other] = &self.from;
         let overrules = one.is_some() && one == other && one.as_ref() != Some(&self.code);
@@ -104,7 +104,7 @@ impl SettledCode {
     }
 }
 
-/// The errors that two raters have to settle: their codes differ, or one of them has none.
+/// The errors that two raters still have to settle: their codes differ, or one of the codes is missing.
 pub fn unsettled(errors: &[u64], codes: [&Codes; 2]) -> Vec<u64> {
     let [one, other] = codes;
     let differs = |press: &u64| match (one.0.get(press), other.0.get(press)) {

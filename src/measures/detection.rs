@@ -1,4 +1,4 @@
-//! Quality of a binary detector in general: area under the ROC curve, and calibration of probabilities.
+//! Quality of a binary detector: area under the ROC curve, and calibration of probabilities.
 
 use serde::Serialize;
 
@@ -9,7 +9,8 @@ pub fn auc(scored: &[(f64, bool)]) -> Option<f64> {
     weighted_auc(&alike)
 }
 
-/// The same from (score, is positive, weight), where a pair of a positive and a negative weighs the product of both weights.
+/// Area under the ROC curve from (score, is positive, weight), where a pair of a positive and a negative weighs the
+/// product of both weights.
 pub fn weighted_auc(scored: &[(f64, bool, f64)]) -> Option<f64> {
     let mut sorted = scored.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -20,7 +21,7 @@ pub fn weighted_auc(scored: &[(f64, bool, f64)]) -> Option<f64> {
     if cases == 0.0 || others == 0.0 {
         return None;
     }
-    // Twice the weight of ordered pairs: without weights these are integers.
+    // Twice the weight of correctly ordered pairs: without weights these are integers.
     let (mut twice, mut below) = (0.0, 0.0);
     for tied in sorted.chunk_by(|a, b| a.0 == b.0) {
         let tied_others = weights(tied, false);
@@ -30,14 +31,14 @@ pub fn weighted_auc(scored: &[(f64, bool, f64)]) -> Option<f64> {
     Some(twice / (2.0 * cases * others))
 }
 
-/// One bin of predicted probabilities.
+/// One bin of predicted probabilities, compared with the observed frequency.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CalibrationBin {
-    /// Number of predictions.
+    /// Number of predictions in the bin.
     pub n: u64,
-    /// Mean prediction.
+    /// Mean predicted probability in the bin.
     pub predicted: f64,
-    /// Share of predicted events that happened.
+    /// Share of the bin's predicted events that happened.
     pub observed: f64,
 }
 
@@ -62,7 +63,8 @@ impl Calibration {
         Calibration::from_weighted(alike, range, bins)
     }
 
-    /// The same from (prediction, happened, weight): means and shares of a bin, and the mean over bins, are weighted.
+    /// The calibration of (prediction, happened, weight): means and shares of a bin, and the mean over bins, are
+    /// weighted.
     pub fn from_weighted(
         predictions: impl IntoIterator<Item = (f64, bool, f64)>,
         range: [f64; 2],

@@ -13,25 +13,27 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, Press, State};
 
-/// A press within this time after a change by somebody else at the same place is a race, in seconds.
+/// A press within this time after a change at the same place by somebody else is a race: too early for a reaction, in
+/// seconds.
 pub const RACE_S: f64 = 0.3;
 /// Largest excess regret of a press that counts as preparation of the other order.
 pub const PREPARATION_EXCESS: i32 = 2;
 
-/// Judgement of a press of the human.
+/// Judgement of a press of the human: its regret, and whether it is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PressVerdict {
-    /// Regret r(a): number of presses of both agents that it loses.
+    /// Regret r(a): number of additional presses of both agents that the press causes.
     pub regret: i32,
-    /// Excess of its regret over that of the human's best press.
+    /// Excess of the press's regret over that of the human's best press.
     pub excess: i32,
-    /// Whether somebody else changed the same place within [`RACE_S`] before; such presses are not counted.
+    /// Whether somebody else changed the same place within [`RACE_S`] before the press; such presses do not count as
+    /// errors.
     pub race: bool,
-    /// The press counts as an error.
+    /// Whether the press counts as an error.
     pub error: bool,
 }
 
-/// Judges presses; keeps the time of the last change of each location by somebody other than the human.
+/// Judges presses of the human; stores the time of the last change of each location by somebody else.
 #[derive(Clone, Debug)]
 pub struct PressJudge {
     kitchen: Arc<Kitchen>,
@@ -44,14 +46,14 @@ impl PressJudge {
         PressJudge { kitchen, others_changed_at: [None; MAX_LOCATIONS] }
     }
 
-    /// Notes the changes of a robot press or of a correction by the wizard.
+    /// Records the locations that a robot press or a correction by the wizard changed.
     pub fn others_changed(&mut self, now: SessionTime, before: State, after: State) {
         for location in self.kitchen.changed(before, after) {
             self.others_changed_at[location.index()] = Some(now);
         }
     }
 
-    /// Moves all times on, because the task stood still for a probe.
+    /// Shifts all stored times by the duration of a freeze probe, during which the task stood still.
     pub fn postpone(&mut self, by: SessionTime) {
         self.others_changed_at.iter_mut().flatten().for_each(|at| *at = *at + by);
     }
@@ -85,7 +87,7 @@ impl PressJudge {
         PressVerdict { regret, excess, race, error }
     }
 
-    /// Whether somebody else changed a place of this button within [`RACE_S`].
+    /// Whether somebody else changed a place of this button within [`RACE_S`] before now.
     fn is_race(&self, now: SessionTime, button: ButtonId) -> bool {
         let kitchen = &self.kitchen;
         let hand = kitchen.hands[Agent::Human.index()];

@@ -1,12 +1,13 @@
-//! Flags: aspects whose estimated probability of a false belief exceeds a threshold, and the false belief episodes that flags
-//! detect in time.
+//! Flags: aspects whose estimated probability of a false belief exceeds a threshold, and the false belief episodes that
+//! flags detect in time.
 //!
-//! An episode counts if it caused two or more errors; it is caught if its aspect is flagged after it became false and
-//! before the third error (the estimate from before a press is before that press). A false flag is one that is raised on an
-//! aspect that is believed right. There is one threshold for locations and one for recipes. Those are chosen that catch most, with
-//! at most [`MOST_FALSE_FLAGS`], and aspects flagged at most [`MOST_WRONGLY_FLAGGED`] of the time while they are believed right;
-//! of equals those with the fewest false flags. Thresholds are chosen on other trials than they are judged on: on those that are
-//! named, else by cross-fitting. Then every second trial is judged with the thresholds of the others, and the counts are added.
+//! An episode counts if it caused two or more errors; it is detected if its aspect is flagged after the belief became
+//! false and before the third error (the estimate from before a press is before that press). A false flag is a flag on
+//! an aspect that is believed right. There is one threshold for locations and one for recipes. The chosen thresholds
+//! detect most episodes with at most [`MOST_FALSE_FLAGS`], and with aspects flagged at most [`MOST_WRONGLY_FLAGGED`] of
+//! the time while they are believed right; ties go to the fewest false flags. Thresholds are evaluated on other trials
+//! than those on which they were chosen: on the trials that are named, else by cross-fitting, in which every second
+//! trial is evaluated with the thresholds of the others, and the counts are added.
 
 use serde::Serialize;
 
@@ -14,18 +15,18 @@ use super::press_view::{PressView, TrialView};
 
 /// Largest share of (press, aspect) pairs with a right belief that may be flagged.
 pub const MOST_WRONGLY_FLAGGED: f64 = 0.05;
-/// Largest number of false flags per [`PER_PRESSES`] presses of the human.
+/// Largest number of false flags (on aspects that are believed right) per [`PER_PRESSES`] presses of the human.
 pub const MOST_FALSE_FLAGS: f64 = 0.7;
 /// The unit of the rate of false flags, in presses of the human.
 pub const PER_PRESSES: f64 = 20.0;
-/// Least number of errors of an episode that counts.
+/// Least number of errors of a false belief episode that counts for detection.
 const ERRORS: u32 = 2;
-/// An episode must be flagged before this error to count as detected.
+/// A false belief episode must be flagged before the error with this number to count as detected.
 const BEFORE_ERROR: u32 = 3;
-/// Number of thresholds that are tried for each group.
+/// Number of candidate thresholds for each group of aspects.
 const CANDIDATES: usize = 200;
 
-/// Probabilities of a false belief from which an aspect is flagged.
+/// Probability of a false belief above which an aspect is flagged, for locations and for recipes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Thresholds {
     /// The threshold for locations, as a probability.
@@ -34,19 +35,19 @@ pub struct Thresholds {
     pub recipes: f64,
 }
 
-/// The trials on which thresholds were chosen.
+/// The trials on which flag thresholds were chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThresholdSource {
-    /// Other recordings, which are not judged.
+    /// Other recordings than those that are evaluated.
     OtherRecordings,
-    /// Every half of the trials is judged with the thresholds of the other half.
+    /// Cross-fitting: each half of the trials is evaluated with the thresholds of the other half.
     OtherHalf,
-    /// The one trial that is judged, since there is no other: the rates are too good.
+    /// The only trial, on which the thresholds are evaluated, too: the detection rates are too optimistic.
     SameTrial,
 }
 
-/// Detections and false alarms of flags.
+/// Detections and false alarms of flags on aspects that are probably believed wrong.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Flags {
     /// Number of false belief episodes with two or more errors.
@@ -59,22 +60,22 @@ pub struct Flags {
     pub wrongly_flagged: Option<f64>,
     /// The thresholds; with [`ThresholdSource::OtherHalf`] those that all trials together would give.
     pub thresholds: Option<Thresholds>,
-    /// Where the thresholds were chosen.
+    /// The trials on which the thresholds were chosen.
     pub thresholds_from: Option<ThresholdSource>,
 }
 
-/// Aspects of locations and those of recipes, each with a threshold of its own.
+/// The indices of the aspects of locations, and of those of recipes; each group has a flag threshold of its own.
 pub type AspectGroups = [Vec<usize>; 2];
 
-/// A period of false belief about an aspect, as a range of presses.
+/// A false belief episode about an aspect, as a range of presses.
 struct Episode {
     trial: usize,
     aspect: usize,
-    /// The presses before which a flag is in time.
+    /// The presses before which a flag detects the episode in time.
     in_time: std::ops::RangeInclusive<usize>,
 }
 
-/// Result of one threshold for one group.
+/// Numbers of detections and false flags that one threshold gives in one group of aspects.
 #[derive(Clone, Copy, Debug, Default)]
 struct Outcome {
     threshold: f64,
@@ -84,7 +85,7 @@ struct Outcome {
     right: usize,
 }
 
-/// Counts of flags over trials.
+/// Numbers of detections and false flags over trials.
 #[derive(Clone, Copy, Debug, Default)]
 struct FlagCounts {
     presses: usize,
@@ -96,7 +97,8 @@ struct FlagCounts {
 }
 
 impl Flags {
-    /// Evaluates flags on trials, with these thresholds of other recordings, or with thresholds that are chosen by cross-fitting.
+    /// Evaluates flags on trials, with these thresholds from other recordings, or with thresholds that are chosen by
+    /// cross-fitting.
     pub fn from_trials(trials: &[TrialView], groups: &AspectGroups, thresholds: Option<Thresholds>) -> Flags {
         let all: Vec<&TrialView> = trials.iter().collect();
         if !is_known(&all) {
@@ -153,19 +155,19 @@ impl FlagCounts {
     }
 }
 
-/// Whether belief and estimate are known before every press; false without presses.
+/// Whether beliefs and estimates are known before every press of the trials; false without presses.
 fn is_known(trials: &[&TrialView]) -> bool {
     let mut presses = trials.iter().flat_map(|trial| trial.iter()).peekable();
     presses.peek().is_some() && presses.all(|press| press.held.is_some() && press.estimate.is_some())
 }
 
-/// The thresholds that these trials give when none are known; `None` if beliefs or estimates are not known.
+/// The flag thresholds that are best on these trials; `None` if beliefs or estimates are not known.
 pub fn chosen_thresholds(trials: &[TrialView], groups: &AspectGroups) -> Option<Thresholds> {
     let all: Vec<&TrialView> = trials.iter().collect();
     is_known(&all).then(|| best_thresholds(&all, groups))
 }
 
-/// The thresholds that catch most episodes within the allowed numbers.
+/// The flag thresholds that detect most episodes within the allowed numbers of false flags.
 fn best_thresholds(trials: &[&TrialView], groups: &AspectGroups) -> Thresholds {
     let presses: usize = trials.iter().map(|trial| trial.len()).sum();
     let wrongly = allowed_wrongly(trials, groups);
@@ -176,14 +178,15 @@ fn best_thresholds(trials: &[&TrialView], groups: &AspectGroups) -> Thresholds {
     });
     let false_flags = (MOST_FALSE_FLAGS * presses as f64 / PER_PRESSES) as usize;
     let best = best_pair(&outcomes[0], &outcomes[1], [false_flags, wrongly]);
-    // Without a pair within the allowed numbers nothing is flagged.
+    // If no pair of thresholds stays within the allowed numbers, nothing is flagged.
     best.map_or(Thresholds { locations: f64::INFINITY, recipes: f64::INFINITY }, |[location, recipe]| Thresholds {
         locations: location.threshold,
         recipes: recipe.threshold,
     })
 }
 
-/// The pair of outcomes with most detections within the allowed numbers of false flags and of wrongly flagged pairs.
+/// The pair of outcomes (locations, recipes) with most detections within the allowed numbers of false flags and wrongly
+/// flagged pairs.
 fn best_pair(locations: &[Outcome], recipes: &[Outcome], allowed: [usize; 2]) -> Option<[Outcome; 2]> {
     let pairs = locations.iter().flat_map(|one| recipes.iter().map(move |other| [*one, *other]));
     let false_flags = |pair: &[Outcome; 2]| pair.iter().map(|one| one.false_flags).sum::<usize>();
@@ -193,7 +196,7 @@ fn best_pair(locations: &[Outcome], recipes: &[Outcome], allowed: [usize; 2]) ->
     fitting.max_by(|a, b| caught(a).cmp(&caught(b)).then(false_flags(b).cmp(&false_flags(a))))
 }
 
-/// Allowed number of (press, aspect) pairs with a right belief that are flagged.
+/// Allowed number of flagged (press, aspect) pairs with a right belief.
 fn allowed_wrongly(trials: &[&TrialView], groups: &AspectGroups) -> usize {
     let right = groups.iter().map(|group| while_right(trials, group).count()).sum::<usize>();
     (MOST_WRONGLY_FLAGGED * right as f64) as usize
@@ -225,7 +228,7 @@ fn while_right<'a>(trials: &'a [&'a TrialView], group: &'a [usize]) -> impl Iter
     })
 }
 
-/// The episodes of an aspect that count.
+/// The false belief episodes of an aspect that caused enough errors to count.
 fn harmful(trials: &[&TrialView], aspect: usize) -> Vec<Episode> {
     let mut episodes = Vec::new();
     for (trial, presses) in trials.iter().enumerate() {

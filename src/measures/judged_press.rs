@@ -5,16 +5,17 @@ use super::errors::PressVerdict;
 use crate::base::time::SessionTime;
 use crate::kitchen::State;
 
-/// A judged press of the human. The nth judged press is the nth press of the human on the session's timeline.
+/// A press of the human with the judgement whether it was an error. The nth judged press is the nth press of the human
+/// on the session's timeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JudgedPress {
-    /// Sequence number of its event.
+    /// Sequence number of the press event in the log.
     pub seq: u64,
     /// Session time of the press.
     pub time: SessionTime,
     /// State before the press.
     pub before: State,
-    /// Its regret, and whether it was an error.
+    /// The regret of the press, and whether it was an error.
     pub verdict: PressVerdict,
     /// Whether the human's belief before the press is known.
     pub belief_known: bool,

@@ -1,14 +1,16 @@
-//! Similarity of two lanes of communications, a wizard's and an assistant's: one-to-one matching in time, with recall, precision
-//! and kappa.
+//! Similarity of two lists of communications (lanes), a wizard's and an assistant's: one-to-one matching in time, with
+//! recall, precision and kappa.
 //!
-//! Two communications can match if at most a window of human presses lies between them and their contents agree: the same
-//! signal and target, the same kind of signal, or any content. Among all one-to-one matchings, one with the most pairs is used, and
-//! among those one with the fewest presses between the pairs. The paper's 74 % is the recall of "a similar decision" in "nearby time
-//! steps", which it does not define further; so all three levels stand side by side, each with its chance level.
+//! Two communications can match if at most a window of human presses lies between them and their contents agree: the
+//! same signal and target, the same kind of signal, or any content. Among all one-to-one matchings, one with the most
+//! pairs is used, and among those one with the fewest presses between the pairs. The paper's 74 % is the recall of "a
+//! similar decision" in "nearby time steps", which it does not define further; therefore all three levels are reported,
+//! each with its chance level.
 //!
-//! Kappa (Cohen 1960) is over human presses and {none, each signal and target}. A pair with the same signal and target counts as agreement
-//! at the press of its first lane, as when events are aligned within a tolerance (Quera, Bakeman and Gnisci 2007); all else
-//! counts at its own press. The chance level is the mean over all circular shifts of the second lane by more than the window.
+//! Kappa (Cohen 1960) is over human presses and {none, each signal and target}. A pair with the same signal and target
+//! counts as agreement at the press of its first lane, as when events are aligned within a tolerance (Quera, Bakeman
+//! and Gnisci 2007); all other communications count at their own press. The chance level is the mean over all circular
+//! shifts of the second lane by more than the window.
 
 use std::collections::BTreeMap;
 
@@ -18,10 +20,10 @@ use super::median::median;
 use crate::base::time::SessionTime;
 use crate::kitchen::LocationId;
 
-/// Default window of a match, in presses of the human.
+/// Default window within which two communications can match, in presses of the human.
 pub const WINDOW: u32 = 3;
 
-/// Kind of a communication.
+/// Kind of a communication to the participant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CommunicationKind {
     /// A signal that shows an order's recipe.
@@ -32,27 +34,27 @@ pub enum CommunicationKind {
     Proposal,
 }
 
-/// Content of a communication, as the matching compares it.
+/// Content of a communication, as far as the matching compares it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct CommunicationTarget {
-    /// The kind of communication.
+    /// The kind of the communication.
     pub kind: CommunicationKind,
-    /// Location of the signal.
+    /// Location that the signal is about.
     pub target: Option<LocationId>,
 }
 
-/// A communication with its time.
+/// A communication of wizard or assistant, with its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CommunicationEvent {
-    /// Number of human presses in the trial before it.
+    /// Number of presses of the human in the trial before the communication.
     pub press: u32,
-    /// Time on the trial's clock.
+    /// Time of the communication on the trial's clock.
     pub clock: SessionTime,
-    /// What is communicated.
+    /// The content of the communication.
     pub content: CommunicationTarget,
 }
 
-/// Which part of the content must agree in a match.
+/// Which part of the content of two communications must agree for a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchCriterion {
     /// Signal and target must agree.
@@ -64,7 +66,7 @@ pub enum MatchCriterion {
 }
 
 impl MatchCriterion {
-    /// All levels, the strictest first.
+    /// All match criteria, the strictest first.
     pub const ALL: [MatchCriterion; 3] = [MatchCriterion::Signal, MatchCriterion::Kind, MatchCriterion::Any];
 
     /// Equivalence class of a content under this criterion.
@@ -77,8 +79,8 @@ impl MatchCriterion {
     }
 }
 
-/// Pairs of an optimal one-to-one matching, as indices into both lanes, in the order of the first. Both lanes must be sorted by
-/// time.
+/// Pairs of an optimal one-to-one matching of two lists of communications, as indices into both lists, in the order of
+/// the first. Both lists must be sorted by time.
 pub fn matched(
     of: &[CommunicationEvent],
     with: &[CommunicationEvent],
@@ -96,8 +98,8 @@ pub fn matched(
     pairs
 }
 
-/// Optimal matching within one class. Since costs are distances on a line, some optimal matching has no crossings and is found by
-/// sequence alignment.
+/// Optimal matching of communications within one class of content. Since costs are distances on a line, some optimal
+/// matching has no crossings and is found by sequence alignment.
 fn aligned(
     of: &[CommunicationEvent],
     with: &[CommunicationEvent],
@@ -130,20 +132,20 @@ fn aligned(
     pairs
 }
 
-/// Running counts of matches between two lanes over trials.
+/// Running counts of matches between two lists of communications over trials.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MatchCounts {
     of: u64,
     with: u64,
-    /// Number of pairs at each level of [`MatchCriterion::ALL`].
+    /// Number of matched pairs at each level of [`MatchCriterion::ALL`].
     pairs: [u64; 3],
-    /// Mean number of pairs over circular shifts, at each level.
+    /// Mean number of matched pairs over circular shifts, at each level: the chance level.
     chance: [f64; 3],
-    /// Number of communications of the first lane in trials that are long enough for shifts.
+    /// Number of communications of the first list in trials that are long enough for circular shifts.
     shifted_of: u64,
-    /// Time from the second lane's communication to the first's, in seconds, by pair.
+    /// Time from the second list's communication to the first's, in seconds, by pair.
     leads_s: Vec<f64>,
-    /// Contingency table of contents per press, first lane by second lane.
+    /// Contingency table of contents per press, first list by second list.
     units: BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>,
 }
 
@@ -167,7 +169,7 @@ impl MatchCounts {
         }
     }
 
-    /// The similarity over all added trials.
+    /// The similarity of the two lists over all added trials.
     pub fn similarity(&self) -> Similarity {
         let share = |part: f64, all: u64| (all > 0).then(|| part / all as f64);
         let level = |index: usize| {
@@ -193,46 +195,47 @@ impl MatchCounts {
     }
 }
 
-/// Shares of matched communications; null without communications.
+/// Shares of matched communications of two lists; null without communications.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MatchShares {
-    /// Share of the first lane's communications that are matched.
+    /// Share of the first list's communications that are matched.
     pub recall: Option<f64>,
-    /// Chance level of recall: mean over circular shifts of the second lane.
+    /// Chance level of recall: mean over circular shifts of the second list.
     pub chance_recall: Option<f64>,
-    /// Share of the second lane's communications that are matched.
+    /// Share of the second list's communications that are matched.
     pub precision: Option<f64>,
-    /// The harmonic mean of recall and precision.
+    /// The harmonic mean of recall and precision (F1 score).
     pub f1: Option<f64>,
 }
 
-/// Similarity of two lanes.
+/// Similarity of two lists of communications, for instance a wizard's and an assistant's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Similarity {
-    /// The level of the same signal and target, whose shares also stand beside the figures of both lanes.
+    /// The shares for the same signal and target; they are written beside the numbers of both lists.
     #[serde(flatten)]
     pub headline: MatchShares,
     /// Cohen's kappa per human press; null where agreement by chance is 1.
     pub kappa: Option<f64>,
-    /// Median lead of the second lane over the first, in seconds; negative if it is later.
+    /// Median time by which the second list is earlier than the first, in seconds; negative if it is later.
     pub median_lead_s: Option<f64>,
-    /// Number of communications that the first lane sent or recommended.
+    /// Number of communications in the first list, sent or recommended.
     pub of_n: u64,
-    /// Number of communications that the second lane sent or recommended.
+    /// Number of communications in the second list, sent or recommended.
     pub with_n: u64,
-    /// Number of pairs with the same signal and target.
+    /// Number of matched pairs with the same signal and target.
     pub matched: u64,
-    /// Matches with the same signal and target.
+    /// Shares of matches with the same signal and target.
     pub signal: MatchShares,
-    /// Matches with the same kind of signal.
+    /// Shares of matches with the same kind of signal.
     pub kind: MatchShares,
-    /// Matches with any content.
+    /// Shares of matches with any content.
     pub any: MatchShares,
 }
 
-/// Mean number of pairs at each level over circular shifts of the second lane by more than the window; `None` if the trial is too short.
+/// Mean number of matched pairs at each level over circular shifts of the second list by more than the window; `None`
+/// if the trial is too short.
 fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, window: u32) -> Option<[f64; 3]> {
-    // Positions before, between and after the presses.
+    // Positions before, between and after the presses of the trial.
     let places = presses + 1;
     let shifts = window + 1..places.saturating_sub(window);
     let pairs = |shift: u32| {
@@ -251,7 +254,7 @@ fn chance(of: &[CommunicationEvent], with: &[CommunicationEvent], presses: u32, 
 
 type Units = BTreeMap<(Option<CommunicationTarget>, Option<CommunicationTarget>), u64>;
 
-/// Contingency table of both lanes per press; several communications at one press give several units.
+/// Contingency table of both lists per press; several communications at one press give several units.
 fn units(of: &[CommunicationEvent], with: &[CommunicationEvent], pairs: &[(usize, usize)], presses: u32) -> Units {
     let mut units = Units::new();
     let mut spoken = vec![[Vec::new(), Vec::new()]; presses as usize + 1];
@@ -280,7 +283,7 @@ fn units(of: &[CommunicationEvent], with: &[CommunicationEvent], pairs: &[(usize
     units
 }
 
-/// Cohen's kappa of a table of agreements.
+/// Cohen's kappa of a contingency table of two raters or lists.
 pub fn kappa<T: Ord + Copy>(units: &BTreeMap<(T, T), u64>) -> Option<f64> {
     let all: u64 = units.values().sum();
     let mut margins: BTreeMap<T, [u64; 2]> = BTreeMap::new();

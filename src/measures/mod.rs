@@ -1,13 +1,14 @@
-//! Measures of what the human does, used live and in the analysis.
+//! Measures of the human's behaviour, beliefs and signals, used live and in the analysis.
 //!
 //! The files from the ground up:
 //!
-//! - A press: [`errors`], [`attribution`] (why), `judged_press` (both); [`sequences`] of errors and episodes of false belief,
-//!   `cause_kinds` (orders, recipes, places).
-//! - An estimate of beliefs: [`detection`], `press_view` (what was known before a press), [`flags`],
-//!   [`belief_detection`] (all of these). [`belief_basis`]: how it is known what was believed.
-//! - Communication: `median`, [`matching`] of two lanes, [`wizard_performance`]. [`cause_codes`] by people has its
-//!   agreement from `matching`; [`consensus`] of two raters; [`rater_choice`], which two count.
+//! - A press: [`errors`], [`attribution`] (cause of an error), `judged_press` (both); [`sequences`] of errors and
+//!   episodes of false belief, `cause_kinds` (orders, recipes, places).
+//! - An estimate of beliefs: [`detection`] (ROC, calibration), `press_view` (belief and estimate before a press),
+//!   [`flags`], [`belief_detection`] (all of these). [`belief_basis`]: the source of knowledge about beliefs.
+//! - Communication: `median`, [`matching`] of two lists of communications, [`wizard_performance`]. [`cause_codes`]:
+//!   raters' codes of causes, whose agreement uses `matching`; [`consensus`] of two raters; [`rater_choice`]: which two
+//!   raters an analysis uses.
 
 pub mod attribution;
 pub mod belief_basis;

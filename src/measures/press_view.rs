@@ -1,44 +1,46 @@
-//! Belief and estimate directly before a press, the unit of the belief check.
+//! Belief and estimate directly before a press, the unit of the check of the belief estimate.
 
 use super::sequences::FALSE_BELOW;
 use crate::base::incomplete_beta::regularized_incomplete_beta;
 use crate::kitchen::{AspectId, ButtonId, State};
 use crate::mind::recorded_estimate::EstimateWitness;
 
-/// Belief and estimate directly before a press of the human.
+/// The participant's belief and its estimate directly before a press of the human.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressView {
     /// State before the press.
     pub state: State,
-    /// The button, in the list of the human's buttons.
+    /// The pressed button, as an index into the human's buttons.
     pub button: ButtonId,
-    /// The participant's P(truth) of each aspect; `None` where it is not known, as with people.
+    /// The participant's P(truth) of each aspect; `None` where it is not known, as for people.
     pub held: Option<Vec<f64>>,
-    /// The estimate before the press, if there is one.
+    /// The estimate of the belief before the press, if there is one.
     pub estimate: Option<EstimateView>,
     /// For each location, whether somebody else changed it since the human last looked at it: the input of the baseline.
     pub unseen_change: Vec<bool>,
     /// For each location, the time since somebody other than the human last changed it, in seconds; `None` if the human changed it
     /// later, or nobody did.
     pub since_change_s: Vec<Option<f64>>,
-    /// The false aspects to which the press is attributed, if it was an error.
+    /// The aspects about which a false belief caused the press, if it was an error.
     pub errs_about: Vec<AspectId>,
 }
 
-/// An estimate before a press.
+/// An estimate of the human's belief before a press.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimateView {
-    /// For each aspect the expected share of the belief that is not on the truth: the score of detection and flags.
+    /// For each aspect, the expected probability that the belief gives to wrong values: the score of detection and
+    /// flags.
     pub p_wrong: Vec<f64>,
-    /// For each aspect the probability that the participant's own P(truth) is below [`FALSE_BELOW`], by the marginal of the Dirichlet:
-    /// I_.5(alpha_truth, A - alpha_truth), with A the sum of the alphas. Calibration judges this prediction.
+    /// For each aspect, the probability that the participant's own P(truth) is below [`FALSE_BELOW`], by the marginal
+    /// of the Dirichlet: I_.5(alpha_truth, A - alpha_truth), with A the sum of the alphas. Calibration judges this
+    /// prediction.
     pub p_false: Vec<f64>,
-    /// The log of the probability of the press, given that one is made, in nats.
+    /// The log probability of the press under the estimate, given that a button is pressed, in nats.
     pub log_p: f64,
 }
 
 impl EstimateView {
-    /// The view of a recorded estimate.
+    /// Takes the values from a recorded estimate.
     pub fn from_witness(witness: &EstimateWitness) -> EstimateView {
         let p_wrong = witness.aspects.iter().map(|aspect| 1.0 - aspect.p_truth);
         let p_false = witness.aspects.iter().map(|aspect| {
@@ -49,7 +51,7 @@ impl EstimateView {
     }
 }
 
-/// The presses of one trial, in their order.
+/// The presses of one trial with beliefs and estimates, in order of time.
 pub type TrialView = Vec<PressView>;
 
 impl PressView {

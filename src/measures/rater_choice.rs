@@ -1,36 +1,36 @@
-//! Which two raters' codes an analysis takes. The raters' names never decide it.
+//! Chooses the two raters whose codes an analysis uses. The raters' names never decide.
 
 use std::collections::BTreeMap;
 
 use super::cause_codes::Codes;
 
-/// Two raters with their codes of one recording, in the order of their names, which has no meaning.
+/// Two raters with their codes of one recording, in alphabetical order, which has no meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RaterPair {
-    /// The raters.
+    /// The names of the raters.
     pub raters: [String; 2],
-    /// What each of them coded.
+    /// The codes of each rater.
     pub codes: [Codes; 2],
 }
 
-/// The two raters who coded most errors of a recording.
+/// The choice of the two raters who coded most errors of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RaterChoice {
-    /// These two.
+    /// These two raters.
     Pair(RaterPair),
     /// There are fewer than two raters.
     TooFew,
-    /// More than two raters could be these two, since they coded equally many errors.
+    /// No choice: more than two raters qualify, since they coded equally many errors.
     Tied {
-        /// These raters.
+        /// The names of the raters who qualify.
         raters: Vec<String>,
-        /// How many errors each of them coded at least.
+        /// The least number of errors that each of them coded.
         coded: usize,
     },
 }
 
 impl RaterPair {
-    /// Two raters out of all. A rater without codes has none.
+    /// The two raters with these names. A rater without codes gets an empty list of codes.
     pub fn named(all: &BTreeMap<String, Codes>, raters: &[String; 2]) -> RaterPair {
         let mut raters = raters.clone();
         raters.sort();
@@ -40,7 +40,7 @@ impl RaterPair {
 }
 
 impl RaterChoice {
-    /// The two with the most complete codes.
+    /// The two raters with the most codes.
     pub fn most_complete(all: &BTreeMap<String, Codes>) -> RaterChoice {
         let mut numbers: Vec<usize> = all.values().map(|codes| codes.0.len()).collect();
         numbers.sort_unstable_by_key(|&number| std::cmp::Reverse(number));

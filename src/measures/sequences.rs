@@ -1,11 +1,12 @@
 //! Error sequences and false belief episodes.
 //!
-//! Errors are related if they are about the same false belief: one location, or one dish, whose order and recipe are one. An
-//! error sequence is made of related errors at most 3 correct presses apart. Errors about something else, slips and races in
-//! between are no correct presses: they neither end nor lengthen it. Sequences whatever the aspect group all belief related
-//! errors; the target of such a sequence is the most frequent one. The length is the number of errors; the recovery time goes
-//! from the first error to the first correct press after the last. A false belief episode lasts from the moment an aspect became
-//! false (P(truth) < 0.5) to its correction, if it caused at least one error.
+//! Errors are related if they come from the same false belief: about one location, or one dish, whose order and recipe
+//! count as one. An error sequence consists of related errors at most 3 correct presses apart. Errors from other
+//! causes, slips and races in between are not correct presses: they neither end nor lengthen a sequence. Sequences
+//! "whatever the aspect" group all belief related errors; the target of such a sequence is the most frequent one. The
+//! length is the number of errors; the recovery time goes from the first error to the first correct press after the
+//! last error. A false belief episode lasts from the time at which a belief became false (P(truth) < 0.5) to its
+//! correction, if it caused at least one error.
 
 use std::collections::BTreeSet;
 
@@ -20,12 +21,12 @@ pub const MAX_APART: u32 = 3;
 /// A belief is false if its P(truth) is below this.
 pub const FALSE_BELOW: f64 = 0.5;
 
-/// An error sequence.
+/// An error sequence: related errors with few correct presses between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sequence {
-    /// The most frequent target of its errors; of several, the target of the earliest error.
+    /// The target of most of the sequence's errors; of several, the target of the earliest error.
     pub target: Target,
-    /// Its errors, as indices of the human's presses.
+    /// The errors of the sequence, as indices of the human's presses.
     pub errors: Vec<usize>,
     /// Session time of the first error.
     pub began: SessionTime,
@@ -34,19 +35,19 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// The number of errors.
+    /// The number of errors in the sequence.
     pub fn length(&self) -> u32 {
         self.errors.len() as u32
     }
 }
 
-/// What a false belief is about: related errors have the same subject. An error that two false beliefs explain together, or
-/// for which two raters name different ones, belongs to the first of them.
+/// The dish or place that a false belief is about: errors with the same subject are related. An error that two false
+/// beliefs explain together, or for which two raters name different ones, belongs to the first of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ErrorSubject {
-    /// The order of a dish or its recipe.
+    /// An ordered dish: its order or its recipe.
     Dish(DishId),
-    /// A location, or an order in which no dish is ordered.
+    /// The content of a location, or an order location that shows no order.
     Place(LocationId),
 }
 
@@ -70,7 +71,7 @@ pub fn sequences(presses: &[JudgedPress]) -> Vec<Sequence> {
     all
 }
 
-/// The error sequences of a trial, whatever aspect their errors are about.
+/// The error sequences of a trial, whatever aspect the false beliefs are about.
 pub fn sequences_any_aspect(presses: &[JudgedPress]) -> Vec<Sequence> {
     grouped(presses, |_| true)
 }
@@ -116,31 +117,31 @@ fn closed(presses: &[JudgedPress], errors: &[(usize, Target)], recovered: Option
     Some(Sequence { target, errors, began: presses[first].time, recovered })
 }
 
-/// A false belief episode.
+/// A false belief episode: the time from the beginning of a false belief to its correction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Episode {
-    /// What was believed wrong.
+    /// The aspect that the false belief is about.
     pub aspect: AspectId,
-    /// When the belief became false.
+    /// Session time at which the belief became false.
     pub began: SessionTime,
-    /// Time at which the belief was right again; `None` if the trial ended before.
+    /// Session time at which the belief was right again; `None` if the trial ended before.
     pub corrected: Option<SessionTime>,
-    /// Number of errors attributed to it.
+    /// Number of errors attributed to the episode's false belief.
     pub errors: u32,
 }
 
-/// Tracks false beliefs over a trial.
+/// Tracks false belief episodes over a trial.
 #[derive(Clone, Debug, Default)]
 pub struct Episodes {
     open: Vec<Option<Episode>>,
     done: Vec<Episode>,
-    /// Time of the last recorded belief.
+    /// Time at which the belief was last recorded.
     last: SessionTime,
 }
 
 impl Episodes {
-    /// Notes the belief at a time. `changed_at` holds the time of each location's last change, at which a belief that was right when
-    /// last recorded became false.
+    /// Records the belief at a time. `changed_at` contains the time of each location's last change, at which a belief
+    /// that was right when last recorded became false.
     pub fn believed(
         &mut self,
         kitchen: &Kitchen,
@@ -164,7 +165,7 @@ impl Episodes {
         self.last = now;
     }
 
-    /// Notes an error: it counts for every false aspect of its targets.
+    /// Records an error: it counts for every aspect of its cause about which the belief is false.
     pub fn erred(&mut self, kitchen: &Kitchen, cause: Cause) {
         let Cause::Belief { target, with, .. } = cause else { return };
         for target in [Some(target), with].into_iter().flatten() {
@@ -176,12 +177,12 @@ impl Episodes {
         }
     }
 
-    /// All episodes so far, with and without errors, in order of their corrections, open ones last.
+    /// All false belief episodes so far, with and without errors, in order of their corrections, open ones last.
     pub fn all(&self) -> impl Iterator<Item = &Episode> {
         self.done.iter().chain(self.open.iter().flatten())
     }
 
-    /// The episodes so far with at least one error, in order of their corrections, open ones last.
+    /// The false belief episodes so far that caused at least one error, in order of their corrections, open ones last.
     pub fn harmful(&self) -> impl Iterator<Item = &Episode> {
         self.all().filter(|episode| episode.errors > 0)
     }

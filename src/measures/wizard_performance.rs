@@ -1,8 +1,8 @@
-//! Performance of a wizard: reaction times, targets and omissions (Riek 2012, "Wizard of Oz studies in HRI", asks for the wizard's
-//! errors and reaction times to be reported).
+//! Performance of a wizard: reaction times, targets and omissions (Riek 2012, "Wizard of Oz studies in HRI", asks for
+//! the wizard's errors and reaction times to be reported).
 //!
-//! Signals are compared with periods of false belief. A period that led to an error and had no signal is an omission; periods
-//! without errors need no signal. All times are on the trial's clock.
+//! The wizard's signals are compared with periods of false belief. A period that led to an error and had no signal is
+//! an omission; periods without errors need no signal. All times are on the trial's clock.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,65 +13,66 @@ use crate::kitchen::AspectId;
 /// A signal is late rather than wrong if the false belief ended at most this many presses of the human before.
 pub const LATE_PRESSES: u32 = 3;
 
-/// A period of false belief about an aspect.
+/// A period in which the participant's belief about an aspect was false.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FalseBeliefPeriod {
-    /// What was believed wrong.
+    /// The aspect that the false belief is about.
     pub aspect: AspectId,
-    /// When the belief became false.
+    /// Time at which the belief became false.
     pub began: SessionTime,
-    /// End of the period with the number of human presses until then; `None` if the trial ended before.
+    /// End of the period, and the number of human presses until then; `None` if the trial ended before.
     pub corrected: Option<(SessionTime, u32)>,
-    /// Number of errors attributed to it.
+    /// Number of errors attributed to the false belief.
     pub errors: u32,
 }
 
 impl FalseBeliefPeriod {
-    /// Whether the belief is false at this time.
+    /// Whether the belief is false at this time on the trial's clock.
     pub fn holds(&self, clock: SessionTime) -> bool {
         self.began <= clock && self.corrected.is_none_or(|(end, _)| clock < end)
     }
 }
 
-/// A signal of a wizard.
+/// A signal that a wizard sent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WizardSignal {
-    /// When it was sent, on the trial's clock.
+    /// Time at which the signal was sent, on the trial's clock.
     pub clock: SessionTime,
-    /// Number of human presses before it.
+    /// Number of presses of the human before the signal.
     pub press: u32,
-    /// Aspects that it made certain.
+    /// State aspects that the signal reveals.
     pub aspects: Vec<AspectId>,
-    /// Time from the key press to the frame that shows the signal, in milliseconds; `None` if it was not recorded.
+    /// Time from the wizard's key press to the frame that shows the signal, in milliseconds; `None` if it was not
+    /// recorded.
     pub to_display_ms: Option<f64>,
-    /// The wizard took it back before its time was over.
+    /// Whether the wizard withdrew the signal before its time was over.
     pub taken_back: bool,
 }
 
-/// Judgement of a signal.
+/// Judgement of a wizard's signal by the participant's beliefs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SignalVerdict {
-    /// The first signal about something that was believed wrong and led to an error.
+    /// Hit: the first signal about a false belief that led to an error.
     Hit {
         /// Time from the beginning of the false belief to the signal, in seconds.
         latency_s: f64,
         /// The index of the false belief period.
         spell: usize,
     },
-    /// A further signal about the same false belief.
+    /// Repeated: a further signal about the same false belief.
     Again,
-    /// A signal about a false belief that led to no error.
+    /// Harmless: a signal about a false belief that led to no error.
     Harmless,
-    /// A signal about a false belief that had ended at most [`LATE_PRESSES`] before.
+    /// Late: a signal about a false belief that had ended at most [`LATE_PRESSES`] before.
     Late,
-    /// A signal about a right belief while another belief was false.
+    /// Wrong target: a signal about a right belief while another belief was false.
     WrongTarget,
-    /// A signal while no belief was false.
+    /// Needless: a signal while no belief was false.
     Needless,
 }
 
 impl SignalVerdict {
-    /// The judgement in a word.
+    /// The judgement of the signal in a word.
     pub fn name(self) -> &'static str {
         match self {
             SignalVerdict::Hit { .. } => "hit",
@@ -84,7 +85,7 @@ impl SignalVerdict {
     }
 }
 
-/// The judgement of each signal, in order.
+/// The judgement of each of a wizard's signals, in order.
 pub fn worths(sent: &[WizardSignal], spells: &[FalseBeliefPeriod]) -> Vec<SignalVerdict> {
     let mut hit = vec![false; spells.len()];
     let worth = |sent: &WizardSignal| {
@@ -114,26 +115,26 @@ pub fn worths(sent: &[WizardSignal], spells: &[FalseBeliefPeriod]) -> Vec<Signal
     sent.iter().map(worth).collect()
 }
 
-/// Summary of durations.
+/// Summary of durations: number, median and maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeSummary {
-    /// Number of times.
+    /// Number of durations.
     pub n: u64,
-    /// Their median, in the unit that the field with this summary names.
+    /// Median of the durations; the unit is named by the field that has this summary.
     pub median: f64,
-    /// The longest one, in the same unit.
+    /// The longest duration, in the same unit as the median.
     pub max: f64,
 }
 
 impl TimeSummary {
-    /// The summary of a list; `None` if it is empty.
+    /// The summary of a list of durations; `None` if it is empty.
     pub fn from_times(times: Vec<f64>) -> Option<TimeSummary> {
         let max = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let n = times.len() as u64;
         median(times).map(|median| TimeSummary { n, median, max })
     }
 
-    /// The summary over several trials: the median of their medians.
+    /// The summary of durations over several trials: the median of the trials' medians.
     fn together(trials: impl Iterator<Item = TimeSummary>) -> Option<TimeSummary> {
         let trials: Vec<TimeSummary> = trials.collect();
         let medians = TimeSummary::from_times(trials.iter().map(|times| times.median).collect())?;
@@ -142,28 +143,29 @@ impl TimeSummary {
     }
 }
 
-/// Performance of a wizard in a trial. Numbers that need the participant's beliefs are null where those are not known.
+/// Performance of a wizard in a trial. Numbers that need the participant's beliefs are null if those are not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WizardMeasures {
-    /// Signals that the wizard sent.
+    /// Number of signals that the wizard sent.
     pub signals: u64,
-    /// Of these, signals that were taken back.
+    /// Number of signals that the wizard withdrew.
     pub taken_back: u64,
-    /// Time from key press to the frame that shows the signal, in milliseconds; null if it was not recorded.
+    /// Time from the wizard's key press to the frame that shows the signal, in milliseconds; null if it was not
+    /// recorded.
     pub key_to_display_ms: Option<TimeSummary>,
     /// Number of periods of false belief that led to errors.
     pub episodes: Option<u64>,
-    /// Number of these periods with a signal in time.
+    /// Number of periods of false belief with errors that got a signal in time.
     pub hits: Option<u64>,
-    /// Number of these periods without a signal.
+    /// Number of periods of false belief with errors that got no signal.
     pub omissions: Option<u64>,
-    /// Time from the beginning of a period to its signal, in seconds.
+    /// Time from the beginning of a false belief to the signal about it, in seconds.
     pub latency_s: Option<TimeSummary>,
-    /// Signals about a false belief that an earlier signal had been about.
+    /// Number of signals about a false belief that an earlier signal had been about.
     pub repeated: Option<u64>,
-    /// Signals about something that was believed right again already, since a few presses at most.
+    /// Number of signals about a false belief that had ended a few presses before.
     pub late: Option<u64>,
-    /// Signals about something that was believed right, while something else was believed wrong.
+    /// Number of signals about a right belief while another belief was false.
     pub wrong_targets: Option<u64>,
     /// Number of signals while no belief was false.
     pub needless: Option<u64>,
@@ -230,10 +232,10 @@ impl WizardMeasures {
     }
 }
 
-/// Criterion of wizard training.
+/// Criterion that a wizard has to meet in training.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrainingCriterion {
-    /// Least share of hits among the periods that led to errors.
+    /// Least share of hits among the periods of false belief that led to errors.
     pub hits: f64,
     /// Largest share of signals with a wrong target or without need.
     pub wrong: f64,

@@ -6,10 +6,10 @@ use super::BeliefWitness;
 use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorld, WeightedWorlds, World};
 
-/// Exact sums over a belief leave out values with a smaller probability.
+/// Exact sums over a belief leave out values with a smaller probability than this.
 const NEGLIGIBLE: f64 = 0.002;
 
-/// A belief. Every distribution sums to 1.
+/// A belief about the kitchen: a probability distribution for each state aspect. Every distribution sums to 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Belief {
     of: Vec<Vec<f64>>,
@@ -26,9 +26,9 @@ impl Belief {
         Belief { of: (0..kitchen.aspects.len()).map(point).collect() }
     }
 
-    /// The belief recorded in a witness, for the kitchen in `state`: listed values keep their probability, the remaining
-    /// probability is spread evenly over the other values. `None` if the witness names aspects or values that the kitchen
-    /// does not have, or if its probabilities do not form a distribution.
+    /// The belief that a simulated participant recorded, for the kitchen in `state`: listed values keep their
+    /// probability, the remaining probability is spread evenly over the other values. `None` if the record names
+    /// aspects or values that the kitchen does not have, or if its probabilities do not form a distribution.
     pub fn of_witness(kitchen: &Kitchen, state: State, witness: &BeliefWitness) -> Option<Belief> {
         let mut belief = Belief { of: Vec::with_capacity(kitchen.aspects.len()) };
         for (index, aspect) in kitchen.aspects.iter().enumerate() {
@@ -113,8 +113,8 @@ impl Belief {
         worlds
     }
 
-    /// Whether decisions can depend on the aspect. They cannot depend on the recipe of a dish that no order is believed to
-    /// want.
+    /// Whether decisions of the human can depend on the aspect. They cannot depend on the recipe of a dish that no
+    /// order is believed to want.
     fn matters(&self, kitchen: &Kitchen, aspect: AspectId) -> bool {
         let AspectKind::Recipe(dish) = kitchen.aspects[aspect.index()].kind else { return true };
         let code = OrderContent::Dish(dish).code();

@@ -1,10 +1,10 @@
 //! The choice model: a softmax with lapses over the expected cost to go.
 //!
 //! p(a | b) ~ exp(tau Q(b, a)) with Q(b, a) = -E_b[1 + C(s')] over the worlds of belief b, and -(E_b[C(s)] + 0.5) for
-//! waiting (paper, section "Human model"). A small share of presses are slips: to the neighbouring button, to the button with
-//! the look-alike symbol, or to any button. The belief filter uses the likelihood of one press, the planner draws choices, and
-//! attribution uses all probabilities. The plain references of filter and planner implement the same model a second time, so
-//! that the tests can compare the two.
+//! waiting (paper, section "Human model"). A small share of presses are slips: to the neighbouring button, to the
+//! button with the look-alike symbol, or to any button. The belief filter uses the likelihood of one press, the planner
+//! draws choices, and the attribution of errors uses all probabilities. The reference implementations of filter and
+//! planner implement the same model a second time, so that tests can compare the two.
 
 use super::choice_parameters::DecisionModel;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
@@ -13,19 +13,19 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, WeightedWorlds};
 /// The planner counts softmax weights below e^-20 as 0.
 const NEGLIGIBLE_EXPONENT: f64 = 20.0;
 
-/// A cost to go is a byte.
+/// Largest cost to go in presses: a cost to go is stored in a byte.
 const MOST_PRESSES: usize = u8::MAX as usize;
 
 /// A choice of the human: to press a button or to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HumanChoice {
-    /// Presses nothing now.
+    /// The human presses nothing now.
     Wait,
-    /// Presses this button.
+    /// The human presses this button.
     Press(ButtonId),
 }
 
-/// The probabilities of all choices.
+/// The probabilities of all choices of the human: waiting and each button.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChoiceProbabilities {
     /// Probability of waiting.
@@ -38,12 +38,12 @@ pub struct ChoiceProbabilities {
 #[derive(Clone, Copy, Debug)]
 pub struct ChoiceWeights {
     wait: f64,
-    /// Weight of each button, by [`ButtonId`].
+    /// Softmax weight of each button, by [`ButtonId`].
     press: [f64; MAX_BUTTONS],
     total: f64,
 }
 
-/// How a human with a belief chooses.
+/// Predicts the choices of a human from the human's belief (softmax with lapses).
 #[derive(Clone, Debug)]
 pub struct ChoiceModel {
     parameters: DecisionModel,
@@ -60,7 +60,7 @@ pub struct ChoiceModel {
 }
 
 impl ChoiceModel {
-    /// The model for beliefs represented by weighted worlds.
+    /// The choice model for beliefs that are represented by weighted worlds.
     pub fn new(kitchen: &Kitchen, parameters: &DecisionModel) -> ChoiceModel {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
         let slips = |button| {
@@ -78,7 +78,7 @@ impl ChoiceModel {
         ChoiceModel { parameters: parameters.clone(), slips_from, slips_to, anywhere, weights: Vec::new() }
     }
 
-    /// The model for beliefs represented by exactly `draws` drawn worlds. Weights are not truncated.
+    /// The choice model for beliefs that are represented by exactly `draws` drawn worlds. Weights are not truncated.
     pub fn for_draws(kitchen: &Kitchen, parameters: &DecisionModel, draws: usize) -> ChoiceModel {
         let mut model = ChoiceModel::new(kitchen, parameters);
         let row = (0..=draws * MOST_PRESSES).map(|more| parameters.weight(more, draws));
@@ -87,7 +87,7 @@ impl ChoiceModel {
         model
     }
 
-    /// The model for beliefs represented by at most `draws` drawn worlds. Weights below e^-20 are 0.
+    /// The choice model for beliefs that are represented by at most `draws` drawn worlds. Weights below e^-20 are 0.
     pub fn up_to_draws(kitchen: &Kitchen, parameters: &DecisionModel, draws: usize) -> ChoiceModel {
         let row = |n: usize| {
             let last = (NEGLIGIBLE_EXPONENT * n as f64 / parameters.tau).min((n * MOST_PRESSES) as f64) as usize;
@@ -96,7 +96,7 @@ impl ChoiceModel {
         ChoiceModel { weights: (0..=draws).map(row).collect(), ..ChoiceModel::new(kitchen, parameters) }
     }
 
-    /// The number of tabulated weights.
+    /// The number of tabulated softmax weights.
     pub fn tabulated(&self) -> usize {
         self.weights.iter().map(Vec::len).sum()
     }
@@ -126,7 +126,7 @@ impl ChoiceModel {
         ChoiceProbabilities { wait: wait / (wait + total), press: self.with_slips(&intended) }
     }
 
-    /// Probability that each button is hit, from the probability that each is intended: applies slips.
+    /// Probability that each button is pressed, from the probability that each is intended: applies slips.
     fn with_slips(&self, intended: &[f64]) -> Vec<f64> {
         let lapse = self.parameters.lapse;
         let [anywhere, slipping] = self.parameters.slip_probabilities(intended.len());
@@ -154,7 +154,8 @@ impl ChoiceModel {
         pressed / total + self.anywhere
     }
 
-    /// p(wait | b), from the same sums as [`ChoiceModel::press_likelihood`] and the cost to go of the present state, summed alike.
+    /// p(wait | b), from the same sums as [`ChoiceModel::press_likelihood`] and the cost to go of the present state,
+    /// summed over the same draws.
     pub fn wait_likelihood(&self, here: u32, sums: &[u32]) -> f64 {
         let draws = self.weights.len().saturating_sub(1).max(1);
         let ChoiceWeights { wait, total, .. } = self.weights(here, sums, draws as u32);
@@ -178,9 +179,9 @@ impl ChoiceModel {
         pressed
     }
 
-    /// The weights of all choices. `here` is the cost to go of the present state and `sums[x]` that after button x, both in presses
-    /// and summed over `draws` drawn worlds. Needs a model with the
-    /// weights of so many draws.
+    /// The softmax weights of all choices. `here` is the cost to go of the present state and `sums[x]` that after
+    /// button x, both in presses and summed over `draws` drawn worlds. Needs a model with the weights for that number
+    /// of draws.
     #[inline]
     pub fn weights(&self, here: u32, sums: &[u32], draws: u32) -> ChoiceWeights {
         let least = sums.iter().copied().min().unwrap_or(0);

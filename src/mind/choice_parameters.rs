@@ -12,9 +12,10 @@ use crate::kitchen::{Kitchen, WeightedWorlds};
 pub struct DecisionModel {
     /// Softmax rationality tau: preference for a lower expected cost to go, per press.
     pub tau: f64,
-    /// The share of presses that slip.
+    /// The share of presses that are slips.
     pub lapse: f64,
-    /// Share of the slips that hit any button. The other slips hit the neighbour and the look-alike with equal probability.
+    /// Share of the slips that hit any button. The other slips hit the neighbouring and the look-alike button with
+    /// equal probability.
     pub lapse_anywhere: f64,
     /// Cost of waiting, in presses.
     pub wait_cost: f64,
@@ -29,7 +30,7 @@ impl Default for DecisionModel {
 }
 
 impl DecisionModel {
-    /// The worlds that represent a belief in this model.
+    /// The worlds that represent a belief in this choice model.
     pub fn worlds(&self, kitchen: &Kitchen, belief: &Belief, random: &mut Stream) -> WeightedWorlds {
         belief.worlds(kitchen, self.cases.max(1), random)
     }

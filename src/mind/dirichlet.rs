@@ -1,17 +1,19 @@
-//! The estimate of a belief: a Dirichlet distribution over the values of every state aspect, the joint is their product.
+//! The estimate of a belief: a Dirichlet distribution over the values of every state aspect; the joint is their
+//! product.
 //!
-//! Each Dirichlet is stored as its mean and its precision (the sum of the alphas). Moment matching (Minka 2000) preserves the
-//! mean and the pooled second moment S = sum_k E[b_k^2]; the precision follows as (1 - S) / (S - sum_k m_k^2).
+//! Each Dirichlet is stored as its mean and its precision (the sum of the alphas). Moment matching (Minka 2000)
+//! preserves the mean and the pooled second moment S = sum_k E[b_k^2]; the precision follows as (1 - S) / (S - sum_k
+//! m_k^2).
 
 use super::model::PriorModel;
 use crate::kitchen::{AspectId, AspectKind, ContentId, Kitchen, State};
 
 /// Lower bound of a value's expected probability, so that later evidence can still raise it.
 pub const LEAST_MEAN: f64 = 1e-7;
-/// Lower and upper bound of a precision.
+/// Lower and upper bound of a Dirichlet's precision (the sum of its alphas).
 pub const PRECISIONS: [f64; 2] = [1e-3, 1e4];
 
-/// A Dirichlet distribution over the values of one aspect.
+/// A Dirichlet distribution over the values of one state aspect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dirichlet {
     mean: Vec<f64>,
@@ -33,22 +35,22 @@ impl Dirichlet {
         made
     }
 
-    /// Expected probabilities, by value.
+    /// Expected probability of each value.
     pub fn mean(&self) -> &[f64] {
         &self.mean
     }
 
-    /// The sum of the alphas.
+    /// The precision of the Dirichlet: the sum of its alphas.
     pub fn precision(&self) -> f64 {
         self.precision
     }
 
-    /// The parameter of a value.
+    /// The Dirichlet's parameter alpha of a value.
     pub fn alpha(&self, value: usize) -> f64 {
         self.precision * self.mean[value]
     }
 
-    /// S = sum_k E[b_k^2].
+    /// The pooled second moment S = sum_k E[b_k^2].
     pub fn second(&self) -> f64 {
         (self.precision * self.square() + 1.0) / (self.precision + 1.0)
     }
@@ -58,7 +60,7 @@ impl Dirichlet {
         (1..self.mean.len()).fold(0, |best, value| if self.mean[value] > self.mean[best] { value } else { best })
     }
 
-    /// Sum of the squared means.
+    /// Sum of the squared expected probabilities.
     fn square(&self) -> f64 {
         sum_of(&self.mean, |m| m * m)
     }
@@ -73,7 +75,7 @@ impl Dirichlet {
         self.set_second(second);
     }
 
-    /// Mixes with another Dirichlet over the same values, by mean and second moment.
+    /// Mixes with another Dirichlet over the same values, matching mean and second moment.
     pub fn mix(&mut self, share: f64, other: &Dirichlet) {
         let second = (1.0 - share) * self.second() + share * other.second();
         for (mean, &value) in self.mean.iter_mut().zip(&other.mean) {
@@ -130,7 +132,7 @@ pub struct DirichletBelief {
 }
 
 impl DirichletBelief {
-    /// The belief at the start, when the kitchen is in `state`.
+    /// The estimate at the start of a trial, when the kitchen is in `state`.
     pub fn prior(kitchen: &Kitchen, prior: &PriorModel, state: State) -> DirichletBelief {
         let of = |index: usize| match kitchen.aspects[index].kind {
             AspectKind::Location(_) => {

@@ -1,5 +1,5 @@
-//! Fitting the human model: the parameters that can be fitted, the scale on which each is fitted, and the likelihood of a
-//! trial's presses and answers to probes.
+//! Fitting the human model: the parameters that can be fitted, the scale on which each is fitted, and the likelihood of
+//! a trial's presses and answers to freeze probes.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,27 +15,27 @@ use std::sync::Arc;
 /// Offset of 1 / tau, in presses, at which the scale of tau saturates.
 const STRICT: f64 = 0.1;
 
-/// A parameter that can be fitted.
+/// A parameter of the human model that can be fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Parameter {
-    /// How strictly fewer expected presses are preferred, per press.
+    /// Softmax rationality tau: how strictly fewer expected presses are preferred, per press.
     Tau,
     /// Share of presses that are slips.
     Lapse,
     /// Radius of the area around the fixation, in degrees.
     RadiusDeg,
-    /// Readings a second.
+    /// Rate at which a location near the gaze is read, in readings per second.
     ReadingRateHz,
     /// Half-life of recipe memory, in seconds.
     RecipeHalfLifeS,
     /// Share of the robot's unseen presses whose consequences the human infers.
     Foresight,
-    /// Looks a second at what the next press needs.
+    /// Rate of looks at what the next press needs while the gaze is unknown, per second.
     LooksHz,
-    /// Looks a second at other places.
+    /// Rate of looks at other places while the gaze is unknown, per second.
     OtherLooksHz,
-    /// Share of the changes by others that draw the eye.
+    /// Share of the changes by others that attract the gaze.
     Capture,
 }
 
@@ -44,7 +44,7 @@ impl Parameter {
     pub const USUAL: [Parameter; 5] =
         [Parameter::Tau, Parameter::Lapse, Parameter::RadiusDeg, Parameter::ReadingRateHz, Parameter::RecipeHalfLifeS];
 
-    /// Its name in a parameter file.
+    /// Name of the parameter in a parameter file.
     pub fn name(self) -> &'static str {
         match self {
             Parameter::Tau => "tau",
@@ -59,7 +59,7 @@ impl Parameter {
         }
     }
 
-    /// Its unit.
+    /// Unit of the parameter.
     pub fn unit(self) -> &'static str {
         match self {
             Parameter::Tau => "1/press",
@@ -70,7 +70,7 @@ impl Parameter {
         }
     }
 
-    /// Its value.
+    /// Value of the parameter in a human model.
     pub fn get(self, model: &HumanModel) -> f64 {
         match self {
             Parameter::Tau => model.decision.tau,
@@ -85,7 +85,7 @@ impl Parameter {
         }
     }
 
-    /// Gives it a value.
+    /// Sets the parameter in a human model.
     pub fn set(self, model: &mut HumanModel, value: f64) {
         match self {
             Parameter::Tau => model.decision.tau = value,
@@ -100,8 +100,8 @@ impl Parameter {
         }
     }
 
-    /// Bounds of the search. Above tau = 20 per press the best button is chosen practically always, and presses carry no
-    /// information about tau.
+    /// Bounds of the parameter in the fit. Above tau = 20 per press the best button is chosen practically always, and
+    /// presses carry no information about tau.
     pub fn bounds(self) -> [f64; 2] {
         match self {
             Parameter::Tau => [0.05, 20.0],
@@ -147,53 +147,55 @@ impl Parameter {
     }
 }
 
-/// Probability from which on a belief's value is answered; below it for all values the answer is "I don't know".
+/// Least probability of a value with which it is given as the answer to a probe; if no value reaches it, the answer is
+/// "I don't know".
 const ANSWERED_FROM: f64 = 0.5;
-/// Share of answers to probes that are any answer, by mistake.
+/// Share of answers to probes that are given at random, by mistake.
 pub const ANSWERS_AT_RANDOM: f64 = 0.02;
 
-/// An answer to a probe.
+/// A participant's answer to a question of a freeze probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProbedValue {
-    /// Number of observations up to the freeze, that of the freeze included.
+    /// Number of observations up to and including the freeze.
     pub after: usize,
-    /// The aspect that was asked about.
+    /// The aspect that the question was about.
     pub aspect: AspectId,
     /// Index of the answered value; `None`: "I don't know".
     pub value: Option<usize>,
 }
 
-/// Observations of a trial, and its answers to probes in their order.
+/// Observations of a trial, and its answers to freeze probes in order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitObservations {
     /// Seed of the filter.
     pub seed: u64,
-    /// What the filter observes.
+    /// What the belief filter observes.
     pub observations: Vec<Observation>,
-    /// The answers; none, if they are not to be used.
+    /// The answers to freeze probes; empty if they are not used.
     pub answers: Vec<ProbedValue>,
 }
 
-/// Number of the human's presses and answers in one trial, and their log likelihoods.
+/// Log likelihoods of the human's presses and answers to probes in one trial, and their numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Likelihood {
-    /// Number of presses.
+    /// Number of presses of the human.
     pub presses: u64,
     /// Sum over presses of ln p under the estimate before each press, in nats.
     pub log_p: f64,
-    /// Number of answers.
+    /// Number of answers to probes.
     pub answers: u64,
-    /// Sum over answers of ln p under the estimate at the freeze, with [`ANSWERS_AT_RANDOM`], in nats.
+    /// Sum over answers of ln p under the estimate at the freeze, with the share [`ANSWERS_AT_RANDOM`] of random
+    /// answers, in nats.
     pub log_p_answers: f64,
 }
 
 impl Likelihood {
-    /// Log likelihood of presses and answers.
+    /// Log likelihood of presses and answers together.
     pub fn total(&self) -> f64 {
         self.log_p + self.log_p_answers
     }
 
-    /// Sum over two trials.
+    /// Sum of the likelihoods of two trials.
     pub fn plus(self, other: Likelihood) -> Likelihood {
         Likelihood {
             presses: self.presses + other.presses,
@@ -234,8 +236,8 @@ pub fn likelihood(
     found
 }
 
-/// Probability of an answer: that the belief, which is drawn from the estimate, has one half or more on the value, or on none. At most one
-/// value has, so these probabilities sum to 1.
+/// Probability of an answer: that the belief, drawn from the estimate, has a probability of one half or more for the
+/// value, or for none. At most one value has, so these probabilities sum to 1.
 pub fn p_answer(estimate: &Dirichlet, value: Option<usize>) -> f64 {
     let values = estimate.mean().len();
     let is_surest = |value: usize| {

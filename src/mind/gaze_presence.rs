@@ -1,26 +1,27 @@
-//! Which part of the time the gaze is known, and which it is not.
+//! Accounts for the time in which the gaze is known or unknown.
 //!
-//! A sample stands for the time since the one before it, at most `max_sample_s`, and of that for the share that its confidence
-//! leaves known. Time without known gaze is a blink up to `blink_s`: known to be without reading. After that the gaze is unknown. A
-//! blink uses up an allowance that known time restores, so that a stream with a few good samples among many bad ones is not
-//! taken for one with many blinks. At the start of a trial there is none: without a tracker all time is unknown.
+//! A sample stands for the time since the previous one, at most `max_sample_s`, and its confidence decides which share
+//! of that time counts as known. Time without known gaze is a blink up to `blink_s`: certainly without reading. After
+//! that the gaze is unknown. A blink uses up an allowance that known time restores, so that a stream with a few good
+//! samples among many bad ones is not mistaken for one with many blinks. At the start of a trial the allowance is zero:
+//! without a tracker all time is unknown.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::mind::model::HumanModel;
 
-/// Time of a sample, and of the gap before it.
+/// The time that a gaze sample covers, and the gap before it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CoveredTime {
-    /// Unknown time before the sample, in seconds.
+    /// Time of unknown gaze before the sample, in seconds.
     pub unknown_before_s: f64,
     /// Time that the sample covers, in seconds.
     pub covers_s: f64,
-    /// Share of it in which the gaze is known.
+    /// Share of the covered time in which the gaze is known.
     pub known: f64,
 }
 
-/// Accounts for known and unknown time.
+/// Accounts for the time in which the gaze is known or unknown.
 #[derive(Clone, Debug)]
 pub struct GazePresence {
     blink_s: f64,
@@ -29,18 +30,18 @@ pub struct GazePresence {
     last: Option<SessionTime>,
     /// Time of the last sample with known gaze, or start of the trial.
     dark_since: SessionTime,
-    /// What is left for blinks, in seconds.
+    /// Remaining time of missing gaze that counts as a blink, in seconds.
     allowance_s: f64,
     /// Time up to which unknown time has been accounted for.
     accounted: SessionTime,
-    /// Unknown share of the last sample with known gaze.
+    /// Share of the last sample with known gaze that counts as unknown.
     unknown: f64,
     /// Whether the tracker finds the display in its view; assumed until it reports that it does not.
     pub display_in_view: bool,
 }
 
 impl GazePresence {
-    /// Presence before the trial's start.
+    /// The state before the start of a trial.
     pub fn new(model: &HumanModel) -> GazePresence {
         GazePresence {
             blink_s: model.looking.blink_s,
@@ -54,13 +55,13 @@ impl GazePresence {
         }
     }
 
-    /// Notes the start of the trial or the end of a pause: time before `now` is not accounted for, and the next sample does
-    /// not cover it.
+    /// Records the start of the trial or the end of a pause: time before `now` is ignored, and the next sample does not
+    /// cover it.
     pub fn rest(&mut self, now: SessionTime) {
         (self.last, self.dark_since) = (None, now);
     }
 
-    /// Moves all times on, because the task stood still.
+    /// Shifts all stored times by a duration in which the task stood still.
     pub fn postpone(&mut self, by: SessionTime) {
         self.last = self.last.map(|last| last + by);
         self.dark_since = self.dark_since + by;
@@ -72,7 +73,8 @@ impl GazePresence {
         self.dark_since + SessionTime::from_secs_f64(self.allowance_s)
     }
 
-    /// Unknown time up to `now` that has not been accounted for, in seconds. Without a known sample until then, it is final.
+    /// Time of unknown gaze up to `now` that has not been accounted for, in seconds. It counts as accounted for
+    /// afterwards.
     pub fn pass(&mut self, now: SessionTime) -> f64 {
         let from = self.unknown_from().max(self.accounted);
         if now <= from {
@@ -87,7 +89,7 @@ impl GazePresence {
         if now > self.unknown_from() { 1.0 } else { self.unknown }
     }
 
-    /// Accounts for a sample taken at session time `taken`, whose gaze is known to the share `known`.
+    /// Accounts for a sample taken at session time `taken`, of whose time the share `known` counts as known gaze.
     pub fn sample(&mut self, sample: &GazeSample, known: f64, taken: SessionTime) -> CoveredTime {
         let covers_s = self.last.map_or(self.max_sample_s, |last| taken.secs_since(last)).min(self.max_sample_s);
         self.last = Some(self.last.map_or(taken, |last| last.max(taken)));

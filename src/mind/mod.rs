@@ -1,4 +1,5 @@
-//! The mind: what a human believes about the kitchen, one categorical distribution per state aspect, and how it decides.
+//! The human's mind: what a human believes about the kitchen, one categorical distribution per state aspect, and how
+//! the human decides.
 
 pub mod belief;
 pub mod choice;
@@ -20,40 +21,42 @@ use serde::{Deserialize, Serialize};
 /// The recorded belief of a simulated participant at one time, with the reason for its next press.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BeliefWitness {
-    /// One entry per state aspect, in the order of the kitchen's aspects.
+    /// The belief about each state aspect, in the order of the kitchen's aspects.
     pub aspects: Vec<AspectBelief>,
-    /// Reason for its next press: "as believed", "slip to the neighbouring button", …
+    /// Reason for the participant's next press: "as believed", "slip to the neighbouring button", …
     pub cause: String,
-    /// Where its next press comes from, by its own decision repeated with the truth; `None` in recordings before version 0.2.0.
+    /// Origin of the participant's next press, found by repeating its decision with the truth; `None` in recordings
+    /// before version 0.2.0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub origin: Option<PressOrigin>,
-    /// Names of the aspects whose replacement by the truth changes a press that comes from a false belief.
+    /// Names of the aspects whose replacement by the truth changes a press that a false belief caused.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub targets: Vec<String>,
 }
 
-/// Where a press of a simulated participant comes from.
+/// Origin of a press of a simulated participant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PressOrigin {
-    /// From its plan: with the truth it would press the same; or it was proposed on the display.
+    /// The participant's plan: it would press the same with true beliefs; or the display proposed the press.
     Plan,
-    /// From a false belief: with the truth it would press something else.
+    /// A false belief: with true beliefs the participant would press something else.
     Belief,
-    /// It pressed something else than it decided to.
+    /// A slip: the participant pressed another button than it had decided.
     Slip,
 }
 
-/// A participant's belief about one aspect.
+/// A participant's belief about one state aspect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AspectBelief {
     /// The aspect's name.
     pub aspect: String,
     /// Name of the most probable value.
     pub believes: String,
-    /// Probability of the true value.
+    /// Probability that the participant gives to the true value.
     pub p_truth: f64,
-    /// Probability of every value with at least [`WORTH_TELLING`]; the remaining probability is spread over the other values.
+    /// Probability of every value with at least [`WORTH_TELLING`]; the remaining probability is spread over the other
+    /// values.
     pub values: BTreeMap<String, f64>,
 }
 

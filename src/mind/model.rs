@@ -11,11 +11,11 @@ use super::choice_parameters::DecisionModel;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HumanModel {
-    /// Beliefs before anything was seen.
+    /// Beliefs before the human has seen anything.
     pub prior: PriorModel,
-    /// What gaze reads.
+    /// How gaze near a location becomes knowledge of its content.
     pub perception: PerceptionModel,
-    /// Where people look while nobody sees where.
+    /// Where people look while the gaze is unknown.
     pub looking: LookingModel,
     /// How beliefs change between observations.
     pub transition: TransitionModel,
@@ -23,7 +23,7 @@ pub struct HumanModel {
     pub decision: DecisionModel,
     /// How signals are noticed and read.
     pub signal: SignalModel,
-    /// How the belief is inferred: no property of people.
+    /// How the belief is inferred: settings of the computation, not properties of people.
     pub inference: InferenceModel,
 }
 
@@ -31,13 +31,14 @@ pub struct HumanModel {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PriorModel {
-    /// Expected probability of a location's true content; the rest is spread evenly over the other contents.
+    /// Expected probability of a location's true content; the remaining probability is spread evenly over the other
+    /// contents.
     pub location_truth: f64,
     /// Precision (sum of the alphas) of a location's Dirichlet.
     pub location_precision: f64,
-    /// Expected probability of a true recipe.
+    /// Expected probability of a dish's true recipe.
     pub recipe_truth: f64,
-    /// Share of the remaining probability on variants that look like the true recipe, where there are any.
+    /// Share of the remaining probability that goes to variants which look like the true recipe, where there are any.
     pub recipe_look_alike: f64,
     /// Precision of a recipe's Dirichlet: small, since people are certain of one variant.
     pub recipe_precision: f64,
@@ -55,16 +56,17 @@ impl Default for PriorModel {
     }
 }
 
-/// Range of confidence over which a sample turns from unknown to known.
+/// Range of confidence over which a gaze sample turns from unknown to known.
 pub const CONFIDENCE_RAMP: f64 = 0.4;
 
-/// Perception as a reading process: a location near the gaze is read at a rate that falls with its distance.
+/// Perception as a reading process: a location near the gaze is read at a rate that falls with its distance from the
+/// gaze.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PerceptionModel {
-    /// Readings per second at distance 0 and full confidence (lambda).
+    /// Reading rate lambda at distance 0 and full confidence, in readings per second.
     pub reading_rate_hz: f64,
-    /// Radius of the area around the fixation, in degrees of the visual field: r.
+    /// Radius r of the area around the fixation that is read, in degrees of the visual field.
     pub radius_deg: f64,
     /// Distance from the eyes to the display, in metres.
     pub viewing_distance_m: f64,
@@ -72,11 +74,12 @@ pub struct PerceptionModel {
     pub look_alike: f64,
     /// Probability that a reading gives any other wrong content.
     pub anything: f64,
-    /// Confidence at which half of a sample's time counts as known; the share rises linearly over [`CONFIDENCE_RAMP`].
+    /// Confidence at which half of a gaze sample's time counts as known; the share rises linearly over
+    /// [`CONFIDENCE_RAMP`].
     pub min_confidence: f64,
-    /// Length of the history of displayed states, in seconds; samples taken earlier are not used.
+    /// Length of the history of displayed states, in seconds; gaze samples taken earlier are not used.
     pub history_s: f64,
-    /// Longest time that one sample covers, in seconds.
+    /// Longest time that one gaze sample covers, in seconds.
     pub max_sample_s: f64,
     /// A look ends once the gaze has been elsewhere for this long, in seconds.
     pub look_ends_s: f64,
@@ -99,39 +102,43 @@ impl Default for PerceptionModel {
 }
 
 impl PerceptionModel {
-    /// The radius on the display, in metres.
+    /// The radius of the area around the fixation on the display, in metres.
     pub fn radius_m(&self) -> f64 {
         self.viewing_distance_m * self.radius_deg.to_radians().tan()
     }
 
-    /// Share of a sample's time in which the gaze is known: v = clamp((c - 0.4) / 0.4) with `min_confidence` = 0.6. 0 for NaN.
+    /// Share of a gaze sample's time in which the gaze is known: v = clamp((c - 0.4) / 0.4) for confidence c and
+    /// `min_confidence` = 0.6. 0 for NaN.
     pub fn known_share(&self, confidence: f64) -> f64 {
         let share = (confidence - self.min_confidence) / CONFIDENCE_RAMP + 0.5;
         if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) }
     }
 
-    /// The rate of reading as a function of distance and confidence.
+    /// The rate of reading a location, as a function of distance and confidence.
     pub fn reading_rate(&self) -> ReadingRate {
         ReadingRate { full_hz: self.reading_rate_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
     }
 }
 
-/// Plausible looking: where people look, in rates. Inference uses it while the gaze is unknown, the planner in its rollouts.
+/// Plausible looking: where people look, in rates. The belief filter uses it while the gaze is unknown, the planner in
+/// its rollouts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LookingModel {
-    /// Looks a second at each place that the next press needs; before something is fetched, also at the robot's hand, which
-    /// may be bringing it. Measured on unassisted simulated participants: 1.1 and 0.7.
+    /// Looks per second at each place that the next press needs; before an item is fetched, also at the robot's hand,
+    /// which may be bringing it. Measured on unassisted simulated participants: 1.1 and 0.7.
     pub looks_hz: f64,
-    /// Looks a second at each other place. Unassisted simulated participants look 0.25 to 0.4 times a second at what has
-    /// changed more than a second ago and was not seen since.
+    /// Looks per second at each other place. Unassisted simulated participants look 0.25 to 0.4 times a second at what
+    /// has changed more than a second ago and was not seen since.
     pub other_looks_hz: f64,
-    /// Share of the changes by others that draw the eye at once. Of simulated participants, beyond those looks: 0.3 at the
-    /// robot's hand and at places, 0.4 at orders.
+    /// Share of the changes by others that attract the gaze at once. Of simulated participants, beyond those looks: 0.3
+    /// at the robot's hand and at places, 0.4 at orders.
     pub capture: f64,
-    /// Looks a second at each place while the tracker does not find the display in its view, so that the head is turned away.
+    /// Looks per second at each place while the eye tracker does not find the display in its view, which means that the
+    /// head is turned away.
     pub display_lost_looks_hz: f64,
-    /// Time without known gaze that counts as a blink, in seconds: nothing is read in it, and it is not unknown.
+    /// Time without known gaze that counts as a blink, in seconds: nothing is read in it, and it does not count as
+    /// unknown.
     pub blink_s: f64,
 }
 
@@ -141,12 +148,12 @@ impl Default for LookingModel {
     }
 }
 
-/// The rate of reading, with the constants that every gaze sample needs precomputed.
+/// The rate of reading a location, with precomputed constants, because every gaze sample needs it.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadingRate {
-    /// Readings per second at distance 0.
+    /// Readings per second at distance 0 and full confidence.
     full_hz: f64,
-    /// 2 r^2.
+    /// 2 r^2 with the reading radius r, in square metres.
     spread_m2: f64,
 }
 
@@ -158,14 +165,14 @@ impl ReadingRate {
     }
 }
 
-/// Changes of a belief without new evidence.
+/// Changes of the human's belief without new evidence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransitionModel {
     /// Half-life with which a recipe belief decays to its prior, in seconds.
     pub recipe_half_life_s: f64,
-    /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief unchanged.
-    /// The default is fitted to simulated participants, who mostly keep believing what they last saw.
+    /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief
+    /// unchanged. The default is fitted to simulated participants, who mostly keep believing what they last saw.
     pub foresight: f64,
 }
 
@@ -181,8 +188,8 @@ impl Default for TransitionModel {
 pub struct SignalModel {
     /// Probability that a signal is noticed; a noticed signal is believed.
     pub noticed: f64,
-    /// Probability that the human presses what the display proposes because it is proposed. Nobody has measured it; the default stands for
-    /// a person who notices most proposals and makes most of those.
+    /// Probability that the human presses a button because the display proposes it. It has not been measured; the
+    /// default stands for a person who notices most proposals and makes most of those.
     #[serde(skip_serializing_if = "is_usual_following")]
     pub follows: f64,
 }
@@ -204,7 +211,7 @@ impl Default for SignalModel {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InferenceModel {
-    /// Number of belief samples.
+    /// Number of belief samples drawn from the estimate.
     pub beliefs: usize,
     /// Number of worlds (state and recipes) drawn from each belief sample.
     pub states: usize,
@@ -214,7 +221,8 @@ pub struct InferenceModel {
     pub max_beliefs: usize,
     /// Number of worlds from which a press of the robot is predicted.
     pub predictions: usize,
-    /// Whether waiting is evidence: who believes that nothing is useful now, waits; who presses, believes that something is.
+    /// Whether waiting is evidence: a human who waits believes that no press is useful now; one who presses believes
+    /// that some press is.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub waiting: bool,
 }
@@ -233,8 +241,8 @@ impl Default for InferenceModel {
 }
 
 impl HumanModel {
-    /// The first parameters that exclude each other: the path of one of them in a session file, what was found, and what would
-    /// be right. The ranges of single parameters are in [`crate::session::ranges`].
+    /// The first parameters that contradict each other: the path of one of them in a session file, what was found, and
+    /// what would be right. The ranges of single parameters are in [`crate::session::ranges`].
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         let PerceptionModel { look_alike, anything, .. } = self.perception;
         let found = || format!("anything = {anything}, look_alike = {look_alike}");

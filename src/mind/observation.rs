@@ -4,7 +4,7 @@ use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{ButtonId, LocationId, Press, State};
 
-/// Largest number of presses in a proposal.
+/// Largest number of presses that the display proposes at a time.
 pub const MOST_PROPOSED: usize = 5;
 
 /// Presses of the human that the display proposes, the next one first; by default none.
@@ -19,12 +19,12 @@ impl ProposedPresses {
         all
     }
 
-    /// The press that is proposed next, if one is.
+    /// The press that the display proposes next, if any.
     pub fn next(&self) -> Option<ButtonId> {
         self.0[0]
     }
 
-    /// A press of the human: the proposal goes on if it was proposed, and is over if it was not.
+    /// Accounts for a press of the human: the proposal moves on if the press was proposed, and ends if it was not.
     pub fn pressed(&mut self, button: ButtonId) {
         match self.next() == Some(button) {
             true => {
@@ -36,64 +36,65 @@ impl ProposedPresses {
     }
 }
 
-/// One piece of evidence with its session time.
+/// One observation: a piece of evidence with its session time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
-    /// Session time.
+    /// Session time of the observation.
     pub time: SessionTime,
     /// What happened.
     pub what: Observed,
 }
 
-/// Kinds of evidence. A state here is the true state, which the display shows.
+/// Kinds of evidence about the human's belief. A state here is the true state, which the display shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Observed {
     /// The trial starts; the human knows the state of the kitchen.
     Started {
-        /// The kitchen at the start.
+        /// The state of the kitchen at the start.
         state: State,
     },
     /// A gaze sample, taken by the tracker at this session time.
     Gaze {
-        /// The sample, in display coordinates.
+        /// The gaze sample, in display coordinates.
         sample: GazeSample,
-        /// When the tracker took it, in session time.
+        /// Session time at which the tracker took the sample.
         taken: SessionTime,
     },
-    /// The tracker finds the display in its view, or no longer.
+    /// The eye tracker finds the display in its view (true), or does not any more (false).
     DisplayInView(bool),
     /// An agent pressed a button.
     Pressed(Press),
     /// The display changes without a press, for instance because an order appears or disappears.
     Displayed {
-        /// What the display shows from now on.
+        /// The state that the display shows from now on.
         state: State,
     },
-    /// A signal about a location: an order's dish and recipe, or the content of another location.
+    /// A signal reveals something about a location: an order's dish and recipe, or the content of another location.
     Told {
         /// The location that the signal is about.
         location: LocationId,
     },
-    /// The display proposes presses. That says nothing about contents and recipes; it matters for what the next presses say about beliefs.
+    /// The display proposes presses. A proposal reveals nothing about contents and recipes; it changes what the next
+    /// presses reveal about beliefs.
     Proposed(ProposedPresses),
     /// The human has not pressed for longer than usual.
     Waited {
-        /// Share of its own intervals between presses that are longer.
+        /// Share of the human's own intervals between presses that are longer.
         longer: f64,
     },
-    /// The trial stands still: nothing is read or forgotten until it goes on.
+    /// The trial is paused: nothing is read or forgotten until it resumes.
     Paused,
-    /// The trial goes on.
+    /// The trial resumes.
     Resumed,
-    /// The task stands still for a probe, and the kitchen is off the display.
+    /// The task is frozen for a probe, and the kitchen is off the display.
     Frozen,
-    /// The task goes on where it was: nothing was seen and nothing forgotten meanwhile.
+    /// The task continues where it was frozen: nothing was seen and nothing forgotten meanwhile.
     Thawed {
-        /// For how long it stood still.
+        /// For how long the task stood still.
         by: SessionTime,
         /// Bit set of the locations about which questions were asked.
         asked: u32,
-        /// Probability that the human looks at one of them because of the question.
+        /// Probability that the human looks at such a location because of the question.
         teaches: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! The estimate of a belief as it is recorded: rounded numbers and names of values.
+//! The estimate of the human's belief in recordings: rounded numbers, and names of values.
 
 use std::collections::BTreeMap;
 
@@ -18,11 +18,11 @@ pub struct EstimateWitness {
     pub log_p: f64,
     /// Effective sample size of the belief samples.
     pub effective: f64,
-    /// One entry per state aspect, in the order of the kitchen's aspects.
+    /// The estimated belief about each state aspect, in the order of the kitchen's aspects.
     pub aspects: Vec<AspectEstimate>,
 }
 
-/// The estimated belief about one aspect.
+/// The estimated belief about one state aspect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AspectEstimate {
     /// The aspect's name.

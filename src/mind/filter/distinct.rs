@@ -1,4 +1,5 @@
-//! The distinct worlds among all draws of a press, each with the costs to go of the human's decision, computed once.
+//! The distinct worlds among all draws for a press of the human, each with the costs to go of the human's decision,
+//! computed once.
 
 use crate::base::rng::mix;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
@@ -23,15 +24,15 @@ pub struct DistinctWorlds {
 struct RatedWorld {
     world: World,
     draws: u32,
-    /// Its costs to go, once computed.
+    /// Costs to go of the world, once computed.
     costs: Option<WorldCosts>,
 }
 
-/// The costs to go of a world.
+/// The costs to go of the human's decision in a world.
 #[derive(Clone, Copy, Debug)]
 struct WorldCosts {
     here: u8,
-    /// After each button of the human.
+    /// Cost to go after each button of the human.
     after: [u8; MAX_BUTTONS],
     fidelity: Fidelity,
 }
@@ -87,9 +88,9 @@ impl DistinctWorlds {
         }
     }
 
-    /// Computes costs with [`Fidelity::PlanBound`] for worlds that have lower bounds only and whose posterior weight (`weights`
-    /// by world, with total `sum`) is now relevant: a lower bound that is one press too low would be strong but wrong evidence.
-    /// Returns whether there were any.
+    /// Recomputes costs with [`Fidelity::PlanBound`] for worlds that have lower bounds only and whose posterior weight
+    /// (`weights` by world, with total `sum`) is now relevant: a lower bound that is one press too low would be strong
+    /// but wrong evidence. Returns whether there were any.
     pub fn rate_again(&mut self, cost: &mut CostToGo, weights: &[f64], sum: f64) -> bool {
         let mut any = false;
         for (rated, &weight) in self.known.iter_mut().zip(weights) {

@@ -1,9 +1,10 @@
-//! The update of the estimate by the likelihood of what the human does: of a press, or of waiting.
+//! The update of the estimate by the likelihood of the human's action: a press, or waiting.
 //!
-//! p(a | b) is a softmax over expected costs to go, so the posterior has no closed form. Belief samples represent the prior,
-//! each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of Dir(alpha + n_j) with
-//! the weights w_j, collapsed by its mean and second moment. As a control variate, the moments under equal weights are
-//! subtracted and the prior's exact moments are added, so that an uninformative press leaves the estimate unchanged.
+//! p(a | b) is a softmax over expected costs to go, so the posterior has no closed form. Belief samples represent the
+//! prior, each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of Dir(alpha
+//! + n_j) with the weights w_j, collapsed by its mean and second moment. As a control variate, the moments under equal
+//! weights are subtracted and the prior's exact moments are added, so that an uninformative press leaves the estimate
+//! unchanged.
 
 use rand::RngExt;
 
@@ -21,15 +22,16 @@ use super::look_news::{LookNews, SampleLooks, UnseenLooks};
 use super::moments::Moments;
 use super::urn::Urn;
 
-/// Share of a recipe's first draws spread evenly over its variants (importance sampling): improbable ones need samples.
+/// Share of the first draws of a recipe that is spread evenly over its variants (importance sampling), so that
+/// improbable variants get samples.
 const SPREAD: f64 = 0.4;
 /// Marks an aspect that is not drawn because the decision does not depend on it.
 pub const UNDRAWN: u8 = u8::MAX;
 
-/// Likelihood of a press and quality of the samples behind it.
+/// Likelihood of the human's press, and quality of the belief samples behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// ln p(a), given that a press is made, under the estimate before the press, in nats.
+    /// ln p(a) of the pressed button, given that one is pressed, under the estimate before the press, in nats.
     pub log_p: f64,
     /// Number of belief samples drawn.
     pub beliefs: usize,
@@ -37,7 +39,8 @@ pub struct Evidence {
     pub effective: f64,
 }
 
-/// Draws and weighs belief samples; its buffers are reused from press to press.
+/// Draws belief samples and weights them by the likelihood of the human's action; its buffers are reused from press to
+/// press.
 #[derive(Clone, Debug, Default)]
 pub struct Sampler {
     pub(super) urns: Vec<Urn>,
@@ -45,47 +48,48 @@ pub struct Sampler {
     pub(super) wants: Vec<Vec<u32>>,
     /// `[aspect * batch size + sample]`: the first draws of the present batch of samples.
     proposed: Vec<u8>,
-    /// `[sample * aspects + aspect]`: value of the first draw.
+    /// `[sample * aspects + aspect]`: value of the belief sample's first draw.
     pub(super) firsts: Vec<u8>,
-    /// All draws of those aspects of which a sample has several values, in consecutive rows of length `states`.
+    /// All draws of those aspects of which a belief sample has several values, in consecutive rows of length `states`.
     rows: Vec<u8>,
     pub(super) samples: Vec<Sample>,
-    /// Importance weight of a first draw by aspect and value; empty where first draws come from the mean.
+    /// Importance weight of a first draw, by aspect and value; empty where first draws come from the mean.
     counts: Vec<Vec<f64>>,
     /// Weight of each belief sample before and after multiplication with its likelihood p(a | belief).
     pub(super) priors: Vec<f64>,
     posteriors: Vec<f64>,
-    /// Weight of each belief sample before, where waiting is evidence times the chance that a press is made.
+    /// Prior weight of each belief sample, where waiting is evidence multiplied by the probability that the human
+    /// presses at all.
     pressing: Vec<f64>,
     pub(super) worlds: DistinctWorlds,
-    /// The distinct worlds of each belief sample, in consecutive ranges.
+    /// The distinct worlds of the belief samples, in consecutive ranges, one range per sample.
     pub(super) runs: Vec<Run>,
-    /// The distinct draws of one belief sample.
+    /// The distinct draws of the present belief sample.
     alike: Vec<Alike>,
-    /// The values of the mixed aspects, by draw.
+    /// The values of the aspects with several values in a belief sample, by draw.
     keys: Vec<Key>,
     /// Posterior weight of each world.
     world_weights: Vec<f64>,
-    /// What each belief sample has learned from looks that nobody saw, where there were such looks.
+    /// What each belief sample has learned from looks at times of unknown gaze, if there were any.
     pub(super) looks: Vec<SampleLooks>,
     pub(super) news: Vec<LookNews>,
     /// Systematic sampling of readings: by location, sum of the probabilities so far.
     pub(super) read_sums: Vec<f64>,
 }
 
-/// A belief sample.
+/// A belief sample: a belief drawn from the estimate, represented by worlds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
-    /// Bit set of the aspects of which the sample has several values (mixed aspects).
+    /// Bit set of the aspects of which the belief sample has several values (mixed aspects).
     mixed: u32,
-    /// Start of their rows in [`Sampler::rows`].
+    /// Start of the mixed aspects' rows in [`Sampler::rows`].
     rows: usize,
-    /// Range of its runs in [`Sampler::runs`].
+    /// Range of the sample's distinct worlds in [`Sampler::runs`].
     pub(super) runs: [usize; 2],
 }
 
 impl Sample {
-    /// Start of the row of a mixed aspect.
+    /// Start of the row of a mixed aspect in [`Sampler::rows`].
     #[inline]
     fn row(&self, aspect: usize, states: usize) -> usize {
         self.rows + (self.mixed & ((1 << aspect) - 1)).count_ones() as usize * states
@@ -113,25 +117,26 @@ struct Alike {
     draws: u32,
 }
 
-/// The models that define the likelihood of an act.
+/// The models that define the likelihood of an action of the human.
 pub struct EvidenceModel<'a> {
     /// The kitchen.
     pub kitchen: &'a Kitchen,
     /// The human's choice model.
     pub choice: &'a ChoiceModel,
-    /// How finely the belief is inferred.
+    /// Sample sizes of the inference, and which evidence it uses.
     pub inference: &'a InferenceModel,
-    /// By button of the human, the bit set of locations that it looks at before the press.
+    /// For each button of the human, the bit set of locations at which the human looks before the press.
     pub watched: &'a [u32],
 }
 
 impl Sampler {
-    /// A sampler for this kitchen.
+    /// A sampler of beliefs about this kitchen.
     pub fn new(kitchen: &Kitchen) -> Sampler {
         Sampler { wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(), ..Sampler::default() }
     }
 
-    /// Updates the estimate by the likelihood of an act of the human, and by the looks that nobody saw before it.
+    /// Updates the estimate by the likelihood of an action of the human, and by the possible looks at times of unknown
+    /// gaze before it.
     pub fn weigh(
         &mut self,
         model: &EvidenceModel,
@@ -188,11 +193,11 @@ impl Sampler {
         if looks {
             self.read_sums.extend(model.kitchen.locations.iter().map(|_| random.random::<f64>()));
         }
-        // A look gives a belief sample other worlds.
+        // A look can give each belief sample additional worlds.
         self.worlds.clear(states * beliefs.max(max_beliefs) * (1 + usize::from(looks)));
     }
 
-    /// Draws belief samples until there are `wanted`.
+    /// Draws belief samples until there are `wanted` of them.
     pub(super) fn draw(&mut self, model: &EvidenceModel, cost: &mut CostToGo, wanted: usize, random: &mut Stream) {
         let (kitchen, states) = (model.kitchen, model.inference.states);
         let (aspects, old) = (self.urns.len(), self.samples.len());
@@ -282,7 +287,7 @@ impl Sampler {
         }
     }
 
-    /// Multiplies the weights of the belief samples from index `from` on by the likelihood of an act.
+    /// Multiplies the weights of the belief samples from index `from` on by the likelihood of the human's action.
     fn weigh_samples(&mut self, model: &EvidenceModel, act: HumanAct, from: usize) {
         self.posteriors.truncate(from);
         self.pressing.truncate(from);
@@ -328,7 +333,8 @@ impl Sampler {
         &self.runs[sample.runs[0]..sample.runs[1]]
     }
 
-    /// Computes more exact costs for worlds whose posterior weight has become relevant; returns whether there were any.
+    /// Computes more exact costs to go for worlds whose posterior weight has become relevant; returns whether there
+    /// were any.
     fn rate_again(&mut self, cost: &mut CostToGo, states: usize) -> bool {
         self.world_weights.clear();
         self.world_weights.resize(self.worlds.len(), 0.0);

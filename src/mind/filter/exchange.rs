@@ -1,4 +1,5 @@
-//! The update by an own press of a location's button, whose effect depends on hand and location jointly.
+//! The update of the estimate by the human's press of a location's button, whose effect depends on the contents of hand
+//! and location jointly.
 
 use crate::base::rng::Stream;
 use crate::kitchen::{Agent, AspectId, ButtonAction, Kitchen, LocationId};
@@ -7,28 +8,29 @@ use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use super::gamma::DirichletSampler;
 use super::own_press::DOUBT;
 
-/// Effect of a press for given values of hand and location.
+/// Effect of a press of a location's button, for given contents of hand and location.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
     Nothing,
     PickUp,
     PutDown,
-    /// The location holds this value afterwards.
+    /// The items are stacked: the location holds this value afterwards.
     Stack(usize),
 }
 
-/// A location's button: classes ("kinds") of contents that it treats alike in hand and location, and the effect for each pair.
+/// A location's button: classes ("kinds") of contents that the button treats alike in hand and location, and the effect
+/// for each pair.
 #[derive(Clone, Debug)]
 pub struct Exchange {
     hand: Side,
     location: Side,
     /// Effect by values: `[hand value * number of location values + location value]`.
     outcomes: Vec<Outcome>,
-    /// Effect by kinds, in the same layout; the value of a stack is not distinguished.
+    /// Effect by kinds of contents, in the same layout; which stack results is not distinguished.
     by_kind: Vec<Outcome>,
 }
 
-/// Hand or location.
+/// One of the two aspects that the press involves: the content of the hand, or of the location.
 #[derive(Clone, Debug)]
 struct Side {
     aspect: AspectId,
@@ -83,7 +85,7 @@ impl Exchange {
         Exchange { hand, location, outcomes, by_kind }
     }
 
-    /// Updates the belief by an own press of this button.
+    /// Updates the estimate by the human's press of this button.
     pub fn learn(&self, belief: &mut DirichletBelief, effective: bool, draws: usize, random: &mut Stream) {
         let sides = [&self.hand, &self.location].map(|side| Parts::from_prior(belief.aspect(side.aspect), side));
         let shares = self.shares(&sides, effective, draws, random);
@@ -126,7 +128,7 @@ impl Exchange {
         shares
     }
 
-    /// Beliefs about hand and location after an effective press: an item was picked up, put down or stacked.
+    /// Estimates of hand and location after an effective press: an item was picked up, put down or stacked.
     fn exchanged(&self, sides: &[Parts; 2], shares: &Shares) -> [Dirichlet; 2] {
         let [held, there] = sides;
         let [width, columns] = [self.location.kind_of.len(), self.location.kinds];
@@ -172,11 +174,12 @@ fn kinds<T: PartialEq>(count: usize, trait_of: impl Fn(usize) -> T) -> (Vec<usiz
     (kind_of, firsts)
 }
 
-/// A belief about hand or location, decomposed into the probability of each kind and the distribution within each kind.
+/// The estimate of hand or location, decomposed into the probability of each kind of content and the distribution
+/// within each kind.
 struct Parts<'a> {
     side: &'a Side,
     belief: &'a Dirichlet,
-    /// Expected probabilities and alphas of the kinds.
+    /// Expected probabilities and alphas of the kinds of contents.
     means: Vec<f64>,
     alphas: Vec<f64>,
     /// Pooled second moment of the distribution within each kind.
@@ -204,12 +207,12 @@ impl<'a> Parts<'a> {
         kinds.filter(move |(_, other)| **other == kind).map(|(value, _)| value)
     }
 
-    /// Expected probability of a value given its kind.
+    /// Expected probability of a value, given its kind.
     fn inner(&self, value: usize) -> f64 {
         self.belief.mean()[value] / self.means[self.side.kind_of[value]]
     }
 
-    /// The belief after an ineffective press; `change` is the change of the moments of the kinds' probabilities.
+    /// The estimate after an ineffective press; `change` is the change of the moments of the kinds' probabilities.
     fn kept(&self, change: &[[f64; 2]]) -> Dirichlet {
         let mut mixture = Mixture::new(self.side.kind_of.len());
         let precision = self.belief.precision();
@@ -225,15 +228,15 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// First and second moments of the kinds' probabilities, averaged over draws.
+/// First and second moments of the probabilities of kinds of contents, averaged over draws.
 struct Shares {
     draws: f64,
     of_pairs: Vec<[f64; 2]>,
     /// Probability that the hand, and that the location, is empty afterwards.
     emptied: [[f64; 2]; 2],
-    /// Change of the prior moments, by side and kind.
+    /// Change of the prior moments, by side (hand, location) and kind.
     change: [Vec<[f64; 2]>; 2],
-    /// Probability in one draw, by side and kind.
+    /// Probability in one draw, by side (hand, location) and kind.
     sums: [Vec<f64>; 2],
 }
 

@@ -1,12 +1,12 @@
-//! Draws from a Dirichlet with few components, numerically safe for small alphas.
+//! Draws from a Dirichlet with few components, numerically stable for small alphas.
 
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
 
 use crate::base::rng::Stream;
 
-/// Sampler of one Dirichlet. Gamma variates are drawn as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a); Marsaglia and Tsang
-/// 2000), since those of small alphas underflow otherwise.
+/// Sampler of one Dirichlet. Gamma variates are drawn as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a); Marsaglia and
+/// Tsang 2000), since those with small alphas would underflow.
 pub struct DirichletSampler {
     /// Distribution Gamma(a + 1) and a itself, by component.
     of: Vec<(Option<Gamma<f64>>, f64)>,
@@ -18,7 +18,7 @@ impl DirichletSampler {
         DirichletSampler { of: alphas.iter().map(|&alpha| (Gamma::new(alpha + 1.0, 1.0).ok(), alpha)).collect() }
     }
 
-    /// Fills `out` with a draw.
+    /// Fills `out` with a draw from the Dirichlet.
     pub fn draw(&self, random: &mut Stream, out: &mut [f64]) {
         let mut most = f64::NEG_INFINITY;
         for (log, (gamma, alpha)) in out.iter_mut().zip(&self.of) {

@@ -1,16 +1,16 @@
-//! What the human does, as evidence of its belief.
+//! Actions of the human (a press, or waiting) as evidence of the human's belief.
 
 use crate::kitchen::ButtonId;
 
-/// A press as evidence: p(a | belief) = `proposed` + `chosen` p(choice = a | belief). A proposed press may be made because it is proposed,
-/// which any belief makes equally likely.
+/// The likelihood of a press: p(a | belief) = `proposed` + `chosen` p(choice = a | belief). A press that the display
+/// proposes may be made because of the proposal, which is equally likely under any belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressMixture {
     /// The pressed button.
     pub button: ButtonId,
-    /// Probability that it is pressed because it is proposed.
+    /// Probability that the human presses the button because it is proposed.
     pub proposed: f64,
-    /// Probability that the human presses what it chooses itself.
+    /// Probability that the human presses a button of its own choice.
     pub chosen: f64,
 }
 
@@ -33,15 +33,15 @@ impl PressMixture {
     }
 }
 
-/// What the human does, as evidence of its belief b.
+/// An action of the human, as evidence of the human's belief b.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HumanAct {
-    /// It presses a button. Likelihood: that of the mixture, times 1 - p(wait | b) where waiting is evidence.
+    /// The human presses a button. Likelihood: that of the mixture, times 1 - p(wait | b) where waiting is evidence.
     Presses(PressMixture),
-    /// It has not pressed for longer than usual. Likelihood: l + (1 - l) p(wait | b), where l is the share of its intervals that are
-    /// longer: it still thinks, or has decided to wait.
+    /// The human has not pressed for longer than usual. Likelihood: l + (1 - l) p(wait | b), where l is the share of
+    /// the human's intervals between presses that are longer: the human still thinks, or has decided to wait.
     Waits {
-        /// Share of its own intervals that are longer.
+        /// Share of the human's intervals between presses that are longer.
         longer: f64,
     },
 }

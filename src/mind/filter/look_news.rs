@@ -1,30 +1,34 @@
-//! Looks that nobody saw, as data: their chances, and what a belief sample learns from them (see [`super::unseen_looks`]).
+//! Data about looks at times of unknown gaze: their probabilities, and what a belief sample learns from them (see
+//! [`super::unseen_looks`]).
 
-/// Chance of looks at each location since the last event, given how much a press needs it, and what a look reads.
+/// Expected looks at each location at times of unknown gaze since the last event, as a function of how much the next
+/// press needs it, and what a look reads.
 #[derive(Clone, Debug)]
 pub struct UnseenLooks<'a> {
-    /// By location: expected looks without need, and the further ones where the next press needs it for certain.
+    /// By location: expected number of looks without need, and the additional number if the next press certainly needs
+    /// the location.
     pub hazards: &'a [[f64; 2]],
     /// By location, the distribution of the value read; empty where nothing can be read.
     pub readings: Vec<&'a [f64]>,
 }
 
-/// What a belief sample has learned from looks that nobody saw.
+/// What a belief sample has learned from looks at times of unknown gaze.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SampleLooks {
-    /// Bit set of the aspects that differ from the sample's draws.
+    /// Bit set of the aspects whose value differs from the sample's draws.
     pub changed: u32,
-    /// Range of its entries in `Sampler::news`.
+    /// Range of the sample's entries in `Sampler::news`.
     pub news: [usize; 2],
 }
 
-/// A value that a belief sample holds since a look.
+/// A value that a belief sample holds since a look at a time of unknown gaze.
 #[derive(Clone, Copy, Debug)]
 pub struct LookNews {
     /// Index of the aspect.
     pub aspect: usize,
     /// Index of the value.
     pub value: u8,
-    /// It was read, and is certain; else it is a draw of a recipe on which the decision depends since an order was read.
+    /// Whether the value was read, and is certain; else it is a draw of a recipe on which the decision depends since an
+    /// order was read.
     pub is_read: bool,
 }

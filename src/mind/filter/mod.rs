@@ -1,8 +1,9 @@
 //! Inference of the human's belief, event by event: a product of Dirichlets over the state aspects (paper, section
 //! "Inference of the human belief").
 //!
-//! Closed forms are used for reading, unknown gaze, forgetting, signals, and own presses that involve one location. Samples are
-//! used for the likelihood of a press, for own presses that involve several locations, and for presses of the robot.
+//! Closed forms are used for reading, unknown gaze, forgetting, signals, and the human's presses that involve one
+//! location. Samples are used for the likelihood of a press, for the human's presses that involve several locations,
+//! and for presses of the robot.
 
 mod distinct;
 mod evidence;
@@ -43,7 +44,8 @@ use perception::GazeReader;
 use serving::Serving;
 use unknown_gaze::UnknownStretch;
 
-/// Update rule of a button: from one location, or from several that jointly determine the effect of the press.
+/// How the human's press of a button changes the belief: it involves one location, or several that jointly determine
+/// the effect of the press.
 #[derive(Clone, Debug)]
 enum Lesson {
     Alone,
@@ -58,18 +60,18 @@ pub struct BeliefFilter {
     model: HumanModel,
     seed: u64,
     belief: DirichletBelief,
-    /// The prior to which recipe beliefs decay.
+    /// The prior to which beliefs about recipes decay.
     prior: DirichletBelief,
     reader: GazeReader,
     presence: GazePresence,
-    /// The chance that the next press needs each location, once it has been computed after the last event.
+    /// The probability that the next press needs each location, once it has been computed after the last event.
     needs: Option<Vec<f64>>,
-    /// Unknown time since the last event or known gaze, if there was any.
+    /// Time of unknown gaze since the last event or known gaze, if there was any.
     stretch: Option<UnknownStretch>,
-    /// By button of the human, the bit set of locations that it looks at before the press.
+    /// For each button of the human, the bit set of locations at which the human looks before the press.
     watched: Vec<u32>,
     choice: ChoiceModel,
-    /// Update rule of each button of the human, by [`ButtonId`].
+    /// How a press of each button of the human changes the belief, by [`ButtonId`].
     lessons: Vec<Lesson>,
     sampler: Sampler,
     shown: State,
@@ -78,7 +80,7 @@ pub struct BeliefFilter {
     presses: u64,
     /// Time up to which forgetting has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
-    /// When the task came to a stand for a probe, while it stands still.
+    /// Time at which the task was frozen for a probe, as long as it stands still.
     frozen: Option<SessionTime>,
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
@@ -119,7 +121,7 @@ impl BeliefFilter {
         }
     }
 
-    /// The estimate.
+    /// The present estimate of the human's belief.
     pub fn belief(&self) -> &DirichletBelief {
         &self.belief
     }
@@ -206,7 +208,8 @@ impl BeliefFilter {
         }
     }
 
-    /// The estimate at `now`, with the unknown gaze and the forgetting since the last event. It changes no later estimate.
+    /// The estimate at `now`, with the unknown gaze and the forgetting since the last event. The call changes no later
+    /// estimate.
     pub fn at(&self, now: SessionTime, cost: &mut CostToGo) -> DirichletBelief {
         let mut filter = self.clone();
         let now = filter.frozen.unwrap_or(now);
@@ -215,8 +218,8 @@ impl BeliefFilter {
         filter.belief
     }
 
-    /// The task goes on after it stood still for this long: all times move on by that, so that the estimate is as if it had not, except
-    /// for looks at the locations that were asked about.
+    /// Continues after a freeze probe of this duration: all times are shifted, so that the estimate is as if the task
+    /// had not stood still, except for looks at the locations that the questions were about.
     fn thaw(&mut self, by: SessionTime, asked: u32, teaches: f64) {
         self.frozen = None;
         self.forgot = self.forgot.map(|at| at + by);
@@ -235,7 +238,7 @@ impl BeliefFilter {
         }
     }
 
-    /// Updates the belief with a gaze sample, and with the unknown time before it.
+    /// Updates the estimate with a gaze sample, and with the time of unknown gaze before it.
     fn take_sample(&mut self, sample: &GazeSample, taken: SessionTime, cost: &mut CostToGo) {
         let known = self.model.perception.known_share(sample.confidence);
         let time = self.presence.sample(sample, known, taken);
@@ -279,7 +282,7 @@ impl BeliefFilter {
         }
     }
 
-    /// The chance that the next press needs each location, under the present belief.
+    /// The probability that the next press needs each location, under the present estimate.
     fn needs_now(&mut self, cost: &mut CostToGo) -> Vec<f64> {
         let mut random = stream(self.seed, "needs", self.presses);
         let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
@@ -287,7 +290,7 @@ impl BeliefFilter {
         self.sampler.needs(&model, cost, &self.belief, &mut random)
     }
 
-    /// Changes by others draw the eye, where the gaze is unknown.
+    /// Accounts for changes by others that attract the human's gaze, where the gaze is unknown.
     fn see_changes(&mut self, now: SessionTime, after: State) {
         let unknown = if self.forgot.is_some() { self.presence.unknown_share(now) } else { 0.0 };
         let seen = self.model.looking.capture * unknown;
@@ -303,7 +306,8 @@ impl BeliefFilter {
         }
     }
 
-    /// Updates the belief by the likelihood of a press, with the looks of the unknown time before it.
+    /// Updates the estimate by the likelihood of a press, with the possible looks in the time of unknown gaze before
+    /// it.
     fn weigh_press(&mut self, press: PressMixture, cost: &mut CostToGo, random: &mut Stream) -> Evidence {
         let stretch = self.stretch.take();
         let looks = stretch.as_ref().map(|stretch| {
@@ -318,7 +322,7 @@ impl BeliefFilter {
         self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Presses(press), looks.as_ref(), random)
     }
 
-    /// Updates the belief by the likelihood of having waited.
+    /// Updates the estimate by the likelihood of having waited.
     fn weigh_waiting(&mut self, longer: f64, cost: &mut CostToGo) {
         let mut random = stream(self.seed, "waiting", self.presses);
         let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
@@ -331,7 +335,7 @@ impl BeliefFilter {
         self.reader.show(now, state, self.model.perception.history_s);
     }
 
-    /// Lets recipe beliefs decay towards their prior.
+    /// Lets beliefs about recipes decay towards their prior.
     fn forget(&mut self, now: SessionTime) {
         let Some(last) = self.forgot else { return };
         self.forgot = Some(now.max(last));
@@ -372,7 +376,7 @@ impl BeliefFilter {
         }
     }
 
-    /// Makes the aspects that a signal shows certain, with the probability that the signal is noticed.
+    /// Makes the aspects that a signal shows certain, with the probability that the human notices the signal.
     fn told(&mut self, location: LocationId) {
         let kitchen = self.kitchen.clone();
         let mut aspects = vec![AspectId::of_location(location)];

@@ -11,15 +11,15 @@ pub struct Moments<'a> {
     square: f64,
     /// Weight of the prior's mean, added at the end.
     share: f64,
-    /// Total weight of the belief samples all of whose draws have the same value, by value; the last entry is for samples in
-    /// which the aspect was not drawn.
+    /// Total weight of the belief samples whose draws all have the same value, by value; the last entry is for samples
+    /// in which the aspect was not drawn.
     pure: Vec<f64>,
     /// Distinct values of one belief sample with their counts.
     counts: Vec<(u8, u32)>,
 }
 
 impl Moments<'_> {
-    /// Starts with the moments of the prior.
+    /// Starts the accumulation with the moments of the prior.
     pub fn from_prior(prior: &Dirichlet) -> Moments<'_> {
         let mean = prior.mean().to_vec();
         let square = mean.iter().map(|m| m * m).sum();
@@ -48,7 +48,8 @@ impl Moments<'_> {
         self.add_moments(weight, size, cross, squares);
     }
 
-    /// Adds a sample whose draws all have one value (or were not drawn): such samples are summed first and added at the end.
+    /// Adds a belief sample whose draws all have one value (or were not drawn): such samples are summed first and added
+    /// at the end.
     #[inline]
     pub fn add_later(&mut self, value: u8, weight: f64) {
         let last = self.pure.len() - 1;
@@ -75,14 +76,14 @@ impl Moments<'_> {
 
     fn add_moments(&mut self, weight: f64, size: f64, cross: f64, squares: f64) {
         let precision = self.prior.precision();
-        // The part from the prior's alphas. It cancels where all samples have the same number of draws.
+        // The contribution of the prior's alphas. It cancels where all samples have the same number of draws.
         self.share += weight * precision / size;
         let second = precision * precision * self.square + 2.0 * precision * cross + squares + size;
         self.second += weight * second / (size * (size + 1.0));
     }
 
-    /// The Dirichlet with the accumulated moments. A gain of the value that represents the tail belongs to that value alone; a loss
-    /// is shared by the whole tail in proportion.
+    /// The Dirichlet with the accumulated moments. A gain of the value that represents the improbable values (tail)
+    /// belongs to that value alone; a loss is shared by the whole tail in proportion.
     pub fn collapsed(mut self, draws: usize, stand_in: Option<usize>) -> Dirichlet {
         for value in 0..self.pure.len() {
             if self.pure[value] != 0.0 {

@@ -1,11 +1,12 @@
-//! Perception: the update of the belief by a gaze sample, in closed form.
+//! Perception: the update of the estimate by a gaze sample, in closed form.
 //!
-//! A sample that covers dt reads a location with probability 1 - exp(-rate dt), at a rate that falls with the distance of
-//! the gaze from its area (see [`PerceptionModel`]). One look gives one draw from the confusion matrix: a location is read at
-//! most once in a look. Let m0 be the belief at the start of the look, or after the last other event that changed the belief;
-//! `unread` is the probability that the location had not been read in this look by then, and `survived` the probability that
-//! it has not been read since. The weight of m0 in the present belief is 1 - unread (1 - survived); the remaining weight is on
-//! the content that was read. Each sample moves a further share of m0 to that content. Mean and second moment are exact.
+//! A sample that covers dt reads a location with probability 1 - exp(-rate dt), at a rate that falls with the distance
+//! of the gaze from the location's area (see [`PerceptionModel`]). One look gives one draw from the confusion matrix: a
+//! location is read at most once in a look. Let m0 be the belief at the start of the look, or after the last other
+//! event that changed the belief; `unread` is the probability that the location had not been read in this look by then,
+//! and `survived` the probability that it has not been read since. The weight of m0 in the present belief is 1 - unread
+//! (1 - survived); the remaining weight is on the content that was read. Each sample moves a further share of m0 to
+//! that content. Mean and second moment are exact.
 
 use std::collections::VecDeque;
 
@@ -15,17 +16,17 @@ use crate::kitchen::{AspectId, ContentId, DishId, Kitchen, LocationId, LocationK
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::{PerceptionModel, ReadingRate};
 
-/// The gaze counts as elsewhere where the reading rate is below this share of the full rate.
+/// The gaze counts as being elsewhere where the reading rate of a location is below this share of the full rate.
 const ELSEWHERE: f64 = 0.1;
-/// Readings with a smaller probability are ignored.
+/// Contents that are read with a smaller probability are ignored.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// A look at a location.
+/// A look at a location: consecutive gaze samples near it.
 #[derive(Clone, Copy, Debug)]
 struct Look {
-    /// Probability that the location had not been read in this look at the last other event.
+    /// Probability that the location had not been read in this look up to the last event other than a gaze sample.
     unread: f64,
-    /// Probability that it has not been read since then.
+    /// Probability that the location has not been read since that event.
     survived: f64,
     /// Code of the content that the display showed at the last sample of the look.
     code: u8,
@@ -34,8 +35,8 @@ struct Look {
 }
 
 impl Look {
-    /// Applies a probability `chance` of being read, given that the location has not been read in this look. Returns the share of
-    /// the present belief that the reading replaces.
+    /// Applies a probability `chance` that the location is read, given that it has not been read in this look. Returns
+    /// the share of the present belief that the reading replaces.
     fn read(&mut self, chance: f64) -> f64 {
         let left = 1.0 - self.unread * (1.0 - self.survived);
         self.survived *= 1.0 - chance;
@@ -43,14 +44,14 @@ impl Look {
     }
 }
 
-/// Applies gaze samples to the estimate.
+/// Updates the estimate with gaze samples.
 #[derive(Clone, Debug)]
 pub struct GazeReader {
     /// Confusion matrix of each location: by true value, the probability of reading each value.
     confusions: Vec<Vec<Vec<f64>>>,
     rate: ReadingRate,
     looks: Vec<Look>,
-    /// Recent states of the display, each with the time since which it was shown.
+    /// Recent states of the display, each with the time at which it appeared.
     shown: VecDeque<(SessionTime, State)>,
 }
 
@@ -66,7 +67,7 @@ impl GazeReader {
         GazeReader { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new() }
     }
 
-    /// Notes that the display shows `state` from `now` on.
+    /// Records that the display shows `state` from `now` on.
     pub fn show(&mut self, now: SessionTime, state: State, history_s: f64) {
         self.shown.push_back((now, state));
         while self.shown.len() > 1 && now.secs_since(self.shown[1].0) > history_s {
@@ -74,7 +75,8 @@ impl GazeReader {
         }
     }
 
-    /// Notes that an event other than reading is about to change the belief: the present belief becomes the new m0 of every look.
+    /// Records that an event other than reading is about to change the belief: the present belief becomes the new m0 of
+    /// every look.
     pub fn settle(&mut self) {
         for look in &mut self.looks {
             look.unread *= look.survived;
@@ -82,7 +84,7 @@ impl GazeReader {
         }
     }
 
-    /// Moves all times on, because the task stood still.
+    /// Shifts all stored times by the duration of a freeze probe, during which the task stood still.
     pub fn postpone(&mut self, by: SessionTime) {
         self.looks.iter_mut().for_each(|look| look.last = look.last + by);
         self.shown.iter_mut().for_each(|(since, _)| *since = *since + by);
@@ -94,12 +96,13 @@ impl GazeReader {
         value.map_or(&[], |value| &self.confusions[location.index()][value])
     }
 
-    /// State of the display at `time`; `None` if that lies before the kept history.
+    /// State of the display at `time`; `None` if that time is before the stored history.
     fn shown_at(&self, time: SessionTime) -> Option<State> {
         self.shown.iter().rev().find(|(since, _)| *since <= time).map(|(_, state)| *state)
     }
 
-    /// Updates the belief with a sample taken at session time `taken`, in whose time the gaze is known for `known_s` seconds.
+    /// Updates the estimate with a gaze sample taken at session time `taken`, during which the gaze is known for
+    /// `known_s` seconds.
     pub fn read(
         &mut self,
         kitchen: &Kitchen,
@@ -109,7 +112,7 @@ impl GazeReader {
         taken: SessionTime,
         known_s: f64,
     ) {
-        // NaN fails these comparisons.
+        // These comparisons are false for NaN.
         let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
         let is_usable = on_display && known_s > 0.0;
         let Some(state) = self.shown_at(taken).filter(|_| is_usable) else { return };

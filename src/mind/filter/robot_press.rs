@@ -1,9 +1,9 @@
-//! The prediction of a robot's press: the human notices that the robot pressed a button, not which one.
+//! The update of the estimate by a robot's press: the human notices that the robot pressed a button, but not which one.
 //!
-//! Worlds are drawn from the estimate. For each, the robot's task policy gives the possible presses and the rules give their
-//! results. This defines a transition kernel T over the values of every aspect. The belief b becomes b T; its mean is m T and,
-//! since b is Dirichlet with precision A, S' = (A sum_w m'_w^2 + sum_v m_v sum_w T_vw^2) / (A + 1). Values that no press
-//! changes are not affected.
+//! Worlds are drawn from the estimate. For each, the robot's task policy gives the possible presses and the rules give
+//! their results. This defines a transition kernel T over the values of every aspect. The belief b becomes b T; its
+//! mean is m T and, since b is Dirichlet with precision A, S' = (A sum_w m'_w^2 + sum_v m_v sum_w T_vw^2) / (A + 1).
+//! Values that no press changes are not affected.
 
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
@@ -17,7 +17,7 @@ use super::urn::Urn;
 /// Worlds with a smaller share of the draws use lower bounds instead of plans for their costs to go.
 const COUNTS: f64 = 0.05;
 
-/// One transition of a value with its weight.
+/// One transition of an aspect's value to another, with its weight.
 #[derive(Clone, Copy, Debug)]
 struct Flow {
     aspect: usize,
@@ -77,11 +77,12 @@ fn note_changes(kitchen: &Kitchen, before: State, after: State, weight: f64, flo
     }
 }
 
-/// The belief after the kernel that is given by the transitions `flows` and by how often each value was drawn.
+/// The estimate of an aspect after the transition kernel, which is given by the transitions `flows` and by how often
+/// each value was drawn.
 fn moved(dirichlet: &Dirichlet, flows: &[Flow], occurred: &[f64]) -> Dirichlet {
     let (old, precision) = (dirichlet.mean(), dirichlet.precision());
     let mut mean = old.to_vec();
-    // By value: the probability of staying, and the sum over targets of T^2.
+    // By value: the probability of staying, and the sum over target values of T^2.
     let mut stays = vec![1.0; old.len()];
     let mut squares = vec![0.0; old.len()];
     for flow in flows {

@@ -1,8 +1,10 @@
-//! The update by an own press of a serve button, whose effect depends on plate, order and recipe jointly.
+//! The update of the estimate by the human's press of a serve button, whose effect depends on plate, order and recipe
+//! jointly.
 //!
-//! An order is served if the plate holds the stack of the ordered dish. With the believed probabilities o(d) that the order is
-//! dish d, p(x) that the plate holds x, and r_d(x) that the recipe of d is x, the press is effective with probability
-//! sum_d o(d) sum_x p(x) r_d(x). Contents that can be a dish are sampled one by one, all others as one class.
+//! An order is served if the plate holds the stack of the ordered dish. With the believed probabilities o(d) that the
+//! order is dish d, p(x) that the plate holds x, and r_d(x) that the recipe of d is x, the press is effective with
+//! probability sum_d o(d) sum_x p(x) r_d(x). Contents that can be a dish are sampled one by one, all others as one
+//! class.
 
 use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, DishId, Kitchen, LocationId, OrderContent};
@@ -14,7 +16,7 @@ use super::own_press::DOUBT;
 /// Dishes with a smaller expected probability of being ordered are ignored.
 const NEGLIGIBLE: f64 = 1e-4;
 
-/// A serve button.
+/// The button that serves an order, with the aspects on which its effect depends.
 #[derive(Clone, Debug)]
 pub struct Serving {
     order: AspectId,
@@ -24,7 +26,7 @@ pub struct Serving {
     dishes: Vec<Served>,
 }
 
-/// The values of order and plate that belong to one dish.
+/// The values of the order's and the plate's aspect that belong to one dish.
 #[derive(Clone, Debug)]
 struct Served {
     /// Value of the order's aspect for this dish.
@@ -34,14 +36,14 @@ struct Served {
     on_plate: Vec<Option<usize>>,
 }
 
-/// Change of the moments of one aspect, accumulated over draws before and after conditioning.
+/// Change of the moments of one aspect by conditioning, accumulated over draws.
 struct Tally {
     mean: Vec<f64>,
     second: f64,
 }
 
 impl Serving {
-    /// The human's serve button of an order.
+    /// The human's button that serves this order.
     pub fn new(kitchen: &Kitchen, order: LocationId) -> Serving {
         let (order, plate) = (AspectId::of_location(order), AspectId::of_location(kitchen.plate));
         let [ordered, on_plate] = [order, plate].map(|aspect| &kitchen.aspects[aspect.index()]);
@@ -57,7 +59,7 @@ impl Serving {
         Serving { order, plate, served, empty: on_plate.index_of(0).unwrap_or(0), dishes: dishes.collect() }
     }
 
-    /// Learns from a press of this button.
+    /// Updates the estimate by a press of this serve button.
     pub fn learn(&self, belief: &mut DirichletBelief, effective: bool, draws: usize, random: &mut Stream) {
         let expected = belief.aspect(self.order).mean();
         let dishes: Vec<&Served> = self.dishes.iter().filter(|dish| expected[dish.ordered] >= NEGLIGIBLE).collect();
@@ -164,7 +166,7 @@ impl Draw {
         Draw { aspect, part_of, now: means.clone(), gammas: gammas(&means, precision), means, precision }
     }
 
-    /// Merges all values with `is_dull` into one class.
+    /// Merges all values for which `is_dull` holds into one class.
     fn lump(&mut self, is_dull: impl Fn(usize) -> bool) {
         let mut means = vec![0.0];
         for value in 0..self.part_of.len() {

@@ -1,24 +1,28 @@
-//! The update by time in which the gaze is unknown: perception is marginalised over plausible looking, in closed form.
+//! The update of the estimate by time in which the gaze is unknown: perception is marginalised over plausible looking,
+//! in closed form.
 //!
-//! In a time dt location i is looked at with hazard h_i = dt (l0 + (ln - l0) n_i): l0 and ln are the rates of looks at a place
-//! that the next press does not need, and at one that it needs (those of the looking model); n_i is the chance that the next
-//! press needs it, computed once after each event, and only where gaze is unknown. The aspect learns the displayed content,
-//! confused as in any reading, with probability 1 - exp(-h_i). Hazards add up, so it makes no difference how a gap is divided. A
-//! press of the human draws the looks since the last event anew, see [`super::unseen_looks`].
+//! In a time dt location i is looked at with hazard h_i = dt (l0 + (ln - l0) n_i): l0 and ln are the rates of looks at
+//! a place that the next press does not need, and at one that it needs (those of the looking model); n_i is the
+//! probability that the next press needs it, computed once after each event, and only where gaze is unknown. The aspect
+//! learns the displayed content, with the confusions of any reading, with probability 1 - exp(-h_i). Hazards add up, so
+//! it makes no difference how a gap is divided. A press of the human draws the looks since the last event anew, see
+//! [`super::unseen_looks`].
 
 use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::mind::dirichlet::Dirichlet;
 
-/// Unknown time since the last event or known gaze.
+/// A time of unknown gaze since the last event or known gaze.
 #[derive(Clone, Debug)]
 pub struct UnknownStretch {
-    /// Beliefs about the locations at its beginning.
+    /// Estimates of the locations at the beginning of the unknown time.
     pub before: Vec<Dirichlet>,
-    /// By location: expected looks without need, and the further ones where the next press needs it for certain.
+    /// By location: expected number of looks without need, and the additional number if the next press certainly needs
+    /// the location.
     pub hazards: Vec<[f64; 2]>,
 }
 
-/// By button of the human, the bit set of locations that it looks at before the press, without its own hand.
+/// For each button of the human, the bit set of locations at which the human looks before the press, without the own
+/// hand.
 pub fn watched(kitchen: &Kitchen) -> Vec<u32> {
     let own_hand = kitchen.hands[Agent::Human.index()];
     let bits = |button| {

@@ -1,8 +1,9 @@
-//! Looks that nobody saw, drawn for each belief sample: while the gaze is unknown, a person looks at what its own next press
-//! needs. So what is pressed tells what was looked at: an error is evidence of not having looked.
+//! Looks at times of unknown gaze, drawn for each belief sample: a person then looks at what the own next press needs.
+//! Therefore a press reveals where the person looked: an error is evidence of not having looked.
 //!
-//! For belief sample j the need of location i is n_ij = sum over buttons of p(a | b_j) [i is looked at before a]. The sample has
-//! read the location with probability 1 - exp(-h_ij), where h_ij is linear in n_ij; it then holds what was read for certain.
+//! For belief sample j the need of location i is n_ij = sum over buttons of p(a | b_j) [i is looked at before a]. The
+//! sample has read the location with probability 1 - exp(-h_ij), where h_ij is linear in n_ij; it then believes what
+//! was read with certainty.
 
 use crate::base::bits::ones;
 use crate::base::rng::Stream;
@@ -16,7 +17,7 @@ use super::evidence::{EvidenceModel, Sampler, UNDRAWN};
 use super::look_news::{LookNews, SampleLooks, UnseenLooks};
 
 impl Sampler {
-    /// The chance that the human looks at each location before its next press, over belief samples.
+    /// The probability that the human looks at each location before its next press, averaged over belief samples.
     pub fn needs(
         &mut self,
         model: &EvidenceModel,
@@ -35,7 +36,7 @@ impl Sampler {
         sums[..model.kitchen.locations.len()].iter().map(|sum| sum / total).collect()
     }
 
-    /// The same for one belief sample.
+    /// The probability that the human of one belief sample looks at each location before its next press.
     fn needs_of(&self, model: &EvidenceModel, sample: usize) -> [f64; MAX_LOCATIONS] {
         let mut sums = [0u32; MAX_BUTTONS];
         let mut needs = [0.0; MAX_LOCATIONS];
@@ -46,7 +47,8 @@ impl Sampler {
         needs
     }
 
-    /// Draws the looks of the belief samples from index `from` on, and moves them to the worlds that they then believe in.
+    /// Draws looks for the belief samples from index `from` on, and moves the samples to the worlds in which they then
+    /// believe.
     pub fn look(&mut self, model: &EvidenceModel, looks: &UnseenLooks, from: usize, random: &mut Stream) {
         let aspects = self.urns.len();
         for index in from..self.samples.len() {
@@ -78,7 +80,7 @@ impl Sampler {
         }
     }
 
-    /// Replaces the worlds of a belief sample by those with the values that it has learned.
+    /// Replaces the worlds of a belief sample by those with the values that looks have taught it.
     fn believe_news(&mut self, model: &EvidenceModel, sample: usize, [begin, end]: [usize; 2]) {
         let [first, last] = self.samples[sample].runs;
         for run in &mut self.runs[first..last] {

@@ -1,34 +1,36 @@
-//! Polya urns: draws from a categorical distribution that is itself a draw from a Dirichlet, without drawing that distribution.
+//! Polya urns: draws from a categorical distribution that is itself a draw from a Dirichlet, without drawing that
+//! distribution.
 //!
-//! The first draw has the Dirichlet's mean; the n-th repeats one of those before it with probability (n - 1) / (A + n - 1).
-//! Given the draws, the distribution is Dir(alpha + counts) (Blackwell and MacQueen 1973).
+//! The first draw follows the Dirichlet's mean; the n-th repeats one of the previous draws with probability (n - 1) /
+//! (A + n - 1). Given the draws, the distribution is Dir(alpha + counts) (Blackwell and MacQueen 1973).
 
 use rand::RngExt;
 
 use crate::base::rng::Stream;
 use crate::mind::dirichlet::Dirichlet;
 
-/// In aspects with at least [`MANY`] values, those with a smaller expected probability form the tail, which one of them
-/// represents.
+/// In aspects with at least [`MANY`] values, the values with a smaller expected probability form the tail, which one of
+/// them represents.
 const TAIL: f64 = 0.01;
 const MANY: usize = 8;
 
-/// The urn of one aspect. The tail is represented by one of its values, drawn anew for every urn in proportion to the
-/// probabilities: every value gets its turn over time, while each press evaluates few improbable worlds.
+/// The Polya urn of one state aspect. Its improbable values (tail) are represented by one of them, drawn anew for every
+/// urn in proportion to the probabilities: over time every value is used, while each press evaluates few improbable
+/// worlds.
 #[derive(Clone, Debug, Default)]
 pub struct Urn {
     /// The value that represents the tail.
     stand_in: Option<u8>,
     /// Values in decreasing order of probability, with their cumulative probability.
     order: Vec<(u8, f64)>,
-    /// The same for first draws, where they are not drawn from the mean.
+    /// Values with cumulative probability for first draws, where they are not drawn from the mean.
     proposal: Vec<(u8, f64)>,
     /// `stays[k]`: probability that none of the draws 1 to k is new (draw 0 is the first).
     stays: Vec<f64>,
 }
 
 impl Urn {
-    /// Prepares the urn for `draws` draws from this Dirichlet.
+    /// Prepares the urn for `draws` draws from a distribution that this Dirichlet gives.
     pub fn fill(&mut self, dirichlet: &Dirichlet, draws: usize, random: &mut Stream) {
         let mean = dirichlet.mean();
         self.order.clear();
@@ -78,14 +80,14 @@ impl Urn {
         reached.or(self.order.last()).map_or(0, |(value, _)| *value)
     }
 
-    /// A draw from the mean.
+    /// A first draw, from the Dirichlet's mean.
     #[inline]
     pub fn draw(&self, random: &mut Stream) -> u8 {
         self.value_at(random.random::<f64>())
     }
 
-    /// Lets first draws come from a mixture: from all values evenly with probability `share`, else from the mean. Returns the
-    /// importance weight of a draw by value.
+    /// Makes first draws come from a mixture: from all values evenly with probability `share`, else from the mean.
+    /// Returns the importance weight of a draw, by value.
     pub fn spread(&mut self, share: f64) -> Vec<f64> {
         let values = self.order.iter().map(|(value, _)| usize::from(*value) + 1).max().unwrap_or(0);
         let mut counts = vec![1.0; values];
@@ -148,7 +150,7 @@ impl Urn {
         false
     }
 
-    /// Index of the next draw after `after` that is new.
+    /// Index of the next draw after `after` that does not repeat a previous one.
     #[inline]
     fn next_new(&self, random: &mut Stream, after: usize) -> usize {
         let limit = random.random::<f64>() * self.stays[after];

@@ -1,5 +1,5 @@
-//! A set of explicit beliefs that receive the same events: the samples of the reference filter, the particles of an unprojected
-//! filter, or one human simulated from the model.
+//! A set of explicit beliefs that are updated with the same events: the samples of the reference filter, the particles
+//! of an unprojected filter, or one human simulated from the model.
 
 use std::sync::Arc;
 
@@ -18,22 +18,23 @@ use crate::mind::gaze_presence::GazePresence;
 use crate::mind::model::HumanModel;
 use crate::mind::observation::{Observation, Observed, ProposedPresses};
 
-/// Explicit beliefs with their shared model and state.
+/// A set of explicit beliefs (particles), with the model and state that they share.
 #[derive(Clone, Debug)]
 pub struct Particles {
     kitchen: Arc<Kitchen>,
     model: HumanModel,
-    /// The prior: belief at the start, to which recipe beliefs decay.
+    /// The prior: the belief at the start, to which beliefs about recipes decay.
     pub prior: DirichletBelief,
-    /// Distribution that replaces a belief after an observation with probability 0.
+    /// Distribution that replaces a belief after an observation that was impossible under it.
     pub doubt: DirichletBelief,
     /// The explicit beliefs.
     pub of: Vec<Particle>,
     sight: GazeFollower,
     presence: GazePresence,
-    /// For each belief, the chance that a press is made rather than waited, where waiting is evidence: at the last press of the human.
+    /// For each belief, the probability at the human's last press that the human presses rather than waits, where
+    /// waiting is evidence.
     pub pressing: Vec<f64>,
-    /// What each belief looks at while the gaze is unknown, once it has been computed after the last event.
+    /// Where the human of each belief looks while the gaze is unknown, once it has been computed after the last event.
     unseen: Option<PlausibleLooks>,
     shown: State,
     /// Time up to which forgetting has been applied; `None` while the trial is paused.
@@ -70,7 +71,7 @@ impl Particles {
         (self.of, self.unseen) = (people, None);
     }
 
-    /// Lets every belief look, as it needs to, in the unknown time up to `now`.
+    /// Lets the human of every belief look, as its next press needs, in the time of unknown gaze up to `now`.
     pub fn advance(&mut self, now: SessionTime, cost: &mut CostToGo, random: &mut Stream) {
         if self.forgot.is_some() {
             let seconds = self.presence.pass(now);
@@ -104,7 +105,7 @@ impl Particles {
         }
     }
 
-    /// A change by others draws the eye, where the gaze is unknown.
+    /// Accounts for a change by others that attracts the gaze, where the gaze is unknown.
     fn see_changes(&mut self, now: SessionTime, after: State, random: &mut Stream) {
         if self.forgot.is_some() && self.presence.display_in_view {
             let seen = self.model.looking.capture * self.presence.unknown_share(now);
@@ -112,7 +113,8 @@ impl Particles {
         }
     }
 
-    /// Updates every belief with an event. Returns the likelihood of a press of the human, or of its waiting, for each belief; else 1.
+    /// Updates every belief with an event. Returns for each belief the likelihood of a press of the human, or of its
+    /// waiting; else 1.
     pub fn experience(&mut self, observation: &Observation, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
         let now = observation.time;
         if let Observed::Gaze { sample, taken } = observation.what {
@@ -210,7 +212,7 @@ impl Particles {
         let doubt: Vec<Vec<f64>> = self.doubt.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect();
         let (decision, inference) = (&self.model.decision, &self.model.inference);
         let follows = self.model.signal.follows;
-        // A proposed press is made because of the proposal, or chosen as any other one.
+        // The human makes a proposed press because of the proposal, or chooses it like any other.
         let [proposed, chosen] = match self.proposed.next() {
             None => [0.0, 1.0],
             Some(other) => [if other == button { follows } else { 0.0 }, 1.0 - follows],

@@ -1,11 +1,11 @@
-//! The reference filter: inference of the human's belief implemented directly from the equations, without optimisation, for
-//! tests and benchmarks. It shares with [`super::filter`] only the parameters, the kitchen's rules, the robot's policy, the cost to
-//! go, and the accounting of known and unknown gaze time.
+//! The reference filter: inference of the human's belief implemented directly from the equations, without optimisation,
+//! for tests and benchmarks. It shares with [`super::filter`] only the parameters, the kitchen's rules, the robot's
+//! policy, the cost to go, and the accounting of known and unknown gaze time.
 //!
-//! A set of explicit beliefs is drawn from the Dirichlets, every component by a gamma variate. Each event updates every belief
-//! by the human model ([`person`]); a press of the human weighs them by p(a | b). Then they are projected onto Dirichlets by
-//! moment matching, and drawn anew. Gaze samples update the explicit beliefs as well; several in a row are projected together,
-//! which is equivalent, since they change first and second moments linearly.
+//! A set of explicit beliefs is drawn from the Dirichlets, every component by a gamma variate. Each event updates every
+//! belief by the human model ([`person`]); a press of the human weights them by p(a | b). Then they are projected onto
+//! Dirichlets by moment matching, and drawn anew. Gaze samples update the explicit beliefs as well; several in a row
+//! are projected together, which is equivalent, since they change first and second moments linearly.
 
 pub mod belief_set;
 pub mod person;
@@ -25,11 +25,11 @@ use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen};
 
-/// The unoptimised estimator of the human's belief.
+/// The estimator of the human's belief without optimisations, to check the fast one.
 #[derive(Clone, Debug)]
 pub struct ReferenceFilter {
     kitchen: Arc<Kitchen>,
-    /// Belief samples.
+    /// Number of belief samples.
     beliefs: usize,
     seed: u64,
     people: Particles,
@@ -55,7 +55,7 @@ impl ReferenceFilter {
         }
     }
 
-    /// The estimate.
+    /// The present estimate of the human's belief.
     pub fn belief(&self) -> DirichletBelief {
         match self.people.of.is_empty() {
             true => self.people.prior.clone(),
@@ -63,7 +63,7 @@ impl ReferenceFilter {
         }
     }
 
-    /// ln p of the last press of the human, given that a press is made, under the estimate before it, in nats.
+    /// ln p of the last press of the human, given that a button is pressed, under the estimate before it, in nats.
     pub fn log_p(&self) -> Option<f64> {
         self.log_p
     }

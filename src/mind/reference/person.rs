@@ -16,12 +16,13 @@ use crate::mind::choice_parameters::DecisionModel;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
 
-/// Share of the fallback distribution in every belief, so that an observation with probability 0 still leaves a distribution.
+/// Share of the fallback distribution in every belief, so that an observation with probability 0 still leaves a proper
+/// distribution.
 pub const DOUBT: f64 = 1e-6;
 /// Enumerations of all worlds ignore values with a smaller probability.
 const NEGLIGIBLE: f64 = 1e-4;
 
-/// A belief: for every aspect the probabilities of its values.
+/// An explicit belief of a human: for every state aspect, the probabilities of its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Particle {
     /// For every aspect the probabilities of its values, in the kitchen's order.
@@ -35,21 +36,21 @@ pub struct Particle {
 pub struct PossibleWorld {
     /// The content of every location.
     pub state: State,
-    /// What is taken for the recipe of every dish.
+    /// For every dish, the stack of items that is believed to be its recipe.
     pub recipes: Recipes,
-    /// Its probability.
+    /// Probability of the world.
     pub p: f64,
 }
 
 impl Particle {
-    /// A belief drawn from an estimate, every component by a gamma draw.
+    /// A belief drawn from an estimate, every component by a gamma variate.
     pub fn draw(kitchen: &Kitchen, estimate: &DirichletBelief, random: &mut Stream) -> Particle {
         let of = estimate.aspects.iter().map(|dirichlet| draw(dirichlet, random)).collect();
         Particle { of, read: vec![false; kitchen.locations.len()] }
     }
 
-    /// Applies a gaze sample: a location not yet read in this look is read with its probability, and the belief becomes certain of
-    /// the value that was read.
+    /// Applies a gaze sample: a location that has not been read in this look is read with a probability, and the belief
+    /// becomes certain of the value that was read.
     pub fn look(&mut self, glances: &[LocationReading], random: &mut Stream) {
         for glance in glances {
             let location = glance.location.index();
@@ -64,7 +65,7 @@ impl Particle {
         }
     }
 
-    /// Makes the belief certain of a value.
+    /// Makes the belief certain of a value of an aspect.
     pub fn settle(&mut self, aspect: AspectId, value: usize) {
         let of = &mut self.of[aspect.index()];
         of.fill(0.0);
@@ -111,7 +112,7 @@ impl Particle {
         (here, after)
     }
 
-    /// p(a | b) of every button of the human, given that one is pressed.
+    /// p(a | b) of every button of the human, given that a button is pressed.
     pub fn press_chances(
         &self,
         kitchen: &Kitchen,
@@ -124,8 +125,8 @@ impl Particle {
         press_chances(kitchen, model, &after)
     }
 
-    /// Conditions the belief on an own press and whether it was effective: Bayes' rule over the aspects that the press depends on,
-    /// then the kitchen's rules. `expected` is the fallback distribution of each aspect.
+    /// Conditions the belief on the human's press and on whether it was effective: Bayes' rule over the aspects on
+    /// which the press depends, then the kitchen's rules. `expected` is the fallback distribution of each aspect.
     pub fn pressed(&mut self, kitchen: &Kitchen, expected: &[Vec<f64>], button: ButtonId, effective: bool) {
         let action = kitchen.button(Agent::Human, button).action;
         let hand = kitchen.hands[Agent::Human.index()];
@@ -135,7 +136,7 @@ impl Particle {
             ButtonAction::Process(process) => vec![kitchen.processes[usize::from(process)].place.unwrap_or(hand)],
             ButtonAction::Serve(order) => vec![order, kitchen.plate],
         };
-        // The hand is empty after "trash" in both cases, and full after "take".
+        // The hand is empty after "trash" in both cases (effective or not), and full after "take".
         let doubtful = |index: usize| -> Vec<f64> {
             self.of[index].iter().zip(&expected[index]).map(|(p, m)| (1.0 - DOUBT) * p + DOUBT * m).collect()
         };
@@ -181,8 +182,8 @@ impl Particle {
         }
     }
 
-    /// Predicts a press of the robot: for each world of the belief, the robot's possible presses move probability between the values
-    /// of each aspect.
+    /// Updates the belief by a press of the robot: for each world of the belief, the robot's possible presses move
+    /// probability between the values of each aspect.
     pub fn robot_pressed(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, states: usize, random: &mut Stream) {
         let locations = kitchen.locations.len();
         let square = |index: usize| vec![vec![0.0; self.of[index].len()]; self.of[index].len()];
@@ -307,7 +308,7 @@ fn each_recipe(
     }
 }
 
-/// p(a | b) by button, given that one is pressed, from the expected cost to go after each.
+/// p(a | b) of every button, given that one is pressed, from the expected cost to go after each.
 pub fn press_chances(kitchen: &Kitchen, model: &DecisionModel, expected: &[f64]) -> Vec<f64> {
     let least = expected.iter().copied().fold(f64::INFINITY, f64::min);
     let weights: Vec<f64> = expected.iter().map(|after| (-model.tau * (after - least)).exp()).collect();
@@ -333,7 +334,7 @@ pub fn wait_chance(model: &DecisionModel, here: f64, after: &[f64]) -> f64 {
     wait / (wait + pressing)
 }
 
-/// A value drawn from weights that sum to about 1.
+/// Draws a value in proportion to weights that sum to about 1.
 pub fn pick(weights: &[f64], random: &mut Stream) -> usize {
     let mut left = random.random::<f64>() * weights.iter().sum::<f64>();
     let reached = weights.iter().position(|weight| {
@@ -343,8 +344,8 @@ pub fn pick(weights: &[f64], random: &mut Stream) -> usize {
     reached.unwrap_or(weights.len() - 1)
 }
 
-/// A draw from a Dirichlet by gamma variates, as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a)), since those of small alphas
-/// underflow otherwise.
+/// A draw from a Dirichlet by gamma variates, as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a)), since those with small
+/// alphas would underflow.
 pub fn draw(dirichlet: &Dirichlet, random: &mut Stream) -> Vec<f64> {
     let log = |value: usize, random: &mut Stream| {
         let alpha = dirichlet.alpha(value);

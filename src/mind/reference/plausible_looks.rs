@@ -1,4 +1,4 @@
-//! Looks while the gaze is unknown, belief by belief: each looks at what its own next press needs.
+//! Looks while the gaze is unknown, for each explicit belief: the human looks at what the own next press needs.
 
 use rand::RngExt;
 
@@ -9,14 +9,14 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, State};
 use crate::mind::model::HumanModel;
 
-/// The chance that each belief needs to look at each location before its next press.
+/// For each explicit belief, the probability that the human needs to look at each location before the next press.
 #[derive(Clone, Debug)]
 pub struct PlausibleLooks {
     needs: Vec<Vec<f64>>,
 }
 
 impl PlausibleLooks {
-    /// Computes the needs of every belief from its own press chances.
+    /// Computes the needs of every belief from the press probabilities under that belief.
     pub fn before(
         kitchen: &Kitchen,
         model: &HumanModel,
@@ -38,8 +38,8 @@ impl PlausibleLooks {
         PlausibleLooks { needs: people.iter().map(&mut needs_of).collect() }
     }
 
-    /// Lets every belief look at a display that shows `state`. `looks` are the expected looks at a location: without need, and
-    /// where the next press needs it for certain.
+    /// Draws looks for every belief at a display that shows `state`. `looks` are the expected looks at a location:
+    /// without need, and if the next press certainly needs it.
     pub fn look(
         &self,
         kitchen: &Kitchen,
@@ -60,7 +60,8 @@ impl PlausibleLooks {
     }
 }
 
-/// Lets every belief read what changed from one state to the other, with probability `seen` at each location.
+/// Draws for every belief whether the human reads what changed between two states, with probability `seen` at each
+/// location.
 pub fn see_changes(
     kitchen: &Kitchen,
     model: &HumanModel,
@@ -82,7 +83,8 @@ pub fn see_changes(
     }
 }
 
-/// Lets every belief look at each location of a bit set, which shows the state's content, with probability `looks`.
+/// Draws for every belief looks at each location of a bit set, which shows the state's content, with probability
+/// `looks`.
 pub fn asked(
     kitchen: &Kitchen,
     model: &HumanModel,
@@ -100,7 +102,7 @@ pub fn asked(
     }
 }
 
-/// Makes a belief certain of what it reads at a location.
+/// Makes a belief certain of what is read at a location.
 fn read(
     kitchen: &Kitchen,
     model: &HumanModel,

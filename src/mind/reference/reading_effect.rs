@@ -1,11 +1,12 @@
-//! The effect of a gaze sample at each location: the probability of reading it, and the distribution of the value read.
+//! The effect of a gaze sample at each location: the probability that the location is read, and the distribution of the
+//! value read.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::mind::model::PerceptionModel;
 
-/// The gaze counts as elsewhere where the reading rate is below this share of the full rate.
+/// The gaze counts as being elsewhere where the reading rate of a location is below this share of the full rate.
 const ELSEWHERE: f64 = 0.1;
 
 /// The effect of a gaze sample at one location.
@@ -13,30 +14,32 @@ const ELSEWHERE: f64 = 0.1;
 pub struct LocationReading {
     /// The location near the gaze.
     pub location: LocationId,
-    /// Whether a new look begins, in which the location can be read again.
+    /// Whether the sample begins a new look, in which the location can be read again.
     pub begins: bool,
-    /// Probability that it is read by this sample, given that it was not yet read in this look.
+    /// Probability that the location is read by this sample, given that it was not yet read in this look.
     pub chance: f64,
-    /// Distribution of the value read.
+    /// Distribution of the value that is read.
     pub reading: Vec<f64>,
 }
 
-/// Tracks looks and the recent states of the display.
+/// Tracks looks at locations and the recent states of the display.
 #[derive(Clone, Debug, Default)]
 pub struct GazeFollower {
-    /// Recent states of the display, each with the time since which it was shown.
+    /// Recent states of the display, each with the time at which it appeared.
     shown: Vec<(SessionTime, State)>,
-    /// By location, the displayed code of the present look, and the time of its last sample.
+    /// By location, the code of the content that is displayed in the present look, and the time of the look's last
+    /// sample.
     looks: Vec<(u8, SessionTime)>,
 }
 
 impl GazeFollower {
-    /// Notes that the display shows `state` from `now` on.
+    /// Records that the display shows `state` from `now` on.
     pub fn show(&mut self, now: SessionTime, state: State) {
         self.shown.push((now, state));
     }
 
-    /// The effect of a sample taken at session time `taken`, by location; in its time the gaze is known for `known_s` seconds.
+    /// The effect at each location of a gaze sample taken at session time `taken`, during which the gaze is known for
+    /// `known_s` seconds.
     pub fn glances(
         &mut self,
         kitchen: &Kitchen,
@@ -76,17 +79,17 @@ impl GazeFollower {
         glances
     }
 
-    /// State of the display at `time`; `None` if that lies before the kept history.
+    /// State of the display at `time`; `None` if that time is before the stored history.
     fn shown_at(&self, time: SessionTime, history_s: f64) -> Option<State> {
         let newest = self.shown.last().map(|(since, _)| *since)?;
         let (at, (_, state)) = self.shown.iter().enumerate().rev().find(|(_, (since, _))| *since <= time)?;
-        // A state is kept until its successor is older than the history.
+        // A state is stored until its successor is older than the history.
         let is_known = self.shown.get(at + 1).is_none_or(|(until, _)| newest.secs_since(*until) <= history_s);
         is_known.then_some(*state)
     }
 }
 
-/// The confusion matrix's row for a value of a location.
+/// The probability of reading each value of a location, given its true value (a row of the confusion matrix).
 pub fn reading(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Vec<f64> {
     let aspect = &kitchen.aspects[location.index()];
     let alike: Vec<bool> =

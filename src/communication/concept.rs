@@ -1,4 +1,5 @@
-//! The interface of the communication concepts: each advises beside a wizard, answers for a recording, or acts by itself.
+//! The interface of communication concepts, the rules by which an assistant sends signals. A concept advises a wizard,
+//! answers for a recording, or sends signals by itself.
 //!
 //! The wizard is not a concept: a person's signals are in the log, and concepts are compared with them.
 
@@ -11,16 +12,16 @@ use super::situation::Situation;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 
-/// A decision of a concept: which signal to send, if any.
+/// The input of a concept at a time at which it decides which signal to send, if any.
 #[derive(Clone, Copy, Debug)]
 pub struct DecisionPoint<'a> {
     /// Sequence number of the event that led to the decision.
     pub seq: u64,
-    /// The session time of that event.
+    /// The session time of the event that led to the decision.
     pub time: SessionTime,
     /// Number of presses of both agents so far, which seeds the random stream.
     pub presses: u32,
-    /// True state, estimate and robot at this moment.
+    /// True state, estimated belief and robot at this time.
     pub situation: Situation<'a>,
     /// The signals that may be sent, after the repeat rule.
     pub signals: &'a [Signal],
@@ -28,8 +29,8 @@ pub struct DecisionPoint<'a> {
     pub error: Option<u64>,
 }
 
-/// A communication concept. Its answer depends on the decision point and the settings only; caches change computing time, never
-/// results.
+/// A communication concept: the rule by which an assistant sends signals. Its answer depends on the decision point and
+/// the settings only; caches change computing time, never results.
 pub trait Concept: fmt::Debug + Send {
     /// The recommendation at a decision point: the best signal, if any, all options, and the reason.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation;

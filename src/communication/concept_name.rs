@@ -18,10 +18,10 @@ pub enum ConceptName {
 }
 
 impl ConceptName {
-    /// All concepts.
+    /// All communication concepts.
     pub const ALL: [ConceptName; 4] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev, ConceptName::None];
 
-    /// Name in files.
+    /// Name of the concept in files.
     pub fn name(self) -> &'static str {
         match self {
             ConceptName::TomCom => "tom-com",
@@ -31,7 +31,7 @@ impl ConceptName {
         }
     }
 
-    /// Name in texts.
+    /// Name of the concept in texts.
     pub fn title(self) -> &'static str {
         match self {
             ConceptName::TomCom => "ToM-Com",

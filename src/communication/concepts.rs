@@ -1,4 +1,4 @@
-//! The communication concepts by their names.
+//! Creates communication concepts by their names.
 
 use std::sync::Arc;
 
@@ -13,7 +13,8 @@ use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::model::HumanModel;
 
-/// Builds a concept by name with the settings of a session. Its random stream is seeded by `seed` and the number of presses.
+/// Creates the communication concept with this name and the settings of a session. Its random stream is seeded by
+/// `seed` and the number of presses.
 pub fn concept(
     name: ConceptName,
     kitchen: Arc<Kitchen>,

@@ -1,10 +1,11 @@
-//! DEV: the deviation based concept. When the human's press was an error, it proposes the next good presses (paper, "Concept
-//! comparisons": 1 to 5 of them).
+//! DEV: the deviation based communication concept. When the human's press was an error, it proposes the next good
+//! presses (paper, "Concept comparisons": 1 to 5 of them).
 //!
-//! A proposal has a signal of its own ([`Signal::Propose`](super::Signal::Propose)): "next: …". Most good presses involve the own hand or a
-//! storage, for which there is no other signal, and highlighting the location of a press would reveal its content, as the theory of
-//! mind concepts do. The assistant sends it in trials of DEV; beside a wizard a proposal is shown at the console alone. No other concept
-//! has it among its candidates. The offline comparison of concepts assumes that participants follow proposals, as in the paper.
+//! A proposal has a signal of its own ([`Signal::Propose`](super::Signal::Propose)): "next: …". Most good presses
+//! involve the own hand or a storage, about which there is no other signal, and highlighting the location of a press
+//! would reveal its content, as the theory of mind concepts do. In trials of DEV the assistant sends proposals; beside
+//! a wizard they are shown at the console only. No other concept proposes presses. The offline comparison of concepts
+//! assumes that participants follow proposals, as in the paper.
 
 use std::sync::Arc;
 
@@ -16,7 +17,7 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, State};
 /// Largest number of presses of both agents that a proposal plans ahead.
 const MOST_AHEAD: usize = 40;
 
-/// The DEV concept.
+/// The DEV concept: proposes the next good presses after an error.
 #[derive(Clone, Debug)]
 pub struct DevConcept {
     kitchen: Arc<Kitchen>,
@@ -29,8 +30,8 @@ impl DevConcept {
         DevConcept { kitchen, presses }
     }
 
-    /// The next good presses of the human: presses that lower the cost to go of all orders. Where no press of the human does, a
-    /// press of the robot that does is assumed.
+    /// The next good presses of the human: presses that lower the cost to go of all orders. Where no press of the human
+    /// does, a press of the robot that does is assumed in between.
     fn good(&self, cost: &mut CostToGo, state: State) -> Vec<ButtonId> {
         let mut state = state;
         let mut presses = Vec::new();
@@ -57,7 +58,7 @@ impl DevConcept {
 }
 
 impl Concept for DevConcept {
-    /// A proposal is valid, and is updated, until the human's next press.
+    /// The advice of DEV: a proposal is valid, and is updated, until the human's next press.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
         let proposal = moment.error.map(|error| {

@@ -1,11 +1,12 @@
-//! Communication: the signals that wizard and assistant can send to the participant, and which of them to send when.
+//! Communication: the signals that wizard and assistant can send to the participant, and the concepts that decide which
+//! signal to send when.
 //!
 //! The files from the ground up:
 //!
-//! - `signal`, [`recommendation`] (what a concept answers), [`repeats`] (what was said already), [`situation`].
+//! - `signal`, [`recommendation`] (a concept's answer), [`repeats`] (the rule against repeated signals), [`situation`].
 //! - `concept_name`, [`settings`], [`concept`] (the interface), [`offer`] (a recommendation as the wizard sees it).
-//! - What implements it: [`planner`] (ToM-Com), [`tom`], [`dev`]; [`concepts`] builds one by its name. `reference` is the
-//!   planner in its plainest form.
+//! - Implementations of the interface: [`planner`] (ToM-Com), [`tom`], [`dev`]; [`concepts`] creates one by its name.
+//!   `reference` is the planner in its plainest form, for tests.
 
 pub mod concept;
 mod concept_name;

@@ -1,6 +1,7 @@
-//! Offers: recommendations as the wizard sees them. An offer opens, stands still long enough to be read, and closes for a reason.
+//! Offers: recommendations as the wizard sees them. An offer opens, stays unchanged long enough to be read, and closes
+//! for a reason.
 //!
-//! This file has the types, the thresholds, and the memory of the present and the last offer. The rules stand in
+//! This file has the types, the thresholds, and the memory of the present and the previous offers. The rules are in
 //! `session::offers`, since they need the trial's clock and the state of the kitchen.
 
 use serde::{Deserialize, Serialize};
@@ -10,82 +11,86 @@ use super::recommendation::Reason;
 use super::signal::Signal;
 use crate::base::time::SessionTime;
 
-/// In this time after its opening an offer closes only if it is taken, becomes impossible, or the trial ends.
+/// Time after its opening in which an offer closes only if the wizard takes it, if it becomes impossible, or if the
+/// trial ends.
 pub const HOLD: SessionTime = SessionTime(1_500_000_000);
-/// After the close of an offer none opens for this time.
+/// Time after the close of an offer in which no other offer opens.
 pub const GAP: SessionTime = SessionTime(1_000_000_000);
-/// In this time after its opening an offer cannot have been read: `enter` means the one before.
+/// Time after its opening in which the wizard cannot have read an offer: the key `enter` then refers to the previous
+/// offer.
 pub const UNREAD: SessionTime = SessionTime(300_000_000);
-/// For this time after its close an offer can still be taken: the wizard has read it, and the hand is on its way.
+/// Time after its close in which the wizard can still take an offer, having read it and being about to press the key.
 pub const TAKEN_AFTER: SessionTime = SessionTime(1_300_000_000);
 
-/// What is offered.
+/// What an offer suggests to the wizard: a signal, or presses.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OfferedAct {
     /// A signal to the participant.
     Signal(Signal),
-    /// Presses that DEV proposes, by the names of their buttons. They are shown to the wizard, who cannot send them.
+    /// Presses that the DEV concept proposes, by the names of their buttons. They are shown to the wizard, who cannot
+    /// send them.
     Presses(Vec<String>),
 }
 
-/// The value of an offered signal, in presses; for ToM in probability.
+/// The value of an offered signal: in presses, or for the concept ToM in probability.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OfferWorth {
-    /// Expected saving; for ToM the expected belief deviation.
+    /// Expected saving in presses; for ToM the expected belief deviation.
     pub benefit: f64,
     /// Standard error of the benefit.
     pub standard_error: f64,
-    /// Benefit minus the cost of communication; for ToM minus the threshold.
+    /// Net benefit: benefit minus the cost of communication; for ToM minus the threshold.
     pub net: f64,
 }
 
-/// Content of an offer. It does not change while the offer is open.
+/// Content of an offer to the wizard. It does not change while the offer is open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OfferedAdvice {
-    /// What is offered.
+    /// The offered signal, or the proposed presses.
     #[serde(flatten)]
     pub what: OfferedAct,
     /// Sequence number of the event for which the recommendation was computed.
     pub for_seq: u64,
-    /// Its value at the opening; `None` for proposed presses.
+    /// The value of the offered signal when the offer opened; `None` for proposed presses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worth: Option<OfferWorth>,
-    /// Believed value, true value and the press that the signal would prevent, as far as they are known.
+    /// The false belief behind the offer and the press that the signal would prevent, as far as they are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<Reason>,
-    /// Whether a wizard could see it: there is a console or a script that reads offers, and the session's settings show recommendations.
+    /// Whether a wizard could see the offer: there is a console or a script that reads offers, and the session's
+    /// settings show recommendations.
     pub visible: bool,
 }
 
-/// How the signal of an offer was sent.
+/// How the wizard sent the signal of an offer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OfferUse {
-    /// By the key that takes the offer.
+    /// By the key that takes the present offer.
     Taken,
-    /// By the signal's own key.
+    /// By the key of this particular signal.
     OwnKey,
 }
 
-/// When and how the signal of an offer was sent.
+/// When and how the wizard sent the signal of an offer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UsedOffer {
-    /// By which key.
+    /// The kind of key with which the signal was sent.
     pub how: OfferUse,
-    /// When, in session time.
+    /// Session time at which the signal was sent.
     pub at: SessionTime,
 }
 
-/// An offer.
+/// An offer: a recommendation that is shown to the wizard.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Offer {
-    /// Sequence number of its `offer_opened`, by which `offer_closed` and `signal_shown` name it.
+    /// Sequence number of the offer's event `offer_opened`, by which `offer_closed` and `signal_shown` refer to it.
     pub seq: u64,
-    /// When it opened, in session time.
+    /// Session time at which the offer opened.
     pub opened: SessionTime,
-    /// How the wizard sent its signal while it was open or could still be taken, if it was sent.
+    /// How the wizard sent the offer's signal while the offer was open or could still be taken, if the wizard sent it.
     pub used: Option<UsedOffer>,
-    /// What is offered, and why.
+    /// The content of the offer, and the reason.
     pub advice: OfferedAdvice,
 }
 
@@ -103,22 +108,22 @@ impl Offer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OfferEnd {
-    /// The wizard took it.
+    /// The wizard took the offer.
     Taken,
-    /// The wizard sent its signal by the signal's own key.
+    /// The wizard sent the offered signal by the signal's own key.
     OwnKey,
-    /// Its signal cannot be sent any more.
+    /// The offered signal cannot be sent any more.
     Impossible,
-    /// Its net benefit fell below the threshold; the proposal of presses is out of date.
+    /// The net benefit of the offered signal fell below the threshold, or the proposal of presses is out of date.
     Fell,
-    /// Another signal became better.
+    /// Another signal became better than the offered one.
     Replaced,
     /// The trial ended.
     TrialEnded,
 }
 
 impl OfferEnd {
-    /// All reasons.
+    /// All reasons for which an offer closes.
     pub const ALL: [OfferEnd; 6] = [
         OfferEnd::Taken,
         OfferEnd::OwnKey,
@@ -128,7 +133,7 @@ impl OfferEnd {
         OfferEnd::TrialEnded,
     ];
 
-    /// Name in logs and tables.
+    /// Name of the reason in logs and tables.
     pub fn name(self) -> &'static str {
         match self {
             OfferEnd::Taken => "taken",
@@ -140,7 +145,7 @@ impl OfferEnd {
         }
     }
 
-    /// The reason in words.
+    /// The reason for which an offer closed, in words.
     pub fn words(self) -> &'static str {
         match self {
             OfferEnd::Taken => "taken",
@@ -153,18 +158,18 @@ impl OfferEnd {
     }
 }
 
-/// A closed offer.
+/// A closed offer, with the time and the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedOffer {
-    /// The offer.
+    /// The offer as it was when it closed.
     pub offer: Offer,
-    /// When it closed, in session time.
+    /// Session time at which the offer closed.
     pub closed: SessionTime,
-    /// Why it closed.
+    /// The reason for which the offer closed.
     pub reason: OfferEnd,
 }
 
-/// The offers of a trial: the open one, and those that closed.
+/// The offers of a trial: the open one, and the closed ones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OfferBook {
     present: Option<Offer>,
@@ -172,12 +177,12 @@ pub struct OfferBook {
 }
 
 impl OfferBook {
-    /// The offer on the wizard's screen: open, and its signal has not been sent.
+    /// The offer on the wizard's screen: it is open, and its signal has not been sent.
     pub fn open(&self) -> Option<&Offer> {
         self.present.as_ref().filter(|offer| offer.used.is_none())
     }
 
-    /// The offer that has not been closed, also if its signal has just been sent.
+    /// The offer that has not been closed, even if its signal has just been sent.
     pub fn unclosed(&self) -> Option<&Offer> {
         self.present.as_ref()
     }
@@ -192,7 +197,7 @@ impl OfferBook {
         &self.closed
     }
 
-    /// The present or the last offer, by its sequence number.
+    /// The present or the last closed offer, if it has this sequence number.
     pub fn find(&self, seq: u64) -> Option<&Offer> {
         self.present.iter().chain(self.last().map(|last| &last.offer)).find(|offer| offer.seq == seq)
     }
@@ -207,8 +212,8 @@ impl OfferBook {
         self.closed.extend(self.present.take().map(|offer| ClosedOffer { offer, closed: now, reason }));
     }
 
-    /// Notes that the wizard sent a signal. It concerns the open offer and, if `with_last`, the last one that closed, as far
-    /// as they offered this signal.
+    /// Records that the wizard sent a signal. It belongs to the open offer and, if `with_last`, to the last closed one,
+    /// if that offered the same signal.
     pub fn sends(&mut self, signal: &Signal, used: UsedOffer, with_last: bool) {
         let last = self.closed.last_mut().filter(|_| with_last).map(|last| &mut last.offer);
         for offer in self.present.iter_mut().chain(last).filter(|offer| offer.signal() == Some(signal)) {
@@ -217,20 +222,21 @@ impl OfferBook {
     }
 }
 
-/// Thresholds of offers, in the unit of the concept's net benefit.
+/// Thresholds of net benefit at which offers close, in the unit of the concept's net benefit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OfferThresholds {
     /// An offer closes when its net benefit is below this.
     pub closes_below: f64,
-    /// An offer closes when another is better by this.
+    /// An offer closes when another signal's net benefit is higher by this.
     pub better_by: f64,
 }
 
 impl OfferThresholds {
-    /// The thresholds for a concept; offers of all concepts open above a net benefit of 0.
+    /// The thresholds of offers for a concept; offers of all concepts open above a net benefit of 0.
     ///
-    /// ToM-Com: half a press, a third of the cost of communication and several standard errors of the benefit. ToM: 0.1 of
-    /// probability; one look at a place moves the belief about it by more. DEV: its proposals have no net benefit.
+    /// ToM-Com: half a press, which is a third of the cost of communication and several standard errors of the benefit.
+    /// ToM: 0.1 of probability; one look at a place changes the belief about it by more. DEV: its proposals have no net
+    /// benefit.
     pub fn for_concept(name: ConceptName) -> OfferThresholds {
         match name {
             ConceptName::TomCom | ConceptName::Dev | ConceptName::None => {

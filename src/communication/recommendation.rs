@@ -8,30 +8,30 @@ use crate::kitchen::{AspectId, Kitchen, LocationKind, OrderContent, State};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::recorded_estimate::rounded;
 
-/// Recommendation of a concept after an event.
+/// Recommendation of a communication concept after an event.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Recommendation {
-    /// Sequence number of the event for which it was computed.
+    /// Sequence number of the event for which the recommendation was computed.
     pub for_seq: u64,
-    /// Session time of that event.
+    /// Session time of the event for which the recommendation was computed.
     pub for_ns: SessionTime,
-    /// All options, the best first.
+    /// All signals that could be sent, the best first.
     pub options: Vec<SignalOption>,
-    /// The recommended signal; `None` if no signal is worth its cost.
+    /// The recommended signal; `None` if no signal exceeds its cost.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub best: Option<Signal>,
-    /// Reason for the first option if it saves presses, also if it is not worth its cost and `best` is `None`.
+    /// Reason for the first option if it saves presses, even if it does not exceed its cost and `best` is `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<Reason>,
-    /// Proposed presses (DEV only).
+    /// Proposed presses; only the concept DEV has any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub proposal: Option<Proposal>,
 }
 
-/// Good presses proposed after an error.
+/// Good presses that the DEV concept proposes after an error.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Proposal {
-    /// Sequence number of the press that was the error.
+    /// Sequence number of the erroneous press.
     pub error: u64,
     /// Proposed next presses of the human, by the names of their buttons.
     pub presses: Vec<String>,
@@ -40,15 +40,15 @@ pub struct Proposal {
 /// A signal with its estimated benefit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SignalOption {
-    /// The signal that could be sent.
+    /// The signal that could be sent to the participant.
     pub signal: Signal,
-    /// Expected saving in presses of both agents; for ToM, the expected belief deviation.
+    /// Expected saving in presses of both agents; for the concept ToM, the expected belief deviation.
     pub benefit: f64,
-    /// Standard error of the benefit, in its unit; 0 for a concept that computes it exactly.
+    /// Standard error of the benefit, in the benefit's unit; 0 for a concept that computes it exactly.
     pub standard_error: f64,
     /// Net benefit: benefit minus the cost of communication; for ToM, deviation minus threshold.
     pub net: f64,
-    /// Number of paired rollouts; 0 for ToM.
+    /// Number of paired rollouts behind the estimate; 0 for ToM.
     pub rollouts: u32,
 }
 
@@ -57,9 +57,9 @@ pub struct SignalOption {
 pub struct Reason {
     /// Name of the aspect with the false belief.
     pub aspect: String,
-    /// Falsely believed value.
+    /// The value that is falsely believed, as text.
     pub believes: String,
-    /// The true value of the aspect, by its label.
+    /// The true value of the aspect, as text.
     pub truth: String,
     /// Expected probability of the falsely believed value.
     pub p_believes: f64,
@@ -77,7 +77,7 @@ impl Recommendation {
         Recommendation { for_seq: seq, for_ns: time, options: Vec::new(), best: None, reason: None, proposal: None }
     }
 
-    /// Removes a signal that has been sent; the next best signal is unknown until the next recommendation.
+    /// Removes a signal that has been sent; the next best signal is not computed before the next recommendation.
     pub fn remove(&mut self, sent: &Signal) {
         self.options.retain(|option| option.signal != *sent);
         if self.best.as_ref() == Some(sent) {
@@ -85,13 +85,14 @@ impl Recommendation {
         }
     }
 
-    /// The option with the highest net benefit.
+    /// The signal with the highest net benefit.
     pub fn top(&self) -> Option<&SignalOption> {
         self.options.first()
     }
 }
 
-/// The aspects that a signal makes certain: a location's content, or an order and the recipe of its dish; none of proposed presses.
+/// The state aspects that a signal reveals: a location's content, or an order and the recipe of its dish; none for
+/// proposed presses.
 pub fn aspects_told(kitchen: &Kitchen, state: State, signal: &Signal) -> Vec<AspectId> {
     let Some(location) = signal.location(kitchen) else { return Vec::new() };
     let mut aspects = vec![AspectId::of_location(location)];
@@ -101,13 +102,13 @@ pub fn aspects_told(kitchen: &Kitchen, state: State, signal: &Signal) -> Vec<Asp
     aspects
 }
 
-/// A content as part of a sentence; a stack is put in quotes.
+/// A content worded as part of a sentence; a stack is put in quotes.
 pub fn phrase(label: &str) -> String {
     if label.contains(" + ") { format!("\"{label}\"") } else { label.to_string() }
 }
 
 impl Reason {
-    /// The reason for a signal: its aspect with the lowest expected P(truth).
+    /// The reason for a signal: its aspect to whose true value the estimated belief gives the lowest probability.
     pub fn for_signal(kitchen: &Kitchen, state: State, belief: &DirichletBelief, signal: &Signal) -> Option<Reason> {
         let p_truth = |aspect: &AspectId| belief.p_truth(kitchen, state, *aspect);
         let aspects = aspects_told(kitchen, state, signal);

@@ -22,10 +22,10 @@ use crate::mind::model::HumanModel;
 use crate::mind::reference::person::{Particle, pick, press_chances};
 use crate::robot::policy;
 
-/// Estimated benefit of one signal.
+/// Estimated benefit of one signal by the reference planner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceBenefit {
-    /// The signal that was evaluated.
+    /// The evaluated signal.
     pub signal: Signal,
     /// Expected saving in presses of both agents.
     pub benefit: f64,
@@ -33,7 +33,7 @@ pub struct ReferenceBenefit {
     pub standard_error: f64,
 }
 
-/// The unoptimised planner.
+/// The planner of signals without optimisations, to check the fast one.
 #[derive(Clone, Debug)]
 pub struct ReferencePlanner {
     kitchen: Arc<Kitchen>,
@@ -46,7 +46,8 @@ pub struct ReferencePlanner {
 struct Future {
     state: State,
     person: Particle,
-    /// The button towards which the arm moves, the time of arrival, and whether the press is made in any case.
+    /// The button to which the robot's arm is moving, the time of arrival in seconds, and whether the press is made in
+    /// any case.
     errand: Option<(ButtonId, f64, bool)>,
     now_s: f64,
     presses: u32,
@@ -63,7 +64,7 @@ impl Future {
 }
 
 impl ReferencePlanner {
-    /// A planner for a human model. Its random stream is seeded by `seed` and the number of presses so far.
+    /// A reference planner for a human model. Its random stream is seeded by `seed` and the number of presses so far.
     pub fn new(kitchen: Arc<Kitchen>, mut human: HumanModel, spec: AssistantSpec, seed: u64) -> ReferencePlanner {
         human.looking = spec.rollout.looking(&human.looking);
         ReferencePlanner { kitchen, human, spec, seed }
@@ -92,7 +93,7 @@ impl ReferencePlanner {
         signals.iter().zip(&saved).map(worth).collect()
     }
 
-    /// Random stream of a rollout for one purpose at one step, the same for all signals.
+    /// Random stream of a rollout for one purpose at one step; it is the same for all signals.
     fn chance(&self, of: &str, presses: u32, rollout: u64, step: u64) -> Stream {
         stream(self.seed, of, u64::from(presses) << 32 | rollout << 8 | step)
     }
@@ -128,7 +129,7 @@ impl ReferencePlanner {
         f64::from(future.presses) + f64::from(cost.all_orders(future.state, &self.kitchen.true_recipes()))
     }
 
-    /// Runs the robot until the human's next decision.
+    /// Lets the robot act until the human's next decision.
     fn robot_until(&self, cost: &mut CostToGo, future: &mut Future, until_s: f64, press_s: f64, random: &mut Stream) {
         let (kitchen, recipes) = (&self.kitchen, self.kitchen.true_recipes());
         loop {

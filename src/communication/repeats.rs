@@ -1,4 +1,4 @@
-//! The repeat rule: a signal is not repeated before its content can have been forgotten.
+//! The repeat rule: a signal is not sent again before the human may have forgotten its content.
 
 use super::recommendation::aspects_told;
 use super::signal::{Signal, signals};
@@ -6,39 +6,39 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{AspectId, Kitchen, LocationId, State};
 use crate::mind::dirichlet::DirichletBelief;
 
-/// Expected P(truth) from which the content of a signal counts as known.
+/// Expected P(truth) above which the human is assumed to know the content of a signal.
 const KNOWN: f64 = 0.9;
 
-/// The signals that must not be repeated yet. A signal may be repeated once P(truth) of its aspects has passed 0.9 and fallen
-/// again, or the truth has changed.
+/// The repeat rule's memory: signals that must not be sent again yet. A signal may be repeated once P(truth) of its
+/// aspects has passed 0.9 and fallen again, or the truth has changed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Repeats {
-    /// One entry per location.
+    /// The last signal about each location.
     told: [Option<Told>; MAX_LOCATIONS],
 }
 
-/// Content of a signal that was shown.
+/// Content of a signal that the display showed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Told {
-    /// Code of the location's content at the time.
+    /// Code of the location's content when the signal was shown.
     code: u8,
     was_known: bool,
 }
 
 impl Repeats {
-    /// Notes that a signal was shown.
+    /// Records that the display showed a signal.
     pub fn shown(&mut self, kitchen: &Kitchen, state: State, signal: &Signal) {
         if let Some(location) = signal.location(kitchen) {
             self.told[location.index()] = Some(Told { code: state.code(location), was_known: false });
         }
     }
 
-    /// Notes that the signal about a location was not shown after all.
+    /// Forgets the last signal about the location, because it was not shown after all.
     pub fn not_shown(&mut self, location: LocationId) {
         self.told[location.index()] = None;
     }
 
-    /// Applies the rule after a change of the estimate or of the true state.
+    /// Applies the repeat rule after a change of the estimate or of the true state.
     pub fn update(&mut self, kitchen: &Kitchen, state: State, belief: &DirichletBelief) {
         for (location, signal) in signals(kitchen, true) {
             let slot = &mut self.told[location.index()];
@@ -53,7 +53,7 @@ impl Repeats {
         }
     }
 
-    /// The available signals that may be shown now.
+    /// The available signals that the repeat rule allows now.
     pub fn allowed(&self, kitchen: &Kitchen, own_hand: bool) -> Vec<Signal> {
         let all = signals(kitchen, own_hand).into_iter();
         all.filter(|(location, _)| self.told[location.index()].is_none()).map(|(_, signal)| signal).collect()

@@ -1,31 +1,33 @@
-//! Settings of the assistant in a session file.
+//! Settings of the assistant and its planner in a session file.
 
 use serde::{Deserialize, Serialize};
 
 use super::concept_name::ConceptName;
 use crate::mind::model::LookingModel;
 
-/// Settings of the assistant.
+/// Settings of the assistant, which recommends or sends signals.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AssistantSpec {
-    /// Whether it advises in trials in which it does not act.
+    /// Whether the assistant computes recommendations in trials in which it does not send signals.
     pub shadow: Shadow,
-    /// The communication concept that decides.
+    /// The communication concept by which the assistant decides.
     pub concept: ConceptName,
     /// Cost of communication in presses: the expected saving of a signal must exceed it (1.5 in the paper).
     pub cost_of_communication: f64,
     /// Expected belief deviation, a probability, above which ToM sends a signal.
     pub belief_threshold: f64,
-    /// Number of presses that DEV proposes after an error.
+    /// Number of presses that the concept DEV proposes after an error.
     pub proposed_presses: usize,
-    /// Whether it is also asked when the human has not pressed for unusually long (`human_waits`).
+    /// Whether the assistant is also asked for advice when the human has not pressed for unusually long
+    /// (`human_waits`).
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub asks_in_silence: bool,
-    /// Whether it is also asked when, by the gaze alone, the human seems to believe something wrong (`seems_unaware`).
+    /// Whether the assistant is also asked for advice when, judged by the gaze alone, the human seems to have a false
+    /// belief (`seems_unaware`).
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub asks_by_gaze: bool,
-    /// How finely the planner computes.
+    /// Settings of the planner's rollouts.
     pub rollout: RolloutModel,
 }
 
@@ -33,10 +35,10 @@ pub struct AssistantSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shadow {
-    /// It computes recommendations beside the wizard, who may see them.
+    /// The assistant computes recommendations beside the wizard, who may see them.
     #[default]
     On,
-    /// It computes nothing where it does not act.
+    /// The assistant computes nothing in trials in which it does not send signals.
     Off,
 }
 
@@ -46,7 +48,7 @@ impl Default for AssistantSpec {
             shadow: Shadow::On,
             concept: ConceptName::TomCom,
             cost_of_communication: 1.5,
-            // The definition of a false belief.
+            // Equal to the definition of a false belief.
             belief_threshold: 0.5,
             proposed_presses: 1,
             asks_in_silence: false,
@@ -68,13 +70,15 @@ pub struct RolloutModel {
     pub states: usize,
     /// Time between presses of the human, in seconds.
     pub human_press_s: f64,
-    /// Looks a second in rollouts, where they are not to be those of the human model: see [`LookingModel`].
+    /// Looks per second in rollouts, if they differ from those of the human model: see [`LookingModel`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub looks_hz: Option<f64>,
-    /// The same at places that the next press does not need.
+    /// Looks per second in rollouts at places that the next press does not need, if they differ from those of the human
+    /// model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other_looks_hz: Option<f64>,
-    /// The same of the share of changes by others that draw the eye at once.
+    /// Share of the changes by others that attract the gaze at once in rollouts, if it differs from that of the human
+    /// model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub capture: Option<f64>,
     /// Rollouts of a signal end when the standard error of its benefit is at most this, in presses, or at most twice this if the net
@@ -101,7 +105,7 @@ impl Default for RolloutModel {
 }
 
 impl RolloutModel {
-    /// Where the human looks in rollouts: as its model says, or as the settings of the rollouts say.
+    /// Where the human looks in rollouts: as the human model says, or as the settings of the rollouts say.
     pub fn looking(&self, human: &LookingModel) -> LookingModel {
         LookingModel {
             looks_hz: self.looks_hz.unwrap_or(human.looks_hz),
@@ -113,7 +117,7 @@ impl RolloutModel {
 }
 
 impl AssistantSpec {
-    /// The value that an option's benefit must exceed: the cost of communication in presses, or ToM's threshold.
+    /// The value that a signal's benefit must exceed: the cost of communication in presses, or ToM's threshold.
     pub fn price(&self) -> f64 {
         match self.concept {
             ConceptName::Tom => self.belief_threshold,
@@ -121,7 +125,8 @@ impl AssistantSpec {
         }
     }
 
-    /// The parameter by which the concept is compared: the cost of communication, ToM's threshold, or the number of presses that DEV proposes.
+    /// The parameter that is varied when concepts are compared: the cost of communication, ToM's threshold, or the
+    /// number of presses that DEV proposes.
     pub fn parameter(&self) -> f64 {
         match self.concept {
             ConceptName::Dev => self.proposed_presses as f64,

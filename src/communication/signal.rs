@@ -1,20 +1,20 @@
-//! The signals that can be sent to the participant, and when each can be.
+//! The signals that can be sent to the participant, and when each is available.
 
 use serde::{Deserialize, Serialize};
 
 use crate::kitchen::{Agent, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::mind::observation::MOST_PROPOSED;
 
-/// A communication signal, by the names of the layout's locations.
+/// A signal to the participant, by the names of the layout's locations.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Signal {
-    /// The recipe of the dish that this order location wants, picture and words.
+    /// Shows the recipe of the dish that this order location wants, as picture and words.
     ShowRecipe(String),
-    /// Directs attention to a location and its content.
+    /// Highlights a location, to direct attention to its content.
     Highlight(String),
-    /// Proposes the human's next presses, the next one first, by the names of their buttons. Only DEV sends it; it says nothing about
-    /// contents and recipes.
+    /// Proposes the human's next presses, the next one first, by the names of their buttons. Only the concept DEV
+    /// proposes; a proposal reveals nothing about contents and recipes.
     Propose(Vec<String>),
 }
 
@@ -32,7 +32,7 @@ impl Signal {
         kitchen.location_named(self.target()?)
     }
 
-    /// Number of contents: of a proposal its presses, of any other signal one.
+    /// Number of contents of the signal: presses of a proposal, one of any other signal.
     pub fn contents(&self) -> usize {
         match self {
             Signal::ShowRecipe(_) | Signal::Highlight(_) => 1,
@@ -41,18 +41,19 @@ impl Signal {
     }
 }
 
-/// Who sends a signal.
+/// The sender of a signal: wizard or assistant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sender {
-    /// The person at the console, or the script in its place.
+    /// The wizard: the person at the console, or the script in that person's place.
     Wizard,
-    /// The communication concept that acts by itself.
+    /// The assistant: a communication concept that sends signals by itself.
     Assistant,
 }
 
-/// The signal about each location, which wizard, ToM-Com and ToM choose from, in the order of the locations: recipes for orders, highlights for the others but the
-/// human's own hand, unless `own_hand` allows it (it is what one sees best).
+/// The signal about each location, from which wizard, ToM-Com and ToM choose, in the order of the locations: recipes
+/// for orders, highlights for the other locations. The human's own hand has a signal only if `own_hand` allows it,
+/// since people see it best.
 pub fn signals(kitchen: &Kitchen, own_hand: bool) -> Vec<(LocationId, Signal)> {
     let signal = |index: usize| {
         let location = &kitchen.locations[index];
@@ -72,8 +73,8 @@ pub fn available(kitchen: &Kitchen, state: State, own_hand: bool) -> Vec<Signal>
     all.filter(|signal| unavailable(kitchen, state, signal).is_none()).collect()
 }
 
-/// Why a signal cannot be sent now; `None` if it can. Only an order that wants a dish has a recipe to show, and the first of proposed
-/// presses must have an effect.
+/// Why a signal cannot be sent now; `None` if it can. Only an order that wants a dish has a recipe to show, and the
+/// first press of a proposal must have an effect.
 pub fn unavailable(kitchen: &Kitchen, state: State, signal: &Signal) -> Option<&'static str> {
     if let Signal::Propose(presses) = signal {
         return not_proposable(kitchen, state, presses);

@@ -1,4 +1,4 @@
-//! The situation in which a concept decides: true state, belief estimate, robot.
+//! The situation in which a communication concept decides: true state, belief estimate, robot.
 
 use crate::kitchen::{AspectId, ButtonId, State};
 use crate::mind::dirichlet::DirichletBelief;
@@ -6,13 +6,13 @@ use crate::mind::dirichlet::DirichletBelief;
 /// A situation of a trial as the assistant knows it.
 #[derive(Clone, Copy, Debug)]
 pub struct Situation<'a> {
-    /// The true state.
+    /// The true state of the kitchen.
     pub state: State,
     /// The estimate of the human's belief.
     pub belief: &'a DirichletBelief,
-    /// Locations that have just changed and may draw the human's eye.
+    /// Locations that have just changed, and may attract the human's gaze.
     pub changed: &'a [AspectId],
-    /// What the robot is about to do.
+    /// The robot's present action.
     pub robot: RobotIntent,
     /// Duration of a robot press, in seconds.
     pub robot_press_s: f64,
@@ -28,17 +28,17 @@ impl<'a> Situation<'a> {
 /// The robot's present action.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RobotIntent {
-    /// Its arm is on its way to a button.
+    /// The robot's arm is moving to a button.
     Busy {
-        /// The button, in the list of the robot's buttons.
+        /// The robot's button, as an index into its buttons.
         button: ButtonId,
-        /// Time until the arm touches it, in seconds.
+        /// Time until the arm touches the button, in seconds.
         remaining_s: f64,
-        /// The wizard chose the button, so that the press is made whether it is useful or not.
+        /// Whether the wizard chose the button, so that the robot makes the press even if it is not useful.
         driven: bool,
     },
-    /// It follows its policy.
+    /// The robot follows its task policy.
     Free,
-    /// It is stopped or held.
+    /// The robot is stopped or held by the wizard.
     Still,
 }

@@ -1,9 +1,9 @@
-//! ToM: theory of mind without planning. Communicates false or uncertain beliefs, whether they matter now or not (paper, "Concept
-//! comparisons"; Buehler and Weisswange 2018).
+//! ToM: the communication concept with theory of mind, but without planning. It communicates false or uncertain
+//! beliefs, whether they matter now or not (paper, "Concept comparisons"; Buehler and Weisswange 2018).
 //!
-//! Among the available signals, the one whose aspect has the largest expected belief deviation, 1 - E[P(truth)], is recommended if
-//! that deviation exceeds a threshold (0.4 to 0.99 in the paper). There is no signal about the own hand (unless the session allows
-//! it) and about recipes of dishes that are not ordered.
+//! Among the available signals, the one whose aspect has the largest expected belief deviation, 1 - E[P(truth)], is
+//! recommended if that deviation exceeds a threshold (0.4 to 0.99 in the paper). There is no signal about the own hand
+//! (unless the session allows it) and about recipes of dishes that are not ordered.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::mind::recorded_estimate::rounded;
 
-/// The ToM concept.
+/// The ToM concept: signals about the aspect with the largest expected belief deviation.
 #[derive(Clone, Debug)]
 pub struct TomConcept {
     kitchen: Arc<Kitchen>,
@@ -36,7 +36,8 @@ impl TomConcept {
 }
 
 impl Concept for TomConcept {
-    /// An option's benefit is its expected belief deviation; its net benefit is the deviation minus the threshold.
+    /// The advice of ToM: a signal's benefit is the expected belief deviation; the net benefit is the deviation minus
+    /// the threshold.
     fn advise(&mut self, _: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let (kitchen, state) = (&self.kitchen, moment.situation.state);
         let possible = moment.signals.iter().filter(|signal| unavailable(kitchen, state, signal).is_none());

@@ -6,7 +6,7 @@ use super::true_beliefs::ParticipantBeliefs;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Press, State, World};
 
-/// Probability of the truth for those who know everything.
+/// Probability that participants who know everything (a setting) give to the true value.
 const SURE: f64 = 0.99;
 
 impl SimulatedParticipant {
@@ -21,7 +21,8 @@ impl SimulatedParticipant {
         self.press_at = now + self.reaction();
     }
 
-    /// Performs the next due action. `state` is the true state; only fixated locations and the recorded P(truth) are taken from it.
+    /// Performs the simulated participant's next due action. From the true `state` it uses only fixated locations and
+    /// the recorded P(truth).
     pub fn act(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
         if !self.is_started {
             return None;
@@ -43,7 +44,7 @@ impl SimulatedParticipant {
         Some(ParticipantAction::Gaze(self.eyes.sample(now)))
     }
 
-    /// Takes the truth for known: the most probable world is the true one.
+    /// Makes the beliefs of an all-knowing participant true: the most probable world is then the true one.
     fn know(&mut self, state: State) {
         let kitchen = self.kitchen.clone();
         if self.beliefs.point(&kitchen) != World::with_true_recipes(&kitchen, state) {
@@ -52,7 +53,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Reacts to a press. The participant notices that the robot pressed, but not which button.
+    /// Reacts to a press. The simulated participant notices that the robot pressed, but not which button.
     pub fn on_press(&mut self, now: SessionTime, press: &Press) {
         match press.agent {
             Agent::Robot => {

@@ -1,4 +1,4 @@
-//! How a simulated participant answers the questions of a freeze probe: by the most probable value of what it believes.
+//! How a simulated participant answers the questions of a freeze probe: with the most probable value of its belief.
 
 use rand::RngExt;
 
@@ -11,11 +11,11 @@ use crate::mind::BeliefWitness;
 
 /// Standard deviation of the logarithm of one participant's answering times.
 const ANSWER_JITTER: f64 = 0.35;
-/// Least probabilities of the most probable value at which confidence is 2 and 3.
+/// Least probabilities of the most probable value for which the confidence in an answer is 2 or 3.
 const SURE_FROM: [f64; 2] = [2.0 / 3.0, 0.9];
 
 impl SimulatedParticipant {
-    /// Record of what it believes now, of which nothing comes but answers.
+    /// Record of the participant's present beliefs, from which the answers follow.
     pub fn believes(&self, state: State) -> BeliefWitness {
         witness::without_press(&self.kitchen, &self.beliefs, state)
     }
@@ -25,9 +25,10 @@ impl SimulatedParticipant {
         self.person.answer_s * (ANSWER_JITTER * normal(&mut self.of_answer(probe, question))).exp()
     }
 
-    /// The answer to a question about an aspect: one of the choices, or `None` for "I don't know".
+    /// The participant's answer to a question about an aspect: one of the choices, or `None` for "I don't know".
     ///
-    /// Where the truth is as probable as anything else, it is the answer: so the answer is right exactly where the belief is not false.
+    /// If the truth is as probable as any other value, the truth is the answer: so the answer is right exactly where
+    /// the belief is not false.
     pub fn answer(
         &self,
         state: State,
@@ -51,7 +52,7 @@ impl SimulatedParticipant {
         (most_likely >= self.population.answers_from).then(|| believed.clone())
     }
 
-    /// How sure it is of its answer about an aspect, from 1 to 3.
+    /// The participant's confidence in its answer about an aspect, from 1 to 3.
     pub fn confidence(&self, aspect: AspectId) -> u8 {
         match self.beliefs.certainty(aspect) {
             p if p < SURE_FROM[0] => 1,
@@ -60,12 +61,12 @@ impl SimulatedParticipant {
         }
     }
 
-    /// The order that it expects to be served next: the one on which it works.
+    /// The order that the participant expects to be served next: the one on which it works.
     pub fn next_order(&self) -> Option<LocationId> {
         self.intent.order.map(|(order, _)| order)
     }
 
-    /// The random stream of one answer, so that none depends on which others were given.
+    /// The random stream of one answer, so that no answer depends on which others were given.
     fn of_answer(&self, probe: u32, question: u32) -> Stream {
         stream(self.answer_seed, "participant's answers", u64::from(probe) << 8 | u64::from(question))
     }

@@ -1,4 +1,4 @@
-//! Queue of locations that the simulated participant intends to look at.
+//! Queue of locations at which a simulated participant intends to look.
 
 use std::collections::VecDeque;
 
@@ -8,12 +8,13 @@ use crate::kitchen::LocationId;
 /// Capacity of the queue of locations to look at.
 const MOST_GLANCES: usize = 6;
 
-/// Queue of locations to look at, and the time of the last reading of each location.
+/// Queue of locations at which a simulated participant intends to look, and the time of the last reading of each
+/// location.
 #[derive(Clone, Debug, Default)]
 pub struct Attention {
-    /// The locations to look at, in order.
+    /// The locations to look at next, in order.
     pub glances: VecDeque<LocationId>,
-    /// The location that is looked at.
+    /// The location at which the participant is looking.
     pub looking_at: Option<LocationId>,
     /// Time of the last reading, by location.
     pub read_at: Vec<SessionTime>,

@@ -1,7 +1,8 @@
-//! Decisions of the simulated participant: which order it works on, and which press comes next, for a world that it believes.
+//! Decisions of the simulated participant, in a world that it believes: on which order to work, and which press comes
+//! next.
 //!
-//! A decision is a function of what is believed: repeated with the truth and the same lapses, it tells whether a press came from a
-//! false belief.
+//! A decision is a function of beliefs: repeated with the truth and the same lapses, it tells whether a press came from
+//! a false belief.
 
 use std::collections::VecDeque;
 
@@ -12,14 +13,16 @@ use super::planning::{Chaining, ProposedPress};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, LocationKind, State, World};
 
-/// Number of presses after which a plan is made anew even if all goes well; the eyes look ahead in the plan.
+/// Number of presses after which a new plan is made even if all goes well; the participant looks at the places of
+/// planned presses.
 const PLANNED_PRESSES: usize = 2;
-/// Worth of what is there already when an order is chosen: of the finished dish, of each part on the board, of each other part.
+/// Weights for the choice of an order: of the finished dish, of each part on the board, of each other part that is
+/// available.
 const FINISHED_WORTH: usize = 100;
 const BASE_WORTH: usize = 10;
 const PART_WORTH: usize = 2;
 
-/// Share of the desperate decisions in which the robot is still waited for.
+/// Share of the desperate decisions in which the participant still waits for the robot.
 const HOPES: f64 = 0.5;
 
 /// Current plan of the simulated participant.
@@ -31,73 +34,73 @@ pub struct Intent {
     pub order: Option<(LocationId, SessionTime)>,
     /// The stack that the participant served last.
     pub last_dish: Option<ContentId>,
-    /// What goes wrong until the next press.
+    /// Lapses (omissions and habits) of the decisions until the next press.
     pub lapses: Lapses,
 }
 
 impl Intent {
-    /// Forgets what was to be done next.
+    /// Forgets the planned presses and the order in progress, as after an interruption.
     pub fn lose(&mut self) {
         self.plan.clear();
         self.order = None;
     }
 }
 
-/// How long nothing has gone on.
+/// How long the simulated participant has found no useful press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Urgency {
-    /// The robot is waited for.
+    /// The participant waits for the robot.
     Calm,
-    /// Detours are made.
+    /// The participant makes detours.
     Impatient,
-    /// The robot is no longer waited for, and anything is tried.
+    /// The participant does not wait for the robot any more, and tries anything.
     Desperate,
 }
 
-/// A decision on the next presses, but for the world in which it is made.
+/// The data for a decision on the next presses, except for the world in which it is made.
 #[derive(Clone, Debug)]
 pub struct Decision<'a> {
     /// The kitchen.
     pub kitchen: &'a Kitchen,
-    /// What the participant knows of it.
+    /// What the participant knows of the kitchen's buttons and processing steps.
     pub knowledge: &'a TaskKnowledge,
     /// The participant's habits.
     pub habits: &'a Habits,
-    /// Number of own presses that are thought through.
+    /// Number of own presses that the participant thinks through.
     pub depth: usize,
-    /// The order in progress.
+    /// The order on which the participant works.
     pub in_progress: Option<LocationId>,
-    /// The stack that was served last.
+    /// The stack that the participant served last.
     pub last_dish: Option<ContentId>,
-    /// What goes wrong in this decision.
+    /// Lapses (omissions and habits) in this decision.
     pub lapses: Lapses,
-    /// How long nothing has gone on.
+    /// How long the participant has found no useful press.
     pub urgency: Urgency,
 }
 
-/// What a decision came to.
+/// The result of a decision: an order and the next presses.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Resolution {
-    /// The order that is worked on.
+    /// The order on which the participant works.
     pub order: Option<LocationId>,
-    /// The next presses; none: the participant waits.
+    /// The next presses; empty if the participant waits.
     pub plan: VecDeque<ButtonId>,
 }
 
-/// A press with what the participant foresees after it.
+/// A press with its consequences as the participant foresees them.
 struct Foreseen {
-    /// Presses from the first one on.
+    /// The presses from this one on.
     path: VecDeque<ButtonId>,
-    /// Number of detours among the presses that are thought through.
+    /// Number of detours (presses that undo something for the sake of another) among the foreseen presses.
     detours: u32,
     /// Whether the press fills the empty hand.
     fills_hand: bool,
-    /// Whether the press itself is a detour.
+    /// Whether the press itself is a detour: it only makes room.
     is_detour: bool,
 }
 
 impl Decision<'_> {
-    /// Decides in a world that is held for true.
+    /// Decides on the next presses in a world that the participant believes to be true.
     pub fn resolve(&self, world: &World) -> Resolution {
         let presses = |button: ButtonId| self.kitchen.press(world.state, &world.recipes, Agent::Human, button);
         if let Some(button) = self.lapses.insists_on.filter(|&button| presses(button).is_some()) {
@@ -113,7 +116,7 @@ impl Decision<'_> {
         };
         let habits = self.habits.with_last(self.last_dish.filter(|_| self.lapses.follows_habit));
         let orders = self.orders(&prospect, world.state);
-        // An order that cannot be gone on with now gives way to the next.
+        // If nothing can be done for an order now, the next order is considered.
         for &order in &orders {
             if let Some(plan) = self.choose(&prospect, world.state, order, &habits) {
                 return Resolution { order: Some(order), plan };
@@ -124,7 +127,8 @@ impl Decision<'_> {
         Resolution { order: orders.first().copied(), plan }
     }
 
-    /// The orders: the one in progress first, then those for which most is there already; equal ones in any order.
+    /// The orders by preference: the one in progress first, then those for which most is available already; ties are
+    /// broken at random.
     fn orders(&self, prospect: &Prospect, state: State) -> Vec<LocationId> {
         let worth = |order: LocationId| {
             let goals = Goals::in_state(prospect, state, order);
@@ -144,12 +148,12 @@ impl Decision<'_> {
         let turn = (self.lapses.whim * orders.len() as f64) as usize;
         let turn = turn.min(orders.len());
         orders.rotate_left(turn);
-        // The sort is stable: of equal orders the one that came first by whim.
+        // The sort is stable: among equal orders, the random rotation decides.
         orders.sort_by_key(|&(in_progress, worth, _)| std::cmp::Reverse((in_progress, worth)));
         orders.into_iter().map(|(_, _, order)| order).collect()
     }
 
-    /// The press with the fewest foreseen detours; the first of equal ones.
+    /// The press with the fewest foreseen detours; ties go to the first.
     fn choose(
         &self,
         prospect: &Prospect,
@@ -179,18 +183,18 @@ impl Decision<'_> {
             }
         }
         let best = best?;
-        // A hand that would stay full is left empty, but for making room: the robot may make room meanwhile.
+        // A hand that would stay full is left empty, except for making room: the robot may make room meanwhile.
         let is_trap = best.fills_hand && best.detours > 0 && !best.is_detour && !self.lapses.skips_check;
         (!is_trap).then_some(best.path)
     }
 
-    /// Processing and serving are at hand: they take one press and no room.
+    /// Whether a press is quick: processing and serving take one press and no room.
     fn is_quick(&self, press: &ProposedPress) -> bool {
         let action = self.kitchen.button(Agent::Human, press.button).action;
         matches!(action, ButtonAction::Process(_) | ButtonAction::Serve(_))
     }
 
-    /// Thinks a press and the own next ones through; nothing if the press would have no effect.
+    /// Simulates a press and the participant's next ones; `None` if the press would have no effect.
     fn foresee(
         &self,
         prospect: &Prospect,
@@ -221,7 +225,7 @@ impl Decision<'_> {
         Some(foreseen)
     }
 
-    /// A press that might set things going: the hand is emptied, else something is taken away from a place.
+    /// A press that may end a standstill: empties the hand, or takes something away from a place.
     fn try_something(&self, world: &World) -> Option<ButtonId> {
         let presses = effective_presses(self.kitchen, world);
         let is_trash = |button: ButtonId| self.kitchen.button(Agent::Human, button).action == ButtonAction::Trash;
@@ -240,7 +244,7 @@ impl Decision<'_> {
     }
 }
 
-/// Human presses that change the state of a world, with the states after them.
+/// The human's presses that change the state of a world, with the states after them.
 pub fn effective_presses(kitchen: &Kitchen, world: &World) -> Vec<(ButtonId, State)> {
     let step = |index: usize| {
         let button = ButtonId(index as u8);

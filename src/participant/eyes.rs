@@ -1,4 +1,4 @@
-//! Simulated eye tracking: fixations, saccades, blinks and noise at 120 samples per second.
+//! Simulated eye tracking of a participant: fixations, saccades, blinks and noise at 120 samples per second.
 
 use rand::RngExt;
 
@@ -16,7 +16,7 @@ const SHORTEST_FIXATION_S: f64 = 0.16;
 /// Standard deviations in metres on the display: of a saccade's landing point, and of the jitter during a fixation.
 const LANDING_M: f64 = 0.012;
 const TREMOR_M: f64 = 0.004;
-/// Drift of the tracker's offset, as a share of its size (standard deviation per root second).
+/// Drift of the simulated eye tracker's offset, as a share of the offset's size (standard deviation per root second).
 const DRIFT: f64 = 0.05;
 /// Mean time between blinks, and shortest and longest duration of a blink, in seconds.
 const BLINK_EVERY_S: f64 = 4.5;
@@ -33,13 +33,13 @@ pub enum FixationProgress {
     Done,
 }
 
-/// The eyes of one simulated participant, with the error of the eye tracker.
+/// The eyes of one simulated participant, with the error of its eye tracker.
 #[derive(Clone, Debug)]
 pub struct Eyes {
     random: Stream,
     display_m: [f64; 2],
     fixation_s: f64,
-    /// Present offset of the eye tracker, in metres on the display.
+    /// Present systematic offset of the eye tracker, in metres on the display.
     offset_m: [f64; 2],
     offset_size_m: f64,
     started: SessionTime,
@@ -76,7 +76,7 @@ impl Eyes {
         }
     }
 
-    /// Starts the trial; the first sample is due now.
+    /// Starts the trial; the first gaze sample is due now.
     pub fn start(&mut self, now: SessionTime) {
         self.started = now;
         self.samples = 0;
@@ -84,12 +84,12 @@ impl Eyes {
         self.look_at(now, self.goal);
     }
 
-    /// Time at which the next sample is due.
+    /// Time at which the next gaze sample is due.
     pub fn due(&self) -> SessionTime {
         self.started + SessionTime(self.samples * 1_000_000_000 / RATE_HZ)
     }
 
-    /// Postpones all planned eye movements and samples by `by`.
+    /// Postpones all planned eye movements and gaze samples by `by`.
     pub fn postpone(&mut self, by: SessionTime) {
         for time in [&mut self.started, &mut self.leaves, &mut self.lands, &mut self.ends] {
             *time = *time + by;
@@ -136,7 +136,7 @@ impl Eyes {
         self.ends = self.ends.max(read);
     }
 
-    /// Keeps the present fixation until `until`; it reads nothing more.
+    /// Keeps the present fixation until `until`; the participant reads nothing more in it.
     pub fn rest_until(&mut self, until: SessionTime) {
         self.reads = None;
         self.ends = self.ends.max(until);
@@ -156,7 +156,7 @@ impl Eyes {
         [0, 1].map(|axis| self.from[axis] + (self.goal[axis] - self.from[axis]) * part)
     }
 
-    /// The sample that is due, with the eye tracker's offset, noise and confidence.
+    /// The gaze sample that is due, with the eye tracker's offset, noise and confidence.
     pub fn sample(&mut self, now: SessionTime) -> GazeSample {
         self.samples += 1;
         if now >= self.blink.1 {

@@ -1,16 +1,16 @@
-//! Drop-outs of the simulated tracker: stretches of time without samples, on a seeded schedule.
+//! Drop-outs of the simulated eye tracker: periods without gaze samples, on a seeded schedule.
 
 use rand::RngExt;
 
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 
-/// The schedule of the drop-outs in one trial.
+/// The schedule of the eye tracker's drop-outs in one trial.
 #[derive(Clone, Debug)]
 pub struct GazeGaps {
     random: Stream,
     every_s: f64,
-    /// Natural logarithms of the shortest and the longest length in seconds.
+    /// Natural logarithms of the shortest and the longest drop-out in seconds.
     lengths: [f64; 2],
     /// Beginning and end of the present or next drop-out; `None` before the first sample.
     next: Option<[SessionTime; 2]>,
@@ -22,7 +22,8 @@ impl GazeGaps {
         GazeGaps { random, every_s, lengths: [shortest_s.ln(), longest_s.ln()], next: None }
     }
 
-    /// Whether the sample that is due `now` is lost. Samples are asked about in the order of their times.
+    /// Whether the gaze sample that is due `now` is lost in a drop-out. Must be called in the order of the samples'
+    /// times.
     pub fn swallows(&mut self, now: SessionTime) -> bool {
         loop {
             let [begin, end] =

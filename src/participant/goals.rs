@@ -1,42 +1,44 @@
-//! Goals of a participant in the state that it believes: for each order the parts that are missing, and what is at hand for them.
+//! Goals of a simulated participant in the state that it believes: for each order, the missing parts of the dish, and
+//! what is available for them.
 
 use super::knowledge::TaskKnowledge;
 use crate::kitchen::{Agent, ContentId, DishId, Kitchen, LocationId, LocationKind, Recipes, State};
 
-/// Something in the kitchen that can become a part, or a finished dish.
+/// A content in the kitchen that can become a part, or is a finished dish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartSource {
-    /// Where it is.
+    /// The location of the content.
     pub at: LocationId,
-    /// What it is now.
+    /// The content as it is now.
     pub content: ContentId,
 }
 
-/// A missing part of a dish.
+/// A part that is missing for a dish.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PartNeed {
     /// The part as it goes on the board: an item, or a stack of several.
     pub part: ContentId,
-    /// What is there for it; `None` if it has to come from a storage.
+    /// The content that can become the part; `None` if it has to come from a storage.
     pub source: Option<PartSource>,
 }
 
-/// The goal of one order.
+/// The simulated participant's goal for one order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderGoal {
-    /// The order.
+    /// The location of the order.
     pub order: LocationId,
     /// The stack that the participant believes to be the dish.
     pub stack: ContentId,
-    /// Where the finished stack is.
+    /// The location of the finished stack, if there is one.
     pub finished: Option<LocationId>,
-    /// Whether the stack on the board is the beginning of this dish.
+    /// Whether the stack on the board is the beginning of the dish.
     pub has_base: bool,
-    /// What is missing.
+    /// The parts that are still missing.
     pub needs: Vec<PartNeed>,
 }
 
-/// The goals of all believed orders, the one in progress first, and which contents they use.
+/// The participant's goals for all orders that it believes in, the one in progress first, and the contents that they
+/// use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goals {
     /// One goal per order.
@@ -44,25 +46,25 @@ pub struct Goals {
     claimed: u32,
 }
 
-/// What the participant looks at when it thinks of goals.
+/// What a simulated participant takes into account when it determines its goals.
 #[derive(Clone, Copy, Debug)]
 pub struct Prospect<'a> {
     /// The kitchen.
     pub kitchen: &'a Kitchen,
-    /// What the participant knows of it.
+    /// What the participant knows of the kitchen's buttons and processing steps.
     pub knowledge: &'a TaskKnowledge,
-    /// The recipes that it believes.
+    /// The recipes in which the participant believes.
     pub recipes: &'a Recipes,
-    /// Whether parts that lie at parking places do not come to its mind.
+    /// Whether the participant forgets parts that lie at parking places.
     pub forgets_parked: bool,
-    /// Whether it takes things without a look at where they go next.
+    /// Whether the participant takes items without checking where they can go next.
     pub skips_check: bool,
-    /// Whether what the robot holds is waited for.
+    /// Whether the participant waits for what the robot holds.
     pub waits_for_robot: bool,
 }
 
 impl Goals {
-    /// The goals in a state; those of `first` claim what is there before the others.
+    /// The goals in a state; the order `first` claims available contents before the others.
     pub fn in_state(prospect: &Prospect, state: State, first: LocationId) -> Goals {
         let mut wanted: Vec<(LocationId, DishId)> = prospect.kitchen.wanted(state).collect();
         wanted.sort_by_key(|&(order, _)| order != first);
@@ -74,7 +76,7 @@ impl Goals {
         goals
     }
 
-    /// Whether some order uses the content of a location.
+    /// Whether some order uses the content of this location.
     pub fn uses(&self, location: LocationId) -> bool {
         self.claimed >> location.0 & 1 == 1
     }
@@ -116,7 +118,8 @@ impl Goals {
         goal
     }
 
-    /// The unclaimed content that needs the fewest steps; of several the own hand's, then that of places, then the robot's.
+    /// The unclaimed content that needs the fewest processing steps; ties go to the own hand, then to places, then to
+    /// the robot's hand.
     fn find(
         &self,
         prospect: &Prospect,

@@ -1,4 +1,5 @@
-//! Habits and lapses: the order in which a participant gets parts, and what goes wrong in one decision.
+//! Habits and lapses of a simulated participant: the order in which it fetches parts, and the omissions in one
+//! decision.
 
 use rand::RngExt;
 
@@ -6,32 +7,34 @@ use super::population::{Individual, chance};
 use crate::base::rng::Stream;
 use crate::kitchen::{ButtonId, ContentId, Kitchen};
 
-/// Habits of one participant, and of its last dish.
+/// Habits of one simulated participant, including the dish that it made last.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Habits {
-    /// Rank of each content as ingredient: those of lower rank are got first.
+    /// Rank of each content as ingredient: the participant fetches those of lower rank first.
     ranks: Vec<u8>,
-    /// The stack that was served last, if habit takes it for the present one in this decision.
+    /// The stack that the participant served last, if it confuses it with the present one in this decision.
     last: Option<ContentId>,
 }
 
 impl Habits {
-    /// Draws the order of the ingredients.
+    /// Draws the order in which the participant fetches ingredients.
     pub fn draw(kitchen: &Kitchen, random: &mut Stream) -> Habits {
         Habits { ranks: kitchen.contents.iter().map(|_| random.random_range(0..=u8::MAX)).collect(), last: None }
     }
 
-    /// The same habits in a decision that the last dish gets into, or not.
+    /// The same habits for a decision in which the participant confuses the present dish with the last one, or (`None`)
+    /// does not.
     pub fn with_last(&self, last: Option<ContentId>) -> Habits {
         Habits { last, ..self.clone() }
     }
 
-    /// The place of an ingredient in the habitual order.
+    /// The rank of an ingredient in the participant's habitual order.
     pub fn rank(&self, ingredient: ContentId) -> u8 {
         self.ranks[ingredient.index()]
     }
 
-    /// The last dish's part that habit takes for a part of the present one: of the same slot, so that the two do not stack.
+    /// The part of the last dish that the participant takes by habit instead of one of the present dish: of the same
+    /// slot, so that the two do not stack.
     pub fn part_instead(&self, kitchen: &Kitchen, stack: ContentId, part: ContentId) -> Option<ContentId> {
         let last = &kitchen.content(self.last?).items;
         let own = &kitchen.content(stack).items;
@@ -42,20 +45,21 @@ impl Habits {
     }
 }
 
-/// What happens to go wrong, or to come to mind, in the decisions until the next press. A repeated decision has the same.
+/// Lapses of a simulated participant (omissions, habits and chance) in the decisions until the next press. A repeated
+/// decision has the same lapses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lapses {
-    /// Preconditions of later presses are not checked.
+    /// The participant does not check the preconditions of later presses.
     pub skips_check: bool,
-    /// The last dish gets into the present one.
+    /// The participant confuses the present dish with the last one.
     pub follows_habit: bool,
-    /// Parts at parking places do not come to mind.
+    /// The participant forgets parts at parking places.
     pub forgets_parked: bool,
-    /// What is at hand for another order is done first.
+    /// The participant first does what is within reach for another order.
     pub takes_along: bool,
-    /// Decides between equal choices, 0 to 1.
+    /// Random number from 0 to 1 that decides between equal choices.
     pub whim: f64,
-    /// The press that just did nothing, if it is tried again.
+    /// The press that just had no effect, if the participant tries it again.
     pub insists_on: Option<ButtonId>,
 }
 

@@ -1,4 +1,4 @@
-//! Hand of the simulated participant: timed presses, slips, and behaviour while no press is useful.
+//! Hand of the simulated participant: timed presses, slips, and waiting while no press is useful.
 
 use rand::RngExt;
 
@@ -10,24 +10,26 @@ use super::witness::{self, PressReason};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, DishId, LocationId, State, World};
 
-/// Certainty about a location below which the participant looks at it before using it.
+/// Certainty about a location's content below which the participant looks at the location before using it.
 const UNSURE_BELOW: f64 = 0.6;
-/// Delay of a press by a look at a location that it uses, in seconds, and maximum number of such looks per press.
+/// Delay of a press by a look at a location that the press uses, in seconds, and maximum number of such looks per
+/// press.
 const LOOK_FIRST_S: f64 = 0.4;
 const MOST_LOOKS_FIRST: u32 = 2;
-/// Time since its last reading, in seconds, after which a location may be looked at again before it is used.
+/// Time since the last reading of a location, in seconds, after which the participant may look at it again before using
+/// it.
 const FRESH_S: f64 = 0.8;
 /// Interval between decisions while no press is useful, in seconds: shortest and longest.
 const THINK_AGAIN_S: [f64; 2] = [0.4, 0.8];
 /// Multiple of the patience time without a useful press after which the participant tries a press that seems useless.
 const PATIENCE_FACTOR: f64 = 3.0;
-/// Probability to doubt a recipe instead of trying a press that seems useless.
+/// Probability that the participant doubts a recipe instead of trying a press that seems useless.
 const DOUBTS_RECIPE: f64 = 0.5;
 /// Share of the belief in a recipe that remains after the participant doubts it because no press was useful.
 const STANDSTILL_TRUST: f64 = 0.4;
 
 impl SimulatedParticipant {
-    /// Presses the planned button, or waits while no press is planned.
+    /// Presses the planned button when it is due, or waits if no press is planned.
     pub(super) fn move_hand(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
         self.think(now);
         let Some(&button) = self.intent.plan.front() else { return self.wait(now, state) };
@@ -50,14 +52,15 @@ impl SimulatedParticipant {
         Some(self.press(now, state, pressed, reason))
     }
 
-    /// Why the decision came to this button: it is repeated with the truth.
+    /// The reason for which the participant presses this button, found by repeating the decision with the truth.
     fn reason(&self, urgency: Urgency, state: State, button: ButtonId) -> PressReason {
         let (believed, truth) = (self.beliefs.point(&self.kitchen), World::with_true_recipes(&self.kitchen, state));
         PressReason::decided(&self.decision(urgency), &believed, &truth, button)
     }
 
-    /// The location to look at before a press: the participant is unsure of it, or cautious and has not read it for a while.
-    /// Before an item is taken from a storage, the robot's hand is looked at, because the robot may be fetching the same item.
+    /// The location to look at before a press: the participant is unsure of its content, or cautious and has not read
+    /// it for a while. Before taking an item from a storage, the participant looks at the robot's hand, because the
+    /// robot may be fetching the same item.
     fn worth_a_look(&mut self, now: SessionTime, button: ButtonId) -> Option<LocationId> {
         let kitchen = self.kitchen.clone();
         let own = kitchen.hands[Agent::Human.index()];
@@ -116,7 +119,8 @@ impl SimulatedParticipant {
         (pressed, Some(cause))
     }
 
-    /// Waits while no press is useful: looks around, then doubts its recipes, and at last tries a press.
+    /// Waits while no press is useful: the participant looks around, then doubts its recipes, and at last tries a
+    /// press.
     fn wait(&mut self, now: SessionTime, state: State) -> Option<ParticipantAction> {
         let kitchen = self.kitchen.clone();
         let since = *self.idle_since.get_or_insert(now);
@@ -154,7 +158,7 @@ impl SimulatedParticipant {
         self.press_urgently(now, state, Urgency::Desperate)
     }
 
-    /// Decides again without patience, and presses at once.
+    /// Decides again with this urgency, and presses at once.
     fn press_urgently(&mut self, now: SessionTime, state: State, urgency: Urgency) -> Option<ParticipantAction> {
         let plan = self.decision(urgency).resolve(&self.beliefs.point(&self.kitchen)).plan;
         let button = *plan.front()?;
@@ -163,7 +167,7 @@ impl SimulatedParticipant {
         Some(self.press(now, state, button, reason))
     }
 
-    /// Time from one press to the next: log-normal, shorter with practice.
+    /// Draws the time from one press to the next: log-normal, shorter with practice.
     pub(super) fn reaction(&mut self) -> SessionTime {
         let population = &self.population;
         let novice = population.novice_slowdown * 0.5_f64.powf(f64::from(self.presses) / population.practice_presses);

@@ -1,22 +1,22 @@
-//! What a participant learns of the kitchen in the instruction: which button does what, what is made of what.
+//! What a participant learns about the kitchen in the instruction: the action of each button, and how items are made.
 
 use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId};
 
 /// Longest chain of processing steps from an ingredient to a part of a dish.
 const MOST_STEPS: usize = 8;
 
-/// How an item is made: the process, and the item that it is applied to.
+/// How an item is made: the processing step, and the item to which it is applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Making {
-    /// Index into [`Kitchen::processes`].
+    /// The processing step, as an index into [`Kitchen::processes`].
     pub process: u8,
-    /// The item before the process.
+    /// The item before the processing step.
     pub from: ContentId,
-    /// Place of the process; `None` for the hand of the agent who presses.
+    /// Place of the processing step; `None` for the hand of the agent who presses.
     pub place: Option<LocationId>,
 }
 
-/// The task as the participant knows it: the human's buttons by what they do, and the processing steps of every item.
+/// The task as the participant knows it: the human's buttons by their actions, and the processing steps of every item.
 #[derive(Clone, Debug)]
 pub struct TaskKnowledge {
     takes: Vec<Option<ButtonId>>,
@@ -30,7 +30,7 @@ pub struct TaskKnowledge {
 }
 
 impl TaskKnowledge {
-    /// Knowledge of a kitchen, complete and right.
+    /// Complete and correct knowledge of a kitchen.
     pub fn new(kitchen: &Kitchen) -> TaskKnowledge {
         let mut knowledge = TaskKnowledge {
             takes: vec![None; kitchen.contents.len()],
@@ -70,12 +70,12 @@ impl TaskKnowledge {
         self.takes[item.index()]
     }
 
-    /// The human's button of a place.
+    /// The human's button of a place, which puts down or picks up.
     pub fn at(&self, place: LocationId) -> Option<ButtonId> {
         self.uses[place.index()]
     }
 
-    /// The human's button of a process.
+    /// The human's button of a processing step.
     pub fn process(&self, process: u8) -> Option<ButtonId> {
         self.processes[usize::from(process)]
     }
@@ -85,12 +85,12 @@ impl TaskKnowledge {
         self.serves[order.index()]
     }
 
-    /// Whether something is done at a place: it is no mere parking place.
+    /// Whether items are stacked, processed or served at a place, so that it is more than a parking place.
     pub fn is_station(&self, place: LocationId) -> bool {
         self.is_station[place.index()]
     }
 
-    /// How an item is made; `None` for what comes from a storage.
+    /// How an item is made; `None` for an item that comes from a storage.
     pub fn making(&self, item: ContentId) -> Option<Making> {
         self.makings[item.index()]
     }
@@ -107,7 +107,8 @@ impl TaskKnowledge {
         None
     }
 
-    /// What has to happen to `content` next, so that it becomes `part`; `None` if it is that part, or never becomes it.
+    /// The next processing step of `content` on the way to `part`; `None` if it is that part already, or can never
+    /// become it.
     pub fn next_making(&self, content: ContentId, part: ContentId) -> Option<Making> {
         let mut item = part;
         for _ in 0..MOST_STEPS {
@@ -120,7 +121,7 @@ impl TaskKnowledge {
         None
     }
 
-    /// The ingredient from a storage of which a part is made.
+    /// The ingredient in a storage from which a part is made.
     pub fn ingredient(&self, part: ContentId) -> ContentId {
         let mut item = part;
         for _ in 0..MOST_STEPS {

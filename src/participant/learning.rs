@@ -3,14 +3,16 @@
 use super::true_beliefs::ParticipantBeliefs;
 use crate::kitchen::{Agent, AspectId, ButtonAction, ButtonId, Kitchen, LocationId, State, World};
 
-/// Probability that the participant assigns to the expected result of its own effective press.
+/// Probability that the simulated participant gives to the expected result of its own effective press.
 const ACTED_CERTAINTY: f64 = 0.97;
-/// Certainty added to the own hand when an ineffective press is explained, because the participant feels what it holds.
+/// Certainty that the participant gains about its own hand when it explains an ineffective press, because it feels what
+/// it holds.
 const FELT_CERTAINTY: f64 = 0.3;
-/// Factor on the probability of values with which an ineffective press would have been effective.
+/// Factor on the probability of values with which an ineffective press would have had an effect.
 const CONTRADICTED_FACTOR: f64 = 0.04;
 
-/// Updates the beliefs after a press that was effective or not. Returns true if the effect contradicted the beliefs.
+/// Updates the participant's beliefs after its own press, effective or not. Returns true if the effect contradicted the
+/// beliefs.
 pub fn learn(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId, effective: bool) -> bool {
     let World { state, recipes } = beliefs.point(kitchen);
     let expected = kitchen.press(state, &recipes, Agent::Human, button);
@@ -23,7 +25,8 @@ pub fn learn(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: Button
     expected.is_some() != effective
 }
 
-/// An expected effect: the locations involved take the values that the rules predict, with the certainty before the press.
+/// Adopts an expected effect: the locations involved take the values that the rules predict, with the certainty before
+/// the press.
 fn carry_out(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId, next: State) {
     let places = kitchen.involved(Agent::Human, button);
     let sure =
@@ -40,7 +43,8 @@ fn settle(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, place: LocationId
     }
 }
 
-/// An unexpected effect: values that it implies are adopted, other values at the involved locations become uncertain.
+/// Explains an unexpected effect: values that it implies are adopted, other values at the locations involved become
+/// uncertain.
 fn make_sense(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: ButtonId) {
     let hand = kitchen.hands[Agent::Human.index()];
     let World { mut state, .. } = beliefs.point(kitchen);
@@ -69,10 +73,10 @@ fn make_sense(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: Butto
     }
 }
 
-/// An unexpected lack of effect: the least certain of the locations involved loses the belief in its value.
+/// Explains an unexpected lack of effect: the belief about the least certain of the locations involved is weakened.
 fn blame(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, state: State, button: ButtonId) {
     if matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Serve(_)) {
-        // The plate's content is visible, so the recipe comes into doubt instead; see `Memory::doubt`.
+        // The participant sees the plate's content, so it doubts the recipe instead; see `Memory::doubt`.
         return;
     }
     let recipes = kitchen.true_recipes();

@@ -1,4 +1,4 @@
-//! Gaze control of the simulated participant: targets of fixations, reading of locations, attention capture by changes.
+//! Gaze control of the simulated participant: fixation targets, reading of locations, attention capture by changes.
 
 use rand::RngExt;
 
@@ -21,7 +21,7 @@ const CAPTURE_REACH_M: f64 = 0.6;
 const WATCHED_ATTEMPTS: i32 = 3;
 /// Number of planned presses whose locations are looked at.
 const LOOKS_AHEAD: usize = 2;
-/// Time constant with which the weight of a location as a fixation target grows after its last reading, in seconds.
+/// Time constant with which the weight of a location as a fixation target grows since its last reading, in seconds.
 const STALE_S: f64 = 6.0;
 /// Share of the belief in a recipe that remains when the robot's behaviour contradicts it.
 const HINT_TRUST: f64 = 0.2;
@@ -85,7 +85,7 @@ impl SimulatedParticipant {
         self.display = state;
     }
 
-    /// The next location to look at; `None`: a point that is no task location.
+    /// The next location to look at; `None` for a point outside of the task's locations.
     fn choose_target(&mut self, now: SessionTime) -> Option<LocationId> {
         if let Some(location) = self.attention.glances.pop_front() {
             return Some(location);
@@ -130,7 +130,7 @@ impl SimulatedParticipant {
         places
     }
 
-    /// A point that is no task location: a storage, or a random point of the display.
+    /// A point outside of the task's locations: a storage, or a random point of the display.
     fn elsewhere(&mut self) -> [f64; 2] {
         let storages: Vec<[f64; 2]> = self.kitchen.storages.iter().map(|storage| storage.display.centre()).collect();
         match storages.is_empty() || chance(&mut self.mind, 0.4) {
@@ -139,7 +139,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Reads the content of a location, occasionally as a look-alike.
+    /// Reads the content of a location, occasionally mistaken for a look-alike.
     pub(super) fn read(&mut self, now: SessionTime, location: LocationId, state: State) {
         let kitchen = self.kitchen.clone();
         let aspect = AspectId::of_location(location);
@@ -184,7 +184,7 @@ impl SimulatedParticipant {
             }
             return;
         }
-        // The robot knows the true recipes, so what it carries, stacks or discards is a hint at them.
+        // The robot knows the true recipes, so what it carries, stacks or discards reveals something about them.
         let World { recipes, .. } = self.beliefs.point(&kitchen);
         let (before, now) = (ContentId(believed), ContentId(code));
         let has_place =
@@ -200,7 +200,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Whether all items of `content` are believed to be in the kitchen.
+    /// Whether the participant believes all items of `content` to be in the kitchen.
     fn is_about(&self, content: ContentId) -> bool {
         let kitchen = &self.kitchen;
         let World { state, .. } = self.beliefs.point(kitchen);
@@ -211,7 +211,8 @@ impl SimulatedParticipant {
         kitchen.content(content).items.iter().all(|item| lying.contains(item))
     }
 
-    /// Reacts to a hint: no believed recipe explains the robot's press, so another version that `fits` the press may be recalled.
+    /// Reacts to a hint: no believed recipe explains the robot's press, so the participant may recall another version
+    /// that `fits` the press.
     fn take_hint(&mut self, wanted: &[DishId], fits: impl Fn(ContentId) -> bool) {
         if !chance(&mut self.mind, self.person.takes_hints) {
             return;
@@ -223,14 +224,14 @@ impl SimulatedParticipant {
         }
     }
 
-    /// The dish with the least certain recipe.
+    /// The dish whose recipe the participant is least certain of.
     pub(super) fn least_sure(&self, dishes: impl Iterator<Item = DishId>) -> Option<DishId> {
         let sure = |dish| self.beliefs.certainty(self.kitchen.aspect_of_dish(dish));
         dishes.min_by(|&a, &b| sure(a).total_cmp(&sure(b)))
     }
 }
 
-/// Codes of the contents that look like the true content of a location.
+/// Codes of the contents that look similar to the true content of a location.
 fn look_alike_codes(kitchen: &Kitchen, location: LocationId, state: State) -> Vec<u8> {
     if kitchen.location(location).kind != LocationKind::Order {
         return kitchen.content(state.content(location)).look_alikes.iter().map(|alike| alike.0).collect();

@@ -1,5 +1,5 @@
-//! Memory of recipes: learned in the instruction, fades without use, is recalled (rightly or wrongly) for an order, and
-//! is doubted after unexpected events.
+//! Memory of recipes in a simulated participant: learned in the instruction, fading without use, recalled (rightly or
+//! wrongly) for an order, and doubted after unexpected events.
 
 use rand::RngExt;
 
@@ -9,13 +9,13 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ContentId, DishId, Kitchen};
 
-/// Probability of the version of a recipe that was just recalled: people do not hedge.
+/// Probability that the participant gives to the version of a recipe that it has just recalled: people do not hedge.
 const RECALLED_CERTAINTY: f64 = 0.92;
-/// Probability of a recipe that was just shown or served.
+/// Probability that the participant gives to a recipe that was just shown or served.
 const CONFIRMED_CERTAINTY: f64 = 0.97;
-/// Share of the belief in a recipe that remains after a stack made by it could not be served.
+/// Share of the belief in a recipe that remains after a stack made by this recipe could not be served.
 const FAILED_TRUST: f64 = 0.05;
-/// Number of dishes for which the population's memory parameters hold.
+/// Number of dishes on the menu for which the population's memory parameters were set.
 const USUAL_MENU_DISHES: f64 = 6.0;
 /// Factor on the weight of recipe versions that agree with an observation.
 const FITTING_FACTOR: f64 = 4.0;
@@ -24,11 +24,13 @@ const FITTING_FACTOR: f64 = 4.0;
 #[derive(Clone, Debug)]
 pub struct Memory {
     random: Stream,
-    /// Distribution over the versions of each dish's recipe to which its memory fades.
+    /// Distribution over the versions of each dish's recipe to which the participant's memory fades.
     faded: Vec<Vec<f64>>,
-    /// The same once the recipe was shown or served: what was learned wrongly is corrected then.
+    /// Distribution to which the memory of a recipe fades once the recipe was shown or served, which corrects what was
+    /// learned wrongly.
     corrected: Vec<Vec<f64>>,
-    /// Distribution over the versions of each dish's recipe after the instruction; doubting a recipe restores it.
+    /// Distribution over the versions of each dish's recipe after the instruction; it is restored when the participant
+    /// doubts a recipe.
     learned: Vec<Vec<f64>>,
     /// Remaining weight of each version of a recipe after doubts; reset when a version is confirmed.
     left: Vec<Vec<f64>>,
@@ -37,7 +39,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Memory after the instruction; it sets the recipe aspects of `beliefs`.
+    /// Memory of the recipes after the instruction; it sets the recipe aspects of `beliefs`.
     pub fn new(
         kitchen: &Kitchen,
         population: &Population,
@@ -81,7 +83,7 @@ impl Memory {
         Memory { random, faded, corrected, learned, left, half_life_s, last }
     }
 
-    /// Lets memories fade for dishes that are not in preparation.
+    /// Lets the memory of recipes fade for dishes that are not in preparation.
     pub fn fade(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, now: SessionTime, in_use: &[DishId]) {
         let lost = 1.0 - 0.5_f64.powf(now.secs_since(self.last) / self.half_life_s);
         self.last = now;
@@ -103,7 +105,7 @@ impl Memory {
         self.last = self.last + by;
     }
 
-    /// Recalls one version of the recipe of an ordered dish and believes it.
+    /// Recalls one version of the recipe of an ordered dish, in which the participant then believes.
     pub fn recall(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         let aspect = kitchen.aspect_of_dish(dish);
         let mut draw = self.random.random::<f64>();
@@ -116,14 +118,15 @@ impl Memory {
         beliefs.settle(aspect, recalled.unwrap_or(0), sure);
     }
 
-    /// Forgets the recipe during the work on its order: it is recalled again from a partly faded memory.
+    /// The participant loses the thread while working on an order: it recalls the recipe again from a partly faded
+    /// memory.
     pub fn lose_thread(&mut self, kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, dish: DishId) {
         beliefs.mix(kitchen.aspect_of_dish(dish), &self.faded[dish.index()], 0.5);
         self.recall(kitchen, beliefs, dish);
     }
 
-    /// Doubts the believed version of a recipe and recalls another, preferably one that `fits` an observation.
-    /// `trust` is the share of the belief in the doubted version that remains.
+    /// Doubts the believed version of a recipe and recalls another, preferably one that `fits` an observation. `trust`
+    /// is the share of the belief in the doubted version that remains.
     pub fn doubt(
         &mut self,
         kitchen: &Kitchen,
@@ -159,7 +162,7 @@ impl Memory {
     }
 }
 
-/// The index of one of these weights, drawn in proportion to them.
+/// Draws an index in proportion to these weights.
 fn drawn(random: &mut Stream, weights: &[f64]) -> usize {
     let mut draw = random.random::<f64>() * weights.iter().sum::<f64>();
     let found = weights.iter().position(|weight| {
@@ -169,7 +172,7 @@ fn drawn(random: &mut Stream, weights: &[f64]) -> usize {
     found.unwrap_or(0)
 }
 
-/// The distribution over `versions` of a recipe of somebody who is sure of one of them.
+/// The distribution over `versions` of a recipe for a person who is sure of one version.
 fn sure_of(version: usize, versions: usize) -> Vec<f64> {
     let other = (1.0 - CONFIRMED_CERTAINTY) / (versions - 1) as f64;
     (0..versions).map(|index| if index == version { CONFIRMED_CERTAINTY } else { other }).collect()

@@ -1,16 +1,18 @@
 //! Simulated participants for tests and simulated studies, with errors of known cause.
 //!
-//! A simulated participant differs from the assistant's human model: it acts on one most probable world, plans by backward
-//! chaining of its own, sees only fixated locations, and forgets recipes in steps. It knows nothing of the cost to go that drives
-//! the assistant and defines errors.
+//! A simulated participant differs from the assistant's human model: it acts on one most probable world, plans by
+//! backward chaining, sees only fixated locations, and forgets recipes in steps. It knows nothing of the cost to go
+//! that drives the assistant and defines errors.
 //!
 //! Modules from the ground up:
 //!
-//! - Components: [`population`] (distribution of traits), [`true_beliefs`], `memory` (of recipes), `eyes`, `attention`, `signal_sense`.
-//! - Planning: `knowledge` (of buttons and processes), `goals` (missing parts), `habits` (and lapses), `planning` (backward
-//!   chaining), `decision` (next presses).
+//! - Components: [`population`] (distribution of traits), [`true_beliefs`], `memory` (of recipes), `eyes`, `attention`,
+//!   `signal_sense`.
+//! - Planning: `knowledge` (of buttons and processing steps), `goals` (missing parts), `habits` (and lapses),
+//!   `planning` (backward chaining), `decision` (next presses).
 //! - Consequences of beliefs: `learning` (from own presses), `witness` (for the recording).
-//! - The participant: `simulated` (its data), then its behaviour: `targets`, `signals`, `looking`, `thinking`, `hand`, `acting`, `answering`.
+//! - The participant: `simulated` (its data), then its behaviour: `targets`, `signals`, `looking`, `thinking`, `hand`,
+//!   `acting`, `answering`.
 
 mod acting;
 mod answering;

@@ -1,8 +1,10 @@
-//! Backward chaining of a participant: from the goal of an order over the preconditions of the rules to a press that it can make now.
+//! Backward chaining of a simulated participant: from the goal of an order, over the preconditions of the rules, to a
+//! press that is possible now.
 //!
-//! A dish is served from the plate, stacked on the board from parts, and parts are made of ingredients at stations. What a press
-//! needs and does not find becomes the next goal: an occupied place is cleared, a full hand put down. What only the robot can do,
-//! and what the robot holds, is waited for. A press that undoes something for the sake of another is a detour.
+//! A dish is served from the plate, stacked on the board from parts, and parts are made of ingredients at stations. An
+//! unmet precondition of a press becomes the next goal: an occupied place is cleared, the content of a full hand is put
+//! down. The participant waits for what only the robot can do, and for what the robot holds. A press that undoes
+//! something for the sake of another is a detour.
 
 use super::goals::{Goals, OrderGoal, PartNeed, PartSource, Prospect};
 use super::habits::Habits;
@@ -11,9 +13,9 @@ use crate::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind, State
 /// A press that backward chaining proposes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProposedPress {
-    /// The human's button.
+    /// The proposed button of the human.
     pub button: ButtonId,
-    /// Whether it only makes room, at the cost of another press later.
+    /// Whether the press is a detour: it only makes room, at the cost of another press later.
     pub is_detour: bool,
 }
 
@@ -37,14 +39,15 @@ pub struct Chaining<'a> {
 }
 
 impl<'a> Chaining<'a> {
-    /// The goals in a state, those of the order in progress first.
+    /// Starts from the goals in a state, those of the order in progress first.
     pub fn new(prospect: &'a Prospect<'a>, state: State, in_progress: LocationId) -> Chaining<'a> {
         let hand = prospect.kitchen.hands[Agent::Human.index()];
         let goals = Goals::in_state(prospect, state, in_progress);
         Chaining { prospect, state, goals, hand, held: state.content(hand) }
     }
 
-    /// The presses that lead on, the first is preferred: for the order in progress by the participant's habit, then for others.
+    /// The presses that advance the goals, the preferred one first: for the order in progress by the participant's
+    /// habit, then for other orders.
     pub fn proposals(&self, habits: &Habits) -> Vec<ProposedPress> {
         let mut proposals: Vec<ProposedPress> = Vec::with_capacity(8);
         let mut propose = |press: Option<ProposedPress>| {
@@ -82,7 +85,7 @@ impl<'a> Chaining<'a> {
         }
     }
 
-    /// The next press for a missing part.
+    /// The next press towards a missing part.
     fn advance(&self, goal: &OrderGoal, need: &PartNeed, habits: &Habits) -> Option<ProposedPress> {
         let kitchen = self.prospect.kitchen;
         let Some(source) = need.source else { return self.fetch(goal, need.part, habits) };
@@ -115,7 +118,8 @@ impl<'a> Chaining<'a> {
         }
     }
 
-    /// Takes the ingredient of a part from a storage; out of habit that of the last dish's part instead.
+    /// Takes the ingredient of a part from a storage; by habit the participant may take that of the last dish's part
+    /// instead.
     fn fetch(&self, goal: &OrderGoal, part: ContentId, habits: &Habits) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
         let meant = habits.part_instead(self.prospect.kitchen, goal.stack, part);
@@ -133,13 +137,13 @@ impl<'a> Chaining<'a> {
         }
     }
 
-    /// Clears a place that the robot needs for what it holds.
+    /// Clears a place that the robot needs for its hand's content.
     fn make_way(&self, place: LocationId) -> Option<ProposedPress> {
         self.clear(place).map(|press| ProposedPress { is_detour: press.is_detour || !self.held.is_empty(), ..press })
     }
 
-    /// Makes an occupied place free: what lies there is processed or taken away, for which the hand has to be empty.
-    /// The beginning of another dish stays on the board.
+    /// Clears an occupied place: its content is processed or taken away, for which the hand has to be empty. The
+    /// beginning of another dish stays on the board.
     fn clear(&self, place: LocationId) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
         if place == self.prospect.kitchen.board && self.goals.orders.iter().any(|goal| goal.has_base) {
@@ -163,7 +167,7 @@ impl<'a> Chaining<'a> {
         Some(ProposedPress { button, is_detour: self.goals.uses(place) })
     }
 
-    /// Empties the hand: where it helps an order, else at a parking place; what no order needs is thrown away.
+    /// Empties the hand: where its content helps an order, else at a parking place; what no order needs is thrown away.
     fn free_hand(&self) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
         if !self.goals.uses(self.hand) {
@@ -191,7 +195,7 @@ impl<'a> Chaining<'a> {
         self.park()
     }
 
-    /// Puts the hand's content where it is least in the way; without such a place it is thrown away.
+    /// Puts the hand's content down where it is least in the way; without such a place it is thrown away.
     fn park(&self) -> Option<ProposedPress> {
         let knowledge = self.prospect.knowledge;
         let places = (0..self.prospect.kitchen.locations.len()).map(|index| LocationId(index as u8));
@@ -205,7 +209,7 @@ impl<'a> Chaining<'a> {
         best.or(knowledge.trash).map(ProposedPress::detour)
     }
 
-    /// Whether some part at hand needs a place next.
+    /// Whether some available part needs this place next.
     fn is_next(&self, place: LocationId) -> bool {
         let needs = self.goals.orders.iter().flat_map(|goal| &goal.needs);
         let sources = needs.filter_map(|need| need.source.map(|source| (source, need.part)));
@@ -216,12 +220,12 @@ impl<'a> Chaining<'a> {
         sources.filter(|(source, _)| source.at != self.hand).any(|one| station(one) == Some(place))
     }
 
-    /// Whether a station takes a part, as far as that is checked before the part is in the hand.
+    /// Whether a station will accept a part, as far as the participant checks before it takes the part into its hand.
     fn is_ready(&self, station: LocationId, item: ContentId, goal: &OrderGoal) -> bool {
         self.prospect.skips_check || self.takes(station, item, goal)
     }
 
-    /// Whether a station takes a part for this order now.
+    /// Whether a station accepts a part for this order now.
     fn takes(&self, station: LocationId, item: ContentId, goal: &OrderGoal) -> bool {
         let there = self.state.content(station);
         match there.is_empty() {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::base::rng::Stream;
 
-/// Distribution of one trait over the population: median and relative spread.
+/// Distribution of one trait over the simulated population: median and relative spread.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TraitSpread {
@@ -16,18 +16,20 @@ pub struct TraitSpread {
     pub sigma: f64,
 }
 
-/// A probability that is 0 for everybody: the trait of nobody in the calibrated population.
+/// A probability of 0 for everybody: the default of traits that the calibrated population does not have.
 const NEVER: TraitSpread = TraitSpread::from_median(0.0, 0.4);
 
-/// Wrong answers to questions of probes: few, since where few beliefs are false, wrong answers hide them.
+/// Default probability of a wrong answer to a question of a probe: small, since otherwise wrong answers would hide the
+/// few false beliefs.
 const ANSWERS_WRONG: TraitSpread = TraitSpread::from_median(0.01, 0.4);
-/// From this probability on a belief is not false, see `measures::sequences::FALSE_BELOW`.
+/// Probability above which a belief is not false, see `measures::sequences::FALSE_BELOW`.
 const ANSWERS_FROM: f64 = 0.5;
 const ANSWER_S: TraitSpread = TraitSpread::from_median(3.0, 0.3);
-/// People follow most of the advice that they notice; that is an assumption, since no proposals were shown to people.
+/// Default probability of following a noticed proposal; it is an assumption, since proposals were never shown to
+/// people.
 const FOLLOWS_PROPOSAL: TraitSpread = TraitSpread::from_median(0.9, 0.4);
 
-// Recordings leave out how questions are answered where it is the default.
+// Recordings leave out how participants answer probes where it is the default.
 fn is_usual_wrong(value: &TraitSpread) -> bool {
     *value == ANSWERS_WRONG
 }
@@ -49,17 +51,17 @@ impl TraitSpread {
         TraitSpread { median, sigma }
     }
 
-    /// Whether it is 0 for everybody. Recordings leave such a trait out.
+    /// Whether the trait is 0 for everybody. Recordings leave such a trait out.
     fn is_never(&self) -> bool {
         *self == NEVER
     }
 
-    /// Draws a positive trait: log-normal, cut at three sigma.
+    /// Draws a positive trait: log-normal, truncated at three sigma.
     fn draw(self, random: &mut Stream) -> f64 {
         self.median * (self.sigma * normal(random).clamp(-3.0, 3.0)).exp()
     }
 
-    /// Draws a probability: logit-normal, cut at three sigma.
+    /// Draws a trait that is a probability: logit-normal, truncated at three sigma.
     fn draw_chance(self, random: &mut Stream) -> f64 {
         let odds = self.median / (1.0 - self.median) * (self.sigma * normal(random).clamp(-3.0, 3.0)).exp();
         odds / (1.0 + odds)
@@ -76,7 +78,8 @@ pub(super) fn chance(random: &mut Stream, p: f64) -> bool {
     random.random::<f64>() < p
 }
 
-/// The same, but nothing is drawn where `p` is 0, so that people without a trait are as they were before it existed.
+/// True with probability `p`. No random number is drawn if `p` is 0, so that a new trait does not change participants
+/// without it.
 pub(super) fn rare_chance(random: &mut Stream, p: f64) -> bool {
     p > 0.0 && chance(random, p)
 }
@@ -90,21 +93,21 @@ pub struct Population {
     pub press_s: TraitSpread,
     /// Standard deviation of the logarithm of one participant's times between presses.
     pub press_jitter: f64,
-    /// How much slower the first presses are (0.3: by 30 %).
+    /// Relative increase of the time between presses at the beginning (0.3: 30 % slower).
     pub novice_slowdown: f64,
-    /// Number of presses after which half of that slowdown is gone.
+    /// Number of presses after which half of the initial slowdown is gone.
     pub practice_presses: f64,
-    /// Probability of pressing the neighbouring button on the table.
+    /// Probability of a slip: pressing the neighbouring button on the table.
     pub slip: TraitSpread,
-    /// Probability of taking the look-alike ingredient from the storage.
+    /// Probability of a slip: taking the look-alike ingredient from the storage.
     pub look_alike_slip: TraitSpread,
-    /// Probability of an effective but useless press.
+    /// Probability of a thoughtless press: effective but useless.
     pub thoughtless: TraitSpread,
-    /// Probability of noticing an own slip.
+    /// Probability that the participant notices its own slip.
     pub notices_slip: f64,
     /// Probability of repeating an unexpectedly ineffective press before searching for its cause (perseveration).
     pub insists: f64,
-    /// Probability of looking at a location right before using it.
+    /// Probability that the participant looks at a location right before using it.
     pub checks: TraitSpread,
     /// Probability of another look before a press if the last look at its location is some time ago.
     pub makes_sure: TraitSpread,
@@ -112,95 +115,98 @@ pub struct Population {
     pub capture: TraitSpread,
     /// Probability that a new order captures attention.
     pub order_capture: TraitSpread,
-    /// Probability that a fixation is at no task location.
+    /// Probability that a fixation is outside of the task's locations.
     pub wanders: TraitSpread,
     /// Weight of the robot's hand in the choice of fixation targets (1: as a location of the next press).
     pub watches_robot: TraitSpread,
     /// Duration of a fixation, in seconds.
     pub fixation_s: TraitSpread,
-    /// Probability of reading a content as one that looks like it.
+    /// Probability of mistaking a content for one that looks like it.
     pub misreads: TraitSpread,
     /// Share of the belief in the unseen content of the robot's hand that is lost when the robot presses.
     pub doubts_robot_hand: TraitSpread,
     /// Share of the belief in the unseen content of a shared location that is lost when the robot presses.
     pub doubts_places: TraitSpread,
-    /// Probability of the true recipe after the instruction, on a menu of six dishes.
+    /// Probability that the participant gives to the true recipe after the instruction, on a menu of six dishes.
     pub learned: TraitSpread,
     /// Probability of the true recipe to which an unused memory fades, on a menu of six dishes.
     pub half_forgotten: TraitSpread,
-    /// Half-life of memory fading, in seconds.
+    /// Half-life of the fading of recipe memories, in seconds.
     pub half_life_s: TraitSpread,
-    /// Rate per minute of forgetting the recipe during the work on its order; the recipe is then recalled again.
+    /// Rate per minute at which the participant forgets the recipe during the work on its order, and then recalls it
+    /// again.
     pub loses_thread_per_min: TraitSpread,
     /// Weight of a look-alike topping among the false memories of a recipe (another topping has weight 1).
     pub confuses_look_alikes: f64,
-    /// Probability of doubting a recipe when the robot's behaviour contradicts it.
+    /// Probability that the participant doubts a recipe when the robot's behaviour contradicts it.
     pub takes_hints: TraitSpread,
     /// Time without a useful press after which the participant looks around and doubts its recipes, in seconds.
     pub patience_s: TraitSpread,
     /// Time for which the participant stays with one order, in seconds.
     pub commitment_s: TraitSpread,
-    /// Number of own presses that are thought through; rounded, from 2 to 5.
+    /// Number of own presses that the participant thinks through; rounded, from 2 to 5.
     pub depth: TraitSpread,
-    /// Probability of not checking the preconditions of the presses after the next one.
+    /// Probability that the participant does not check the preconditions of the presses after the next one.
     pub skips_check: TraitSpread,
-    /// Probability that the last dish's part is taken instead of the present one's.
+    /// Probability that the participant takes a part of the last dish instead of one of the present dish, by habit.
     pub follows_habit: TraitSpread,
-    /// Probability that parts at parking places do not come to mind.
+    /// Probability that the participant forgets parts at parking places.
     pub forgets_parked: TraitSpread,
-    /// Probability of doing first what is at hand for another order.
+    /// Probability that the participant first does what is within reach for another order.
     pub takes_along: TraitSpread,
-    /// Probability of noticing a signal; at most 0.85.
+    /// Probability that the participant notices a signal; at most 0.85.
     pub notices_signal: TraitSpread,
-    /// Shortest and longest time from a signal to its reading, in seconds.
+    /// Shortest and longest time from the appearance of a signal to its reading, in seconds.
     pub signal_after_s: [f64; 2],
-    /// Shortest and longest time that reading a signal takes, in seconds. Nothing else is seen meanwhile.
+    /// Shortest and longest time that reading a signal takes, in seconds. The participant sees nothing else meanwhile.
     pub reads_signal_s: [f64; 2],
-    /// Probability of losing the next intention by reading a signal.
+    /// Probability that the participant loses its next intention by reading a signal.
     pub loses_intention: TraitSpread,
     /// Time from reading a signal to the next press if the intention is lost, in seconds.
     pub resumes_after_s: f64,
-    /// Share by which the heed for signals moves towards the usefulness of each one that is read.
+    /// Share by which the attention to signals moves towards the usefulness of each signal that is read.
     pub tires_of_signals: TraitSpread,
-    /// Probability of reading a shown recipe wrongly.
+    /// Probability of misreading a recipe that a signal shows.
     pub misreads_signal: f64,
-    /// Probability of keeping the own version of a recipe when a signal shows another one.
+    /// Probability that the participant keeps its own version of a recipe when a signal shows another one.
     #[serde(skip_serializing_if = "TraitSpread::is_never")]
     pub keeps_own_recipe: TraitSpread,
-    /// Probability, for each recipe, of being sure of a wrong version of it after the instruction.
+    /// Probability, for each recipe, that the participant is sure of a wrong version after the instruction.
     #[serde(skip_serializing_if = "TraitSpread::is_never")]
     pub misremembers: TraitSpread,
-    /// Probability of guessing rightly what the robot did by a press that was not seen.
+    /// Probability that the participant guesses rightly what the robot did by a press that it did not see.
     #[serde(skip_serializing_if = "TraitSpread::is_never")]
     pub guesses_robot: TraitSpread,
     /// Factor per earlier trial on the odds of knowing a recipe (1: no learning between trials).
     pub recipes_gained: f64,
-    /// Share of the presses of earlier trials that count as practice (0: no practice is kept).
+    /// Share of the presses in earlier trials that count as practice (0: no practice is kept).
     pub practice_kept: f64,
-    /// Offset of the eye tracker for this participant, in metres on the display (1 deg at 2 m is 0.035 m).
+    /// Size of the eye tracker's systematic offset, in metres on the display (1 deg at 2 m is 0.035 m).
     pub tracker_offset_m: f64,
-    /// Whether the participants know the state and all recipes: their errors are those of planning, and slips.
+    /// Whether the participants know the state and all recipes: they then make only planning errors and slips.
     pub all_knowing: bool,
-    /// Probability of a wrong answer to a question of a freeze probe, whatever is believed.
+    /// Probability of a wrong answer to a question of a freeze probe, whatever the participant believes.
     #[serde(skip_serializing_if = "is_usual_wrong")]
     pub answers_wrong: TraitSpread,
-    /// Least probability of the most probable value for which it is the answer; below, the answer is "I don't know".
+    /// Least probability of a belief's most probable value with which it is given as the answer to a probe; below, the
+    /// answer is "I don't know".
     #[serde(skip_serializing_if = "is_usual_from")]
     pub answers_from: f64,
-    /// Time to answer a question of a freeze probe, in seconds.
+    /// Time that a participant takes to answer a question of a freeze probe, in seconds.
     #[serde(skip_serializing_if = "is_usual_time")]
     pub answer_s: TraitSpread,
-    /// Probability of making proposed presses that were read; they are made at the next decision, whatever is believed.
+    /// Probability that the participant makes the proposed presses that it has read; it makes them at the next
+    /// decision, whatever it believes.
     #[serde(skip_serializing_if = "is_usual_following")]
     pub follows_proposal: TraitSpread,
 }
 
-/// Trials of a participant before the present one.
+/// A participant's experience from earlier trials.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Experience {
     /// Number of earlier trials.
     pub trials: u32,
-    /// Number of own presses in the earlier trials.
+    /// Number of the participant's own presses in the earlier trials.
     pub presses: f64,
 }
 
@@ -264,75 +270,75 @@ impl Default for Population {
 /// Traits of one simulated participant, drawn from the population. Meanings and units as in [`Population`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Individual {
-    /// Median time from one press to the next, in seconds, with some practice.
+    /// Median time from one press of the participant to the next, in seconds, with some practice.
     pub press_s: f64,
-    /// Chance to hit the neighbouring button on the table.
+    /// Probability of a slip: hitting the neighbouring button on the table.
     pub slip: f64,
-    /// Chance to take the look-alike from the storage.
+    /// Probability of a slip: taking the look-alike ingredient from the storage.
     pub look_alike_slip: f64,
-    /// Chance of a press without a thought.
+    /// Probability of a thoughtless press: effective but useless.
     pub thoughtless: f64,
-    /// Chance to look at a place right before using it.
+    /// Probability of looking at a location right before using it.
     pub checks: f64,
-    /// Chance to look once more before a press if the last look is some time ago.
+    /// Probability of another look before a press if the last look is some time ago.
     pub makes_sure: f64,
-    /// Chance that a change anywhere on the display draws the eye.
+    /// Probability that a change anywhere on the display captures attention.
     pub capture: f64,
-    /// Chance that a new order draws the eye.
+    /// Probability that a new order captures attention.
     pub order_capture: f64,
-    /// Chance that a look goes to no place of the task.
+    /// Probability that a fixation is outside of the task's locations.
     pub wanders: f64,
-    /// Weight of the robot's hand among the places worth watching.
+    /// Weight of the robot's hand in the choice of fixation targets.
     pub watches_robot: f64,
-    /// Median length of a fixation, in seconds.
+    /// Median duration of a fixation, in seconds.
     pub fixation_s: f64,
-    /// Chance to take a content for one that looks like it.
+    /// Probability of mistaking a content for one that looks like it.
     pub misreads: f64,
-    /// How much belief in an unseen robot's hand gives way when the robot presses something, 0 to 1.
+    /// Share of the belief in the unseen content of the robot's hand that is lost when the robot presses, 0 to 1.
     pub doubts_robot_hand: f64,
-    /// The same for an unseen shared place, 0 to 1.
+    /// Share of the belief in the unseen content of a shared place that is lost when the robot presses, 0 to 1.
     pub doubts_places: f64,
-    /// Probability of the true recipe after the instruction.
+    /// Probability that the participant gives to the true recipe after the instruction.
     pub learned: f64,
-    /// Probability of the true recipe to which an unused memory of it decays.
+    /// Probability of the true recipe to which an unused memory of it fades.
     pub half_forgotten: f64,
-    /// Half-life of that decay, in seconds.
+    /// Half-life of the fading of recipe memories, in seconds.
     pub half_life_s: f64,
-    /// How often the thread is lost while working on an order, per second.
+    /// Rate at which the participant forgets the recipe while working on an order, per second.
     pub loses_thread_per_s: f64,
-    /// Chance to question the own recipe when what the robot does or makes does not fit it.
+    /// Probability of doubting the own recipe when the robot's behaviour contradicts it.
     pub takes_hints: f64,
-    /// Time without anything to do after which the person looks around and doubts its recipes, in seconds.
+    /// Time without a useful press after which the participant looks around and doubts its recipes, in seconds.
     pub patience_s: f64,
-    /// How long the person stays with one order, in seconds.
+    /// Time for which the participant stays with one order, in seconds.
     pub commitment_s: f64,
-    /// Chance to notice a signal.
+    /// Probability of noticing a signal.
     pub notices_signal: f64,
-    /// Number of own presses that are thought through, 2 to 5.
+    /// Number of own presses that the participant thinks through, 2 to 5.
     pub depth: usize,
-    /// Chance not to check the preconditions of later presses.
+    /// Probability of not checking the preconditions of later presses.
     pub skips_check: f64,
-    /// Chance to take the last dish's part.
+    /// Probability of taking a part of the last dish instead of one of the present dish, by habit.
     pub follows_habit: f64,
-    /// Chance that parked parts do not come to mind.
+    /// Probability of forgetting parts at parking places.
     pub forgets_parked: f64,
-    /// Chance to do first what is at hand for another order.
+    /// Probability of first doing what is within reach for another order.
     pub takes_along: f64,
-    /// Chance to lose the next intention by reading a signal.
+    /// Probability of losing the next intention by reading a signal.
     pub loses_intention: f64,
-    /// How much the heed for signals follows the usefulness of each, 0 to 1.
+    /// Share by which the attention to signals moves towards the usefulness of each signal, 0 to 1.
     pub tires_of_signals: f64,
-    /// Chance to keep to the own version of a recipe when a signal shows another.
+    /// Probability of keeping the own version of a recipe when a signal shows another one.
     pub keeps_own_recipe: f64,
-    /// Chance to be sure of a wrong version of a recipe after the instruction.
+    /// Probability of being sure of a wrong version of a recipe after the instruction.
     pub misremembers: f64,
-    /// Chance to guess rightly what the robot did unseen.
+    /// Probability of guessing rightly what the robot did unseen.
     pub guesses_robot: f64,
-    /// Chance of a wrong answer to a question of a freeze probe.
+    /// Probability of a wrong answer to a question of a freeze probe.
     pub answers_wrong: f64,
-    /// Median time to answer such a question, in seconds.
+    /// Median time to answer a question of a freeze probe, in seconds.
     pub answer_s: f64,
-    /// Chance to make proposed presses that were read.
+    /// Probability of making proposed presses that the participant has read.
     pub follows_proposal: f64,
 }
 
@@ -342,8 +348,8 @@ const DEPTHS: [usize; 2] = [2, 5];
 const MOST_SIGNALS_NOTICED: f64 = 0.85;
 
 impl Population {
-    /// The first parameters that exclude each other: the path of one of them in a session file, the value found, and a valid value.
-    /// The ranges of single parameters are in `session::ranges`.
+    /// The first parameters that contradict each other: the path of one of them in a session file, the value found, and
+    /// a valid value. The ranges of single parameters are in `session::ranges`.
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         let intervals = [
             ("participant.population.signal_after_s", "signal_after_s", self.signal_after_s),
@@ -353,7 +359,7 @@ impl Population {
         Some((path, format!("{name} = [{least}, {most}]"), "[least, most], in seconds"))
     }
 
-    /// Draws one individual.
+    /// Draws one individual from the population.
     pub fn draw(&self, random: &mut Stream) -> Individual {
         Individual {
             press_s: self.press_s.draw(random),

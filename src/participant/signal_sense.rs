@@ -1,4 +1,4 @@
-//! What a simulated participant makes of signals: the one that it will read, and how useful they have been.
+//! A simulated participant's state regarding signals: the signal that it will read, and how useful signals have been.
 
 use std::collections::VecDeque;
 
@@ -6,16 +6,16 @@ use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::kitchen::{ButtonId, LocationId};
 
-/// What the participant makes of signals.
+/// A simulated participant's state regarding signals.
 #[derive(Clone, Debug)]
 pub(super) struct SignalSense {
-    /// A noticed signal with the location that it is about, and when it will be read.
+    /// A noticed signal: the time at which the participant will read it, the location that it is about, and the signal.
     pub pending: Option<(SessionTime, Option<LocationId>, Signal)>,
-    /// Proposed presses that the participant means to make next.
+    /// Proposed presses that the participant intends to make next.
     pub follows: VecDeque<ButtonId>,
-    /// Until when a signal is read.
+    /// Time until which the participant reads a signal.
     pub busy_until: SessionTime,
-    /// How useful signals have been, 0 to 1.
+    /// How useful the signals so far have been to the participant, 0 to 1.
     pub worth: f64,
 }
 
@@ -26,7 +26,7 @@ impl Default for SignalSense {
 }
 
 impl SignalSense {
-    /// Postpones reading by `by`.
+    /// Postpones the reading of a signal by `by`.
     pub fn postpone(&mut self, by: SessionTime) {
         self.pending = self.pending.take().map(|(time, location, signal)| (time + by, location, signal));
         self.busy_until = self.busy_until + by;

@@ -1,14 +1,19 @@
-//! What signals do to the simulated participant: it may notice and read them, and they cost it something.
+//! The effect of signals on the simulated participant: it may notice and read them, and reading costs time and
+//! attention.
 //!
-//! The values come from the literature on glances and interruptions and were fixed before any condition with signals was simulated:
+//! The values come from the literature on glances and interruptions and were fixed before any condition with signals
+//! was simulated:
 //!
-//! - Reading takes a glance, during which nothing else is seen and pressed: 0.5 to 1.5 s, as people allocate to single glances at
-//!   displays beside a primary task (Green 1998, "Visual and Task Demands of Driver Information Systems", UMTRI-98-16).
-//! - Now and then the next intention is lost, and the work is resumed after a lag of a second: interruptions of 2.8 s doubled the
-//!   rate of sequence errors (Altmann, Trafton and Hambrick 2014, "Momentary interruptions can derail the train of thought"). A
-//!   signal takes half of that time and loses the intention in 5 %, half of the rate at which simulated people err anyway.
-//! - After useless signals the next ones are noticed less: people respond to alarms about as often as these are right (Bliss,
-//!   Gilson and Deaton 1995, "Human probability matching behaviour in response to alarms of varying reliability").
+//! - Reading takes a glance, during which the participant sees and presses nothing else: 0.5 to 1.5 s, as people
+//!   allocate to single glances at displays beside a primary task (Green 1998, "Visual and Task Demands of Driver
+//!   Information Systems", UMTRI-98-16).
+//! - Now and then the participant loses its next intention, and resumes the work after a lag of a second: interruptions
+//!   of 2.8 s doubled the rate of sequence errors (Altmann, Trafton and Hambrick 2014, "Momentary interruptions can
+//!   derail the train of thought"). A signal takes half of that time and loses the intention in 5 %, half of the rate
+//!   at which simulated people err anyway.
+//! - After useless signals the next ones are noticed less: people respond to alarms about as often as these are right
+//!   (Bliss, Gilson and Deaton 1995, "Human probability matching behaviour in response to alarms of varying
+//!   reliability").
 
 use std::collections::VecDeque;
 
@@ -20,7 +25,7 @@ use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 
-/// Number of steps along each side of the display in the search for room.
+/// Number of grid steps along each side of the display in the search for free room.
 const ROOM_STEPS: usize = 20;
 
 /// Least share of a participant's signals that it still notices when all of them were useless.
@@ -37,7 +42,8 @@ impl SimulatedParticipant {
             is_noticed.then(|| (now + SessionTime::from_secs_f64(after_s), location, signal.clone()));
     }
 
-    /// Removes the signal; the participant cannot read it any more. Proposed presses that are out of date are not made.
+    /// Removes the signal from the display; the participant cannot read it any more. It does not make proposed presses
+    /// that are out of date.
     pub fn on_signal_end(&mut self, is_outdated: bool) {
         self.signals.pending = None;
         if is_outdated {
@@ -45,12 +51,12 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Whether a signal is being read, when nothing else is seen.
+    /// Whether the participant is reading a signal, during which it sees nothing else.
     pub(super) fn is_reading_signal(&self, now: SessionTime) -> bool {
         now < self.signals.busy_until
     }
 
-    /// Reads the signal that is due. What the participant knew already makes later signals be noticed less.
+    /// Reads the signal that is due. If it told nothing new, the participant notices later signals less.
     pub(super) fn read_signal(&mut self, now: SessionTime, state: State) {
         let is_due = self.signals.pending.as_ref().is_some_and(|(time, _, _)| now >= *time);
         let Some((_, location, signal)) = self.signals.pending.take_if(|_| is_due) else { return };
@@ -79,7 +85,7 @@ impl SimulatedParticipant {
         self.pay_for_signal(now, is_useful);
     }
 
-    /// Reads the recipe of a dish, wrongly now and then, and may keep to the own version.
+    /// Reads the recipe of a dish, occasionally wrongly; the participant may keep its own version.
     fn read_recipe(&mut self, dish: DishId) {
         let kitchen = self.kitchen.clone();
         let variants = kitchen.dish(dish).variants.len();
@@ -91,8 +97,8 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Reads proposed presses and may mean to make them. They say nothing about contents and recipes, so beliefs stay as they are.
-    /// Returns whether they are others than the planned ones.
+    /// Reads proposed presses, which the participant may intend to make. They reveal nothing about contents and
+    /// recipes, so beliefs do not change. Returns whether they differ from the planned presses.
     fn read_proposal(&mut self, presses: &[String]) -> bool {
         let buttons = presses.iter().filter_map(|name| self.kitchen.button_named(Agent::Human, name));
         let buttons: VecDeque<ButtonId> = buttons.collect();
@@ -103,14 +109,15 @@ impl SimulatedParticipant {
         is_new
     }
 
-    /// Notes an own press: a proposal is followed press by press, and any other press ends that.
+    /// Records an own press: a proposal is followed press by press, and any other press ends that.
     pub(super) fn has_pressed(&mut self, button: ButtonId) {
         if self.signals.follows.pop_front() != Some(button) {
             self.signals.follows.clear();
         }
     }
 
-    /// The costs of a signal that was read: time, perhaps the next intention, and heed for later ones.
+    /// Applies the costs of a signal that was read: time, possibly the loss of the next intention, and less attention
+    /// to later signals if it was useless.
     fn pay_for_signal(&mut self, now: SessionTime, is_useful: bool) {
         let [least, most] = self.population.reads_signal_s;
         let reading_s = least + (most - least) * self.mind.random::<f64>();
@@ -128,11 +135,11 @@ impl SimulatedParticipant {
     }
 }
 
-/// Where the page shows proposed presses: the point of the display that is farthest from all locations and storages, as a fraction of its
-/// width and height.
+/// Where the participant's display shows proposed presses: the point that is farthest from all locations and storages,
+/// as a fraction of the display's width and height.
 fn roomiest(kitchen: &Kitchen) -> [f64; 2] {
     let at = |step: usize| step as f64 / ROOM_STEPS as f64;
-    // The corners belong to the tags.
+    // The corners of the display are reserved for the eye tracker's markers.
     let inside = || 2..ROOM_STEPS - 1;
     let points = inside().flat_map(|x| inside().map(move |y| [at(x), at(y)]));
     let areas =

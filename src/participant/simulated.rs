@@ -17,7 +17,7 @@ use crate::gaze::GazeSample;
 use crate::kitchen::{ButtonId, Kitchen, LocationId, State};
 use crate::mind::BeliefWitness;
 
-/// Probability that the participant assigns to the empty kitchen at the start of a trial.
+/// Probability that the simulated participant gives to the empty kitchen at the start of a trial.
 const SURE_AT_START: f64 = 0.97;
 
 /// Action of a simulated participant.
@@ -27,9 +27,9 @@ pub enum ParticipantAction {
     Gaze(GazeSample),
     /// A press of a button; `belief` records the participant's beliefs at the press and the cause of the press.
     Press {
-        /// The button, in the list of the human's buttons.
+        /// The pressed button, as an index into the human's buttons.
         button: ButtonId,
-        /// What it believes at this moment, and why it presses.
+        /// The participant's beliefs at the press, and the cause of the press.
         belief: BeliefWitness,
     },
 }
@@ -45,15 +45,17 @@ pub struct SimulatedParticipant {
     pub(super) beliefs: ParticipantBeliefs,
     pub(super) memory: Memory,
     pub(super) eyes: Eyes,
-    /// Copy of the eyes that looks at the targets of a calibration check; present only during the check.
+    /// Copy of the eyes that looks at the targets of an accuracy check of the eye tracker; present only during the
+    /// check.
     pub(super) at_targets: Option<Eyes>,
     pub(super) attention: Attention,
     pub(super) intent: Intent,
-    /// Random streams: of the mind (attention, reading, thinking), and of the hand (press times, slips).
+    /// Random streams of the participant: of the mind (attention, reading, thinking), and of the hand (press times,
+    /// slips).
     pub(super) mind: Stream,
     pub(super) hand: Stream,
     pub(super) is_started: bool,
-    /// State at the last comparison of the display for changes.
+    /// State of the display when the participant last compared it for changes.
     pub(super) display: State,
     pub(super) rethink: bool,
     pub(super) press_at: SessionTime,
@@ -62,18 +64,18 @@ pub struct SimulatedParticipant {
     pub(super) idle_since: Option<SessionTime>,
     /// Time of the robot's last press.
     pub(super) robot_pressed_at: SessionTime,
-    /// Intended button of a slip that the participant has not noticed; `None` otherwise.
+    /// The intended button of a slip that the participant has not noticed; else `None`.
     pub(super) meant: Option<ButtonId>,
     pub(super) signals: SignalSense,
-    /// Seed of its answers to the questions of probes.
+    /// Seed of the participant's answers to the questions of probes.
     pub(super) answer_seed: u64,
-    /// Served orders with the time at which each disappears.
+    /// Served orders, each with the time at which the participant expects it to disappear.
     pub(super) clearing: Vec<(SessionTime, LocationId)>,
 }
 
 impl SimulatedParticipant {
-    /// Draws the participant of a trial from a population. Traits are seeded by `person`, random events of the trial by `trial`,
-    /// so one person can have several trials. `experience` describes the earlier ones.
+    /// Draws the simulated participant of a trial from a population. Traits are seeded by `person`, random events of
+    /// the trial by `trial`, so one person can have several trials. `experience` describes the earlier ones.
     pub fn new(
         kitchen: Arc<Kitchen>,
         population: &Population,
@@ -122,7 +124,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Traits of the participant.
+    /// Individual traits of the participant.
     pub fn person(&self) -> &Individual {
         &self.person
     }
@@ -132,18 +134,18 @@ impl SimulatedParticipant {
         &self.beliefs
     }
 
-    /// Time of the next action; `None` before the trial's start.
+    /// Time of the participant's next action; `None` before the trial's start.
     pub fn next_due(&self) -> Option<SessionTime> {
         self.is_started.then(|| self.press_at.min(self.eyes.due()))
     }
 
-    /// The planned next press and its time, if already decided.
+    /// The participant's planned next press and its time, if already decided.
     pub fn next_press(&self) -> Option<(ButtonId, SessionTime)> {
         let button = self.intent.plan.front().filter(|_| self.is_started)?;
         Some((*button, self.press_at))
     }
 
-    /// Postpones all planned actions by `by`.
+    /// Postpones all planned actions of the participant by `by`.
     pub fn postpone(&mut self, by: SessionTime) {
         self.eyes.postpone(by);
         self.memory.postpone(by);

@@ -1,12 +1,12 @@
-//! Behaviour of a simulated participant during a check of its eye tracker's calibration: it looks at the targets.
+//! Behaviour of a simulated participant during an accuracy check of its eye tracker: it looks at the targets.
 
 use super::simulated::SimulatedParticipant;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 
 impl SimulatedParticipant {
-    /// Shows a calibration target, or removes it. Copies of the eyes look at targets, so a check changes nothing in the trial;
-    /// the copies have the same tracker offset.
+    /// Shows a target of the accuracy check, or removes it. A copy of the eyes looks at the target, so a check changes
+    /// nothing in the trial; the copy has the same tracker offset.
     pub fn on_target(&mut self, now: SessionTime, target: Option<[f64; 2]>) {
         match (target, &mut self.at_targets) {
             (None, eyes) => *eyes = None,
@@ -20,12 +20,12 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Time at which the next sample of the calibration check is due.
+    /// Time at which the next gaze sample of the accuracy check is due.
     pub fn target_due(&self) -> Option<SessionTime> {
         self.at_targets.as_ref().map(|eyes| eyes.due())
     }
 
-    /// The sample of the calibration check that is due now.
+    /// The gaze sample of the accuracy check that is due now.
     pub fn look_at_target(&mut self, now: SessionTime) -> Option<GazeSample> {
         self.at_targets.as_mut().map(|eyes| eyes.sample(now))
     }

@@ -1,4 +1,5 @@
-//! Interpretation of events by the simulated participant (own presses, robot presses, passing time), and decisions on next presses.
+//! Interpretation of events by the simulated participant (own presses, robot presses, passing time), and its decisions
+//! on next presses.
 
 use super::decision::{Decision, Urgency};
 use super::habits::Lapses;
@@ -11,13 +12,13 @@ use crate::kitchen::{
     Agent, AspectId, ButtonAction, ButtonId, ContentId, DishId, LocationId, LocationKind, OrderContent, State, World,
 };
 
-/// Probability of looking at the location that the last press changed.
+/// Probability that the participant looks at the location that its last press changed.
 const LOOKS_AT_RESULT: f64 = 0.5;
-/// Time since reading a location during which the participant relies on the content that it read, in seconds.
+/// Time since reading a location during which the participant relies on the content read there, in seconds.
 const SEEN_JUST_NOW_S: f64 = 5.0;
-/// Probability that the participant assigns to what it rightly guesses of a press of the robot.
+/// Probability that the participant gives to what it rightly guesses about a press of the robot.
 const GUESSED_CERTAINTY: f64 = 0.85;
-/// Probability that the participant assigns to the disappearance of a served order after the usual time.
+/// Probability that the participant gives to the disappearance of a served order after the usual time.
 const EXPECTED: f64 = 0.8;
 
 impl SimulatedParticipant {
@@ -54,8 +55,8 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Reacts to a robot press whose effect the participant guesses rightly: the places that the press changed are believed as they
-    /// are now.
+    /// Reacts to a robot press whose effect the participant guesses rightly: it believes the present content of the
+    /// places that the press changed.
     pub(super) fn guess(&mut self, before: State, after: State) {
         let kitchen = self.kitchen.clone();
         for index in 0..kitchen.locations.len() {
@@ -70,7 +71,7 @@ impl SimulatedParticipant {
         self.rethink = true;
     }
 
-    /// Reacts to an own press that was effective or not.
+    /// Reacts to the participant's own press, effective or not.
     pub(super) fn take_in(&mut self, now: SessionTime, button: ButtonId, effective: bool) {
         let kitchen = self.kitchen.clone();
         let action = kitchen.button(Agent::Human, button).action;
@@ -99,7 +100,8 @@ impl SimulatedParticipant {
                     let gone = now + SessionTime::from_secs_f64(kitchen.served_shown_s);
                     self.clearing.push((gone, order));
                 }
-                // The plate's content itself is doubted first; the recipe is doubted only if the plate has just been seen.
+                // The participant first doubts the plate's content; it doubts the recipe only if it has just seen the
+                // plate.
                 false if now.secs_since(self.attention.read_at[kitchen.plate.index()]) < SEEN_JUST_NOW_S => {
                     self.memory.fail(&kitchen, &mut self.beliefs, dish);
                 }
@@ -109,7 +111,8 @@ impl SimulatedParticipant {
         self.rethink = true;
     }
 
-    /// Decides on the next presses and queues looks at their locations. Proposed presses that are followed take the place of the decision.
+    /// Decides on the next presses and queues looks at their locations. A proposal that the participant follows
+    /// replaces the decision.
     pub(super) fn think(&mut self, now: SessionTime) {
         self.rethink = false;
         if !self.population.all_knowing {
@@ -133,7 +136,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// The decision that is due, but for what is believed.
+    /// The data of the decision that is due, without the world that the participant believes.
     pub(super) fn decision(&self, urgency: Urgency) -> Decision<'_> {
         Decision {
             kitchen: &self.kitchen,
@@ -147,7 +150,7 @@ impl SimulatedParticipant {
         }
     }
 
-    /// Applies passing time: memories fade, recipes in use are forgotten, served orders are expected to disappear.
+    /// Accounts for passing time: memories fade, recipes in use are forgotten, served orders are expected to disappear.
     fn pass_time(&mut self, now: SessionTime) {
         let kitchen = self.kitchen.clone();
         let orders = kitchen.orders.iter();
@@ -175,7 +178,7 @@ impl SimulatedParticipant {
     }
 }
 
-/// Content of the order that a serve button serves; no order for other buttons.
+/// Content of the order that a serve button serves; `OrderContent::None` for other buttons.
 fn serve_of(action: ButtonAction, state: State) -> OrderContent {
     match action {
         ButtonAction::Serve(order) => state.order(order),

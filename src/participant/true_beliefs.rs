@@ -2,17 +2,19 @@
 
 use crate::kitchen::{AspectId, AspectKind, ContentId, DishId, Kitchen, LocationId, OrderContent, State, World};
 
-/// Beliefs of a simulated participant. Every distribution sums to 1, and every value has a positive probability.
+/// Beliefs of a simulated participant: one distribution per state aspect. Every distribution sums to 1, and every value
+/// has a positive probability.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParticipantBeliefs {
     of: Vec<Vec<f64>>,
 }
 
-/// Probability spread evenly over all values of an aspect, so that no value becomes impossible.
+/// Probability that is spread evenly over all values of an aspect, so that no value becomes impossible.
 const RESIDUE: f64 = 1e-6;
 
 impl ParticipantBeliefs {
-    /// Beliefs with probability `sure` on each value in `state` and on the true recipes; memory changes the recipes afterwards.
+    /// Beliefs with probability `sure` on each value in `state` and on the true recipes; the memory changes the recipes
+    /// afterwards.
     pub fn of_state(kitchen: &Kitchen, state: State, sure: f64) -> ParticipantBeliefs {
         let mut beliefs = ParticipantBeliefs { of: kitchen.aspects.iter().map(|a| uniform(a.values.len())).collect() };
         for index in 0..kitchen.aspects.len() {
@@ -22,7 +24,7 @@ impl ParticipantBeliefs {
         beliefs
     }
 
-    /// Distribution over the values of an aspect.
+    /// The participant's distribution over the values of an aspect.
     pub fn distribution(&self, aspect: AspectId) -> &[f64] {
         &self.of[aspect.index()]
     }
@@ -33,12 +35,13 @@ impl ParticipantBeliefs {
         (1..values.len()).fold(0, |best, index| if values[index] > values[best] { index } else { best })
     }
 
-    /// Probability of the most probable value.
+    /// Probability of the most probable value of an aspect.
     pub fn certainty(&self, aspect: AspectId) -> f64 {
         self.distribution(aspect)[self.most_likely(aspect)]
     }
 
-    /// Sets the probability of one value to `sure`; the others share the rest in their present proportions.
+    /// Sets the probability of one value of an aspect to `sure`; the other values share the rest in their present
+    /// proportions.
     pub fn settle(&mut self, aspect: AspectId, value: usize, sure: f64) {
         let values = &mut self.of[aspect.index()];
         let others = 1.0 - values[value];
@@ -53,7 +56,8 @@ impl ParticipantBeliefs {
         normalise(values);
     }
 
-    /// Moves a distribution by the share `weight` towards another distribution, which is given as unnormalized weights.
+    /// Moves the distribution of an aspect by the share `weight` towards another distribution, which is given as
+    /// unnormalized weights.
     pub fn mix(&mut self, aspect: AspectId, towards: &[f64], weight: f64) {
         let total: f64 = towards.iter().sum();
         if total <= 0.0 {
@@ -66,7 +70,7 @@ impl ParticipantBeliefs {
         normalise(values);
     }
 
-    /// Multiplies the probability of each value by a factor, then normalizes.
+    /// Multiplies the probability of each value of an aspect by a factor, then normalizes.
     pub fn weigh(&mut self, aspect: AspectId, factor: impl Fn(usize) -> f64) {
         let values = &mut self.of[aspect.index()];
         for (index, p) in values.iter_mut().enumerate() {
@@ -75,12 +79,12 @@ impl ParticipantBeliefs {
         normalise(values);
     }
 
-    /// Replaces a distribution by unnormalized weights.
+    /// Replaces the distribution of an aspect by unnormalized weights.
     pub fn replace(&mut self, aspect: AspectId, weights: &[f64]) {
         self.mix(aspect, weights, 1.0);
     }
 
-    /// The most probable state and recipes.
+    /// The most probable state and recipes, as the participant believes.
     pub fn point(&self, kitchen: &Kitchen) -> World {
         let World { mut state, mut recipes } = World::empty(kitchen);
         for (index, aspect) in kitchen.aspects.iter().enumerate() {
@@ -99,7 +103,7 @@ impl ParticipantBeliefs {
     }
 }
 
-/// The dish that the participant believes an order requests.
+/// The dish that an order wants, as the participant believes.
 pub fn wanted_dish(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, order: LocationId) -> Option<DishId> {
     let aspect = AspectId::of_location(order);
     match OrderContent::from_code(kitchen.aspects[aspect.index()].values[beliefs.most_likely(aspect)]) {

@@ -1,15 +1,16 @@
 //! Record of a participant's beliefs at a press, and of the origin of the press.
 //!
-//! The decision is repeated with the truth and the same lapses. If the press stays the same, it came from the plan; if it changes,
-//! from a false belief, namely the smallest replacement by the truth that changes it. An order and the recipe of its dish are
-//! replaced together.
+//! The participant's decision is repeated with the truth and the same lapses. If the press stays the same, it came from
+//! the plan; if it changes, from a false belief, namely the smallest replacement by the truth that changes it. An order
+//! and the recipe of its dish are replaced together.
 
 use super::decision::Decision;
 use super::true_beliefs::ParticipantBeliefs;
 use crate::kitchen::{AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State, World};
 use crate::mind::{AspectBelief, BeliefWitness, PressOrigin, WORTH_TELLING};
 
-/// Records every aspect: its most probable value, the probability of the true value, and all other probabilities worth logging.
+/// Records the belief about every aspect: its most probable value, the probability of the true value, and all other
+/// probabilities large enough for the log.
 pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, reason: PressReason) -> BeliefWitness {
     let name = |aspect: &AspectId| kitchen.aspects[aspect.index()].name.clone();
     BeliefWitness {
@@ -20,7 +21,7 @@ pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, re
     }
 }
 
-/// The same at a freeze probe, after which nothing is pressed because of it.
+/// Records the belief about every aspect at a freeze probe, which causes no press.
 pub fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State) -> BeliefWitness {
     let told = |index: usize| {
         let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
@@ -52,22 +53,22 @@ pub struct PressReason {
     pub origin: PressOrigin,
     /// The reason in words.
     pub cause: String,
-    /// The aspects whose replacement by the truth changes the press.
+    /// The aspects whose replacement by the truth changes the decision.
     pub targets: Vec<AspectId>,
 }
 
 impl PressReason {
-    /// A slip, in words.
+    /// The reason of a slip, with its description.
     pub fn slip(cause: String) -> PressReason {
         PressReason { origin: PressOrigin::Slip, cause, targets: Vec::new() }
     }
 
-    /// A press that the display proposed.
+    /// The reason of a press that the display proposed.
     pub fn proposed() -> PressReason {
         PressReason { origin: PressOrigin::Plan, cause: "as proposed on the display".to_string(), targets: Vec::new() }
     }
 
-    /// The reason of a press that was decided for `believed`, while `truth` holds.
+    /// The reason of a press that was decided in the world `believed`, while the world `truth` is the true one.
     pub fn decided(decision: &Decision, believed: &World, truth: &World, button: ButtonId) -> PressReason {
         let kitchen = decision.kitchen;
         let presses = |world: &World| decision.resolve(world).plan.front().copied();
@@ -111,7 +112,8 @@ impl PressReason {
     }
 }
 
-/// What is believed wrong, in the order of the layout; an order and the believed recipes of the dishes in question are one target.
+/// Aspects with false beliefs, in the order of the layout; an order and the believed recipes of the dishes in question
+/// are one target.
 fn wrong_targets(kitchen: &Kitchen, believed: &World, truth: &World) -> Vec<Vec<AspectId>> {
     let is_wrong = |aspect: &AspectId| code_of(kitchen, believed, *aspect) != code_of(kitchen, truth, *aspect);
     let mut left: Vec<AspectId> =
@@ -135,7 +137,7 @@ fn wrong_targets(kitchen: &Kitchen, believed: &World, truth: &World) -> Vec<Vec<
     targets
 }
 
-/// The code of an aspect's value in a world.
+/// The code of an aspect's value in this world.
 fn code_of(kitchen: &Kitchen, world: &World, aspect: AspectId) -> u8 {
     match kitchen.aspects[aspect.index()].kind {
         AspectKind::Location(location) => world.state.code(location),

@@ -1,4 +1,4 @@
-//! How the scripted wizard reads offers of the assistant: after a while it takes an offer, or leaves it.
+//! How the scripted wizard reads offers of the assistant: after a while it takes an offer, or ignores it.
 
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
@@ -8,30 +8,31 @@ use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::communication::offer::UNREAD;
 
-/// The reader of offers in one trial.
+/// The part of the scripted wizard that reads the assistant's offers in one trial.
 #[derive(Clone, Debug)]
 pub struct OfferReader {
     spec: OfferReading,
-    /// Standard deviation of the logarithm of the reading time.
+    /// Standard deviation of the logarithm of the time for reading an offer.
     spread: f64,
-    /// Its own stream, so that the wizard's own judgement is the same with and without offers.
+    /// Random stream of the reader, separate so that the wizard's own judgement is the same with and without offers.
     random: Stream,
-    /// The offer that will be taken, by its sequence number, and when.
+    /// The offer that the wizard will take: the time, and its sequence number.
     takes: Option<(SessionTime, u64)>,
 }
 
 impl OfferReader {
-    /// The reader of a trial; its random stream is seeded by (seed, trial).
+    /// The reader of offers in a trial; its random stream is seeded by (seed, trial).
     pub fn new(spec: OfferReading, spread: f64, seed: u64, trial: u64) -> OfferReader {
         OfferReader { spec, spread, random: stream(seed, "wizard's reading of offers", trial), takes: None }
     }
 
-    /// Time at which an offer is taken; `None` if none is.
+    /// Time at which the wizard will take an offer; `None` if it will take none.
     pub fn due(&self) -> Option<SessionTime> {
         self.takes.map(|(time, _)| time)
     }
 
-    /// An offer opens: decides whether it will be taken, and when. An offer that opens replaces the one before.
+    /// Reacts to an offer that opens: decides whether the wizard will take it, and when. It replaces the previous
+    /// offer.
     pub fn on_offer(&mut self, now: SessionTime, offer: u64) {
         let normal: f64 = StandardNormal.sample(&mut self.random);
         let is_taken = self.random.random::<f64>() < self.spec.takes;
@@ -44,7 +45,7 @@ impl OfferReader {
         self.takes.take_if(|(time, _)| *time <= now).map(|(_, offer)| offer)
     }
 
-    /// Delays what is due until `time`, if it is due before.
+    /// Delays the taking of an offer until `time`, if it is due earlier.
     pub fn wait_until(&mut self, time: SessionTime) {
         self.takes = self.takes.map(|(due, offer)| (due.max(time), offer));
     }

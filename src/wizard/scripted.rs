@@ -38,17 +38,17 @@ pub struct ScriptedWizard {
     seen: SeenKitchen,
     /// The participant's last presses, newest last.
     presses: VecDeque<ObservedPress>,
-    /// Time of the next signal, and the suspected false belief that it is about.
+    /// The planned signal: its time, and the suspected false belief that it is about.
     about_to: Option<(SessionTime, Thought)>,
     /// Locations changed by others, with the times at which the wizard checks whether the participant has seen the change.
     watched: Vec<(SessionTime, LocationId)>,
     signalled_at: Option<SessionTime>,
-    /// Its eye for offers, if it reads them.
+    /// The part that reads the assistant's offers, if the wizard does.
     reader: Option<OfferReader>,
 }
 
 impl ScriptedWizard {
-    /// Creates the wizard of a trial, who reads no offers; its random stream is seeded by (seed, trial).
+    /// Creates the scripted wizard of a trial, who reads no offers; its random stream is seeded by (seed, trial).
     pub fn new(kitchen: Arc<Kitchen>, spec: WizardSpec, own_hand: bool, seed: u64, trial: u64) -> ScriptedWizard {
         let seen = SeenKitchen::new(kitchen.empty_state());
         let random = stream(seed, "wizard", trial);
@@ -58,14 +58,14 @@ impl ScriptedWizard {
         ScriptedWizard { kitchen, spec, own_hand, random, seen, presses, about_to, watched, signalled_at, reader }
     }
 
-    /// The same wizard, who reads offers as its settings say, with a random stream of its own.
+    /// The same wizard, but reading offers as the settings say, with a random stream of its own for that.
     pub fn reading_offers(self, seed: u64, trial: u64) -> ScriptedWizard {
         let spread = self.spec.reaction_spread;
         let reader = self.spec.offers.map(|offers| OfferReader::new(offers, spread, seed, trial));
         ScriptedWizard { reader, ..self }
     }
 
-    /// Time of the next signal or check; `None` if nothing is planned.
+    /// Time of the wizard's next signal or check; `None` if nothing is planned.
     pub fn next_due(&self) -> Option<SessionTime> {
         let watched = self.watched.iter().map(|(time, _)| *time);
         let offer = self.reader.as_ref().and_then(OfferReader::due);
@@ -85,7 +85,7 @@ impl ScriptedWizard {
         self.seen.gaze(now, location, state, self.spec.look_s);
     }
 
-    /// Reacts to a press of the participant; `is_error`: the press had more regret than the best press.
+    /// Reacts to a press of the participant; `is_error` says whether the press had more regret than the best press.
     pub fn on_human_press(&mut self, now: SessionTime, press: &Press, is_error: bool, cost: &mut CostToGo) {
         let &Press { button, before, after, .. } = press;
         if self.presses.len() == REMEMBERED_PRESSES {
@@ -114,15 +114,15 @@ impl ScriptedWizard {
         }
     }
 
-    /// Reacts to a signal about a location that appears on the display.
+    /// Reacts to a signal about a location that appears on the participant's display.
     pub fn on_signal(&mut self, now: SessionTime, location: LocationId, state: State) {
         self.seen.told(location, state);
         self.signalled_at = Some(now);
-        // What an offer has said need not be said again.
+        // A planned signal is dropped if an offer has already sent it.
         self.about_to.take_if(|(_, thought)| thought.location() == location);
     }
 
-    /// Reacts to an offer that opens on its screen.
+    /// Reacts to an offer that opens on the wizard's screen.
     pub fn on_offer(&mut self, now: SessionTime, offer: u64) {
         if let Some(reader) = &mut self.reader {
             reader.on_offer(now, offer);
@@ -140,7 +140,8 @@ impl ScriptedWizard {
         }
     }
 
-    /// Performs what is due now: sends a signal, takes an offer, or checks whether a change was seen.
+    /// Performs the wizard's action that is due: sends a signal, takes an offer, or checks whether the participant saw
+    /// a change.
     pub fn act(&mut self, now: SessionTime, state: State, cost: &mut CostToGo) -> Option<WizardAction> {
         if let Some((_, thought)) = self.about_to.take_if(|(time, _)| *time <= now) {
             return self.say(now, thought, state, cost).map(WizardAction::Send);
@@ -161,7 +162,7 @@ impl ScriptedWizard {
         None
     }
 
-    /// The offer that is due to be taken; it waits until the wizard has rested from its last signal.
+    /// The offer that the wizard takes now; it waits until some time has passed since the last signal.
     fn take_offer(&mut self, now: SessionTime) -> Option<u64> {
         let rested = self.rested().filter(|&rested| rested > now);
         let reader = self.reader.as_mut()?;
@@ -174,7 +175,7 @@ impl ScriptedWizard {
         }
     }
 
-    /// When the next signal may follow the last one; `None` before the first.
+    /// The earliest time of the next signal after the last one; `None` before the first signal.
     fn rested(&self) -> Option<SessionTime> {
         self.signalled_at.map(|last| last + SessionTime::from_secs_f64(self.spec.rest_s))
     }
@@ -212,7 +213,8 @@ impl ScriptedWizard {
         }
     }
 
-    /// Sends a planned signal, unless the false belief has ended, its order is gone, or it would no longer mislead anybody.
+    /// Sends the planned signal, unless the false belief has ended, its order is gone, or it would no longer mislead
+    /// anybody.
     fn say(&mut self, now: SessionTime, thought: Thought, state: State, cost: &mut CostToGo) -> Option<Signal> {
         let holds = match thought {
             Thought::Place(location) => !self.seen.knows(location, state),

@@ -1,4 +1,5 @@
-//! The participant's knowledge as an observer of kitchen and gaze can infer it, and false beliefs that explain a press.
+//! What an observer of kitchen and gaze can infer about the participant's knowledge, and false beliefs that explain a
+//! press.
 
 use super::thought::Thought;
 use crate::base::time::SessionTime;
@@ -10,12 +11,12 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, Recipes, State};
 pub struct SeenKitchen {
     /// The last seen content of every location.
     pub state: State,
-    /// Location that the gaze rests on, and the time at which it arrived there.
+    /// Location on which the gaze rests, and the time at which it arrived there.
     resting: Option<(LocationId, SessionTime)>,
 }
 
 impl SeenKitchen {
-    /// A kitchen that was seen in this state.
+    /// A kitchen that the participant last saw in this state.
     pub fn new(state: State) -> SeenKitchen {
         SeenKitchen { state, resting: None }
     }
@@ -33,7 +34,8 @@ impl SeenKitchen {
         }
     }
 
-    /// Marks the content of a location as known: it was read, signalled, or changed by the participant.
+    /// Marks the content of a location as known to the participant: it was read, signalled, or changed by the
+    /// participant.
     pub fn told(&mut self, location: LocationId, truth: State) {
         self.state.set_code(location, truth.code(location));
     }
@@ -54,15 +56,15 @@ impl SeenKitchen {
 pub struct ObservedPress {
     /// The true state before the press.
     pub truth: State,
-    /// The state as it was last seen.
+    /// The state as the participant last saw it.
     pub seen: State,
-    /// The button, in the list of the human's buttons.
+    /// The pressed button, as an index into the human's buttons.
     pub button: ButtonId,
 }
 
-/// Single false beliefs that make the last press useful: the last seen content of a location, or another version of a requested
-/// recipe. Of these, the ones that explain most of the presses are returned; an empty list if no single false belief makes
-/// the last press useful.
+/// Finds single false beliefs that explain the last press, because it would be useful under them: the last seen content
+/// of a location, or another version of a requested recipe. Of these, the ones that explain most of the presses are
+/// returned; an empty list if no single false belief explains the last press.
 pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]) -> Vec<Thought> {
     let Some(last) = presses.last() else { return Vec::new() };
     let places = kitchen.changed(last.seen, last.truth).map(Thought::Place);
@@ -82,7 +84,7 @@ pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]
     let most = causes.iter().map(|(explained, _)| *explained).max();
     let mut best: Vec<Thought> =
         causes.into_iter().filter(|(explained, _)| Some(*explained) == most).map(|(_, thought)| thought).collect();
-    // The same signal corrects all false versions of a recipe.
+    // One signal corrects all false versions of a recipe.
     best.dedup_by_key(|thought| thought.location());
     // False beliefs about several locations together explain the press; the first of them is returned.
     if best.is_empty() && helps(kitchen, cost, last.seen, &kitchen.true_recipes(), last.button) {

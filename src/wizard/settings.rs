@@ -6,17 +6,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct WizardSpec {
-    /// Who it is: a person or a script.
+    /// Whether the wizard is a person or a script.
     pub kind: WizardKind,
     /// Median time from noticing a false belief to sending the signal, in seconds.
     pub reaction_s: f64,
-    /// Standard deviation of the logarithm of that time.
+    /// Standard deviation of the logarithm of the wizard's reaction time.
     pub reaction_spread: f64,
     /// Probability of noticing that a press of the participant was an error.
     pub sees_errors: f64,
     /// Probability of noticing that the participant overlooks a change and may err because of it.
     pub sees_overlooked: f64,
-    /// Time after a change at which the wizard checks whether the participant has seen it, in seconds.
+    /// Time after a change at which the wizard checks whether the participant has seen the change, in seconds.
     pub overlooked_after_s: f64,
     /// Duration of gaze on a location after which the wizard assumes that the participant has read it, in seconds.
     pub look_s: f64,
@@ -24,18 +24,21 @@ pub struct WizardSpec {
     pub guesses_wrong: f64,
     /// Shortest time between two signals, in seconds.
     pub rest_s: f64,
-    /// How it treats offers of the assistant where the session shows recommendations; `None`: it does not look at them.
+    /// How the scripted wizard treats the assistant's offers where the session shows recommendations; `None`: it
+    /// ignores them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub offers: Option<OfferReading>,
 }
 
-/// How the script treats offers. Nobody has measured how often people take them: the values are assumptions.
+/// How the scripted wizard treats the assistant's offers. Nobody has measured how often people take offers: the values
+/// are assumptions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct OfferReading {
-    /// Probability of taking an offer; else the script goes by its own judgement alone.
+    /// Probability that the script takes an offer; else it follows its own judgement alone.
     pub takes: f64,
-    /// Median time from the opening of an offer to the key that takes it, in seconds. Its spread is that of the reaction.
+    /// Median time from the opening of an offer to the key that takes it, in seconds. Its relative spread is that of
+    /// the reaction time.
     pub reads_s: f64,
 }
 
@@ -45,7 +48,7 @@ impl Default for OfferReading {
     }
 }
 
-/// Who acts as the wizard.
+/// Whether a person or a script acts as the wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WizardKind {
@@ -73,7 +76,7 @@ impl Default for WizardSpec {
 }
 
 impl WizardSpec {
-    /// Whether all settings have their defaults.
+    /// Whether all settings of the wizard have their defaults.
     pub fn is_default(&self) -> bool {
         *self == WizardSpec::default()
     }

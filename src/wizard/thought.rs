@@ -9,12 +9,12 @@ pub enum Thought {
     Place(LocationId),
     /// A false belief about a recipe: the order, its dish, and the stack that the participant takes for the recipe.
     Recipe(LocationId, DishId, ContentId),
-    /// A wrong guess: a location that is not the cause of the error, but plausible.
+    /// A wrong guess of the wizard: a location that did not cause the error, but plausibly could have.
     Guess(LocationId),
 }
 
 impl Thought {
-    /// The location that the correcting signal is about.
+    /// The location that a signal correcting the false belief would be about.
     pub fn location(self) -> LocationId {
         match self {
             Thought::Place(location) | Thought::Recipe(location, ..) | Thought::Guess(location) => location,

@@ -1,30 +1,32 @@
-//! Quasi-random numbers for the first random decisions of each rollout, which matter most.
+//! Quasi-random numbers for the first random decisions of each planner rollout, which matter most.
 //!
-//! Point k is the fractional part of a random shift plus k times a vector of irrational numbers (a Kronecker sequence with powers
-//! of a generalised golden ratio). Every single point is uniform, so means are unbiased. The first n points are spread more evenly
-//! than independent draws, so means have a smaller error.
+//! Point k is the fractional part of a random shift plus k times a vector of irrational numbers (a Kronecker sequence
+//! with powers of a generalised golden ratio). Every single point is uniform, so means are unbiased. The first n points
+//! are spread more evenly than independent draws, so means have a smaller error.
 
 use rand::RngExt;
 
 use crate::base::rng::Stream;
 
-/// Numbers per decision: the decision, the robot's choice before it, and whether that press draws the eye.
+/// Quasi-random numbers per decision of the human: for the decision, for the robot's choice before it, and for whether
+/// that press attracts the gaze.
 pub const PER_DECISION: usize = 3;
-/// Number of decisions with quasi-random numbers.
+/// Number of decisions in a rollout that use quasi-random numbers.
 const DECISIONS: usize = 2;
-/// Dimension: time of the first decision, whether the latest change is seen, and the first decisions.
+/// Dimension of the quasi-random points: time of the first decision, whether the latest change is seen, and the first
+/// decisions.
 const NUMBERS: usize = 2 + PER_DECISION * DECISIONS;
 /// The generalised golden ratio: the root above 1 of x^(NUMBERS + 1) = x + 1.
 const RATIO: f64 = 1.085_070_245_491_450_8;
 
-/// Quasi-random points of the unit cube.
+/// Quasi-random points of the unit cube, one per rollout.
 #[derive(Clone, Debug)]
 pub struct Lattice {
     shift: [f64; NUMBERS],
 }
 
 impl Lattice {
-    /// The lattice with a random shift.
+    /// The quasi-random points with a random shift.
     pub fn shifted(random: &mut Stream) -> Lattice {
         Lattice { shift: std::array::from_fn(|_| random.random()) }
     }

@@ -1,9 +1,9 @@
 //! ToM-Com: sends the signal whose expected saving exceeds its cost (paper, section "Planning communication").
 //!
-//! For every signal there are rollouts over a few decisions of the human, each paired with a baseline rollout without the
-//! signal: the same sample of the belief, the same random numbers. The expected saving of a signal is the mean difference
-//! between baseline and rollout in presses of both agents plus the cost to go at the horizon. A signal that changes none of
-//! a sample's worlds saves exactly nothing in its rollout, which is skipped.
+//! For every signal there are rollouts over a few decisions of the human, each paired with a baseline rollout without
+//! the signal: the same sample of the belief, the same random numbers. The expected saving of a signal is the mean
+//! difference between baseline and rollout in presses of both agents plus the cost to go at the horizon. A signal that
+//! changes none of a sample's worlds saves exactly nothing in its rollout, which is skipped.
 
 mod lattice;
 mod rollout;
@@ -31,10 +31,11 @@ use crate::mind::ChoiceModel;
 use crate::mind::model::{HumanModel, LookingModel};
 use crate::mind::recorded_estimate::rounded;
 
-/// Number of rollouts after which the planner checks which signals are decided.
+/// Number of rollouts after which the planner checks for which signals the net benefit is certain enough.
 const BATCH: usize = 32;
 
-/// The ToM-Com planner. Its caches change computing time, never results.
+/// The ToM-Com planner: estimates the net benefit of each signal by paired rollouts. Its caches change computing time,
+/// never results.
 #[derive(Clone, Debug)]
 pub struct Planner {
     kitchen: Arc<Kitchen>,
@@ -45,8 +46,8 @@ pub struct Planner {
     /// Where the human looks in a rollout.
     looking: LookingModel,
     involved: Vec<Vec<AspectId>>,
-    /// By button of the human, the aspects that it looks at before a press: the locations involved and, before fetching an item, the
-    /// robot's hand, which may be bringing it.
+    /// For each button of the human, the aspects at which the human looks before a press: the locations involved and,
+    /// before fetching an item, the robot's hand, which may be bringing it.
     watched: Vec<Vec<AspectId>>,
     policy: RobotPolicy,
     samples: BeliefSamples,
@@ -68,7 +69,7 @@ struct Candidate {
 }
 
 impl Planner {
-    /// A planner for a human model. Its random stream is seeded by `seed` and the number of presses so far.
+    /// A planner for this human model. Its random stream is seeded by `seed` and the number of presses so far.
     pub fn new(kitchen: Arc<Kitchen>, human: &HumanModel, spec: AssistantSpec, seed: u64) -> Planner {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
         let aspects = |button| kitchen.involved(Agent::Human, button).into_iter().map(AspectId::of_location);
@@ -206,7 +207,7 @@ impl Planner {
 }
 
 impl Concept for Planner {
-    /// Ranks the available signals by net benefit.
+    /// Estimates the net benefit of the available signals and ranks them by it.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
         let situation = &moment.situation;
         let mut random = stream(self.seed, "communication", u64::from(moment.presses));

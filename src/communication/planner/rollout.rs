@@ -1,7 +1,8 @@
-//! One rollout: decisions of a human whose belief is one sample, and presses of the robot in between.
+//! One planner rollout: decisions of a human whose belief is one sample, and presses of the robot in between.
 //!
-//! Rollouts with the same number use the same random numbers with and without a signal (paired rollouts), which makes their
-//! differences precise. A rollout that reaches the same state as its baseline is not continued, since it ends like the baseline.
+//! Rollouts with the same number use the same random numbers with and without a signal (paired rollouts), which makes
+//! their differences precise. A rollout that reaches the same state as its baseline is not continued, since it ends
+//! like the baseline.
 
 use rand::RngExt;
 
@@ -15,7 +16,7 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, Recipes, State, WeightedWorlds};
 use crate::mind::choice::{ChoiceModel, HumanChoice};
 
-/// Number of robot presses between two decisions that have random numbers of their own.
+/// Number of robot presses between two decisions of the human that have random numbers of their own.
 const ROBOT_DRAWS: usize = 4;
 
 /// Random numbers of one decision of the human and of the robot's presses before it; `looks` by location.
@@ -40,8 +41,8 @@ impl RolloutDraws {
         draws
     }
 
-    /// Sets the numbers of the decision, of the robot's first choice before it, and of whether the robot's first press draws the
-    /// eye.
+    /// Replaces the random numbers of the decision, of the robot's first choice before it, and of whether the robot's
+    /// first press attracts the gaze.
     pub fn begin_with(&mut self, first: &[f64]) {
         if let &[decision, choice, capture] = first {
             (self.decision, self.choices[0], self.captures[0]) = (decision, choice, capture);
@@ -57,19 +58,19 @@ pub struct RolloutContext<'a> {
     pub recipes: Recipes,
     /// The human's choice model.
     pub choice: &'a ChoiceModel,
-    /// By button of the human, the aspects of the locations on which its effect depends.
+    /// For each button of the human, the aspects of the locations on which its effect depends.
     pub involved: &'a [Vec<AspectId>],
-    /// By button of the human, the aspects that it looks at before the press.
+    /// For each button of the human, the aspects at which the human looks before the press.
     pub watched: &'a [Vec<AspectId>],
-    /// Horizon, number of rollouts and their accuracy.
+    /// Settings of the rollouts: horizon, number and accuracy.
     pub model: &'a RolloutModel,
     /// Duration of a press of the robot, in seconds.
     pub robot_press_s: f64,
-    /// Probability that a needed location is looked at before a press.
+    /// Probability that the human looks at a needed location before a press.
     pub looks: f64,
-    /// Probability that any other location is looked at before a decision.
+    /// Probability that the human looks at any other location before a decision.
     pub other_looks: f64,
-    /// Share of the changes by others that draw the eye at once.
+    /// Share of the changes by others that attract the human's gaze at once.
     pub capture: f64,
     /// Probability that the human infers the consequences of a robot press.
     pub foresight: f64,
@@ -88,26 +89,28 @@ pub struct RolloutState {
     now_s: f64,
 }
 
-/// The rollout without a signal: its states, the human's choices, and its value.
+/// The baseline of a signal's rollouts: the rollout without a signal, with its states, the human's choices, and its
+/// value.
 #[derive(Clone, Debug, Default)]
 pub struct BaselineRollout {
     states: Vec<RolloutState>,
     choices: Vec<HumanChoice>,
-    /// Presses of both agents up to the horizon plus the cost to go there.
+    /// Number of presses of both agents up to the horizon plus the cost to go there.
     pub value: i32,
 }
 
-/// Result of a rollout with a signal that is paired with the baseline.
+/// Result of a rollout with a signal, paired with the baseline without one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RolloutOutcome {
-    /// Presses of both agents plus the cost to go at the end.
+    /// Number of presses of both agents plus the cost to go at the end.
     pub value: i32,
-    /// The first choice that differs: the baseline's choice, and the choice with the signal.
+    /// The first choice of the human that differs: the choice in the baseline, and the choice with the signal.
     pub diverged: Option<(HumanChoice, HumanChoice)>,
 }
 
 impl RolloutState {
-    /// Starts a rollout with these worlds as the human's belief. `sees` says whether the latest change draws the human's eye.
+    /// Starts a rollout with these worlds as the human's belief. `sees` says whether the latest change attracts the
+    /// human's gaze.
     pub fn begin(&mut self, kitchen: &Kitchen, situation: &Situation, worlds: &WeightedWorlds<u32>, sees: bool) {
         self.kitchen = situation.state;
         self.worlds.copy_from(worlds);
@@ -139,7 +142,7 @@ impl RolloutState {
         (self.presses, self.now_s) = (other.presses, other.now_s);
     }
 
-    /// Whether the rollout continues exactly like one in the state `other` at the same time.
+    /// Whether the rollout continues exactly like another one in the state `other` at the same time.
     fn continues_like(&self, other: &RolloutState) -> bool {
         self.kitchen == other.kitchen && self.ongoing == other.ongoing && self.worlds == other.worlds
     }
@@ -147,7 +150,7 @@ impl RolloutState {
 
 /// One rollout with its models, caches and random numbers.
 pub struct Rollout<'a> {
-    /// What it has in common with the other rollouts.
+    /// The data that all rollouts of the recommendation share.
     pub context: &'a RolloutContext<'a>,
     /// The cost to go, with its caches.
     pub cost: &'a mut CostToGo,
@@ -197,7 +200,7 @@ impl Rollout<'_> {
         state.presses + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
     }
 
-    /// Runs the robot until the human's next decision.
+    /// Lets the robot act until the human's next decision.
     fn until_decision(&mut self, state: &mut RolloutState, step: usize) {
         let until_s = self.first_s + step as f64 * self.context.model.human_press_s;
         let mut presses = 0;
@@ -230,12 +233,12 @@ impl Rollout<'_> {
         state.now_s = until_s;
     }
 
-    /// Choices of the robot's policy in the true state.
+    /// The robot's possible choices by its task policy in the true state.
     fn choices(&mut self, state: State) -> RobotChoices {
         self.policy.choices(self.context.kitchen, self.cost, Fidelity::Exact, state, &self.context.recipes)
     }
 
-    /// Starts the next press of an idle arm, as the policy chooses.
+    /// Starts the next press of a robot arm that is idle, as its policy chooses.
     fn set_out(&mut self, state: &mut RolloutState, step: usize, presses: usize) {
         if state.ongoing.is_some() {
             return;

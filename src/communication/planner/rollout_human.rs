@@ -1,7 +1,7 @@
-//! The human in a rollout: the update of its weighted worlds, and its choices.
+//! The human in a planner rollout: the update of the human's weighted worlds, and the human's choices.
 //!
-//! The human's belief is one belief sample, represented by worlds drawn from it; equal worlds are merged, with their number of
-//! draws as weight. Most people hold point-like beliefs, so few distinct worlds remain.
+//! The human's belief is one belief sample, represented by worlds drawn from it; equal worlds are merged, with their
+//! number of draws as weight. Most people are nearly certain of one value, so few distinct worlds remain.
 
 use super::rollout_robot::{RobotChoices, RobotPolicy};
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
@@ -11,7 +11,7 @@ use crate::kitchen::{
 };
 use crate::mind::choice::{ChoiceModel, ChoiceWeights};
 
-/// Worlds with a weight below 1 in this many draws use the lower bound of their cost to go.
+/// Worlds that are drawn less than once in this many draws use the lower bound of their cost to go.
 const FEW_DRAWS: u32 = 8;
 
 impl WeightedWorlds<u32> {
@@ -40,8 +40,8 @@ impl WeightedWorlds<u32> {
         changed
     }
 
-    /// Conditions the worlds on an own press and whether it was effective. If no world is consistent with it, the aspects involved
-    /// are set to their true values, as if the human looked at them.
+    /// Conditions the worlds on the human's own press and whether it was effective. If no world is consistent with it,
+    /// the aspects involved are set to their true values, as if the human looked at them.
     pub fn pressed(
         &mut self,
         kitchen: &Kitchen,
@@ -96,7 +96,7 @@ impl WeightedWorlds<u32> {
     }
 }
 
-/// Fidelity of the cost to go of a world with `count` of `n` draws.
+/// Fidelity of the cost to go of a world that was drawn `count` times in `n` draws.
 fn fidelity(count: u32, n: u32) -> Fidelity {
     if count * FEW_DRAWS >= n { Fidelity::PlanBound } else { Fidelity::LowerBound }
 }

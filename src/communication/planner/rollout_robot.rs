@@ -1,18 +1,19 @@
-//! The robot in a rollout: its task policy with a cache, and the timing of its arm.
+//! The robot in a planner rollout: its task policy with a cache, and the timing of its arm.
 
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, ButtonId, Kitchen, OrderContent, Recipes, State};
 use crate::robot::policy;
 
-/// The policy cache has 2^15 entries.
+/// The cache of the robot's policy has 2^15 entries.
 const BITS: u32 = 15;
 
-/// The presses of the robot in a state, as bit sets of buttons.
+/// The robot's possible presses in a state, as bit sets of buttons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RobotChoices {
-    /// The equally likely choices, one bit for each of the robot's buttons.
+    /// The presses among which the policy chooses with equal probability, one bit for each of the robot's buttons.
     pub choices: u64,
-    /// The presses that it completes if its arm is already moving, one bit for each of the robot's buttons.
+    /// The presses that the robot completes if its arm is already moving to them, one bit for each of the robot's
+    /// buttons.
     pub useful: u64,
 }
 
@@ -22,7 +23,7 @@ impl RobotChoices {
         self.choices.count_ones()
     }
 
-    /// The n-th choice, counted from 0.
+    /// The n-th of the equally likely choices, counted from 0.
     pub fn nth(self, n: u32) -> ButtonId {
         let mut left = self.choices;
         for _ in 0..n {
@@ -45,7 +46,7 @@ impl Default for RobotPolicy {
 }
 
 impl RobotPolicy {
-    /// Choices of the policy in a state, given the recipes.
+    /// The possible choices of the robot's policy in a state, given the recipes.
     #[inline]
     pub fn choices(
         &mut self,
@@ -94,11 +95,11 @@ fn hash(state: State, recipes: &Recipes) -> u64 {
 /// The press towards which the robot's arm is moving.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OngoingRobotPress {
-    /// The button, in the list of the robot's buttons.
+    /// The robot's button, as an index into its buttons.
     pub button: ButtonId,
     /// Time at which the arm touches the button, in seconds since the start of the rollout.
     pub due_s: f64,
-    /// The wizard chose the press, so that it is made whether it is useful or not.
+    /// Whether the wizard chose the press, so that the robot makes it even if it is not useful.
     pub driven: bool,
 }
 
@@ -109,7 +110,7 @@ impl OngoingRobotPress {
     }
 }
 
-/// State after a press of the robot.
+/// The state after this press of the robot.
 pub fn press(kitchen: &Kitchen, state: State, recipes: &Recipes, button: ButtonId) -> State {
     kitchen.press(state, recipes, Agent::Robot, button).unwrap_or(state)
 }

@@ -1,26 +1,28 @@
-//! Belief samples for rollouts: worlds drawn from a belief that is drawn from the Dirichlets.
+//! Belief samples for planner rollouts: worlds drawn from a belief that is itself drawn from the Dirichlets of the
+//! estimate.
 
 use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorlds, World};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::urn::Urn;
 
-/// Belief samples of one recommendation. First draws are stratified over the samples by the mean of each aspect.
+/// Belief samples for the rollouts of one recommendation. First draws are stratified over the samples by the mean of
+/// each aspect.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefSamples {
     urns: Vec<Urn>,
-    /// First draws: `[aspect * samples + sample]`.
+    /// First draws of all samples: `[aspect * samples + sample]`.
     firsts: Vec<u8>,
-    /// Draws of the present sample: `[aspect * states + draw]`.
+    /// All draws of the present sample: `[aspect * states + draw]`.
     drawn: Vec<u8>,
-    /// Aspects with several values in the present sample.
+    /// Aspects with several values in the present belief sample.
     mixed: Vec<usize>,
     samples: usize,
     states: usize,
 }
 
 impl BeliefSamples {
-    /// Prepares `samples` samples of `states` worlds each.
+    /// Prepares `samples` belief samples of `states` worlds each.
     pub fn prepare(&mut self, belief: &DirichletBelief, samples: usize, states: usize, random: &mut Stream) {
         (self.samples, self.states) = (samples, states);
         let aspects = belief.aspects.len();
@@ -33,7 +35,8 @@ impl BeliefSamples {
         }
     }
 
-    /// Draws one sample. A recipe matters in worlds whose orders show its dish, and if the true orders do.
+    /// Draws one belief sample. A recipe is drawn only if decisions depend on it: in worlds whose orders show its dish,
+    /// and if the true orders do.
     pub fn draw(
         &mut self,
         kitchen: &Kitchen,
@@ -55,7 +58,7 @@ impl BeliefSamples {
         worlds.all.clear();
         let all: Vec<usize> = (0..self.urns.len()).collect();
         if self.mixed.iter().any(|index| kitchen.orders.iter().any(|order| order.index() == *index)) {
-            // The recipes that matter differ from draw to draw.
+            // The recipes on which decisions depend differ from draw to draw.
             for draw in 0..states {
                 let mut world = World::empty(kitchen);
                 self.set(kitchen, truth, draw, &all, &mut world);

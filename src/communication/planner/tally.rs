@@ -1,9 +1,9 @@
-//! Statistics of the paired rollouts of one signal.
+//! Statistics of the differences between paired rollouts, with and without a signal.
 
 use crate::kitchen::ButtonId;
 use crate::mind::choice::HumanChoice;
 
-/// Running statistics of the differences between paired rollouts.
+/// Running statistics of the differences between paired rollouts, with and without a signal.
 #[derive(Clone, Debug, Default)]
 pub struct PairedDifferences {
     count: u32,
@@ -12,18 +12,19 @@ pub struct PairedDifferences {
     divergences: Vec<Divergence>,
 }
 
-/// A pair of choices at which rollouts without and with the signal first differ.
+/// A pair of different choices of the human, at which rollouts without and with the signal separate.
 #[derive(Clone, Copy, Debug)]
 struct Divergence {
     baseline: HumanChoice,
     signalled: HumanChoice,
-    /// Sum of the savings in these rollouts, and of their squares, in presses.
+    /// Sum of the savings in rollouts with this pair of choices, and sum of their squares, in presses.
     sum: f64,
     squares: f64,
 }
 
 impl Divergence {
-    /// Total saving minus one standard error: a single large saving by chance is not a reason.
+    /// Total saving of the pair of choices minus one standard error: a single large saving by chance does not count as
+    /// the reason.
     fn surely_saved(&self) -> f64 {
         self.sum - self.squares.sqrt()
     }
@@ -50,23 +51,23 @@ impl PairedDifferences {
         }
     }
 
-    /// Number of pairs.
+    /// Number of pairs of rollouts.
     pub fn count(&self) -> u32 {
         self.count
     }
 
-    /// Mean difference, in presses; 0 without pairs.
+    /// Mean saving, in presses; 0 without pairs.
     pub fn mean(&self) -> f64 {
         self.sum / f64::from(self.count.max(1))
     }
 
-    /// Standard error of the mean, in presses.
+    /// Standard error of the mean saving, in presses.
     pub fn standard_error(&self) -> f64 {
         self.error_with(0.0)
     }
 
-    /// Standard error of the mean if one further rollout saved three presses: without any difference so far, the plain standard error
-    /// would be 0.
+    /// Standard error of the mean saving if one further rollout saved three presses: without any difference so far, the
+    /// plain standard error would be 0.
     pub fn cautious_error(&self) -> f64 {
         self.error_with(9.0)
     }
@@ -77,7 +78,7 @@ impl PairedDifferences {
         (spread / (n - 1.0) / n).sqrt()
     }
 
-    /// The press whose prevention by the signal saves most, and the press instead of it (`None` for waiting).
+    /// The press whose prevention by the signal saves most, and the press that replaces it (`None` for waiting).
     pub fn turning_point(&self) -> Option<(ButtonId, Option<ButtonId>)> {
         let presses =
             self.divergences.iter().filter_map(|divergence| match (divergence.baseline, divergence.signalled) {

@@ -1,4 +1,4 @@
-//! The simulated arm and the human's hand beside it, stepped in session time, and the events that they report.
+//! The simulated robot arm and the human's hand beside it, stepped in session time, and the events that they report.
 
 use super::controller::{ControlCycle, PhysicalArm};
 use super::physics::CYCLE_S;
@@ -11,7 +11,7 @@ use crate::robot::moment::{ArmPhase, ArmSample};
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, RobotActivity};
 
-/// Interval between recorded samples of a moving arm: about twelve a second.
+/// Interval between recorded samples of a moving robot arm: about twelve per second.
 const TOLD_EVERY: SessionTime = SessionTime(80_000_000);
 
 fn rounded(value: f64, parts: f64) -> f64 {
@@ -33,24 +33,24 @@ struct Told {
 /// The simulated arm with the human's hand and the session time that the simulation has reached.
 #[derive(Clone, Debug)]
 pub struct SteppedArm {
-    /// The arm.
+    /// The robot arm with its controller in the physics simulation.
     pub arm: PhysicalArm,
     hand: ReachingHand,
-    /// Session time of the last controller cycle.
+    /// Session time of the last cycle of the arm's controller.
     at: SessionTime,
-    /// The button that the arm sets out for once it stands still.
+    /// The button to which the arm moves as soon as it stands still.
     next: Option<ButtonId>,
-    /// The robot has no press to make.
+    /// Whether the robot has no press to make.
     idle: bool,
     told: Told,
-    /// The state in which the current press was last found useful.
+    /// The state of the kitchen in which the present press was last found useful.
     found_useful: Option<State>,
-    /// The stick touches the button.
+    /// Whether the arm's stick touches the button.
     on_button: bool,
 }
 
 impl SteppedArm {
-    /// An arm at rest, beside a human's hand with this behaviour.
+    /// A robot arm at rest, beside a human's hand with this behaviour.
     pub fn new(kitchen: &Kitchen, hand: ReachingBehaviour, seed: u64, trial: u64) -> SteppedArm {
         let hand = ReachingHand::new(kitchen, hand, stream(seed, "human's hand", trial));
         let arm = PhysicalArm::new(kitchen);
@@ -66,8 +66,8 @@ impl SteppedArm {
         }
     }
 
-    /// The time of the next controller cycle; none if arm and hand are at rest. `may_press`: the wizard does not hold
-    /// the arm above the button.
+    /// The time of the next controller cycle; none if arm and hand are at rest. `may_press` is false while the wizard
+    /// holds the arm above the button.
     pub fn next_due(&self, may_press: bool) -> Option<SessionTime> {
         let goes_down = self.arm.phase() == ArmPhase::Hovers && may_press && !self.arm.mode.is_stopped();
         let goes_home = self.idle && self.arm.is_out();
@@ -76,7 +76,8 @@ impl SteppedArm {
         next.into_iter().chain(self.hand.next_move(self.at)).min()
     }
 
-    /// Starts the way to a button, at once or when the arm stands still. Returns the undisturbed duration in seconds.
+    /// Starts the arm's motion to a button, at once or as soon as the arm stands still. Returns the undisturbed
+    /// duration in seconds.
     pub fn set_out(&mut self, now: SessionTime, button: ButtonId) -> Result<f64, AbortReason> {
         (self.found_useful, self.idle) = (None, false);
         if self.arm.withdraws() {
@@ -91,14 +92,14 @@ impl SteppedArm {
         Ok(self.arm.set_out(button)?)
     }
 
-    /// Gives up the current press and the pending one.
+    /// Abandons the present press and the pending one.
     pub fn give_up(&mut self) {
         self.next = None;
         self.arm.give_up();
     }
 
-    /// Whether the caller has to decide now if the press is still useful: above the button, whenever the state changed
-    /// before the stick touches it, and while a hand blocks the arm.
+    /// Whether the caller now has to decide if the press is still useful: above the button, whenever the state changed
+    /// before the stick touches the button, and while a hand blocks the arm.
     pub fn asks(&self, may_press: bool, state: State) -> bool {
         match self.arm.phase() {
             _ if self.next.is_some() => false,
@@ -109,7 +110,7 @@ impl SteppedArm {
         }
     }
 
-    /// The press is useful in this state; the arm above the button presses it.
+    /// Confirms that the press is useful in this state: an arm above the button presses it.
     pub fn go_for_it(&mut self, may_press: bool, state: State) {
         self.found_useful = Some(state);
         if self.arm.phase() == ArmPhase::Hovers && may_press {
@@ -117,7 +118,7 @@ impl SteppedArm {
         }
     }
 
-    /// Starts the pending press if the arm stands still. Returns the button that cannot be reached from there, and the
+    /// Starts the pending press if the arm stands still. Returns a button that cannot be reached from there, with the
     /// reason.
     pub fn go_on(&mut self) -> Option<(ButtonId, AbortReason)> {
         let halts = self.arm.halts() || self.arm.mode.is_stopped();
@@ -172,18 +173,19 @@ impl SteppedArm {
         self.idle = true;
     }
 
-    /// The wizard stops the arm.
+    /// Stops the arm at the wizard's command.
     pub fn stop(&mut self) -> Option<RobotActivity> {
         self.arm.stop(SafetyMode::EmergencyStop);
         self.safety(None, None)
     }
 
-    /// The person intends to press the button at this place of the table (metres) at the predicted time `at`.
+    /// Tells the simulated hand that the person intends to press the button at this position on the table (metres) at
+    /// the predicted time `at`.
     pub fn human_means(&mut self, now: SessionTime, button_m: [f64; 2], at: SessionTime) {
         self.hand.means(now, button_m, at);
     }
 
-    /// The person has pressed the button at this place of the table (metres).
+    /// Tells the simulated hand that the person has pressed the button at this position on the table (metres).
     pub fn human_pressed(&mut self, now: SessionTime, button_m: [f64; 2]) {
         self.hand.pressed(now, button_m);
     }
@@ -195,14 +197,14 @@ impl SteppedArm {
         changed.then_some(RobotActivity::Safety { mode, force_n, joint })
     }
 
-    /// The wizard releases the arm after a stop.
+    /// Releases the arm at the wizard's command after a stop.
     pub fn resume(&mut self, now: SessionTime) -> Option<RobotActivity> {
         self.at = self.at.max(now);
         self.arm.resume();
         self.safety(None, None)
     }
 
-    /// Shifts all pending times by the length of a pause.
+    /// Shifts all pending times by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         self.at = self.at + by;
         self.told.at = self.told.at + by;

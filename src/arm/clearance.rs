@@ -1,4 +1,5 @@
-//! Clearance of the arm from the table, from its own links and from obstacles. Solids are approximated by capsules.
+//! Distance of the robot arm from the table, from its own links and from obstacles. Solids are approximated by
+//! capsules.
 
 use nalgebra::{Isometry3, Point3};
 use rapier3d::math::Vector;
@@ -8,29 +9,29 @@ use super::kinematics::Arm;
 use super::link::{CollisionSolid, LinkShape};
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// Least clearance between links, and between links and table, in metres.
+/// Least clearance between the arm's links, and between links and table, in metres.
 pub const KEPT_M: f64 = 0.02;
 
-/// A capsule: all points within a radius of a segment. Links, hands and obstacles have this shape.
+/// A capsule: all points within a radius of a line segment. Links, hands and obstacles are approximated by capsules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Capsule {
-    /// The ends of the segment, in metres.
+    /// The ends of the capsule's line segment, in metres.
     pub ends_m: [Point3<f64>; 2],
-    /// The radius, in metres.
+    /// The radius of the capsule, in metres.
     pub radius_m: f64,
 }
 
-/// The nearest points of two capsules and their distance.
+/// The distance between two capsules, and their nearest points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CapsuleDistance {
-    /// Distance between the surfaces; negative where the capsules overlap.
+    /// Distance between the surfaces of two capsules in metres; negative if they overlap.
     pub distance_m: f64,
-    /// The nearest point on the axis of each capsule.
+    /// The nearest point on the axis of each capsule, in metres.
     pub at_m: [Point3<f64>; 2],
 }
 
 impl Capsule {
-    /// The capsule that approximates a solid; for a box, along its longest side.
+    /// The capsule that approximates a solid; for a box, the capsule lies along its longest side.
     fn from_solid(solid: &CollisionSolid, base_from_link: &Isometry3<f64>) -> Capsule {
         let (half_m, radius_m, axis) = match solid.shape {
             LinkShape::Cylinder { radius_m, length_m } => ((length_m / 2.0 - radius_m).max(0.0), radius_m, 2),
@@ -66,7 +67,7 @@ impl Capsule {
     }
 }
 
-/// What blocks a pose or a path of the arm.
+/// What blocks a pose or a path of the robot arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstruction {
     /// The table.
@@ -77,12 +78,12 @@ pub enum Obstruction {
     Obstacle,
 }
 
-/// The table and the obstacles around the arm.
+/// The table and the obstacles around the robot arm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmSurroundings {
     /// Height of the table in the frame of the arm's base, in metres.
     pub table_m: f64,
-    /// What else stands around the arm, in the frame of its base.
+    /// Other obstacles around the arm, in the frame of its base.
     pub obstacles: Vec<Capsule>,
 }
 
@@ -98,7 +99,7 @@ impl Arm {
             .collect()
     }
 
-    /// The first obstruction nearer than [`KEPT_M`]. Only the stick may come down to the table.
+    /// The first obstruction that is nearer to the arm than [`KEPT_M`]. Only the stick may touch the table.
     pub fn in_the_way(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<Obstruction> {
         let capsules = self.capsules(joints);
         let stick = self.links.len() - 1;
@@ -122,8 +123,8 @@ impl Arm {
     }
 }
 
-/// Whether two links can collide. Neighbours on the chain cannot; nor can base and upper arm, or two of wrist and
-/// stick, whose joints keep them apart.
+/// Whether two links of the arm can collide. Neighbours on the chain cannot; nor can base and upper arm, or two of
+/// wrist and stick, whose joints keep them apart.
 fn can_meet(link: usize, other: usize) -> bool {
     other > link + 1 && other > 2 && link < JOINTS - 2
 }
@@ -144,7 +145,7 @@ mod tests {
     fn an_arm_is_told_what_it_is_too_near_to() {
         check(BENT, None);
         check([0.0, 0.3, 0.0, 0.0, 0.0, 0.0], Some(Obstruction::Table));
-        // The forearm folded back onto the upper arm.
+        // A pose with the forearm folded back onto the upper arm.
         check([0.0, -FRAC_PI_2, 3.1, 0.0, 0.0, 0.0], Some(Obstruction::ItsOwnLinks));
         let at = Arm::ur5().tip(&BENT).translation.vector;
         let obstacles = vec![Capsule { ends_m: [Point3::from(at); 2], radius_m: 0.03 }];

@@ -1,7 +1,8 @@
-//! The arm that presses buttons in the physics: a cycle of its controller after the other (125 a second).
+//! The controller of the simulated robot arm, which presses buttons in the physics; it runs 125 cycles per second.
 //!
-//! It goes along its way to a button as fast as it may (`super::separation`): what slows it lets time along the way go by
-//! more slowly, so that it stays on a way that was looked at before. It reports what came of it.
+//! The arm moves along its planned path to a button as fast as speed and separation monitoring allows
+//! (`super::separation`). Slowing down stretches the time along the path, so that the arm stays on the path that was
+//! checked for collisions. The controller reports the result of each press.
 
 use std::collections::VecDeque;
 
@@ -18,43 +19,43 @@ use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::robot::moment::{ArmPhase, JOINTS, JointAngles};
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 
-/// Deceleration and acceleration along the path: change of the share of the planned speed per second; the second value
-/// is for stops.
+/// Deceleration and acceleration along the arm's path: change of the share of the planned speed, per second; the second
+/// value is for stops.
 const SLOWS: f64 = 10.0;
 const STOPS: f64 = 20.0;
 const SPEEDS_UP: f64 = 3.0;
-/// Look-ahead along the path for the distance to a hand, in seconds.
+/// Look-ahead along the arm's path when computing the distance to a hand, in seconds.
 const AHEAD_S: f64 = 0.08;
-/// After this long with a hand in the way the arm gives the press up, in seconds.
+/// Time with a hand in the way after which the arm abandons the press, in seconds.
 const BLOCKED_S: f64 = 4.0;
-/// The way counts as free after this long without a hand, in seconds.
+/// Time without a hand in the way after which the arm's path counts as free, in seconds.
 const FREE_S: f64 = 0.25;
-/// Tracking error of a joint, in radians, and number of cycles, from which the joint counts as faulty.
+/// Tracking error of a joint, in radians, and number of cycles with it, above which the joint counts as faulty.
 const ASTRAY_RAD: f64 = 0.05;
 const ASTRAY_CYCLES: u32 = 3;
-/// Longest wait for the click of a pressed button, in seconds.
+/// Longest time to wait for the click of a button that the arm pushes down, in seconds.
 const CLICKS_WITHIN_S: f64 = 0.1;
-/// The arm stands still if all joints are slower than this, in radians per second.
+/// The arm counts as standing still if all joints are slower than this, in radians per second.
 pub const STILL_RAD_S: f64 = 0.02;
 
-/// Hands further away than this have no influence, in metres.
+/// Hands further away than this do not influence the arm, in metres.
 const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
 
-/// The result of one controller cycle.
+/// The result of one cycle of the robot arm's controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControlCycle {
-    /// The button that clicked. A click counts as a press even if the arm was about to give up.
+    /// The button that clicked in this cycle. A click counts as a press even if the arm was about to abandon the press.
     pub clicked: Option<ButtonId>,
-    /// Why the press was given up, if it was given up in this cycle.
+    /// Why the arm abandoned the press, if it did so in this cycle.
     pub report: Option<PressFailure>,
     /// The contact forces of this cycle.
     pub felt: CycleForces,
-    /// Somebody touched it a moment ago, with this force in newtons at most so far. Every contact is told so, once; one of
-    /// more force than [`SafetyMode::threshold_n`] has stopped it by then ([`PressFailure::Contact`]).
+    /// Peak force in newtons of a contact with the human, shortly after the contact began. Each contact is reported
+    /// once; by then, a contact above [`SafetyMode::threshold_n`] has stopped the arm ([`PressFailure::Contact`]).
     pub touched_n: Option<f64>,
 }
 
-/// The simulated arm with its controller.
+/// The simulated robot arm with its controller.
 #[derive(Clone, Debug)]
 pub struct PhysicalArm {
     arm: Arm,
@@ -64,36 +65,36 @@ pub struct PhysicalArm {
     home: JointAngles,
     buttons: Vec<Result<ButtonPoses, Unreachable>>,
     way: VecDeque<TrajectoryLeg>,
-    /// Progress on the current leg, in seconds.
+    /// Progress on the present leg of the trajectory, in seconds.
     since_s: f64,
-    /// Current share of the planned speed.
+    /// Present share of the planned speed.
     rate: f64,
-    /// The last commanded joint angles.
+    /// The last commanded joint angles of the arm.
     here: JointAngles,
     goal: Option<ButtonId>,
     may_press: bool,
-    /// The arm has given up its press and slows down before it goes up.
+    /// Whether the arm has abandoned its press and slows down before it goes up.
     halts: bool,
-    /// The safety mode.
+    /// The safety mode of the arm.
     pub mode: SafetyMode,
     /// Whether speed and separation monitoring is on; without it the arm only reacts to forces.
     pub watches_hands: bool,
-    /// Time waited for a hand in the way or for a click, in seconds.
+    /// Time for which the arm has waited for a hand in the way or for a click, in seconds.
     waited_s: f64,
-    /// Time without a hand in the way, in seconds.
+    /// Time without a hand in the arm's way, in seconds.
     free_s: f64,
     astray: u32,
     touch: ContactTracker,
 }
 
 impl PhysicalArm {
-    /// An arm at rest above the middle of its buttons.
+    /// A robot arm at rest above the middle of its buttons.
     pub fn new(kitchen: &Kitchen) -> PhysicalArm {
         let arm = Arm::ur5();
         let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
         let places: Vec<[f64; 2]> = kitchen.buttons[Agent::Robot.index()].iter().map(|button| button.at_m).collect();
         let buttons: Vec<_> = places.iter().map(|&place| arm.at_button(place, &around)).collect();
-        // Above the buttons that only the robot has, the arm is out of the human's way.
+        // Above the buttons that only the robot has, the arm does not obstruct the human.
         let is_shared = |place: &[f64; 2]| kitchen.buttons[Agent::Human.index()].iter().any(|it| it.at_m == *place);
         let own =
             places.iter().zip(&buttons).filter(|(place, _)| !is_shared(place)).filter_map(|(_, at)| at.as_ref().ok());
@@ -124,10 +125,10 @@ impl PhysicalArm {
         }
     }
 
-    /// Sets out for a button, from a standstill; how long it takes until it clicks if nothing comes between, in seconds.
+    /// Starts the motion to a button from a standstill; returns the time in seconds until the button clicks if nothing
+    /// interferes.
     ///
-    /// # Errors
-    /// Why it cannot.
+    /// # Errors Why the arm cannot reach the button.
     pub fn set_out(&mut self, button: ButtonId) -> Result<f64, Unreachable> {
         self.way = self.way_to(button)?.into();
         self.goal = Some(button);
@@ -136,10 +137,9 @@ impl PhysicalArm {
         Ok(self.way.iter().map(|leg| leg.takes_s).sum::<f64>())
     }
 
-    /// How long it would take to a button from where it is, in seconds.
+    /// The time in seconds until a button clicks if the arm started now.
     ///
-    /// # Errors
-    /// Why it could not.
+    /// # Errors Why the arm cannot reach the button.
     pub fn takes_s(&self, button: ButtonId) -> Result<f64, Unreachable> {
         Ok(self.way_to(button)?.iter().map(|leg| leg.takes_s).sum())
     }
@@ -149,22 +149,22 @@ impl PhysicalArm {
         way_to(&self.arm, &self.here, &at, &self.around)
     }
 
-    /// The obstacles that paths are planned around.
+    /// The obstacles around which the arm's paths are planned.
     pub fn around(&mut self) -> &mut ArmSurroundings {
         &mut self.around
     }
 
-    /// The simulated bodies.
+    /// The simulated bodies: arm, buttons and hand.
     pub fn world(&mut self) -> &mut PhysicsWorld {
         &mut self.world
     }
 
-    /// Allows the arm to press the button that it hovers over.
+    /// Allows the arm to press the button above which it waits.
     pub fn press(&mut self) {
         self.may_press = true;
     }
 
-    /// Ends the press: the arm slows down and goes up where it is.
+    /// Abandons the press: the arm slows down and goes up where it is.
     pub fn give_up(&mut self) {
         self.goal = None;
         self.waited_s = 0.0;
@@ -174,13 +174,13 @@ impl PhysicalArm {
         }
     }
 
-    /// Whether the arm is away from its waiting pose with no press to make.
+    /// Whether the arm is away from its waiting pose without a press to make.
     pub fn is_out(&self) -> bool {
         let is_away = (0..JOINTS).any(|joint| (self.here[joint] - self.home[joint]).abs() > 1e-3);
         self.way.is_empty() && !self.mode.is_stopped() && is_away
     }
 
-    /// Returns to the waiting pose; stays in place if there is no free path.
+    /// Moves the arm back to its waiting pose; the arm stays in place if there is no collision-free path.
     pub fn go_home(&mut self) {
         match way_over(&self.arm, &self.here, &self.home, &self.around) {
             Ok(way) => (self.way, self.since_s, self.rate) = (way.into(), 0.0, 0.0),
@@ -209,7 +209,7 @@ impl PhysicalArm {
         self.goal = None;
     }
 
-    /// The wizard releases the arm: it goes up and is ready for the next press.
+    /// Releases the arm after a stop: it goes up and is ready for the next press.
     pub fn resume(&mut self) {
         if self.mode.is_stopped() {
             self.mode = SafetyMode::Normal;
@@ -219,7 +219,7 @@ impl PhysicalArm {
         }
     }
 
-    /// The phase of the current motion.
+    /// The phase of the arm's present motion.
     pub fn phase(&self) -> ArmPhase {
         match (self.way.front(), self.goal) {
             (None, _) => ArmPhase::Rests,
@@ -232,18 +232,18 @@ impl PhysicalArm {
         }
     }
 
-    /// Whether the next cycle changes anything: a path to follow, or motion that has not settled.
+    /// Whether the next cycle changes anything: the arm has a path to follow, or a motion has not settled.
     pub fn is_busy(&self) -> bool {
         let goes_on = !self.way.is_empty() && !self.mode.is_stopped() && self.phase() != ArmPhase::Hovers;
         goes_on || self.rate > 0.0 || self.moves() || self.touch.is_to_be_told()
     }
 
-    /// Whether any joint moves.
+    /// Whether any joint of the arm moves.
     pub fn moves(&self) -> bool {
         self.world.joints().1.iter().any(|speed| speed.abs() > STILL_RAD_S)
     }
 
-    /// The joint angles, in radians.
+    /// The joint angles of the arm, in radians.
     pub fn joints(&self) -> JointAngles {
         self.world.joints().0
     }
@@ -253,8 +253,8 @@ impl PhysicalArm {
         self.world.distance(hand)
     }
 
-    /// Runs one controller cycle with the human's hand at this pose, if there is one. An idle arm with no hand nearby
-    /// costs nothing.
+    /// Runs one controller cycle with the human's hand in this pose, if there is one. An idle arm without a hand nearby
+    /// costs no computing time.
     pub fn cycle(&mut self, hand: Option<HandPose>) -> ControlCycle {
         let hand = hand.filter(|hand| self.distance(hand) < FAR_M);
         let share = self.share_allowed(hand);
@@ -279,7 +279,7 @@ impl PhysicalArm {
         ControlCycle { clicked, report, felt, touched_n }
     }
 
-    /// The share of the planned speed that the distance to the hand allows.
+    /// The share of the planned speed that the distance to the hand allows (speed and separation monitoring).
     fn share_allowed(&mut self, hand: Option<HandPose>) -> f64 {
         if self.mode.is_stopped() {
             return 0.0;
@@ -294,7 +294,7 @@ impl PhysicalArm {
         let share = self.share_near(&hand, distance_m);
         let blocked = share == 0.0 && !self.way.is_empty();
         self.free_s = if blocked { 0.0 } else { self.free_s + CYCLE_S };
-        // Hysteresis: a hand at the edge of the limit must not make the mode flicker.
+        // Hysteresis: a hand at the edge of the limit must not make the safety mode flicker.
         let waited = self.mode == SafetyMode::Safeguard && self.free_s < FREE_S;
         self.mode = mode_near(self.mode, distance_m, blocked || waited);
         self.waited_s = match blocked && self.goal.is_some() {
@@ -312,12 +312,12 @@ impl PhysicalArm {
         let limit_m_s = speed_limit(distance_m, comes_nearer);
         let tip = |joints: &JointAngles| self.arm.tip(joints).translation.vector;
         let planned_m_s = (tip(&ahead) - tip(&leg.at(self.since_s))).norm() / AHEAD_S;
-        // The lower bound stops the arm near a hand even where a leg begins or ends slowly.
+        // The lower bound of the planned speed stops the arm near a hand even where a leg begins or ends slowly.
         let share = limit_m_s / planned_m_s.max(limit_m_s).max(1e-3);
         if limit_m_s == 0.0 { 0.0 } else { share }
     }
 
-    /// Advances along the path for one cycle.
+    /// Moves the arm along its path for one cycle.
     fn go_on(&mut self) {
         if self.halts && self.rate == 0.0 && !self.mode.is_stopped() {
             self.go_up();
@@ -326,7 +326,7 @@ impl PhysicalArm {
         self.since_s += self.rate * CYCLE_S;
         self.here = leg.at(self.since_s);
         let ends = self.since_s >= leg.takes_s;
-        // On a button the arm waits for the click or for the timeout.
+        // On a button, the arm waits for the click or for the timeout.
         if ends && leg.kind != LegKind::Down {
             self.since_s -= leg.takes_s;
             self.way.pop_front();
@@ -340,7 +340,7 @@ impl PhysicalArm {
         }
     }
 
-    /// Activates the button under the stick in the physics.
+    /// Activates the button under the arm's stick in the physics.
     fn aim(&mut self) {
         match self.way.front().map(|leg| leg.kind) {
             Some(LegKind::Down) => self.world.aim_at(self.goal.map(ButtonId::index)),
@@ -349,7 +349,7 @@ impl PhysicalArm {
         }
     }
 
-    /// The press failure that follows from the measured forces.
+    /// The failure of the press that follows from the measured forces, if any.
     fn judge(&mut self, felt: &CycleForces) -> Option<PressFailure> {
         if self.mode.is_stopped() {
             return None;
@@ -360,7 +360,7 @@ impl PhysicalArm {
         }
         if let Some(joint) = self.joint_astray() {
             self.stop(SafetyMode::Fault);
-            // The brakes hold it where it is.
+            // The brakes hold the arm where it is.
             self.here = self.world.joints().0;
             self.way.clear();
             self.world.brake();
@@ -382,7 +382,7 @@ impl PhysicalArm {
         None
     }
 
-    /// The joint whose tracking error is too large.
+    /// The joint whose tracking error has been too large for too long.
     fn joint_astray(&mut self) -> Option<usize> {
         let (angles, _) = self.world.joints();
         let off = |joint: &usize| (angles[*joint] - self.here[*joint]).abs();

@@ -1,5 +1,6 @@
-//! All joint angles at which the tip of the UR5 is in a given pose: up to eight, in closed form (Hawkins 2013, "Analytic
-//! inverse kinematics for the Universal Robots UR-5/UR-10 arms"), then polished on the URDF's own kinematics.
+//! Inverse kinematics of the UR5: all joint angles at which its tip has a given pose, up to eight, in closed form
+//! (Hawkins 2013, "Analytic inverse kinematics for the Universal Robots UR-5/UR-10 arms"), then refined on the URDF's
+//! own kinematics.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -8,7 +9,7 @@ use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector
 use super::kinematics::Arm;
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// The maker's table (Denavit and Hartenberg), in metres.
+/// The manufacturer's Denavit-Hartenberg parameters of the UR5, in metres.
 const D1: f64 = 0.089159;
 const A2: f64 = -0.425;
 const A3: f64 = -0.39225;
@@ -16,23 +17,25 @@ const D4: f64 = 0.10915;
 const D5: f64 = 0.09465;
 const D6: f64 = 0.0823;
 
-/// A cosine may be so far above 1 by rounding.
+/// Tolerance for rounding errors by which a cosine may exceed 1.
 const ROUNDING: f64 = 1e-9;
-/// Below this sine of the fifth joint the fourth and the sixth turn about the same axis, and the sixth stays at 0.
+/// Sine of the fifth joint below which the fourth and the sixth joint turn about the same axis; the sixth then stays at
+/// 0.
 const ALIGNED: f64 = 1e-7;
-/// Steps of Newton's method, and how near they come: metres, radians.
+/// Number of Newton steps that refine a solution, and the error at which they end: metres, radians.
 const POLISHES: usize = 8;
 const NEAR: f64 = 1e-10;
-/// A solution is one that comes so near.
+/// Largest error of a valid solution of the inverse kinematics.
 const SOLVED: f64 = 1e-8;
-/// Keeps steps short where the Jacobian is nearly singular (Wampler 1986).
+/// Damping factor that keeps Newton steps short where the Jacobian is nearly singular (Wampler 1986).
 const DAMPING: f64 = 1e-6;
 
 impl Arm {
-    /// All joint angles, between -pi and pi, at which the tip is at this pose in the frame of the base; in a fixed order.
+    /// All joint angles, between -pi and pi, at which the arm's tip has this pose in the frame of the base; in a fixed
+    /// order.
     pub fn inverse(&self, base_from_tip: &Isometry3<f64>) -> Vec<JointAngles> {
         let stick = self.links.last().map_or_else(Isometry3::identity, |link| link.parent_from_joint);
-        // The last frame of the table is on the flange, that of the last turning link in the joint.
+        // The last frame of the Denavit-Hartenberg table is on the flange, that of the last turning link in the joint.
         let flange = Translation3::new(0.0, 0.0, D6);
         let controller_from_base = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -PI);
         let target = controller_from_base * base_from_tip * stick.inverse() * flange;
@@ -40,7 +43,7 @@ impl Arm {
         found.filter(|(_, away)| *away < SOLVED).map(|(joints, _)| joints.map(wrapped)).collect()
     }
 
-    /// Newton's method on the URDF's kinematics; how far it is away then.
+    /// Refines joint angles by Newton's method on the URDF's kinematics; returns them with the remaining error.
     fn polished(&self, target: &Isometry3<f64>, mut joints: JointAngles) -> (JointAngles, f64) {
         let mut best = (joints, f64::INFINITY);
         for _ in 0..POLISHES {
@@ -58,29 +61,29 @@ impl Arm {
     }
 }
 
-/// What leads from one pose to another: metres, then a rotation vector in radians.
+/// The difference between two poses: metres, then a rotation vector in radians.
 pub fn twist(from: &Isometry3<f64>, to: &Isometry3<f64>) -> Vector6<f64> {
     let moves = to.translation.vector - from.translation.vector;
     let turns = (to.rotation * from.rotation.inverse()).scaled_axis();
     Vector6::new(moves.x, moves.y, moves.z, turns.x, turns.y, turns.z)
 }
 
-/// The same angle between -pi and pi.
+/// The equivalent angle between -pi and pi.
 pub fn wrapped(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// The same pose with every joint turned as near to another one's as whole turns bring it.
+/// The same pose of the arm, with every joint turned by whole turns so that it is nearest to another pose's joint.
 pub fn turned_towards(joints: &JointAngles, other: &JointAngles) -> JointAngles {
     std::array::from_fn::<f64, JOINTS, _>(|joint| other[joint] + wrapped(joints[joint] - other[joint]))
 }
 
-/// An angle by its cosine; none where there is no such angle.
+/// An angle from its cosine; none if the value is not a cosine.
 fn angle_of_cosine(cosine: f64) -> Option<f64> {
     (cosine.abs() <= 1.0 + ROUNDING).then(|| cosine.clamp(-1.0, 1.0).acos())
 }
 
-/// The flange in the frame of the controller's base.
+/// Closed-form solutions for a pose of the flange in the frame of the controller's base.
 fn closed_form(flange: &Isometry3<f64>) -> Vec<JointAngles> {
     let at = flange.translation.vector;
     let turn = flange.rotation.to_rotation_matrix();
@@ -91,7 +94,7 @@ fn closed_form(flange: &Isometry3<f64>) -> Vec<JointAngles> {
         let (s1, c1) = q1.sin_cos();
         let Some(bend) = angle_of_cosine((at.x * s1 - at.y * c1 - D4) / D6) else { continue };
         for q5 in [bend, -bend] {
-            // The sixth joint turns the first one's axis in the frame of the flange.
+            // The first joint's axis in the frame of the flange, which the sixth joint turns.
             let across = turn.inverse() * Vector3::new(s1, -c1, 0.0);
             let s5 = q5.sin();
             let q6 = if s5.abs() < ALIGNED { 0.0 } else { (-across.y / s5).atan2(across.x / s5) };
@@ -101,7 +104,7 @@ fn closed_form(flange: &Isometry3<f64>) -> Vec<JointAngles> {
     found
 }
 
-/// The two ways to bend the elbow, which are a plane arm's, for what the other joints are.
+/// The two solutions of the elbow, as of a planar arm, for given other joints.
 fn elbows(flange: &Isometry3<f64>, [q1, q5, q6]: [f64; 3]) -> Vec<JointAngles> {
     let fourth = link(q1, D1, FRAC_PI_2).inverse() * flange * (link(q5, D5, -FRAC_PI_2) * link(q6, D6, 0.0)).inverse();
     let x_axis = fourth.rotation * Vector3::x();
@@ -117,7 +120,7 @@ fn elbows(flange: &Isometry3<f64>, [q1, q5, q6]: [f64; 3]) -> Vec<JointAngles> {
     vec![bent(elbow), bent(-elbow)]
 }
 
-/// A row of the table whose `a` is 0.
+/// The transformation of a Denavit-Hartenberg row whose `a` is 0.
 fn link(theta: f64, d: f64, alpha: f64) -> Isometry3<f64> {
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), theta);
     let twist = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), alpha);

@@ -1,7 +1,7 @@
-//! Kinematics of a serial arm: where its links are for given joint angles, and how its tip moves with them.
+//! Forward kinematics of a serial arm: poses of its links for given joint angles, and the Jacobian of its tip.
 //!
 //! The arm is read from a URDF; that of the UR5 (`ur5.urdf` beside this file) is the project's own, written from the
-//! maker's published facts.
+//! manufacturer's published data.
 
 use nalgebra::{Isometry3, Matrix6, UnitQuaternion, Vector6};
 
@@ -9,31 +9,30 @@ use super::link::{ArmLink, RevoluteJoint};
 use super::urdf::{UrdfError, read_links};
 use crate::robot::moment::JointAngles;
 
-/// The UR5 as a URDF.
+/// The robot arm UR5 as a URDF.
 pub const UR5: &str = include_str!("ur5.urdf");
 
-/// A serial arm, from its base to its tip.
+/// A serial robot arm, from its base to its tip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
-    /// The links, from the base on.
+    /// The links of the arm, from the base on.
     pub links: Vec<ArmLink>,
 }
 
 impl Arm {
-    /// The UR5 with a stick to press buttons with.
+    /// The UR5 with a stick, with which it presses buttons.
     pub fn ur5() -> Arm {
         Arm::from_urdf(UR5).expect("our own file")
     }
 
-    /// Reads an arm: one chain of links with [`crate::robot::moment::JOINTS`] joints that turn.
+    /// Reads a robot arm from a URDF: one chain of links with [`crate::robot::moment::JOINTS`] revolute joints.
     ///
-    /// # Errors
-    /// The text is no URDF, or not of such an arm.
+    /// # Errors The text is no URDF, or not of such an arm.
     pub fn from_urdf(text: &str) -> Result<Arm, UrdfError> {
         Ok(Arm { links: read_links(text)? })
     }
 
-    /// Where the links are, in the frame of the base (metres).
+    /// The poses of the arm's links in the frame of the base (metres).
     pub fn forward(&self, joints: &JointAngles) -> Vec<Isometry3<f64>> {
         let mut angles = joints.iter();
         let mut base_from_link = Isometry3::identity();
@@ -48,22 +47,23 @@ impl Arm {
         self.links.iter().map(place).collect()
     }
 
-    /// The tip in the frame of the base (metres).
+    /// The pose of the arm's tip in the frame of the base (metres).
     pub fn tip(&self, joints: &JointAngles) -> Isometry3<f64> {
         self.forward(joints).last().copied().unwrap_or_else(Isometry3::identity)
     }
 
-    /// The joints, from the base on.
+    /// The revolute joints of the arm, from the base on.
     pub fn turns(&self) -> impl Iterator<Item = &RevoluteJoint> {
         self.links.iter().filter_map(|link| link.turns.as_ref())
     }
 
-    /// Whether all joints are within their ranges.
+    /// Whether all joint angles are within their limits.
     pub fn is_within_limits(&self, joints: &JointAngles) -> bool {
         self.turns().zip(joints).all(|(turn, angle)| (turn.range_rad[0]..=turn.range_rad[1]).contains(angle))
     }
 
-    /// The tip in the frame of the base, and its geometric Jacobian: metres, then radians, a radian of each joint.
+    /// The pose of the arm's tip in the frame of the base, and its geometric Jacobian: metres, then radians, per radian
+    /// of each joint.
     pub fn tip_and_jacobian(&self, joints: &JointAngles) -> (Isometry3<f64>, Matrix6<f64>) {
         let places = self.forward(joints);
         let tip = places.last().copied().unwrap_or_else(Isometry3::identity);
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
     use crate::robot::moment::JOINTS;
 
-    /// d, a, alpha of the maker's table.
+    /// The parameters d, a, alpha of the manufacturer's Denavit-Hartenberg table.
     const DH: [[f64; 3]; JOINTS] = [
         [0.089159, 0.0, FRAC_PI_2],
         [0.0, -0.425, 0.0],
@@ -97,7 +97,7 @@ mod tests {
         [0.0823, 0.0, 0.0],
     ];
 
-    /// The flange in the frame of `base_link`, from the table alone.
+    /// The pose of the flange in the frame of `base_link`, from the Denavit-Hartenberg table alone.
     fn flange_by_dh(joints: &JointAngles) -> Matrix4<f64> {
         let mut base_from_flange = Matrix4::new_rotation(Vector3::z() * PI);
         for ([d, a, alpha], angle) in DH.iter().zip(joints) {

@@ -1,73 +1,73 @@
-//! The links of an arm with their shapes and masses, and what their joints can do.
+//! The links of a robot arm with their shapes and masses, and the limits of their joints.
 
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
 
-/// A plain shape of a link, about its own centre.
+/// A simple collision shape of a link, about its own centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinkShape {
     /// A box.
     Box {
-        /// Half of its edges along x, y and z, in metres.
+        /// Half of the box's edges along x, y and z, in metres.
         half_m: [f64; 3],
     },
     /// A cylinder along z.
     Cylinder {
-        /// Its radius, in metres.
+        /// The radius of the cylinder, in metres.
         radius_m: f64,
-        /// Its length, in metres.
+        /// The length of the cylinder, in metres.
         length_m: f64,
     },
     /// A sphere.
     Sphere {
-        /// Its radius, in metres.
+        /// The radius of the sphere, in metres.
         radius_m: f64,
     },
 }
 
-/// A shape and its place on its link.
+/// A collision shape and its pose on its link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CollisionSolid {
-    /// The shape.
+    /// The collision shape.
     pub shape: LinkShape,
-    /// Its place in the frame of its link.
+    /// The pose of the shape in the frame of its link.
     pub link_from_solid: Isometry3<f64>,
 }
 
-/// A joint that turns.
+/// A revolute joint of a robot arm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RevoluteJoint {
     /// The axis of rotation, in the joint's frame.
     pub axis: Unit<Vector3<f64>>,
-    /// Between these angles, in radians.
+    /// Least and greatest angle of the joint, in radians.
     pub range_rad: [f64; 2],
-    /// The greatest torque of its motor, in newton metres.
+    /// The greatest torque of the joint's motor, in newton metres.
     pub torque_nm: f64,
-    /// Its greatest speed, in radians per second.
+    /// The greatest speed of the joint, in radians per second.
     pub speed_rad_s: f64,
 }
 
-/// What a link weighs.
+/// Mass and moments of inertia of a robot arm's link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkInertia {
-    /// The mass, in kilograms.
+    /// The mass of the link, in kilograms.
     pub mass_kg: f64,
     /// The centre of mass in the frame of the link, in metres.
     pub centre_m: Point3<f64>,
-    /// Moments of inertia about the centre, along the link's axes, in kg m².
+    /// Moments of inertia about the centre of mass, along the link's axes, in kg m².
     pub inertia_kg_m2: Vector3<f64>,
 }
 
-/// A link, with the joint that carries it.
+/// A link of a robot arm, with the joint that connects it to the previous link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmLink {
     /// The link's name in the URDF.
     pub name: String,
-    /// From the link before, while the joint is at 0.
+    /// Pose of the joint in the frame of the previous link, at joint angle 0.
     pub parent_from_joint: Isometry3<f64>,
-    /// How its joint turns; none: it is fixed.
+    /// The link's revolute joint; none if the link is fixed to the previous one.
     pub turns: Option<RevoluteJoint>,
-    /// None: it weighs nothing.
+    /// Mass and inertia of the link; none if it has no mass.
     pub weight: Option<LinkInertia>,
-    /// The shapes by which it collides.
+    /// The collision shapes of the link.
     pub solids: Vec<CollisionSolid>,
 }

@@ -1,9 +1,6 @@
-//! Joint angles of the timed arm between presses. The timed arm draws when it touches a button; this module
-//! interpolates the joints with a quintic (Craig, Introduction to Robotics): up from the last button, across, and down
-//! on the next.
-//!
-//! From pose to pose the joints go together, slowly at both ends (a quintic; Craig, Introduction to Robotics): up from the
-//! last button, above the next one, down on it.
+//! Joint angles of the timed robot arm between presses. The time at which the arm touches a button is drawn at random;
+//! this module interpolates the joints with a quintic (Craig, Introduction to Robotics), slowly at both ends of each
+//! leg: up from the last button, across, and down on the next.
 
 use super::clearance::ArmSurroundings;
 use super::kinematics::Arm;
@@ -12,24 +9,25 @@ use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// Shares of the motion that go up (first) and down (last).
+/// Shares of the motion's duration in which the arm goes up (first) and down (last).
 const UP: f64 = 0.15;
 const DOWN: f64 = 0.2;
-/// Duration of going up without a next button, in seconds.
+/// Duration of going up if there is no next button, in seconds.
 const UP_S: f64 = 0.4;
-/// The joint angles of the timed arm over time.
+/// The joint angles of the timed robot arm over time.
 #[derive(Clone, Debug)]
 pub struct JointMotion {
-    /// Poses at each robot button; none where the button is out of reach, and the arm stays in place.
+    /// Poses of the arm at each of the robot's buttons; none if the button is out of reach, in which case the arm stays
+    /// in place.
     buttons: Vec<Option<ButtonPoses>>,
-    /// Waypoints with their times; never empty.
+    /// Waypoints of the arm's motion with their times; never empty.
     way: Vec<(SessionTime, JointAngles)>,
-    /// The button at which the tip is down, so that the arm has to go up first.
+    /// The button on which the arm's tip is down, so that the arm has to go up first.
     down_on: Option<ButtonId>,
 }
 
 impl JointMotion {
-    /// An arm at rest above the middle of its buttons.
+    /// A timed robot arm at rest above the middle of its buttons.
     pub fn new(kitchen: &Kitchen, arm: &Arm) -> JointMotion {
         let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
         let at_button = |button: &Button| arm.at_button(button.at_m, &around).ok();
@@ -40,7 +38,7 @@ impl JointMotion {
         JointMotion { buttons, way: vec![(SessionTime::ZERO, rest)], down_on: None }
     }
 
-    /// The joint angles at a time.
+    /// The joint angles of the arm at a time.
     pub fn at(&self, now: SessionTime) -> JointAngles {
         let next = self.way.partition_point(|(time, _)| *time <= now);
         let ((since, from), Some((until, to))) = (self.way[next.saturating_sub(1)], self.way.get(next)) else {
@@ -57,7 +55,7 @@ impl JointMotion {
         self.way.last().map_or(SessionTime::ZERO, |(time, _)| *time)
     }
 
-    /// Starts a motion that touches the button at `until`.
+    /// Starts a motion of the arm that touches the button at `until`.
     pub fn set_out(&mut self, now: SessionTime, button: ButtonId, until: SessionTime) {
         let Some(Some(goal)) = self.buttons.get(button.index()).copied() else { return };
         let takes_s = until.secs_since(now).max(0.0);
@@ -72,7 +70,7 @@ impl JointMotion {
         self.down_on = Some(button);
     }
 
-    /// Goes up after a press was made or given up; on the way to a button the arm just stops.
+    /// Moves the arm up after a press was made or abandoned; an arm on its way to a button just stops.
     pub fn go_up(&mut self, now: SessionTime) {
         let here = self.at(now);
         let goes_down = self.way.iter().rev().nth(1).is_none_or(|(since, _)| *since <= now);
@@ -87,7 +85,7 @@ impl JointMotion {
         }
     }
 
-    /// Stops where it is.
+    /// Stops the arm where it is.
     pub fn stand(&mut self, now: SessionTime) {
         self.way = vec![(now, self.at(now))];
     }

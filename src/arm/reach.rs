@@ -1,4 +1,5 @@
-//! Poses of the arm at a button, above and touching, with the stick down and with clearance from table and own links.
+//! Poses of the robot arm at a button, above and touching it, with the stick down and with clearance from table and own
+//! links.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -13,31 +14,31 @@ use crate::robot::moment::{JOINTS, JointAngles};
 
 /// The height of a button above the table, in metres.
 pub const BUTTON_M: f64 = 0.02;
-/// Height of the tip above the buttons while it travels, in metres.
+/// Height of the arm's tip above the buttons while the arm moves across, in metres.
 pub const ABOVE_M: f64 = 0.08;
-/// Preferred posture: elbow up, stick down. Of all inverse solutions the nearest to it is chosen.
+/// Preferred posture of the arm: elbow up, stick down. Of all inverse kinematic solutions the nearest to it is chosen.
 pub const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
-/// Limit of the elbow angle, in radians.
+/// Index of the elbow joint, and limit of its angle in radians.
 const ELBOW: usize = 2;
 const ELBOW_RAD: f64 = PI;
-/// Below this least singular value of the Jacobian the pose counts as singular.
+/// Least singular value of the Jacobian below which a pose of the arm counts as singular.
 const SINGULAR: f64 = 0.03;
 
-/// Why the arm cannot press a button.
+/// Why the robot arm cannot press a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unreachable {
-    /// No joint angles bring the tip there.
+    /// No joint angles bring the arm's tip to the button.
     TooFar,
     /// A joint limit is exceeded.
     JointLimit,
-    /// The pose is singular: the arm could not move in every direction.
+    /// The pose at the button is singular: the arm could not move in every direction.
     Singular,
-    /// This is in the way in every pose.
+    /// This obstruction blocks every pose of the arm at the button.
     Blocked(Obstruction),
 }
 
 impl Unreachable {
-    /// In words, after "a button of the robot".
+    /// The reason in words, after "a button of the robot".
     pub fn words(self) -> &'static str {
         match self {
             Unreachable::TooFar => "out of reach of its arm",
@@ -60,21 +61,21 @@ impl From<Unreachable> for AbortReason {
     }
 }
 
-/// The joint angles above a button and touching it.
+/// The joint angles of the robot arm above a button and touching it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ButtonPoses {
-    /// The joint angles above the button, in radians.
+    /// Joint angles with the tip above the button, in radians.
     pub above: JointAngles,
-    /// The joint angles at which the tip touches it, in radians.
+    /// Joint angles with the tip touching the button, in radians.
     pub touching: JointAngles,
 }
 
-/// The tip at this place in the frame of the base (metres), stick down.
+/// The pose of the arm's tip at this position in the frame of the base (metres), with the stick down.
 pub fn stick_down(at_m: [f64; 3]) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(at_m), UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI))
 }
 
-/// The middle of the poses above the buttons.
+/// The mean of the poses above the buttons.
 pub(super) fn resting_pose(buttons: &[&ButtonPoses]) -> JointAngles {
     let above: Vec<&JointAngles> = buttons.iter().map(|poses| &poses.above).collect();
     let mean = |joint: usize| above.iter().map(|pose| pose[joint]).sum::<f64>() / above.len() as f64;
@@ -82,11 +83,10 @@ pub(super) fn resting_pose(buttons: &[&ButtonPoses]) -> JointAngles {
 }
 
 impl Arm {
-    /// How it stands with the stick down at a place in the frame of the base (metres): of all ways that near to `like`,
-    /// with the last joint, about which the stick only spins, as it is there.
+    /// Joint angles with the stick down at a position in the frame of the base (metres): of all solutions the one
+    /// nearest to `like`. The last joint, which only spins the stick, stays as in `like`.
     ///
-    /// # Errors
-    /// Why it cannot: for the way that came furthest.
+    /// # Errors Why the arm cannot reach the position, for the solution that failed last.
     pub fn standing_at(
         &self,
         at_m: [f64; 3],
@@ -111,7 +111,7 @@ impl Arm {
         Err(why)
     }
 
-    /// The reason why a pose is not allowed.
+    /// Why the arm must not take a pose; none if it may.
     pub fn fault(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<Unreachable> {
         if !self.is_within_limits(joints) || joints[ELBOW].abs() > ELBOW_RAD {
             return Some(Unreachable::JointLimit);
@@ -122,10 +122,9 @@ impl Arm {
         self.in_the_way(joints, around).map(Unreachable::Blocked)
     }
 
-    /// How it stands at a button at this place on a table of this height.
+    /// Joint angles for pressing a button at this position on a table of this height.
     ///
-    /// # Errors
-    /// Why it cannot press it.
+    /// # Errors Why the arm cannot press the button.
     pub fn at_button(&self, [x, y]: [f64; 2], around: &ArmSurroundings) -> Result<ButtonPoses, Unreachable> {
         let top_m = around.table_m + BUTTON_M;
         let like = [y.atan2(x), BENT[1], BENT[2], BENT[3], BENT[4], BENT[5]];
@@ -134,7 +133,7 @@ impl Arm {
     }
 }
 
-/// The first of the robot's buttons that its arm cannot press with clearance, and why.
+/// The first of the robot's buttons that its arm cannot press with clearance, and the reason.
 pub fn out_of_reach(kitchen: &Kitchen) -> Option<(ButtonId, Unreachable)> {
     let arm = Arm::ur5();
     let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };

@@ -1,8 +1,6 @@
-//! Motion of the human's hand between its resting place and the buttons: minimum-jerk reaches (Flash and Hogan 1985).
-//! The hand follows the recorded presses and never delays one; it exists so that the arm can meet it.
-//!
-//! A reach is a minimum-jerk movement (Flash and Hogan 1985). Presses are what they are without it: a hand that is late, or
-//! that keeps off the arm, delays none. It is there for the arm to meet.
+//! Simulated motion of the human's hand between its resting place and the buttons: minimum-jerk reaches (Flash and
+//! Hogan 1985). The hand follows the recorded presses and never delays one, even if it is late or avoids the arm; its
+//! purpose is that the robot arm can meet it.
 
 use nalgebra::Point3;
 use rand::RngExt;
@@ -13,37 +11,37 @@ use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Kitchen};
 
-/// Duration of a reach in seconds: a constant part, and a part per metre.
+/// Duration of a reach of the hand in seconds: a constant part, and a part per metre.
 const REACH_S: f64 = 0.3;
 const REACH_S_M: f64 = 0.8;
-/// Height added in the middle of a reach, in metres.
+/// Height by which the hand is lifted in the middle of a reach, in metres.
 const LIFTED_M: f64 = 0.04;
 /// Offset of the hand's centre behind the pressed button, and its height above the table, in metres (the hand is a ball
 /// without fingers).
 const FINGER_M: f64 = 0.02;
 const PRESSES_M: f64 = 0.05;
-/// Resting place: distance behind the last button and height above the table, in metres.
+/// Resting place of the hand: distance behind the last button and height above the table, in metres.
 const BEYOND_M: f64 = 0.16;
 const RESTS_M: f64 = 0.08;
-/// Distance that an attentive hand keeps from the arm, in metres, and time after which a blocked reach is given up, in
-/// seconds.
+/// Distance that an attentive hand keeps from the robot arm, in metres, and time after which it gives up a blocked
+/// reach, in seconds.
 const KEEPS_OFF_M: f64 = 0.06;
 const GIVES_UP_S: f64 = 1.5;
 
 /// Parameters of a person's hand motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachingBehaviour {
-    /// Time that the hand stays at a button after a press, in seconds.
+    /// Time for which the hand stays at a button after a press, in seconds.
     pub lingers_s: f64,
-    /// Share of reaches without attention to the arm.
+    /// Share of reaches in which the person does not watch the robot arm.
     pub heedless: f64,
 }
 
 impl ReachingBehaviour {
-    /// Parameters of simulated participants. The share of heedless reaches is an estimate.
+    /// Hand motion of simulated participants. The share of heedless reaches is an estimate.
     pub const SIMULATED: ReachingBehaviour = ReachingBehaviour { lingers_s: 0.3, heedless: 0.005 };
-    /// Parameters for real people, whose hands are not tracked: the hand is assumed to stay at the last press for a
-    /// while, and never to move into the arm.
+    /// Hand motion assumed for real people, whose hands are not tracked: the hand stays at the last press for a while,
+    /// and never moves into the robot arm.
     pub const UNSEEN: ReachingBehaviour = ReachingBehaviour { lingers_s: 1.5, heedless: 0.0 };
 }
 
@@ -55,18 +53,18 @@ struct Way {
     done_s: f64,
     takes_s: f64,
     held_up_s: f64,
-    /// The hand returns after this movement.
+    /// Whether the movement is a press, after which the hand returns.
     presses: bool,
 }
 
-/// A planned reach.
+/// A planned reach of the hand to a button.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Planned {
     to_m: Point3<f64>,
     begins: SessionTime,
 }
 
-/// The hand.
+/// The simulated hand of the human, which reaches for buttons.
 #[derive(Clone, Debug)]
 pub struct ReachingHand {
     how: ReachingBehaviour,
@@ -76,14 +74,14 @@ pub struct ReachingHand {
     at_m: Point3<f64>,
     way: Option<Way>,
     planned: Option<Planned>,
-    /// Target of the current or last reach.
+    /// Target of the present or last reach.
     goal_m: Option<Point3<f64>>,
     /// The time at which the hand returns after a press.
     leaves: Option<SessionTime>,
     heedless: bool,
 }
 
-/// Where the hand is when it has nothing to press, in the frame of the arm's base: before the human's buttons.
+/// The resting place of the hand in the frame of the robot arm's base: before the human's buttons.
 pub fn resting_place(kitchen: &Kitchen) -> Point3<f64> {
     let buttons = &kitchen.buttons[Agent::Human.index()];
     let furthest_m = buttons.iter().map(|button| button.at_m[0]).fold(0.0, f64::max);
@@ -108,7 +106,7 @@ impl ReachingHand {
         }
     }
 
-    /// The middle of a hand whose finger is on a button.
+    /// The centre of a hand whose finger is on a button.
     fn on(&self, [x, y]: [f64; 2]) -> Point3<f64> {
         Point3::new(x + FINGER_M, y, self.table_m + PRESSES_M)
     }
@@ -117,7 +115,8 @@ impl ReachingHand {
         REACH_S + REACH_S_M * (to_m - self.at_m).norm()
     }
 
-    /// The person means to press the button at this place of the table at `at`, as far as is known now.
+    /// Starts or plans a reach: the person intends to press the button at this position on the table at `at`, as far as
+    /// is known now.
     pub fn means(&mut self, now: SessionTime, button_m: [f64; 2], at: SessionTime) {
         let to_m = self.on(button_m);
         let is_on_its_way = self.way.is_some_and(|way| way.presses && way.to_m == to_m);
@@ -128,20 +127,20 @@ impl ReachingHand {
         self.planned = Some(Planned { to_m, begins });
     }
 
-    /// The person has pressed the button at this place of the table.
+    /// Ends a reach: the person has pressed the button at this position on the table.
     pub fn pressed(&mut self, now: SessionTime, button_m: [f64; 2]) {
         let to_m = self.on(button_m);
         self.planned = None;
         let lingers = SessionTime::from_secs_f64(self.how.lingers_s);
         match self.way.filter(|way| way.presses && way.to_m == to_m) {
-            // A late hand turns back when it arrives.
+            // A hand that is late turns back when it arrives.
             Some(_) => {}
             None if self.at_m == to_m => self.leaves = Some(now + lingers),
             None => self.reach(to_m),
         }
     }
 
-    /// The person feels the arm, withdraws the hand, and pays attention to the arm from now on.
+    /// Reacts to a contact: the person withdraws the hand, and watches the robot arm from now on.
     pub fn feels_the_arm(&mut self) {
         self.heedless = false;
         if self.way.is_none_or(|way| way.presses) {
@@ -164,7 +163,7 @@ impl ReachingHand {
         self.way = Some(Way { from_m: self.at_m, to_m, done_s: 0.0, takes_s, held_up_s: 0.0, presses });
     }
 
-    /// The current pose of the hand.
+    /// The present pose of the hand.
     pub fn place(&self) -> HandPose {
         self.at(self.at_m)
     }
@@ -173,7 +172,7 @@ impl ReachingHand {
         HandPose::reaching(at_m, self.table_m)
     }
 
-    /// The time of the next movement after `since`.
+    /// The time of the hand's next movement after `since`.
     pub fn next_move(&self, since: SessionTime) -> Option<SessionTime> {
         let cycle = since + SessionTime::from_secs_f64(CYCLE_S);
         if self.way.is_some() {
@@ -183,7 +182,8 @@ impl ReachingHand {
         begins.into_iter().chain(self.leaves).min().map(|time| time.max(cycle))
     }
 
-    /// Moves the hand for the cycle that ends now. `distance_m`: distance between a hand pose and the arm.
+    /// Moves the hand for the cycle that ends now. `distance_m` computes the distance between a hand pose and the robot
+    /// arm.
     pub fn cycle(&mut self, now: SessionTime, distance_m: impl Fn(&HandPose) -> f64) {
         if let Some(planned) = self.planned.take_if(|planned| planned.begins <= now) {
             self.reach(planned.to_m);
@@ -211,7 +211,7 @@ impl ReachingHand {
         }
     }
 
-    /// A pause of this length is over.
+    /// Shifts all pending times by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         if let Some(planned) = &mut self.planned {
             planned.begins = planned.begins + by;

@@ -1,28 +1,28 @@
-//! Results of a press and of a controller cycle of the simulated arm, as plain data without the physics.
+//! Results of a press and of a controller cycle of the simulated robot arm, as plain data without the physics.
 
 use crate::kitchen::ButtonId;
 use crate::robot::RobotActivity;
 
-/// Why the arm did not press.
+/// Why the robot arm failed to press a button.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PressFailure {
-    /// The arm gave up the press: a hand was in the way for too long.
+    /// A hand was in the way for too long, so the arm abandoned the press of this button.
     Blocked(ButtonId),
-    /// The button was pressed down and did not click.
+    /// The arm pushed this button down, but the button did not click.
     NoClick(ButtonId),
-    /// The arm measured a contact force above the threshold (newtons); it stops, and the press is given up.
+    /// The arm measured a contact force (newtons) above the threshold; it stops and abandons the press.
     Contact(f64),
-    /// This joint (0 is the first) did not follow its command; the brakes hold the arm, and the press is given up.
+    /// This joint (0 is the first) did not follow its command; the brakes hold the arm, and the press is abandoned.
     Fault(usize),
 }
 
-/// The result of a cycle for the press, and the events to record.
+/// The result of a controller cycle for the arm's press, and the events to record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CycleNews {
-    /// The button that clicked. A click counts as a press even if the arm was about to give up.
+    /// The button that clicked. A click counts as a press even if the arm was about to abandon the press.
     pub clicked: Option<ButtonId>,
-    /// Why the arm did not press.
+    /// Why the arm failed to press, if it did.
     pub report: Option<PressFailure>,
-    /// Events to record, in order.
+    /// The robot activities to record, in order.
     pub news: Vec<RobotActivity>,
 }

@@ -1,20 +1,22 @@
-//! Speed and separation monitoring (ISO/TS 15066, 5.5.4): the arm slows down near a hand and waits for a hand in its
-//! way.
+//! Speed and separation monitoring (ISO/TS 15066, 5.5.4): the robot arm slows down near a hand and waits for a hand in
+//! its way.
 
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 
 /// Protective separation distance in metres: the arm does not approach a nearer hand.
 const WAITS_M: f64 = 0.03;
-/// Highest tip speed in m/s at the larger distance; it falls in proportion to the distance below that.
+/// Highest speed of the arm's tip in m/s at the distance at which the arm begins to slow down; below that, the limit
+/// falls in proportion to the distance.
 const SLOWED_M_S: f64 = 0.8;
-/// Speeds below this limit, in m/s, count as waiting.
+/// Speeds of the arm's tip below this limit, in m/s, count as waiting.
 const CREEPS_M_S: f64 = 0.02;
-/// Speed limit for motion away from a hand, in m/s.
+/// Speed limit of the arm's tip for motion away from a hand, in m/s.
 const LEAVES_M_S: f64 = 0.1;
-/// Hysteresis of the distances in metres, so that the mode does not flicker.
+/// Hysteresis of the distances in metres, so that the safety mode does not flicker.
 pub const MARGIN_M: f64 = 0.03;
 
-/// The tip's speed limit in m/s for a hand at this distance, depending on whether the arm approaches the hand.
+/// The speed limit of the arm's tip in m/s for a hand at this distance, depending on whether the arm approaches the
+/// hand.
 pub fn speed_limit(distance_m: f64, comes_nearer: bool) -> f64 {
     let by_distance = match distance_m {
         far if far >= SLOWS_M => f64::INFINITY,
@@ -27,7 +29,8 @@ pub fn speed_limit(distance_m: f64, comes_nearer: bool) -> f64 {
     }
 }
 
-/// The safety mode for a hand at this distance while the arm is not stopped. `waits`: the arm may not move at all.
+/// The safety mode for a hand at this distance while the arm is not stopped. `waits` says whether the arm must not move
+/// at all.
 pub fn mode_near(before: SafetyMode, distance_m: f64, waits: bool) -> SafetyMode {
     let is_out = distance_m >= SLOWS_M + if before == SafetyMode::Normal { 0.0 } else { MARGIN_M };
     match (waits, is_out) {

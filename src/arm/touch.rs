@@ -1,9 +1,10 @@
-//! Contacts between arm and human: each contact is reported once.
+//! Contacts between robot arm and human: each contact is reported once.
 
-/// Number of cycles after which a contact is reported, and number of cycles without force after which it has ended.
+/// Number of controller cycles after which a contact is reported, and number of cycles without force after which it has
+/// ended.
 const CYCLES: u32 = 12;
 
-/// The current contact, if there is one.
+/// The present contact between robot arm and human, if there is one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ContactTracker(Option<Contact>);
 
@@ -11,12 +12,12 @@ pub(super) struct ContactTracker(Option<Contact>);
 struct Contact {
     most_n: f64,
     cycles: u32,
-    /// Number of cycles without force.
+    /// Number of controller cycles without force.
     quiet: u32,
 }
 
 impl ContactTracker {
-    /// Adds the force of a cycle, in newtons. Returns the greatest force of a contact that has to be reported now.
+    /// Adds the contact force of a cycle, in newtons. Returns the peak force of a contact that has to be reported now.
     pub fn feel(&mut self, force_n: f64) -> Option<f64> {
         if force_n > 0.0 {
             self.0.get_or_insert_default();
@@ -32,7 +33,7 @@ impl ContactTracker {
         told
     }
 
-    /// Whether a contact has not been reported yet.
+    /// Whether there is a contact that has not been reported yet.
     pub fn is_to_be_told(&self) -> bool {
         self.0.is_some_and(|contact| contact.cycles < CYCLES)
     }

@@ -1,56 +1,56 @@
-//! The arm's way to a button in time: up, over it, down on it, each leg slow at both ends.
+//! The robot arm's trajectory to a button: up, across, and down on it, each leg slow at both ends.
 //!
-//! A leg is a cubic through four poses; along it goes a quintic (Craig, Introduction to Robotics), so that speed and
-//! acceleration begin and end at 0 and never jump. How long a leg takes follows from the limits of its kind, which are
-//! those that the maker's `movej` and `movel` have if nothing else is said.
+//! A leg is a cubic through four poses; the time law along it is a quintic (Craig, Introduction to Robotics), so that
+//! speed and acceleration begin and end at 0 and never jump. The duration of a leg follows from the limits of its kind,
+//! which are the defaults of the manufacturer's commands `movej` and `movel`.
 
 use super::clearance::ArmSurroundings;
 use super::kinematics::Arm;
 use super::reach::{ABOVE_M, BUTTON_M, ButtonPoses, Unreachable};
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// Greatest speed of a joint on a leg from pose to pose, in radians per second.
+/// Greatest speed of a joint on a leg in joint space, in radians per second.
 pub const JOINT_SPEED_RAD_S: f64 = 1.05;
-/// Greatest acceleration of a joint on such a leg, in radians per second squared.
+/// Greatest acceleration of a joint on a leg in joint space, in radians per second squared.
 pub const JOINT_ACCELERATION_RAD_S2: f64 = 1.4;
-/// Greatest speed of the tip on a straight leg, in metres per second.
+/// Greatest speed of the arm's tip on a straight leg, in metres per second.
 pub const TIP_SPEED_M_S: f64 = 0.25;
-/// Greatest acceleration of the tip on such a leg, in metres per second squared.
+/// Greatest acceleration of the arm's tip on a straight leg, in metres per second squared.
 pub const TIP_ACCELERATION_M_S2: f64 = 1.2;
-/// The greatest speed and acceleration of a quintic from 0 to 1 in a time of 1.
+/// The greatest speed and acceleration of the quintic time law from 0 to 1 in a time of 1.
 const QUINTIC_SPEED: f64 = 1.875;
 const QUINTIC_ACCELERATION: f64 = 5.7735;
-/// Depth below a button's top that the tip aims for, in metres; more than the click needs.
+/// Depth below a button's top at which the arm's tip aims, in metres; more than the click needs.
 pub const BELOW_M: f64 = 0.006;
-/// Number of points of a leg that are checked for limits and clearance.
+/// Number of points of a leg that are checked for joint limits and clearance.
 const LOOKS: usize = 24;
-/// Additional heights that are tried if a path is blocked, in metres.
+/// Additional heights that are tried if the arm's path is blocked, in metres.
 const HIGHER_M: [f64; 3] = [0.08, 0.16, 0.24];
 
-/// The purpose of a leg.
+/// The purpose of a leg of the robot arm's trajectory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LegKind {
-    /// Straight up.
+    /// Moves the tip straight up.
     Up,
-    /// Joint motion between two poses above the buttons.
+    /// Moves all joints from one pose above the buttons to another.
     Over,
-    /// Straight down on the button, until it clicks.
+    /// Moves the tip straight down on the button, until the button clicks.
     Down,
 }
 
-/// One leg of a trajectory.
+/// One leg of the robot arm's trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryLeg {
-    /// What the leg is for.
+    /// The purpose of the leg.
     pub kind: LegKind,
-    /// Poses at equal distances.
+    /// Four poses at equal distances along the leg.
     poses: [JointAngles; 4],
-    /// Its duration at full speed, in seconds.
+    /// Duration of the leg at full speed, in seconds.
     pub takes_s: f64,
 }
 
 impl TrajectoryLeg {
-    /// From pose to pose, all joints together.
+    /// A leg in joint space: all joints move together from pose to pose.
     fn over(from: &JointAngles, to: &JointAngles) -> TrajectoryLeg {
         let between = |share: f64| std::array::from_fn(|joint| from[joint] + (to[joint] - from[joint]) * share);
         let furthest = (0..JOINTS).map(|joint| (to[joint] - from[joint]).abs()).fold(0.0, f64::max);
@@ -59,7 +59,7 @@ impl TrajectoryLeg {
         TrajectoryLeg { kind: LegKind::Over, poses: [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(between), takes_s }
     }
 
-    /// The tip straight up or down from `from` to `to_m` above the base.
+    /// A straight leg: the arm's tip moves up or down from `from` to the height `to_m` above the base.
     fn straight(
         arm: &Arm,
         kind: LegKind,
@@ -77,23 +77,23 @@ impl TrajectoryLeg {
         let by_tip_s = (QUINTIC_SPEED * length_m / TIP_SPEED_M_S)
             .max((QUINTIC_ACCELERATION * length_m / TIP_ACCELERATION_M_S2).sqrt());
         let leg = TrajectoryLeg { kind, poses, takes_s: by_tip_s.max(0.05) };
-        // Near the base a short path of the tip needs large joint motions.
+        // Near the base, a short path of the tip needs large joint motions.
         let steepest = (0..=LOOKS).map(|look| leg.slope(look as f64 / LOOKS as f64)).fold(0.0, f64::max);
         let fastest = arm.turns().map(|turn| turn.speed_rad_s).fold(f64::INFINITY, f64::min);
         Ok(TrajectoryLeg { takes_s: leg.takes_s.max(QUINTIC_SPEED * steepest / fastest), ..leg })
     }
 
-    /// The greatest slope of a joint along the leg, in radians for the whole of it.
+    /// The greatest slope of a joint along the leg, in radians per whole leg.
     fn slope(&self, share: f64) -> f64 {
         let step = 1e-4;
         let (before, after) = (self.pose(share - step), self.pose(share + step));
         (0..JOINTS).map(|joint| ((after[joint] - before[joint]) / (2.0 * step)).abs()).fold(0.0, f64::max)
     }
 
-    /// The pose after this share of the way.
+    /// The pose of the arm at this share of the leg.
     fn pose(&self, share: f64) -> JointAngles {
         let t = 3.0 * share;
-        // Lagrange's polynomials over 0, 1, 2, 3.
+        // Lagrange's polynomials over the nodes 0, 1, 2, 3.
         let weights = [
             -(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0,
             t * (t - 2.0) * (t - 3.0) / 2.0,
@@ -103,27 +103,26 @@ impl TrajectoryLeg {
         std::array::from_fn(|joint| (0..4).map(|part| weights[part] * self.poses[part][joint]).sum())
     }
 
-    /// The pose this many seconds after the start of the leg.
+    /// The pose of the arm this many seconds after the start of the leg.
     pub fn at(&self, since_s: f64) -> JointAngles {
         let t = if self.takes_s > 0.0 { (since_s / self.takes_s).clamp(0.0, 1.0) } else { 1.0 };
         self.pose(t.powi(3) * (10.0 - 15.0 * t + 6.0 * t * t))
     }
 
-    /// The final pose.
+    /// The final pose of the leg.
     pub fn end(&self) -> &JointAngles {
         &self.poses[3]
     }
 
-    /// The first reason not to go along it.
+    /// The first reason for which the arm must not follow the leg.
     fn fault(&self, arm: &Arm, around: &ArmSurroundings) -> Option<Unreachable> {
         (0..=LOOKS).find_map(|look| arm.fault(&self.pose(look as f64 / LOOKS as f64), around))
     }
 }
 
-/// The way from a pose to a button until the tip is down on it: up from where it is, over it, down.
+/// The trajectory from a pose to a button until the tip is down on the button: up, across, down.
 ///
-/// # Errors
-/// What is in the way, after ways over it were tried.
+/// # Errors What blocks the arm, after higher paths were tried.
 pub fn way_to(
     arm: &Arm,
     from: &JointAngles,
@@ -141,10 +140,9 @@ pub fn way_to(
     Ok(legs)
 }
 
-/// Up to where the arm goes from button to button, if it is lower.
+/// The trajectory up to the height at which the arm moves between buttons, if the arm is lower.
 ///
-/// # Errors
-/// What is in the way.
+/// # Errors What blocks the arm.
 pub fn way_up(arm: &Arm, from: &JointAngles, around: &ArmSurroundings) -> Result<Vec<TrajectoryLeg>, Unreachable> {
     let free_m = around.table_m + BUTTON_M + ABOVE_M;
     if arm.tip(from).translation.z > free_m - 1e-3 {
@@ -153,10 +151,9 @@ pub fn way_up(arm: &Arm, from: &JointAngles, around: &ArmSurroundings) -> Result
     Ok(vec![TrajectoryLeg::straight(arm, LegKind::Up, from, free_m, around)?])
 }
 
-/// From one pose above the table to another: at once, or higher up if something is in the way.
+/// The trajectory from one pose above the table to another: directly, or higher up if something is in the way.
 ///
-/// # Errors
-/// What is in the way of all that was tried.
+/// # Errors What blocks every path that was tried.
 pub fn way_over(
     arm: &Arm,
     from: &JointAngles,

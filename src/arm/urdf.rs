@@ -1,4 +1,4 @@
-//! Reads an arm from a URDF: its links with their shapes and masses, its joints with what they can do.
+//! Reads a robot arm from a URDF: its links with their shapes and masses, its joints with their limits.
 
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use urdf_rs::{Geometry, JointType, Pose};
@@ -6,20 +6,19 @@ use urdf_rs::{Geometry, JointType, Pose};
 use super::link::{ArmLink, CollisionSolid, LinkInertia, LinkShape, RevoluteJoint};
 use crate::robot::moment::JOINTS;
 
-/// Why a URDF is no arm that the program can move.
+/// Error: a URDF does not describe an arm that the program can move.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("found {found}, wanted {remedy}")]
 pub struct UrdfError {
-    /// What the URDF says that cannot be.
+    /// What the URDF contains that is not supported.
     pub found: String,
-    /// What would be right.
+    /// What the URDF would have to contain.
     pub remedy: &'static str,
 }
 
-/// Reads the links of an arm: one chain with [`JOINTS`] joints that turn.
+/// Reads the links of a robot arm: one chain with [`JOINTS`] revolute joints.
 ///
-/// # Errors
-/// The text is no URDF, or not of such an arm.
+/// # Errors The text is no URDF, or not of such an arm.
 pub fn read_links(text: &str) -> Result<Vec<ArmLink>, UrdfError> {
     let wrong = |found: String, remedy| UrdfError { found, remedy };
     let robot = urdf_rs::read_from_string(text).map_err(|error| wrong(error.to_string(), "a URDF"))?;
@@ -76,7 +75,7 @@ fn carried(joint: &urdf_rs::Joint, link: &urdf_rs::Link) -> Result<ArmLink, Urdf
     Ok(ArmLink { name: link.name.clone(), parent_from_joint, turns, weight: weight(link)?, solids: solids(link)? })
 }
 
-/// The weight of a link; moments of inertia are along its axes.
+/// Mass and inertia of a link; the moments of inertia have to be along the link's axes.
 fn weight(link: &urdf_rs::Link) -> Result<Option<LinkInertia>, UrdfError> {
     let (mass_kg, inertia, origin) = (link.inertial.mass.value, &link.inertial.inertia, &link.inertial.origin);
     if mass_kg == 0.0 {

@@ -1,37 +1,38 @@
-//! The arm in the physics as it is in a build without the feature `physics`: there is none, and none can be made.
+//! Replacement for the simulated robot arm in a build without the feature `physics`: a type of which no value can be
+//! created.
 
 use super::report::CycleNews;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ButtonId, State};
 use crate::robot::{AbortReason, RobotActivity};
 
-/// No arm: this type has no value.
+/// The simulated arm in a build without physics: no value of this type can be created.
 #[derive(Clone, Debug)]
 pub enum SteppedArm {}
 
 #[allow(missing_docs, reason = "the functions of the arm that is not there")]
 impl SteppedArm {
-    /// The time of the next controller cycle.
+    /// The time of the next cycle of the arm's controller.
     pub fn next_due(&self, _: bool) -> Option<SessionTime> {
         match *self {}
     }
 
-    /// Starts the way to a button.
+    /// Starts the arm's motion to a button.
     pub fn set_out(&mut self, _: SessionTime, _: ButtonId) -> Result<f64, AbortReason> {
         match *self {}
     }
 
-    /// Gives up the current press.
+    /// Abandons the present press.
     pub fn give_up(&mut self) {
         match *self {}
     }
 
-    /// Whether the caller has to decide now if the press is still useful.
+    /// Whether the caller now has to decide if the press is still useful.
     pub fn asks(&self, _: bool, _: State) -> bool {
         match *self {}
     }
 
-    /// The press is useful in this state.
+    /// Confirms that the press is useful in this state.
     pub fn go_for_it(&mut self, _: bool, _: State) {
         match *self {}
     }
@@ -51,27 +52,27 @@ impl SteppedArm {
         match *self {}
     }
 
-    /// The wizard stops the arm.
+    /// Stops the arm at the wizard's command.
     pub fn stop(&mut self) -> Option<RobotActivity> {
         match *self {}
     }
 
-    /// The wizard releases the arm after a stop.
+    /// Releases the arm at the wizard's command after a stop.
     pub fn resume(&mut self, _: SessionTime) -> Option<RobotActivity> {
         match *self {}
     }
 
-    /// The person intends to press a button.
+    /// Tells the simulated hand that the person intends to press a button.
     pub fn human_means(&mut self, _: SessionTime, _: [f64; 2], _: SessionTime) {
         match *self {}
     }
 
-    /// The person has pressed a button.
+    /// Tells the simulated hand that the person has pressed a button.
     pub fn human_pressed(&mut self, _: SessionTime, _: [f64; 2]) {
         match *self {}
     }
 
-    /// Shifts all pending times by the length of a pause.
+    /// Shifts all pending times by the duration of a pause.
     pub fn postpone(&mut self, _: SessionTime) {
         match *self {}
     }

@@ -1,5 +1,5 @@
-//! Carries out the robot's task policy with timed presses. The duration of a press is drawn (timed arm) or results from
-//! the simulated arm. This module knows neither events nor clocks: the caller passes time and state.
+//! Carries out the robot's task policy with timed presses. The duration of a press is drawn at random (timed arm) or
+//! results from the simulated arm. This module knows neither events nor clocks: the caller passes time and state.
 
 use rand_distr::{Distribution, LogNormal};
 
@@ -14,40 +14,40 @@ use crate::kitchen::{ButtonId, Kitchen, State};
 use crate::robot::policy::{self, PolicyDecision};
 use crate::robot::{AbortReason, IdleReason, RobotActivity};
 
-/// A skipped press is not chosen again within this time, in seconds.
+/// Time for which a skipped press of the robot is not chosen again, in seconds.
 pub const SKIP_S: f64 = 5.0;
 
-/// A press that the arm is on its way to.
+/// A press to which the robot's arm is moving.
 #[derive(Clone, Copy, Debug)]
 struct OngoingPress {
     button: ButtonId,
     /// The time at which the arm touches the button.
     until: SessionTime,
-    /// The wizard chose this press: the arm makes it even if it is not useful.
+    /// Whether the wizard chose this press: the arm then makes it even if it is not useful.
     driven: bool,
 }
 
-/// The robot's presses over time: moving, idle, held or stopped.
+/// The robot at work: it decides on presses and carries them out with its arm; it can be idle, held or stopped.
 #[derive(Clone, Debug)]
 pub struct Robot {
     random: Stream,
     duration_s: LogNormal<f64>,
     busy: Option<OngoingPress>,
     stopped: bool,
-    /// The wizard holds the robot: it starts no press, and waits above the button of the current one.
+    /// Whether the wizard holds the robot: it then starts no press, and waits above the button of the present one.
     held: bool,
-    /// The press that the wizard chose, until the arm sets out for it.
+    /// The press that the wizard chose, until the arm starts to move to it.
     driven: Option<ButtonId>,
-    /// Presses that were skipped or failed, each with the time until which it is left out.
+    /// Presses that were skipped or failed, each with the time until which the robot does not choose it.
     skipped: Vec<(ButtonId, SessionTime)>,
-    /// The last reported reason for idling, and the state of the last decision.
+    /// The last reported reason for being idle, and the state of the kitchen at the last decision.
     idle: Option<(IdleReason, State)>,
-    /// The simulated arm; none for the timed arm.
+    /// The simulated arm in the physics; none for the timed arm.
     body: Option<Box<SteppedArm>>,
 }
 
 impl Robot {
-    /// A robot at rest, whose arm is timed. `press_s` is the median duration of a press in seconds, `spread` the standard
+    /// A robot at rest with a timed arm. `press_s` is the median duration of a press in seconds, `spread` the standard
     /// deviation of its logarithm.
     pub fn new(press_s: f64, spread: f64, seed: u64, trial: u64) -> Robot {
         let median = press_s.max(0.05);
@@ -65,19 +65,19 @@ impl Robot {
         }
     }
 
-    /// The same robot with an arm in the physics, which decides how long its presses take.
+    /// The same robot with a simulated arm, whose physics decide how long presses take.
     pub fn with_body(self, body: SteppedArm) -> Robot {
         Robot { body: Some(Box::new(body)), ..self }
     }
 
-    /// The arm in the physics, for experiments with it.
+    /// The simulated arm, for experiments with it.
     #[cfg(feature = "physics")]
     pub fn arm(&mut self) -> Option<&mut PhysicalArm> {
         self.body.as_mut().map(|body| &mut body.arm)
     }
 
-    /// The time of the next action: a touch, a controller cycle, or a new decision after a skipped press. The time may
-    /// have passed: a held arm touches as soon as it is released.
+    /// The time of the robot's next action: a touch, a controller cycle, or a new decision after a skipped press. The
+    /// time may have passed already: a held arm touches as soon as it is released.
     pub fn next_due(&self) -> Option<SessionTime> {
         let again = match (self.busy, self.idle) {
             (None, Some((IdleReason::Skipped, _))) if !self.held => self.skipped.iter().map(|(_, until)| *until).min(),
@@ -96,8 +96,8 @@ impl Robot {
         self.held && self.busy.is_none_or(|errand| !errand.driven)
     }
 
-    /// Starts the press that the wizard chose; otherwise decides if the arm is free and the state changed since the
-    /// last decision.
+    /// Starts the press that the wizard chose; otherwise decides on a press if the arm is free and the state changed
+    /// since the last decision.
     pub fn decide(
         &mut self,
         kitchen: &Kitchen,
@@ -149,7 +149,7 @@ impl Robot {
         RobotActivity::Intend { button, until }
     }
 
-    /// Carries out what is due: a touch of the timed arm, or a cycle of the simulated arm.
+    /// Carries out the robot's action that is due: a touch of the timed arm, or a cycle of the simulated arm.
     pub fn act(
         &mut self,
         kitchen: &Kitchen,
@@ -184,7 +184,7 @@ impl Robot {
         deeds
     }
 
-    /// The consequence of a press failure.
+    /// Handles a failed press, and returns the robot activity to record.
     fn follow(&mut self, now: SessionTime, report: PressFailure) -> Option<RobotActivity> {
         let (button, reason) = match report {
             PressFailure::Contact(_) => return self.halt(AbortReason::Contact),
@@ -195,13 +195,13 @@ impl Robot {
         self.go_without(now, button, reason)
     }
 
-    /// Gives up a failed press and leaves it out for a while.
+    /// Abandons a failed press, which the robot does not choose again for a while.
     fn go_without(&mut self, now: SessionTime, button: ButtonId, reason: AbortReason) -> Option<RobotActivity> {
         self.leave_out(now, button);
         self.give_up(reason)
     }
 
-    /// Stops the robot until the wizard releases it; the current press is given up.
+    /// Stops the robot until the wizard releases it; the present press is abandoned.
     fn halt(&mut self, reason: AbortReason) -> Option<RobotActivity> {
         self.stopped = true;
         self.idle = None;
@@ -209,14 +209,14 @@ impl Robot {
         self.give_up(reason)
     }
 
-    /// Leaves this press out for a while.
+    /// Excludes this press from the robot's choices for a while.
     fn leave_out(&mut self, now: SessionTime, button: ButtonId) {
         self.skipped.push((button, now + SessionTime::from_secs_f64(SKIP_S)));
         self.idle = None;
     }
 
-    /// The timed arm touches the button. It presses if the press is still among the best or the wizard chose it, and
-    /// otherwise gives up.
+    /// Lets the timed arm touch the button. The arm presses if the press is still among the best or the wizard chose
+    /// it; otherwise it abandons the press.
     fn touch(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotActivity> {
         let errand = self.busy.take()?;
         match is_useful(kitchen, cost, state, errand) {
@@ -225,7 +225,7 @@ impl Robot {
         }
     }
 
-    /// The state changed without a press: a press that is no longer useful is given up at once.
+    /// Reacts to a change of the state without a press: a press that is no longer useful is abandoned at once.
     pub fn reconsider(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, state: State) -> Option<RobotActivity> {
         let errand = self.busy?;
         match is_useful(kitchen, cost, state, errand) {
@@ -242,21 +242,21 @@ impl Robot {
         Some(RobotActivity::Abort(errand.button, reason))
     }
 
-    /// The wizard stops the robot; the current press is given up.
+    /// Stops the robot at the wizard's command; the present press is abandoned.
     pub fn stop(&mut self) -> Vec<RobotActivity> {
         let safety = self.body.as_mut().and_then(|body| body.stop());
         let given_up = self.halt(AbortReason::Stopped);
         safety.into_iter().chain(given_up).collect()
     }
 
-    /// The wizard holds the robot above its next button, or releases it.
+    /// Holds the robot above its next button at the wizard's command, or releases it.
     pub fn hold(&mut self, held: bool) {
         self.held = held;
         self.idle = None;
     }
 
-    /// The wizard skips the current press. It is not chosen again for a while; an earlier skipped press becomes
-    /// available again.
+    /// Skips the present press at the wizard's command. The robot does not choose it again for a while; an earlier
+    /// skipped press becomes available again.
     pub fn skip(&mut self, now: SessionTime) -> Option<RobotActivity> {
         let errand = self.busy?;
         self.skipped.clear();
@@ -264,33 +264,34 @@ impl Robot {
         self.give_up(AbortReason::Skipped)
     }
 
-    /// The wizard chooses the next press; the current press is given up.
+    /// Makes the robot's next press the one that the wizard chose; the present press is abandoned.
     pub fn drive(&mut self, button: ButtonId) -> Option<RobotActivity> {
         self.driven = Some(button);
         self.give_up(AbortReason::Driven)
     }
 
-    /// The wizard releases a stopped robot.
+    /// Releases a stopped robot at the wizard's command.
     pub fn resume(&mut self, now: SessionTime) -> Option<RobotActivity> {
         self.stopped = false;
         self.body.as_mut()?.resume(now)
     }
 
-    /// The person means to press the button at this place of the table (metres) at `at`, as far as is known now.
+    /// Tells the simulated hand that the person intends to press the button at this position on the table (metres) at
+    /// `at`, as far as is known now.
     pub fn human_means(&mut self, now: SessionTime, button_m: [f64; 2], at: SessionTime) {
         if let Some(body) = &mut self.body {
             body.human_means(now, button_m, at);
         }
     }
 
-    /// The person has pressed the button at this place of the table (metres).
+    /// Tells the simulated hand that the person has pressed the button at this position on the table (metres).
     pub fn human_pressed(&mut self, now: SessionTime, button_m: [f64; 2]) {
         if let Some(body) = &mut self.body {
             body.human_pressed(now, button_m);
         }
     }
 
-    /// The trial is over: the arm rests.
+    /// Ends the robot's work at the end of the trial: the arm rests.
     pub fn rest(&mut self) {
         self.busy = None;
         self.idle = None;
@@ -298,7 +299,7 @@ impl Robot {
         self.skipped.clear();
     }
 
-    /// Shifts all pending times by the length of a pause.
+    /// Shifts all pending times by the duration of a pause.
     pub fn postpone(&mut self, by: SessionTime) {
         if let Some(errand) = &mut self.busy {
             errand.until = errand.until + by;
@@ -312,7 +313,7 @@ impl Robot {
     }
 }
 
-/// Whether a press is among the best, or the wizard chose it.
+/// Whether a press of the robot is among the best, or the wizard chose it.
 fn is_useful(kitchen: &Kitchen, cost: &mut CostToGo, state: State, errand: OngoingPress) -> bool {
     let best =
         |cost: &mut CostToGo| policy::best_presses(kitchen, cost, Fidelity::Exact, state, &kitchen.true_recipes());

@@ -1,4 +1,4 @@
-//! Builds the rapier multibody of the arm from its URDF.
+//! Builds the multibody of the robot arm for the physics engine rapier from the arm's URDF.
 
 use nalgebra::{Isometry3, Vector3};
 use rapier3d::prelude::{
@@ -11,12 +11,12 @@ use super::{PhysicsWorld, button};
 use crate::arm::link::{ArmLink, LinkShape};
 use crate::robot::moment::{JOINTS, JointAngles};
 
-/// Reflected rotor inertia of large and small drives (rotor inertia times gear ratio squared), in kg m². An estimate:
-/// the maker does not publish it.
+/// Reflected rotor inertia of large and small drives (rotor inertia times gear ratio squared), in kg m². The values are
+/// estimates: the manufacturer does not publish them.
 const ARMATURE_KG_M2: [f32; JOINTS] = [1.0, 1.0, 1.0, 0.2, 0.2, 0.2];
 
 impl PhysicsWorld {
-    /// Assembles the arm at these joint angles.
+    /// Assembles the robot arm at these joint angles.
     pub(super) fn build(&mut self, joints: &JointAngles) {
         let mut carried_from = Isometry3::identity();
         for link in self.arm.links.clone() {
@@ -34,7 +34,7 @@ impl PhysicsWorld {
             let body = self
                 .bodies
                 .insert(RigidBodyBuilder::dynamic().can_sleep(false).additional_mass_properties(mass(&link)));
-            // A joint of the physics turns about x.
+            // A revolute joint of the physics engine turns about x.
             let x_onto_axis = nalgebra::UnitQuaternion::rotation_between(&Vector3::x(), &turn.axis)
                 .unwrap_or_else(nalgebra::UnitQuaternion::identity);
             let frame = Isometry3::from_parts(Default::default(), x_onto_axis);
@@ -51,7 +51,7 @@ impl PhysicsWorld {
         let Some((multibody, _)) = self.joints.first().and_then(|joint| self.multibodies.get_mut(*joint)) else {
             return;
         };
-        // Before that it does not know that its root is fixed.
+        // Before this step the multibody does not know that its root is fixed.
         multibody.forward_kinematics(&self.bodies, true);
         multibody.damping_mut().fill(0.0);
         multibody.armature_mut().copy_from_slice(&ARMATURE_KG_M2);
@@ -60,7 +60,7 @@ impl PhysicsWorld {
         multibody.update_rigid_bodies(&mut self.bodies, true);
     }
 
-    /// The stick's shape, with which the arm presses.
+    /// Adds the collision shape of the stick, with which the arm presses buttons.
     fn add_stick(&mut self, parent: RigidBodyHandle, link: &ArmLink, parent_from_link: &Isometry3<f64>) {
         for solid in &link.solids {
             let LinkShape::Cylinder { radius_m, length_m } = solid.shape else { continue };
@@ -74,7 +74,7 @@ impl PhysicsWorld {
     }
 }
 
-/// A pose in single precision.
+/// Converts a pose to single precision.
 fn pose(isometry: &Isometry3<f64>) -> Pose {
     let turn = isometry.rotation.coords;
     let rotation = Rotation::from_xyzw(turn.x as f32, turn.y as f32, turn.z as f32, turn.w as f32);

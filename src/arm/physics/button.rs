@@ -1,4 +1,4 @@
-//! A button: a cap that slides down on a spring, clicks on its way, and ends at a stop.
+//! A simulated button: a cap that slides down on a spring, clicks on its way, and ends at a stop.
 
 use rapier3d::prelude::{
     ColliderBuilder, ColliderHandle, ColliderSet, Group, ImpulseJointSet, InteractionGroups, InteractionTestMode,
@@ -7,18 +7,18 @@ use rapier3d::prelude::{
 
 use crate::arm::reach::BUTTON_M;
 
-/// Travel of the cap, and the depths at which the contact closes and opens, in metres.
+/// Travel of the button's cap, and the depths at which the electrical contact closes and opens, in metres.
 const TRAVEL_M: f32 = 0.004;
 const CLOSES_M: f32 = 0.0025;
 const OPENS_M: f32 = 0.001;
-/// Spring constant in N/m and preload of a released button.
+/// Spring constant of a button in N/m, and preload of a released button.
 const SPRING_N_M: f32 = 600.0;
 const PRELOAD_M: f32 = 0.003;
 const DAMPING_NS_M: f32 = 3.0;
 const MASS_KG: f32 = 0.02;
 const RADIUS_M: f32 = 0.02;
 
-/// The cap in the physics.
+/// The cap of a button in the physics.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PhysicalButton {
     body: RigidBodyHandle,
@@ -28,7 +28,7 @@ pub(super) struct PhysicalButton {
 }
 
 impl PhysicalButton {
-    /// A button at a place of the table, at rest and out of the simulation.
+    /// A button at a position of the table, at rest and out of the simulation.
     pub fn new(
         [x, y]: [f64; 2],
         table_m: f64,
@@ -42,7 +42,7 @@ impl PhysicalButton {
         let cap =
             RigidBodyBuilder::dynamic().translation(middle).additional_mass(MASS_KG).lock_rotations().enabled(false);
         let body = bodies.insert(cap);
-        // A cylinder of the physics stands along y.
+        // A cylinder of the physics engine stands along y.
         let upright = Pose::from_rotation(Rotation::from_rotation_x(std::f32::consts::FRAC_PI_2));
         let collider = ColliderBuilder::cylinder(half_m, RADIUS_M)
             .position(upright)
@@ -58,7 +58,7 @@ impl PhysicalButton {
         PhysicalButton { body, collider, up_m: middle.z, closed: false }
     }
 
-    /// The collider of the button's top.
+    /// The collider of the button's cap.
     pub fn collider(&self) -> ColliderHandle {
         self.collider
     }
@@ -73,14 +73,14 @@ impl PhysicalButton {
         self.closed = false;
     }
 
-    /// Blocks the cap, to simulate a fault.
+    /// Blocks the button's cap, to simulate a fault.
     pub fn jam(&mut self, bodies: &mut RigidBodySet) {
         if let Some(body) = bodies.get_mut(self.body) {
             body.lock_translations(true, false);
         }
     }
 
-    /// Whether the contact closed since the last call.
+    /// Whether the button's contact closed since the last call.
     pub fn clicks(&mut self, bodies: &RigidBodySet) -> bool {
         let down_m = bodies.get(self.body).map_or(0.0, |body| self.up_m - body.translation().z);
         let was_closed = self.closed;
@@ -91,6 +91,6 @@ impl PhysicalButton {
 
 /// Collision groups: caps collide with the stick only.
 const CAP: InteractionGroups = InteractionGroups::new(Group::GROUP_1, Group::GROUP_2, InteractionTestMode::And);
-/// Collision group of the stick.
+/// Collision group of the robot's stick.
 pub(super) const STICK: InteractionGroups =
     InteractionGroups::new(Group::GROUP_2, Group::GROUP_1, InteractionTestMode::And);

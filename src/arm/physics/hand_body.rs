@@ -1,4 +1,4 @@
-//! The human's hand and forearm: one rigid body, held by a spring that stands for the person's arm.
+//! The human's hand and forearm in the physics: one rigid body, held by a spring that stands for the person's arm.
 
 use nalgebra::{Point3, Vector3};
 use rapier3d::prelude::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet, Vector};
@@ -9,7 +9,7 @@ use crate::arm::clearance::Capsule;
 const MASS_KG: f32 = 0.6;
 /// Stiffness of a hand, in N/m (ISO/TS 15066, annex A).
 pub const STIFFNESS_N_M: f64 = 75_000.0;
-/// Damping of skin and flesh, in N s/m; small, so that the spring determines the peak force.
+/// Damping of skin and flesh in a contact, in N s/m; small, so that the spring determines the peak force.
 pub const FLESH_NS_M: f64 = 40.0;
 /// Stiffness and damping of the person's arm, in N/m and N s/m: near measured values for an arm at rest (Mussa-Ivaldi,
 /// Hogan and Bizzi 1985), critically damped.
@@ -20,26 +20,27 @@ const HAND_M: f64 = 0.04;
 const FOREARM_M: f64 = 0.04;
 const HAND_LENGTH_M: f64 = 0.09;
 
-/// The pose of a person's hand and elbow.
+/// The pose of a human's hand and elbow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HandPose {
-    /// The middle of the hand, in the frame of the arm's base, in metres.
+    /// The centre of the hand, in the frame of the robot arm's base, in metres.
     pub at_m: Point3<f64>,
-    /// The elbow, in the same frame, in metres.
+    /// The elbow, in the frame of the robot arm's base, in metres.
     pub elbow_m: Point3<f64>,
 }
 
-/// From hand to elbow along the table, and the elbow's height above it, in metres.
+/// Distance from hand to elbow along the table, and the elbow's height above the table, in metres.
 const REACHES_M: f64 = 0.27;
 const ELBOW_M: f64 = 0.12;
 
 impl HandPose {
-    /// A hand over a table of this height, reached out from the human's side: the elbow is further from the arm's base.
+    /// A hand over a table of this height, reached out from the human's side: the elbow is further from the robot arm's
+    /// base.
     pub fn reaching(at_m: Point3<f64>, table_m: f64) -> HandPose {
         HandPose { at_m, elbow_m: Point3::new(at_m.x + REACHES_M, at_m.y, table_m + ELBOW_M) }
     }
 
-    /// Hand and forearm.
+    /// The capsules that approximate hand and forearm.
     pub fn capsules(&self) -> [Capsule; 2] {
         let along = (self.elbow_m - self.at_m).try_normalize(1e-6).unwrap_or_else(Vector3::x);
         let half = along * (HAND_LENGTH_M / 2.0 - HAND_M);
@@ -51,12 +52,12 @@ impl HandPose {
     }
 }
 
-/// The body.
+/// The rigid body of hand and forearm.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PhysicalHand {
     body: RigidBodyHandle,
     pub wanted: HandPose,
-    /// The height of the table, on which it can be clamped.
+    /// The height of the table, onto which the arm can clamp the hand, in metres.
     table_m: f64,
 }
 
@@ -77,20 +78,20 @@ impl PhysicalHand {
         self.body
     }
 
-    /// The current pose, displaced by contact forces.
+    /// The present pose of the hand, displaced by contact forces.
     pub fn place(&self, bodies: &RigidBodySet) -> HandPose {
         let Some(body) = bodies.get(self.body) else { return self.wanted };
         let at_m = Point3::from(double(body.translation()));
-        // The forearm yields with it.
+        // The forearm yields with the hand.
         HandPose { at_m, elbow_m: self.wanted.elbow_m + (at_m - self.wanted.at_m) }
     }
 
-    /// How fast it moves, in metres a second.
+    /// The velocity of the hand, in metres per second.
     pub fn velocity_m_s(&self, bodies: &RigidBodySet) -> Vector3<f64> {
         bodies.get(self.body).map_or_else(Vector3::zeros, |body| double(body.linvel()))
     }
 
-    /// Applies the forces of a step: the person's arm, and the contact with the robot (newtons).
+    /// Applies the forces of a step: the spring of the person's arm, and the contact with the robot (newtons).
     pub fn push(&self, bodies: &mut RigidBodySet, by_robot_n: Vector3<f64>) {
         let at_m = self.place(bodies).at_m;
         let away = self.wanted.at_m - at_m;
@@ -104,12 +105,12 @@ impl PhysicalHand {
     }
 }
 
-/// In rapier's single precision.
+/// Converts a vector to the single precision of the physics engine.
 pub(super) fn single(vector: Vector3<f64>) -> Vector {
     Vector::new(vector.x as f32, vector.y as f32, vector.z as f32)
 }
 
-/// In the program's double precision.
+/// Converts a vector from the physics engine to double precision.
 pub(super) fn double(vector: Vector) -> Vector3<f64> {
     Vector3::new(f64::from(vector.x), f64::from(vector.y), f64::from(vector.z))
 }

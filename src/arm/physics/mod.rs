@@ -1,9 +1,9 @@
-//! The arm, the buttons and the human's hand as bodies: rapier at a fixed step.
+//! The robot arm, the buttons and the human's hand as bodies in the physics engine rapier with a fixed step.
 //!
-//! The arm is a multibody from the URDF, each joint driven by a motor that follows a commanded angle with no more torque
-//! than the URDF allows. Buttons slide on springs, click on their way and end at a stop. The hand is a body on a spring
-//! that the person's arm is; what it and the robot's arm do to each other is a spring, too, as stiff as a hand (ISO/TS
-//! 15066), because the peak of a rigid contact follows from the step and means nothing.
+//! The arm is a multibody from the URDF; each joint is driven by a motor that follows a commanded angle with no more
+//! torque than the URDF allows. Buttons slide on springs, click on their way and end at a stop. The hand is a body on a
+//! spring, which stands for the person's arm. The contact between hand and robot arm is a spring, too, as stiff as a
+//! hand (ISO/TS 15066), because the peak force of a rigid contact would depend on the step.
 
 mod build;
 mod button;
@@ -25,39 +25,39 @@ use hand_body::{HandPose, PhysicalHand, double, single};
 pub const STEP_S: f64 = 0.002;
 /// Number of physics steps in a cycle of the controller.
 pub const STEPS_A_CYCLE: usize = 4;
-/// A cycle of the controller, in seconds: the real one's 125 Hz.
+/// Duration of a cycle of the arm's controller, in seconds: that of the real controller, 125 Hz.
 pub const CYCLE_S: f64 = STEP_S * STEPS_A_CYCLE as f64;
-/// Iterations of the solver in a step, which is short.
+/// Number of iterations of the physics solver in each step; few suffice, since steps are short.
 const ITERATIONS: usize = 2;
 const GRAVITY_M_S2: f32 = -9.81;
-/// Index of the angle among a joint's coordinates.
+/// Index of the angle among a joint's coordinates in the physics engine.
 const ANGLE: usize = 3;
-/// Number of cycles that a new arm needs to settle.
+/// Number of controller cycles that a new arm needs to settle.
 const SETTLES: usize = 125;
 /// Joint drive gains: stiffness per radian, and critical damping.
 const STIFFNESS: f32 = 10_000.0;
 const DAMPING: f32 = 200.0;
 
-/// Share of the tracking error by which commands are corrected per cycle, and the limit in radians: compensates the
-/// arm's weight.
+/// Share of the tracking error by which joint commands are corrected per cycle, and the limit of the correction in
+/// radians: compensates the arm's weight.
 const CORRECTED: f64 = 0.1;
 const MOST_CORRECTED_RAD: f64 = 0.05;
-/// At more than this distance, in metres, human and arm cannot meet within a cycle.
+/// Distance in metres beyond which human and robot arm cannot touch within a cycle.
 const APART_M: f64 = 0.05;
 
-/// The forces measured in one controller cycle.
+/// The contact forces measured in one controller cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CycleForces {
     /// The greatest force between arm and human, in newtons.
     pub human_n: f64,
     /// The greatest force of the stick on the button, in newtons.
     pub button_n: f64,
-    /// The button under the stick closed.
+    /// Whether the button under the stick closed its contact.
     pub clicked: bool,
 }
 
 impl Arm {
-    /// How far a hand is from the arm at these joint angles, in metres.
+    /// The distance between a hand and the arm at these joint angles, in metres.
     pub fn distance(&self, joints: &JointAngles, hand: &HandPose) -> f64 {
         let human = hand.capsules();
         let arm = self.capsules(joints);
@@ -66,7 +66,7 @@ impl Arm {
     }
 }
 
-/// All simulated bodies: arm, buttons, hand.
+/// The simulated world: arm, buttons and hand as bodies of the physics engine.
 pub struct PhysicsWorld {
     arm: Arm,
     parameters: IntegrationParameters,
@@ -79,17 +79,17 @@ pub struct PhysicsWorld {
     multibodies: MultibodyJointSet,
     ccd: CCDSolver,
     pipeline: PhysicsPipeline,
-    /// Of the joints that turn.
+    /// Handles of the revolute joints.
     joints: Vec<MultibodyJointHandle>,
-    /// By link of the arm; what is fixed to a link is part of it.
+    /// The rigid body of each link of the arm; parts fixed to a link belong to its body.
     links: Vec<RigidBodyHandle>,
     stick: Option<ColliderHandle>,
     buttons: Vec<PhysicalButton>,
-    /// The button that the stick may meet; the others are at rest.
+    /// The button that the stick can touch; the others are deactivated.
     active: Option<usize>,
     hand: Option<PhysicalHand>,
     table_m: f64,
-    /// The last command, and what it was corrected by.
+    /// The last commanded joint angles, and their correction.
     commanded: JointAngles,
     correction: JointAngles,
 }
@@ -107,7 +107,7 @@ impl Clone for PhysicsWorld {
             impulse_joints: self.impulse_joints.clone(),
             multibodies: self.multibodies.clone(),
             ccd: self.ccd.clone(),
-            // Room to work in, and no state.
+            // Working memory without state.
             pipeline: PhysicsPipeline::new(),
             joints: self.joints.clone(),
             links: self.links.clone(),
@@ -129,7 +129,7 @@ impl std::fmt::Debug for PhysicsWorld {
 }
 
 impl PhysicsWorld {
-    /// An arm that stands so, above buttons at these places of a table of this height.
+    /// A simulated arm with these joint angles, above buttons at these positions on a table of this height.
     pub fn new(arm: &Arm, joints: &JointAngles, buttons: &[[f64; 2]], table_m: f64) -> PhysicsWorld {
         let mut world = PhysicsWorld {
             arm: arm.clone(),
@@ -163,14 +163,14 @@ impl PhysicsWorld {
             let (bodies, colliders) = (&mut world.bodies, &mut world.colliders);
             world.buttons.push(PhysicalButton::new(at_m, table_m, bodies, colliders, &mut world.impulse_joints));
         }
-        // The motors take the arm's weight.
+        // In these cycles the motors take up the arm's weight.
         for _ in 0..SETTLES {
             world.cycle(joints, None);
         }
         world
     }
 
-    /// Joint angles in radians, and their speeds in radians a second.
+    /// Joint angles of the arm in radians, and joint speeds in radians per second.
     pub fn joints(&self) -> (JointAngles, JointAngles) {
         let Some((multibody, _)) = self.joints.first().and_then(|joint| self.multibodies.get(*joint)) else {
             return (self.commanded, [0.0; JOINTS]);
@@ -184,7 +184,7 @@ impl PhysicsWorld {
         (angles, std::array::from_fn(|joint| f64::from(speeds[joint])))
     }
 
-    /// Where the human's hand is, if there is one.
+    /// The pose of the human's hand, if there is one.
     pub fn hand(&self) -> Option<HandPose> {
         self.hand.as_ref().map(|hand| hand.place(&self.bodies))
     }
@@ -205,7 +205,7 @@ impl PhysicsWorld {
         self.active
     }
 
-    /// Disables the motor of this joint, or restores all motors.
+    /// Disables the motor of this joint to simulate a fault, or restores all motors.
     pub fn fail(&mut self, joint: Option<usize>) {
         for (index, (handle, turn)) in self.joints.iter().zip(self.arm.turns()).enumerate() {
             let Some((multibody, link)) = self.multibodies.get_mut(*handle) else { continue };
@@ -216,7 +216,8 @@ impl PhysicsWorld {
         }
     }
 
-    /// A cycle of the controller: the joints go on to `command` (radians), the hand to where the person wants it.
+    /// Runs a cycle of the controller: the joints move towards `command` (radians), the hand to where the person wants
+    /// it.
     pub fn cycle(&mut self, command: &JointAngles, hand: Option<HandPose>) -> CycleForces {
         let before = self.commanded;
         self.set_hand(hand);
@@ -276,7 +277,7 @@ impl PhysicsWorld {
         }
     }
 
-    /// How far a hand is from the arm, in metres.
+    /// The distance between a hand and the arm, in metres.
     pub fn distance(&self, hand: &HandPose) -> f64 {
         self.arm.distance(&self.joints().0, hand)
     }
@@ -286,7 +287,7 @@ impl PhysicsWorld {
         self.buttons[button].jam(&mut self.bodies);
     }
 
-    /// The brakes hold every joint where it is, whatever its motor does.
+    /// Applies the brakes: every joint stays where it is, whatever its motor does.
     pub fn brake(&mut self) {
         self.fail(None);
         self.commanded = self.joints().0;

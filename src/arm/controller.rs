@@ -128,7 +128,8 @@ impl PhysicalArm {
     /// Starts the motion to a button from a standstill; returns the time in seconds until the button clicks if nothing
     /// interferes.
     ///
-    /// # Errors Why the arm cannot reach the button.
+    /// # Errors
+    /// Why the arm cannot reach the button.
     pub fn set_out(&mut self, button: ButtonId) -> Result<f64, Unreachable> {
         self.way = self.way_to(button)?.into();
         self.goal = Some(button);
@@ -139,7 +140,8 @@ impl PhysicalArm {
 
     /// The time in seconds until a button clicks if the arm started now.
     ///
-    /// # Errors Why the arm cannot reach the button.
+    /// # Errors
+    /// Why the arm cannot reach the button.
     pub fn takes_s(&self, button: ButtonId) -> Result<f64, Unreachable> {
         Ok(self.way_to(button)?.iter().map(|leg| leg.takes_s).sum())
     }

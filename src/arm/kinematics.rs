@@ -27,7 +27,8 @@ impl Arm {
 
     /// Reads a robot arm from a URDF: one chain of links with [`crate::robot::moment::JOINTS`] revolute joints.
     ///
-    /// # Errors The text is no URDF, or not of such an arm.
+    /// # Errors
+    /// The text is no URDF, or not of such an arm.
     pub fn from_urdf(text: &str) -> Result<Arm, UrdfError> {
         Ok(Arm { links: read_links(text)? })
     }

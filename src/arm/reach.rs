@@ -86,7 +86,8 @@ impl Arm {
     /// Joint angles with the stick down at a position in the frame of the base (metres): of all solutions the one
     /// nearest to `like`. The last joint, which only spins the stick, stays as in `like`.
     ///
-    /// # Errors Why the arm cannot reach the position, for the solution that failed last.
+    /// # Errors
+    /// Why the arm cannot reach the position, for the solution nearest to `like`.
     pub fn standing_at(
         &self,
         at_m: [f64; 3],
@@ -124,7 +125,8 @@ impl Arm {
 
     /// Joint angles for pressing a button at this position on a table of this height.
     ///
-    /// # Errors Why the arm cannot press the button.
+    /// # Errors
+    /// Why the arm cannot press the button.
     pub fn at_button(&self, [x, y]: [f64; 2], around: &ArmSurroundings) -> Result<ButtonPoses, Unreachable> {
         let top_m = around.table_m + BUTTON_M;
         let like = [y.atan2(x), BENT[1], BENT[2], BENT[3], BENT[4], BENT[5]];

@@ -122,7 +122,8 @@ impl TrajectoryLeg {
 
 /// The trajectory from a pose to a button until the tip is down on the button: up, across, down.
 ///
-/// # Errors What blocks the arm, after higher paths were tried.
+/// # Errors
+/// What blocks the arm, after higher paths were tried.
 pub fn way_to(
     arm: &Arm,
     from: &JointAngles,
@@ -142,7 +143,8 @@ pub fn way_to(
 
 /// The trajectory up to the height at which the arm moves between buttons, if the arm is lower.
 ///
-/// # Errors What blocks the arm.
+/// # Errors
+/// What blocks the arm.
 pub fn way_up(arm: &Arm, from: &JointAngles, around: &ArmSurroundings) -> Result<Vec<TrajectoryLeg>, Unreachable> {
     let free_m = around.table_m + BUTTON_M + ABOVE_M;
     if arm.tip(from).translation.z > free_m - 1e-3 {
@@ -153,7 +155,8 @@ pub fn way_up(arm: &Arm, from: &JointAngles, around: &ArmSurroundings) -> Result
 
 /// The trajectory from one pose above the table to another: directly, or higher up if something is in the way.
 ///
-/// # Errors What blocks every path that was tried.
+/// # Errors
+/// What blocks every path that was tried.
 pub fn way_over(
     arm: &Arm,
     from: &JointAngles,

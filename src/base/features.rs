@@ -56,7 +56,8 @@ impl Feature {
 
     /// Checks that this build contains the optional part.
     ///
-    /// # Errors This build does not contain the part.
+    /// # Errors
+    /// This build does not contain the part.
     pub const fn require(self) -> Result<(), NotBuilt> {
         if self.is_built() { Ok(()) } else { Err(NotBuilt(self)) }
     }

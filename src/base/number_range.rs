@@ -125,7 +125,8 @@ pub fn range_of<'a>(ranges: &'a [NumberRange], path: &str) -> Option<&'a NumberR
 /// All numbers of a settings object with their paths, in the order of the settings; the numbers of a list have the path
 /// of the list. `around` is the path of the tables that contain the settings ("human"), or empty.
 ///
-/// # Errors A whole number that no TOML file can hold.
+/// # Errors
+/// A whole number that no TOML file can hold.
 pub fn numbers(settings: &impl Serialize, around: &str) -> Result<Vec<(String, f64)>, OutOfRange> {
     let value = toml::Value::try_from(settings).map_err(|error| OutOfRange {
         path: around.to_string(),
@@ -155,14 +156,16 @@ fn collect(value: &toml::Value, path: &str, found: &mut Vec<(String, f64)>) {
 
 /// Checks that all these numbers of a settings file lie within their allowed ranges.
 ///
-/// # Errors The first number outside of its range.
+/// # Errors
+/// The first number outside of its range.
 pub fn check_file(ranges: &[NumberRange], numbers: &[(String, f64)]) -> Result<(), OutOfRange> {
     check(ranges, numbers, NumberRange::holds)
 }
 
 /// Checks that the header of a recording may have all these numbers.
 ///
-/// # Errors The first number outside of its range.
+/// # Errors
+/// The first number outside of its range.
 pub fn check_recorded(ranges: &[NumberRange], numbers: &[(String, f64)]) -> Result<(), OutOfRange> {
     check(ranges, numbers, NumberRange::may_be_recorded)
 }

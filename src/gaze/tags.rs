@@ -51,7 +51,8 @@ pub struct TagError {
 impl DisplayTags {
     /// The largest AprilTags that fit into the corners of a kitchen's wall display beside locations and storages.
     ///
-    /// # Errors A location or storage lies where the smallest tag would be.
+    /// # Errors
+    /// A location or storage lies where the smallest tag would be.
     pub fn place(kitchen: &Kitchen) -> Result<DisplayTags, TagError> {
         let locations = kitchen.locations.iter().map(|location| (location.label(), location.display));
         let storage = |storage: &crate::kitchen::Storage| {

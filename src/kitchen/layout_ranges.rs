@@ -29,7 +29,8 @@ pub const RANGES: [NumberRange; 11] = [
 /// Checks that all numbers in the text of a layout file lie within their allowed ranges. Other errors of the text are
 /// ignored.
 ///
-/// # Errors The first number outside of its range, with its position.
+/// # Errors
+/// The first number outside of its range, with its position.
 pub fn check(text: &str) -> Result<(), OutOfRange> {
     let Ok(document) = DeTable::parse(text) else { return Ok(()) };
     in_table(document.get_ref(), "")

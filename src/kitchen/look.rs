@@ -22,7 +22,8 @@ pub struct Appearance {
 impl Appearance {
     /// Reads a shape and up to four colours from text.
     ///
-    /// # Errors What the text would have to contain.
+    /// # Errors
+    /// What the text would have to contain.
     pub fn read(text: &str) -> Result<Appearance, String> {
         let mut words = text.split_whitespace();
         let shape = words.next().unwrap_or_default().to_string();

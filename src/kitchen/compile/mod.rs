@@ -40,7 +40,8 @@ const MAX_STATIONS: usize = 8;
 impl Kitchen {
     /// Compiles a kitchen from the texts of a layout file and of the recipe file that belongs to it.
     ///
-    /// # Errors A text is not TOML, or does not describe a valid kitchen.
+    /// # Errors
+    /// A text is not TOML, or does not describe a valid kitchen.
     pub fn from_toml(layout: &str, recipes: &str) -> Result<Kitchen> {
         let unreadable = |file: SpecFile| {
             move |error: toml::de::Error| SpecError {

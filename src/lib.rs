@@ -1,7 +1,7 @@
 //! tomcom: Wizard-of-Oz experiments in human-robot cooperation, with a model of what the human believes.
 //!
 //! A human and a robot cook together in a virtual kitchen: each press of a button moves, processes or serves something. The
-//! human may hold *false beliefs*: not have seen what the robot did, or misremember a recipe. A wizard, or an assistant, sends
+//! human may hold *false beliefs*, having missed what the robot did, or misremembering a recipe. A wizard, or an assistant, sends
 //! *signals* that show the human a recipe or a location. The crate is the program `tomcom` that runs such experiments, and the
 //! model behind it for other projects.
 //!
@@ -12,19 +12,19 @@
 //!   presses until all orders are served.
 //! - A **belief** ([`mind::dirichlet::DirichletBelief`]) is a distribution over each aspect of the state: what lies where, which
 //!   recipe a dish has. The **filter** ([`mind::filter::BeliefFilter`]) estimates it from gaze, presses, orders and signals,
-//!   under a human model with named parameters ([`mind::model::HumanModel`]): people press what leads nearer to the goal in
-//!   what they believe, softly.
+//!   under a human model with named parameters ([`mind::model::HumanModel`]): people prefer presses that reduce the cost to go
+//!   in the world that they believe in (softmax).
 //! - A **communication concept** ([`communication::concept`]) decides from state and belief which signal to send, if any. The
 //!   **planner** ([`communication::planner::Planner`]) compares paired rollouts with and without each signal: a signal is worth
 //!   sending if it saves more presses than it costs.
 //! - A **session** ([`session::Session`]) is its event log. [`session::apply()`] is the only way to change one. The **engine**
-//!   ([`run::engine::Engine`]) raises the events of robot, simulated participant and clock; who runs it tells the time.
+//!   ([`run::engine::Engine`]) raises the events of robot, simulated participant and clock; its caller passes the time.
 //!
-//! # The rooms
+//! # The modules
 //!
 //! Imports go one way, from right to left: [`base`], [`kitchen`], [`robot`] and [`gaze`], [`mind`], [`measures`],
 //! [`communication`], [`participant`], [`wizard`] and [`arm`], [`session`], [`history`], [`analysis`]; then, as Cargo features ask
-//! for them, `console`, `study`, `display`, `scene`, `edge`; then [`run`], and `cli`. ARCHITECTURE.md says what each holds and must not know.
+//! for them, `console`, `study`, `display`, `scene`, `edge`; then [`run`], and `cli`. ARCHITECTURE.md says what each contains, and what it must not depend on.
 //!
 //! # Features
 //!
@@ -39,11 +39,11 @@
 //! | `physics` | the simulated arm and its kinematics |
 //! | `rerun` | streams for Rerun's viewers |
 //!
-//! What a build leaves out it refuses and names: [`base::features`].
+//! A build refuses what it leaves out, and names the missing feature: [`base::features`].
 //!
 //! # Example
 //!
-//! A person reaches for the wrong ingredient. What do they believe, and what should be said? The folder `examples` has more.
+//! A person takes the wrong ingredient. What do they believe, and which signal should be sent? The folder `examples` has more.
 //!
 //! ```
 //! use std::sync::Arc;

@@ -7,9 +7,9 @@ const CONVERGED: f64 = 1e-14;
 /// Replaces a denominator of 0 in the continued fraction (Lentz's method).
 const TINY: f64 = 1e-300;
 
-/// I_x(a, b): the probability that a variate of the beta distribution with parameters `a` and `b`, both above 0, is at most `x`. With
-/// `a` = 0 the variate is 0, with `b` = 0 it is 1. The continued fraction is 8.17.22 of the NIST Digital Library of Mathematical
-/// Functions, evaluated by Lentz's method.
+/// I_x(a, b): the probability that a variate of the beta distribution with parameters `a` and `b`, both above 0, is at
+/// most `x`. With `a` = 0 the variate is 0, with `b` = 0 it is 1. The continued fraction is 8.17.22 of the NIST Digital
+/// Library of Mathematical Functions, evaluated by Lentz's method.
 pub fn regularized_incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
     if x >= 1.0 || a <= 0.0 {
         return 1.0;
@@ -52,7 +52,8 @@ fn fraction(x: f64, a: f64, b: f64) -> f64 {
 /// Argument from which Stirling's series is exact to double precision with the terms below.
 const STIRLING_FROM: f64 = 10.0;
 
-/// ln Gamma(x) for x above 0, by Stirling's series (5.11.1 of the same library) after steps of Gamma(x + 1) = x Gamma(x).
+/// ln Gamma(x) for x above 0, by Stirling's series (5.11.1 of the same library) after steps of Gamma(x + 1) = x
+/// Gamma(x).
 fn ln_gamma(x: f64) -> f64 {
     // B_2k / (2k (2k - 1)) for k = 1 to 7.
     const SERIES: [f64; 7] =

@@ -1,11 +1,11 @@
-//! Makes text from outside (file names, notes, device names, excerpts of files) safe to show: characters that control a terminal
-//! are escaped.
+//! Makes text from outside (file names, notes, device names, excerpts of files) safe to show: characters that control a
+//! terminal are escaped.
 
 use std::borrow::Cow;
 use std::fmt::Write;
 
-/// The text on one line. Control characters, directional formatting characters and line separators are escaped as in JSON
-/// (`\u001b`, `\n`).
+/// The text on one line. Control characters, directional formatting characters and line separators are escaped as in
+/// JSON (`\u001b`, `\n`).
 pub fn printable(text: &str) -> Cow<'_, str> {
     escaped(text, |_, _| false)
 }

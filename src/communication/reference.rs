@@ -1,10 +1,10 @@
 //! The reference planner: planning of communication implemented directly from the equations (paper, section "Planning
-//! communication"), for tests and benchmarks. It shares with [`super::planner`] only the cost to go, the kitchen's rules, the
-//! robot's policy and the parameters.
+//! communication"), for tests and benchmarks. It shares with [`super::planner`] only the cost to go, the kitchen's
+//! rules, the robot's policy and the parameters.
 //!
-//! Every rollout has an explicit belief whose components are gamma variates, updated by the human model ([`Particle`]). Every
-//! decision computes Q from worlds drawn from that belief. All signals and the baseline get the same number of complete rollouts
-//! with the same random numbers.
+//! Every rollout has an explicit belief whose components are gamma variates, updated by the human model ([`Particle`]).
+//! Every decision computes Q from worlds drawn from that belief. All signals and the baseline get the same number of
+//! complete rollouts with the same random numbers.
 
 use std::sync::Arc;
 

@@ -81,8 +81,8 @@ pub struct RolloutModel {
     /// model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub capture: Option<f64>,
-    /// Rollouts of a signal end when the standard error of its benefit is at most this, in presses, or at most twice this if the net
-    /// benefit differs from zero by three standard errors.
+    /// Rollouts of a signal end when the standard error of its benefit is at most this, in presses, or at most twice
+    /// this if the net benefit differs from zero by three standard errors.
     pub enough_error: f64,
     /// Least number of paired rollouts per signal.
     pub least_rollouts: usize,

@@ -131,8 +131,8 @@ impl Attributor {
         Attributor { model, seed }
     }
 
-    /// The cause of an error, given the belief before it. `number` is the number of presses of both agents including this one; it
-    /// seeds the random stream.
+    /// The cause of an error, given the belief before it. `number` is the number of presses of both agents including
+    /// this one; it seeds the random stream.
     pub fn cause(&self, kitchen: &Kitchen, cost: &mut CostToGo, belief: &Belief, press: &Press, number: u32) -> Cause {
         let (state, button) = (press.before, press.button);
         let mut random = stream(self.seed, "attribution", u64::from(number));
@@ -172,8 +172,8 @@ impl Inquiry<'_> {
         Some(self.best_pair(cost, &singles, least).map_or((target, None), |(one, other)| (one, Some(other))))
     }
 
-    /// The pair of targets whose replacement by the truth lowers the log probability of the press most, if it falls below `least`;
-    /// the target with the larger effect of its own comes first.
+    /// The pair of targets whose replacement by the truth lowers the log probability of the press most, if it falls
+    /// below `least`; the target with the larger effect of its own comes first.
     fn best_pair(&self, cost: &mut CostToGo, targets: &[(f64, Target)], mut least: f64) -> Option<(Target, Target)> {
         let mut best = None;
         for (index, &(_, one)) in targets.iter().enumerate() {

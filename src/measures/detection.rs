@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-/// Area under the ROC curve from pairs (score, is positive): the share of pairs of a positive and a negative in which the positive
-/// scores higher; ties count as half (mid-ranks; Hanley and McNeil 1982). `None` without positives or without negatives.
+/// Area under the ROC curve from pairs (score, is positive): the share of pairs of a positive and a negative in which
+/// the positive scores higher; ties count as half (mid-ranks; Hanley and McNeil 1982). `None` without positives or
+/// without negatives.
 pub fn auc(scored: &[(f64, bool)]) -> Option<f64> {
     let alike: Vec<(f64, bool, f64)> = scored.iter().map(|&(score, case)| (score, case, 1.0)).collect();
     weighted_auc(&alike)
@@ -47,8 +48,8 @@ pub struct CalibrationBin {
 pub struct Calibration {
     /// The bins, in the order of the predicted probability.
     pub bins: Vec<CalibrationBin>,
-    /// Expected calibration error: mean over predictions of the difference between predicted and observed in their bin (Naeini et al.
-    /// 2015). `None` without predictions.
+    /// Expected calibration error: mean over predictions of the difference between predicted and observed in their bin
+    /// (Naeini et al. 2015). `None` without predictions.
     pub ece: Option<f64>,
 }
 

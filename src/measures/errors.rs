@@ -1,10 +1,10 @@
 //! Regret and error of a press.
 //!
-//! Regret: r(a) = 1 + C(s') - C(s), with the true state and recipes. A press is an error if its regret exceeds the least
-//! regret among the human's presses by 1 or more; but not if it brings an active order nearer and the excess is at most
-//! 2 (preparing one order at some cost of the other), and not if it may have been overtaken by the robot (a race). Where
-//! no press of the human helps, the least regret is 1 and the excess is counted from there. An ineffective press is
-//! judged like any other.
+//! Regret: r(a) = 1 + C(s') - C(s), with the true state and recipes. A press is an error if its regret exceeds the
+//! least regret among the human's presses by 1 or more; but not if it brings an active order nearer and the excess is
+//! at most 2 (preparing one order at some cost of the other), and not if it may have been overtaken by the robot (a
+//! race). Where no press of the human helps, the least regret is 1 and the excess is counted from there. An ineffective
+//! press is judged like any other.
 
 use std::sync::Arc;
 

@@ -16,10 +16,11 @@ pub struct PressView {
     pub held: Option<Vec<f64>>,
     /// The estimate of the belief before the press, if there is one.
     pub estimate: Option<EstimateView>,
-    /// For each location, whether somebody else changed it since the human last looked at it: the input of the baseline.
+    /// For each location, whether somebody else changed it since the human last looked at it: the input of the
+    /// baseline.
     pub unseen_change: Vec<bool>,
-    /// For each location, the time since somebody other than the human last changed it, in seconds; `None` if the human changed it
-    /// later, or nobody did.
+    /// For each location, the time since somebody other than the human last changed it, in seconds; `None` if the human
+    /// changed it later, or nobody did.
     pub since_change_s: Vec<Option<f64>>,
     /// The aspects about which a false belief caused the press, if it was an error.
     pub errs_about: Vec<AspectId>,

@@ -63,8 +63,9 @@ impl Belief {
         self.distribution(aspect)[kitchen.true_value(state, aspect)]
     }
 
-    /// Worlds that represent this belief: all of them with their weights if there are at most `most`, else `most` draws by
-    /// Latin hypercube sampling (McKay et al. 1979), in which each value of an aspect occurs in proportion to its probability.
+    /// Worlds that represent this belief: all of them with their weights if there are at most `most`, else `most` draws
+    /// by Latin hypercube sampling (McKay et al. 1979), in which each value of an aspect occurs in proportion to its
+    /// probability.
     pub fn worlds(&self, kitchen: &Kitchen, most: usize, random: &mut Stream) -> WeightedWorlds {
         let all = self.all_worlds(kitchen, most).unwrap_or_else(|| self.drawn_worlds(kitchen, most, random));
         WeightedWorlds { all }

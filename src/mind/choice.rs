@@ -47,15 +47,15 @@ pub struct ChoiceWeights {
 #[derive(Clone, Debug)]
 pub struct ChoiceModel {
     parameters: DecisionModel,
-    /// For each intended button, the two buttons that a slip hits: the nearest other button, and the button with the look-alike
-    /// symbol (the nearest button again where there is none).
+    /// For each intended button, the two buttons that a slip hits: the nearest other button, and the button with the
+    /// look-alike symbol (the nearest button again where there is none).
     slips_to: Vec<[ButtonId; 2]>,
     /// For each button, the other intended buttons from which a slip hits it, with the probability of that slip.
     slips_from: Vec<Vec<(usize, f64)>>,
     /// Probability that a press slips to one given button, independent of the intended one.
     anywhere: f64,
-    /// `[n][k]`: exp(-tau k / n), the weight of a button whose cost to go, summed over n draws, exceeds that of the best button
-    /// by k presses.
+    /// `[n][k]`: exp(-tau k / n), the weight of a button whose cost to go, summed over n draws, exceeds that of the
+    /// best button by k presses.
     weights: Vec<Vec<f64>>,
 }
 
@@ -139,8 +139,8 @@ impl ChoiceModel {
         pressed
     }
 
-    /// p(a | b), given that a button is pressed. `sums[x]` is the cost to go after button x, in presses, summed over the drawn
-    /// worlds that represent b. Needs a model from [`ChoiceModel::for_draws`].
+    /// p(a | b), given that a button is pressed. `sums[x]` is the cost to go after button x, in presses, summed over
+    /// the drawn worlds that represent b. Needs a model from [`ChoiceModel::for_draws`].
     #[inline]
     pub fn press_likelihood(&self, sums: &[u32], button: ButtonId) -> f64 {
         let weights = self.weights.last().map_or(&[][..], Vec::as_slice);

@@ -35,14 +35,14 @@ impl DecisionModel {
         belief.worlds(kitchen, self.cases.max(1), random)
     }
 
-    /// For a kitchen with `buttons` buttons: the probability that a press slips to one given button, independent of the intended
-    /// one, and the probability that it slips to the neighbour or, respectively, to the look-alike.
+    /// For a kitchen with `buttons` buttons: the probability that a press slips to one given button, independent of the
+    /// intended one, and the probability that it slips to the neighbour or, respectively, to the look-alike.
     pub fn slip_probabilities(&self, buttons: usize) -> [f64; 2] {
         [self.lapse * self.lapse_anywhere / buttons as f64, self.lapse * (1.0 - self.lapse_anywhere) / 2.0]
     }
 
-    /// exp(tau Q) relative to the best button, for a button whose cost to go, summed over `draws` draws, is higher by `more`
-    /// presses.
+    /// exp(tau Q) relative to the best button, for a button whose cost to go, summed over `draws` draws, is higher by
+    /// `more` presses.
     pub fn weight(&self, more: usize, draws: usize) -> f64 {
         (-self.tau * more as f64 / draws as f64).exp()
     }

@@ -65,8 +65,8 @@ impl Dirichlet {
         sum_of(&self.mean, |m| m * m)
     }
 
-    /// With probability q = `share` the belief becomes certain of one value, drawn from the distribution c = `values`, else it
-    /// stays unchanged: m' = (1 - q) m + q c, S' = (1 - q) S + q.
+    /// With probability q = `share` the belief becomes certain of one value, drawn from the distribution c = `values`,
+    /// else it stays unchanged: m' = (1 - q) m + q c, S' = (1 - q) S + q.
     pub fn learn(&mut self, share: f64, values: impl IntoIterator<Item = f64>) {
         let second = (1.0 - share) * self.second() + share;
         for (mean, value) in self.mean.iter_mut().zip(values) {
@@ -112,7 +112,8 @@ impl Dirichlet {
     }
 }
 
-/// Sum of `of(value)` over all values in four partial sums, which the compiler vectorises: every gaze sample needs several.
+/// Sum of `of(value)` over all values in four partial sums, which the compiler vectorises: every gaze sample needs
+/// several.
 #[inline]
 fn sum_of(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     let mut parts = [0.0; 4];

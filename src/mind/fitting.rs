@@ -206,8 +206,8 @@ impl Likelihood {
     }
 }
 
-/// Log likelihood of a trial's presses and answers under a human model. The filter's random stream depends on the seed only, so that
-/// two models are compared on common random numbers.
+/// Log likelihood of a trial's presses and answers under a human model. The filter's random stream depends on the seed
+/// only, so that two models are compared on common random numbers.
 pub fn likelihood(
     kitchen: &Arc<Kitchen>,
     model: &HumanModel,

@@ -1,7 +1,8 @@
-//! The human model (paper, section "Human model"): the parameters of prior, perception, transition, decision and signals.
+//! The human model (paper, section "Human model"): the parameters of prior, perception, transition, decision and
+//! signals.
 //!
-//! Every parameter has a default. A session file names a file with other values (`human_model = "…"`); the values in use are
-//! recorded in the header of every recording.
+//! Every parameter has a default. A session file names a file with other values (`human_model = "…"`); the values in
+//! use are recorded in the header of every recording.
 
 use serde::{Deserialize, Serialize};
 

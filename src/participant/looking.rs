@@ -242,7 +242,8 @@ fn look_alike_codes(kitchen: &Kitchen, location: LocationId, state: State) -> Ve
     dishes.map(|(index, _)| OrderContent::Dish(DishId(index as u8)).code()).collect()
 }
 
-/// Whether `content` can become part of `stack`: all items of a stack must occur in it, of a single item only its ingredient.
+/// Whether `content` can become part of `stack`: all items of a stack must occur in it, of a single item only its
+/// ingredient.
 fn could_become(kitchen: &Kitchen, content: ContentId, stack: ContentId) -> bool {
     let (content, stack) = (kitchen.content(content), kitchen.content(stack));
     match content.is_stack() {

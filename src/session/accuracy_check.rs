@@ -1,5 +1,5 @@
-//! The gaze accuracy check: targets are shown one after another on the display, and the gaze is compared with them. The check
-//! runs while the trial does not.
+//! The gaze accuracy check in a session: targets are shown one after another on the display, and the gaze is compared
+//! with them. The check runs only while the trial does not.
 
 pub use super::gaze_check::{AcceptedGazeCheck, CalibrationEvent, GazeCheckResult, RunningGazeCheck};
 use super::participant_settings::GazeSource;
@@ -10,12 +10,12 @@ use crate::gaze::GazeSample;
 use crate::gaze::calibration::{GazeAccuracy, ViewingGeometry};
 
 impl Session {
-    /// Size of the display, and distance of the participant.
+    /// Size of the wall display, and viewing distance of the participant.
     pub fn viewing(&self) -> ViewingGeometry {
         ViewingGeometry { display_m: self.kitchen.display_m, distance_m: self.spec.tracker.distance_m }
     }
 
-    /// A gaze sample after correction of the accepted offset.
+    /// The gaze sample after the accepted offset is corrected.
     pub fn corrected(&self, sample: GazeSample) -> GazeSample {
         match self.calibrated.as_ref().filter(|calibrated| calibrated.corrected) {
             Some(AcceptedGazeCheck { found: GazeAccuracy { offset, .. }, .. }) => {
@@ -25,13 +25,13 @@ impl Session {
         }
     }
 
-    /// Whether a check is running, which blocks the trial.
+    /// Whether a gaze accuracy check is running, which blocks the trial.
     pub fn is_calibrating(&self) -> bool {
         self.calibration.as_ref().is_some_and(|check| check.result.is_none())
     }
 }
 
-/// Whether the session accepts the event now.
+/// Whether the session accepts this event of an accuracy check now.
 ///
 /// # Errors
 /// The reason for the refusal, in words for the wizard.
@@ -68,7 +68,7 @@ pub(super) fn admit(session: &Session, event: &CalibrationEvent) -> Result<(), &
     }
 }
 
-/// Applies an admitted event.
+/// Applies an event of an accuracy check that the session accepts.
 pub(super) fn apply(session: &mut Session, now: SessionTime, event: &CalibrationEvent) {
     match event {
         CalibrationEvent::Begun { targets } => {
@@ -105,7 +105,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &Calibration
     }
 }
 
-/// Adds an uncorrected sample to a running check.
+/// Adds an uncorrected gaze sample to a running accuracy check.
 pub(super) fn gaze(session: &mut Session, taken: SessionTime, sample: GazeSample) {
     if let Some(check) = &mut session.calibration {
         check.take(taken, sample);

@@ -1,5 +1,5 @@
-//! Preconditions of events: whether a session accepts an event now, checked before an input is taken and again when an event
-//! is applied.
+//! Preconditions of events: whether a session accepts an event now. They are checked before an input is taken, and
+//! again when an event is applied.
 
 use super::event::{EndReason, Event, SignalEnd};
 use super::phase::Phase;
@@ -109,7 +109,8 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
     }
 }
 
-/// Rules for the wizard's keys, such as the cool-down between signals. They apply at the keyboard only, not to recordings.
+/// Rules for the wizard's keys, such as the cool-down between signals. They apply at the keyboard only, not to
+/// recordings.
 ///
 /// # Errors
 /// The reason for the refusal, in words for the wizard.
@@ -128,7 +129,7 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
     }
 }
 
-/// Whether a person presses again before the session's pace allows it.
+/// Whether a person's press comes earlier after the previous one than the session's pace allows.
 pub(super) fn is_too_early(session: &Session, now: SessionTime) -> bool {
     let spec = &session.spec;
     let Some(pace_s) = spec.trial.pace_s.filter(|_| spec.participant.kind != ParticipantKind::Simulated) else {

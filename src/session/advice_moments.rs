@@ -1,10 +1,10 @@
-//! The moments at which the assistant is asked for advice.
+//! Decides after which events the assistant is asked for advice.
 
 use super::event::Event;
 use super::session_state::Session;
 
-/// Whether advice is requested after an event that has just been applied: a press of either agent, a change of the task without a
-/// press, and what the session's settings add to these.
+/// Whether the assistant is asked for advice after an event that has just been applied: after a press of either agent,
+/// after a change of the task without a press, and after further events if the session's settings say so.
 pub fn leads_to_advice(session: &Session, event: &Event) -> bool {
     let leads = match event {
         Event::Press { .. }

@@ -1,12 +1,12 @@
-//! The answer to an item of a questionnaire, as logs and the participant's page have it.
+//! The participant's answer to an item of a questionnaire, as logs and the participant's page contain it.
 
 use serde::{Deserialize, Serialize};
 
-/// An answer to an item; in JSON a number, a text, or a list of texts.
+/// An answer to an item of a questionnaire; in JSON a number, a text, or a list of texts.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum AnswerValue {
-    /// The point of a scale, from 1; the position of a slider, from 0 to 100; or a number.
+    /// A point of a scale, from 1; the position of a slider, from 0 to 100; or another number.
     Number(i64),
     /// The participant's words, or the id of the chosen option.
     Text(String),
@@ -15,7 +15,7 @@ pub enum AnswerValue {
 }
 
 impl AnswerValue {
-    /// The number, if it is one.
+    /// The number, if the answer is a number.
     pub fn number(&self) -> Option<i64> {
         match self {
             AnswerValue::Number(number) => Some(*number),
@@ -23,7 +23,7 @@ impl AnswerValue {
         }
     }
 
-    /// The ids of the chosen options; a text is one.
+    /// The ids of the chosen options; a text counts as a single option.
     pub fn options(&self) -> &[String] {
         match self {
             AnswerValue::Number(_) => &[],

@@ -1,4 +1,4 @@
-//! `apply(&mut Session, &Stamped) -> Applied`: the only way in which a session changes.
+//! `apply(&mut Session, &Stamped) -> Applied`: the only function that changes a session, by applying one event.
 
 use super::admit::{admit, is_too_early};
 use super::event::{EndReason, Event, SignalEnd, Stamped};
@@ -13,14 +13,14 @@ use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Change, ContentId, DishId, LocationId, OrderContent, State};
 
-/// An action that the running session must perform because of an event. A replay performs none.
+/// An action that the running session must perform after an event. A replay performs none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
     /// Set a timer; [`Effect::Postpone`] can delay it.
     At {
-        /// The session time at which it is due, or later by what [`Effect::Postpone`] adds meanwhile.
+        /// The session time at which the timer is due; [`Effect::Postpone`] can delay it.
         time: SessionTime,
-        /// What is due then.
+        /// What happens when the timer is due.
         timer: Timer,
     },
     /// Cancel a timer.
@@ -33,7 +33,7 @@ pub enum Effect {
     Close,
 }
 
-/// A timer of a session.
+/// A timer of a session: what happens when it is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Timer {
     /// An order location stops showing `served`.
@@ -48,37 +48,38 @@ pub enum Timer {
     EndTrialByPresses,
     /// The set number of orders was served.
     EndTrialByOrders,
-    /// A time of the rules of offers has passed: one may open or close.
+    /// An offer to the wizard may have to open or close.
     ReviewOffer,
     /// The human has not pressed for unusually long.
     HumanWaits,
 }
 
-/// An event that the session cannot accept: the log is damaged or was written by another program.
+/// Error: the session cannot accept an event, because the log is damaged or was written by another program.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found}; right would be {remedy}")]
 pub struct ApplyError {
-    /// Sequence number of the event.
+    /// Sequence number of the refused event.
     pub seq: u64,
-    /// What the event says that cannot be.
+    /// What is invalid in the event.
     pub found: String,
-    /// What would be right.
+    /// What a valid event would contain.
     pub remedy: String,
 }
 
-/// Result of an event: effects to perform, and the change of the kitchen.
+/// Result of applying an event: actions to perform, and the change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Applied {
-    /// What has to be done because of the event, in this order.
+    /// The actions to perform because of the event, in order.
     pub effects: Vec<Effect>,
-    /// What the event did to the kitchen.
+    /// The change of the kitchen's state by the event.
     pub change: Change,
 }
 
 /// Applies an event to the session.
 ///
 /// # Errors
-/// Unknown names, decreasing times, and events that are not possible now (see [`admit`]). The session is unchanged then.
+/// Unknown names, decreasing times, and events that the session does not accept now (see [`admit`]). The session is
+/// unchanged then.
 pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyError> {
     check(session, stamped)?;
     let now = stamped.time;
@@ -204,7 +205,7 @@ fn check(session: &Session, stamped: &Stamped) -> Result<(), ApplyError> {
     Ok(())
 }
 
-/// Resolves the names in an event.
+/// Resolves the names of locations, dishes and buttons in an event.
 struct Named<'a> {
     session: &'a Session,
     seq: u64,
@@ -245,7 +246,7 @@ impl Named<'_> {
     }
 }
 
-/// Changes the kitchen, notes which locations changed, and returns the state before and after.
+/// Changes the kitchen, records which locations changed, and returns the state before and after.
 fn update(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State)) -> (State, State) {
     let before = session.state;
     how(&mut session.state);
@@ -287,7 +288,8 @@ fn pause(session: &mut Session, now: SessionTime) {
     session.note(now, TimelineEvent::Trial(Phase::Paused));
 }
 
-/// Resumes after a pause: pending times are postponed by its length. After a pause in a probe, the probe goes on.
+/// Resumes after a pause: pending times are postponed by its duration. After a pause during a freeze probe, the probe
+/// continues.
 fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
     if session.is_frozen() {
         return probes::resume(session, now);
@@ -341,7 +343,7 @@ fn show(
     session.note(now, TimelineEvent::Signal { by, signal: signal.clone() });
 }
 
-/// Stores a recommendation, without a signal that was sent after the request.
+/// Stores a recommendation, without a signal that was sent after the recommendation was requested.
 fn advise(session: &mut Session, mut advice: Recommendation) {
     let shown = session.shown.as_ref().filter(|shown| shown.by == Sender::Wizard && shown.since >= advice.for_ns);
     if let Some(shown) = shown {
@@ -400,7 +402,7 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
     Change::Press { press, presses: session.presses }
 }
 
-/// The dish that a serve press served, given the state before it.
+/// The order that a press of a serve button served, given the state before the press.
 fn served_dish(action: &ButtonAction, before: State) -> OrderContent {
     match action {
         ButtonAction::Serve(order) => before.order(*order),

@@ -1,5 +1,5 @@
-//! A battery of cohorts: simulated people whom the assistant's model of the human was not fitted to, to see what the estimate and the
-//! assistant are worth with them.
+//! A battery of cohorts: populations of simulated people to whom the assistant's human model was not fitted, to test
+//! how well the estimate and the assistant work with other people.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -8,26 +8,26 @@ use super::settings::{Condition, GazeSource, SessionSpec};
 use crate::communication::settings::Shadow;
 use crate::participant::population::Population;
 
-/// A file with a battery of cohorts.
+/// A file with a battery of cohorts (populations of simulated people).
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BatterySpec {
     /// The session file of all cohorts, relative to the battery's file.
     pub session: Spanned<String>,
-    /// The cohorts, in the order of the table.
+    /// The cohorts, in the order of the results table.
     #[serde(rename = "cohort")]
     pub cohorts: Vec<CohortSpec>,
 }
 
-/// One cohort of a battery, by what is other than in the session file.
+/// A cohort of a battery: the population and other differences from the session file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CohortSpec {
-    /// Its name in the table.
+    /// Name of the cohort in the results table.
     pub name: Spanned<String>,
-    /// Whether there is simulated gaze, if not as in the session file.
+    /// The source of gaze, if it differs from that of the session file.
     pub gaze: Option<Spanned<GazeSource>>,
-    /// The population; what it does not name has its default, as in a session file.
+    /// The population of simulated people; traits that are not named have their defaults, as in a session file.
     pub population: Option<Population>,
 }
 
@@ -37,7 +37,7 @@ impl CohortSpec {
         let mut spec = session.clone();
         spec.plan = None;
         spec.trial.condition = condition;
-        // Advice that nobody sees would only take time.
+        // Nobody would see the advice, so it is not computed.
         spec.assistant.shadow = Shadow::Off;
         if let Some(gaze) = &self.gaze {
             spec.participant.gaze = *gaze.get_ref();

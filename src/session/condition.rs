@@ -1,4 +1,4 @@
-//! The condition of a trial.
+//! The condition of a trial: who sends signals.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,16 +6,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Condition {
-    /// Nobody sends signals (unassisted).
+    /// Nobody sends signals: the human is unassisted.
     None,
-    /// The person at the console sends signals.
+    /// The wizard at the console sends signals.
     Wizard,
     /// The assistant sends signals by itself.
     Assistant,
 }
 
 impl Condition {
-    /// Name in files.
+    /// Name of the condition in files.
     pub fn name(self) -> &'static str {
         match self {
             Condition::None => "none",

@@ -4,17 +4,17 @@ use serde::{Deserialize, Serialize};
 
 use super::setting_checks::SettingError;
 
-/// The console.
+/// Settings of the wizard's console.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ConsoleSpec {
-    /// What the wizard may see.
+    /// How much the wizard sees: kitchen, estimated belief, recommendations.
     pub visibility: Visibility,
-    /// Draw with ASCII signs only, for terminals and fonts without the others.
+    /// Draw with ASCII characters only, for terminals and fonts without others.
     pub ascii: bool,
-    /// Colour theme: for a dark or a light terminal background.
+    /// Colour theme of the console: for a dark or a light terminal background.
     pub theme: ThemeChoice,
-    /// Whether a click on a signal or on the offer sends it at once, without a question.
+    /// Whether a mouse click on a signal or on the offer sends the signal at once, without a question.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub click_sends: bool,
     /// Path of the key file, relative to the session file; without it the default keys apply.
@@ -75,7 +75,7 @@ impl ConsoleSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThemeChoice {
-    /// The background that the terminal reports; dark if it reports none.
+    /// Colours that fit the background which the terminal reports; dark if it reports none.
     Auto,
     /// Colours for a dark background.
     Dark,
@@ -96,7 +96,7 @@ pub enum Visibility {
 }
 
 impl Visibility {
-    /// Name in files.
+    /// Name of the visibility in files.
     pub fn name(self) -> &'static str {
         match self {
             Visibility::State => "state",

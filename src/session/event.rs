@@ -1,7 +1,7 @@
 //! Events of a session. A log is a list of events, and a session is determined by its log.
 //!
-//! Facts change the session when applied; witnesses are recorded only. Locations, dishes and buttons are identified by name, so
-//! that a log can be read without the program.
+//! Facts change the session when they are applied; witnesses are only recorded. Locations, dishes and buttons are
+//! identified by name, so that a log can be read without the program.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,116 +25,117 @@ use crate::robot::moment::ArmSample;
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason};
 
-/// An event with its place in the log.
+/// An event with its sequence number in the log and its time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stamped {
     /// Sequence number: 0, 1, 2, … without gaps.
     pub seq: u64,
-    /// Session time; never decreases along the log.
+    /// Session time of the event; never decreases along the log.
     #[serde(rename = "t_ns")]
     pub time: SessionTime,
-    /// What happened.
+    /// The event itself.
     #[serde(flatten)]
     pub event: Event,
 }
 
-/// An event of a session.
+/// An event of a session, as the log contains it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Event {
     /// Results of the preflight checks before the trial, and whether the wizard overrode them.
     Preflight {
-        /// What was looked at, and how it was found.
+        /// The checks and their results.
         checks: Vec<PreflightCheck>,
-        /// The trial was started although not all was ok.
+        /// Whether the wizard started the trial although not all checks were ok.
         overridden: bool,
     },
     /// The trial starts with an empty kitchen.
     TrialStarted,
     /// The trial is paused: clock, robot and orders stop, presses have no effect.
     TrialPaused,
-    /// Clock, robot and orders go on.
+    /// The paused trial resumes: clock, robot and orders continue.
     TrialResumed,
     /// The trial is over.
     TrialEnded {
-        /// Why it ended.
+        /// The reason for the end of the trial.
         reason: EndReason,
     },
     /// The trial is aborted and does not count; it may be repeated in another recording.
     TrialAborted {
-        /// Why, in the wizard's words.
+        /// The wizard's reason for aborting the trial.
         reason: String,
     },
     /// The trial is excluded from the analysis.
     TrialExcluded {
-        /// Why, in the wizard's words.
+        /// The wizard's reason for excluding the trial.
         reason: String,
     },
-    /// The exclusion is taken back.
+    /// The wizard includes an excluded trial in the analysis again.
     TrialIncluded,
     /// A gaze sample of the participant.
     Gaze(GazeSample),
-    /// An event of the eye tracker other than a sample.
+    /// An event of the eye tracker other than a gaze sample.
     Tracker(TrackerEvent),
     /// A step of a gaze accuracy check.
     Calibration(CalibrationEvent),
     /// An agent pressed a physical button.
     Press {
-        /// Who pressed.
+        /// The agent that pressed.
         agent: Agent,
         /// The button's name.
         button: String,
-        /// Session time of the press by the display's synchronised clock; slightly before the event's time, at which the
-        /// session received it.
+        /// Session time of the press by the display's synchronised clock; slightly before the event's time, at which
+        /// the session received it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at_ns: Option<SessionTime>,
     },
     /// A new order appears at an order location.
     OrderShown {
-        /// The order's location, by its name.
+        /// Name of the order's location.
         order: String,
-        /// The wanted dish, by its name.
+        /// Name of the ordered dish.
         dish: String,
     },
     /// An order location no longer shows `served`.
     OrderCleared {
-        /// The order's location, by its name.
+        /// Name of the order's location.
         order: String,
     },
-    /// The human has not pressed for unusually long by its own intervals. Recorded only where something depends on it: where the
-    /// assistant is asked in silence, or waiting is evidence.
+    /// The human has not pressed for unusually long, compared with the human's own intervals between presses. Recorded
+    /// only where it has consequences: where the assistant is then asked for advice, or where waiting is evidence.
     HumanWaits {
-        /// Time since its last press, without pauses.
+        /// Time since the human's last press, without pauses.
         silent_ns: SessionTime,
     },
-    /// By its gaze, the human seems to believe an aspect wrong. Recorded only where the assistant is asked by gaze.
+    /// Judged by the gaze, the human seems to have a false belief about an aspect. Recorded only where the assistant is
+    /// then asked for advice.
     SeemsUnaware {
-        /// The aspect, by its name.
+        /// Name of the state aspect.
         aspect: String,
     },
     /// The robot starts a press and will touch the button at `until_ns` unless it is interrupted.
     RobotIntends {
         /// The button's name.
         button: String,
-        /// When it will touch the button if nothing comes between, in session time.
+        /// Session time at which the robot will touch the button if it is not interrupted.
         until_ns: SessionTime,
     },
     /// The robot aborts its ongoing press.
     RobotAborts {
         /// The button's name.
         button: String,
-        /// Why it gave up.
+        /// Why the robot abandoned the press.
         reason: AbortReason,
     },
     /// The robot becomes idle.
     RobotIdles {
-        /// Why nothing is useful now.
+        /// Why the robot is idle.
         reason: IdleReason,
     },
     /// Witness: a sample of the simulated arm's motion, about 12 per second while it moves.
     RobotMoves(ArmSample),
-    /// The safety mode of the simulated arm changes. After a protective stop or a fault the arm does not move until the wizard
-    /// resumes it.
+    /// The safety mode of the simulated arm changes. After a protective stop or a fault the arm does not move until the
+    /// wizard resumes it.
     RobotSafety {
         /// The safety mode from now on.
         mode: SafetyMode,
@@ -150,18 +151,19 @@ pub enum Event {
         /// The greatest force of the contact in newtons.
         force_n: f64,
     },
-    /// The wizard stops the robot until it is resumed.
+    /// The wizard stops the robot until the wizard releases it.
     RobotStopped,
-    /// The wizard lets the stopped robot go on.
+    /// The wizard releases the stopped robot.
     RobotResumed,
-    /// The wizard holds the robot: it starts no press and waits before the button of the ongoing press, until it is released.
+    /// The wizard holds the robot: it starts no press and waits before the button of the ongoing press, until it is
+    /// released.
     RobotHeld {
-        /// Who holds it.
+        /// Who holds the robot.
         by: Sender,
     },
-    /// The robot goes on after it was held.
+    /// The robot continues after it was held.
     RobotReleased {
-        /// Who releases it.
+        /// Who releases the robot.
         by: Sender,
     },
     /// The wizard skips the robot's ongoing press; the robot decides anew.
@@ -176,20 +178,21 @@ pub enum Event {
         /// The button's name.
         button: String,
     },
-    /// The wizard corrects the content of a location in the program's state.
+    /// The wizard corrects the content of a location in the program's state, which differed from the real one.
     KitchenCorrected {
-        /// The location's name.
+        /// Name of the corrected location.
         location: String,
-        /// What really lies there, by its name.
+        /// Name of the real content.
         content: String,
     },
-    /// A signal is shown to the participant and replaces an earlier one.
+    /// A signal is shown to the participant and replaces the previous one.
     SignalShown {
-        /// Who sent it.
+        /// Who sent the signal.
         by: Sender,
         /// The signal that is shown.
         signal: Signal,
-        /// In logs of format 1, which has no offers: sequence number of the event whose recommendation the wizard accepted, if any.
+        /// In logs of format 1, which has no offers: sequence number of the event whose recommendation the wizard
+        /// accepted, if any.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         accepted: Option<u64>,
         /// Sequence number of the `offer_opened` whose offer the wizard took, if any.
@@ -198,13 +201,13 @@ pub enum Event {
     },
     /// A recommendation of the assistant; it refers to an earlier event if it was computed while the session continued.
     Advised(Recommendation),
-    /// An offer to the wizard opens.
+    /// An offer to the wizard opens: the assistant recommends a signal or presses.
     OfferOpened(OfferedAdvice),
-    /// The open offer closes.
+    /// The open offer to the wizard closes.
     OfferClosed {
-        /// Sequence number of its `offer_opened`.
+        /// Sequence number of the offer's event `offer_opened`.
         offer: u64,
-        /// Why it closes.
+        /// Why the offer closes.
         reason: OfferEnd,
     },
     /// Witness: the first frame with the signal of this sequence number was written to the terminal.
@@ -212,38 +215,38 @@ pub enum Event {
         /// Sequence number of the event that showed the signal.
         signal: u64,
     },
-    /// The signal disappears.
+    /// The signal disappears from the participant's display.
     SignalEnded {
-        /// Why it vanishes.
+        /// Why the signal disappears.
         reason: SignalEnd,
     },
     /// The wizard sets a marker with a note.
     Marker {
-        /// The wizard's note.
+        /// Text of the wizard's note.
         note: String,
     },
     /// An event of a freeze probe.
     Probe(ProbeEvent),
     /// An event of the study protocol.
     Protocol(ProtocolEvent),
-    /// Witness: the wall clock advanced by this much more than session time, in milliseconds (negative: less), because the
-    /// computer was suspended or its clock was set.
+    /// Witness: the wall clock advanced by this much more than session time, in milliseconds (negative: less), because
+    /// the computer was suspended or its clock was set.
     ClockJumped {
-        /// By how much more the wall clock went on than session time, in milliseconds; negative: less.
+        /// By how much more the wall clock advanced than session time, in milliseconds; negative: less.
         by_ms: i64,
     },
     /// Witness: a report of the participant's display.
     Display(DisplayEvent),
     /// Witness: the visible content of the wizard's screen changes.
     Screen(VisibleScreen),
-    /// Witness: the wizard sees the comparison with these concepts from now on.
+    /// Witness: from now on the wizard sees the comparison with these communication concepts.
     Unblinded {
-        /// The concepts, by their names.
+        /// Names of the communication concepts.
         concepts: Vec<ConceptName>,
     },
     /// Witness: the terminal lost or regained keyboard focus; without it no key arrives, including the robot stop.
     FocusLost,
-    /// Witness: the terminal has the keyboard again.
+    /// Witness: the terminal has keyboard focus again.
     FocusRegained,
     /// Witness: the belief of a simulated participant before its next press.
     ParticipantBelieves(BeliefWitness),
@@ -254,7 +257,7 @@ pub enum Event {
 }
 
 impl Event {
-    /// Whether it is a sample of the gaze or of the arm.
+    /// Whether the event is a sample of the gaze or of the arm's motion.
     pub fn is_sample(&self) -> bool {
         matches!(self, Event::Gaze(_) | Event::RobotMoves(_))
     }
@@ -323,14 +326,14 @@ pub enum EndReason {
     Time,
     /// The set number of orders was served.
     Orders,
-    /// The wizard ended it.
+    /// The wizard ended the trial.
     Wizard,
     /// The wizard aborted the trial; recorded as `trial_aborted`, never as `trial_ended`.
     Aborted,
 }
 
 impl EndReason {
-    /// Name in logs.
+    /// Name of the reason in logs.
     pub fn name(self) -> &'static str {
         match self {
             EndReason::Presses => "presses",
@@ -346,10 +349,11 @@ impl EndReason {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SignalEnd {
-    /// It was shown for its set time.
+    /// The signal was shown for its set time.
     Elapsed,
-    /// The sender took it back.
+    /// The sender withdrew the signal.
     TakenBack,
-    /// Proposed presses are out of date: they were made, another one was, or the next one would do nothing.
+    /// The proposed presses are out of date: they were made, another button was pressed, or the next one would have no
+    /// effect.
     Outdated,
 }

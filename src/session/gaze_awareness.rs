@@ -1,10 +1,12 @@
-//! What the human seems unaware of by its gaze alone, between the events after which the assistant is asked anyway.
+//! Judges by the gaze alone of which changes the human seems unaware, so that the assistant is asked for advice between
+//! the usual events.
 //!
-//! Two rules, both on P(truth), the estimated probability that an aspect is believed right, of an aspect about which a signal can be sent:
+//! Two rules hold for an aspect about which a signal can be sent. Both use P(truth), the probability that the estimated
+//! belief gives to the true value:
 //!
 //! - P(truth) fell below 0.5 by a gaze sample, after it was at least 0.6 since the last request.
-//! - A location changed without the human, P(truth) is below 0.5, and in a second of known gaze since the change nobody looked at it:
-//!   the change was looked past. At most once for a change.
+//! - Somebody other than the human changed a location, P(truth) is below 0.5, and in a second of known gaze since the
+//!   change the human did not look at the location: the human looked past the change. At most once for a change.
 
 use super::session_state::Session;
 use crate::base::time::SessionTime;
@@ -14,44 +16,46 @@ use crate::kitchen::{AspectId, AspectKind, LocationId};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
 
-/// P(truth) from which an aspect counts as believed right again after it was below [`FALSE_BELOW`].
+/// P(truth) above which a belief about an aspect counts as right again after it was below [`FALSE_BELOW`].
 const RIGHT_FROM: f64 = 0.6;
-/// Known gaze since a change after which it counts as looked past, in seconds.
+/// Time of known gaze since a change of a location after which the human counts as having looked past the change, in
+/// seconds.
 const LOOKED_PAST_S: f64 = 1.0;
 
-/// What the gaze has told since the last request for advice.
+/// What the gaze has revealed about the human's awareness since the assistant was last asked for advice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GazeAwareness {
-    /// Bit set of the aspects that have been believed right since the last request.
+    /// Bit set of the aspects about which the belief has been right since the last request.
     right: u32,
-    /// Known gaze in the trial so far, in seconds.
+    /// Time of known gaze in the trial so far, in seconds.
     gazed_s: f64,
-    /// Time of the last usable sample.
+    /// Time of the last usable gaze sample.
     sampled: SessionTime,
-    /// By location.
+    /// The last change of each location.
     changes: [WatchedChange; MAX_LOCATIONS],
-    /// The aspect that the human seems unaware of, until the next request.
+    /// The aspect of which the human seems unaware, until the assistant is asked for advice.
     unaware: Option<AspectId>,
 }
 
 /// The last change of a location.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct WatchedChange {
-    /// When it changed.
+    /// Session time of the change.
     at: SessionTime,
-    /// Known gaze in the trial before the change, in seconds.
+    /// Time of known gaze in the trial before the change, in seconds.
     gazed_s: f64,
-    /// Whether the assistant was asked because the change was looked past.
+    /// Whether the assistant was already asked because the human looked past the change.
     is_asked: bool,
 }
 
 impl GazeAwareness {
-    /// The aspect of which the human seems unaware since the last gaze sample, if the assistant has not been asked since.
+    /// The aspect of which the human seems unaware since the last gaze sample, if the assistant has not been asked
+    /// since.
     pub fn unaware(&self) -> Option<AspectId> {
         self.unaware
     }
 
-    /// Takes a request for advice into account: what is believed wrong now is no news.
+    /// Accounts for a request for advice: present false beliefs do not cause another request.
     pub fn asked(&mut self, session: &Session, belief: &DirichletBelief) {
         self.unaware = None;
         for index in 0..belief.aspects.len() {
@@ -63,8 +67,8 @@ impl GazeAwareness {
         }
     }
 
-    /// Takes a gaze sample into account that has just been applied to session and estimate. `can_be_told`: whether a signal about the
-    /// aspect can be sent.
+    /// Accounts for a gaze sample that has just been applied to session and estimate. `can_be_told` says whether a
+    /// signal about an aspect can be sent.
     pub fn looked(
         &mut self,
         session: &Session,

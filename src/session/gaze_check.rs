@@ -1,4 +1,4 @@
-//! The gaze accuracy check: its events, its running state, and its accepted result.
+//! The gaze accuracy check of an eye tracker: its events, its running state, and its accepted result.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,46 +6,46 @@ use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GazeAccuracy, SETTLE_S, TARGET_S, TARGETS, ViewingGeometry, measure};
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 
-/// Largest number of samples per target: 1,000 Hz for longer than a target is shown.
+/// Largest number of gaze samples per target: 1,000 Hz for longer than a target is shown.
 const MOST_SAMPLES: usize = 4096;
-/// Time from the beginning to the first target, in seconds.
+/// Time from the beginning of the accuracy check to the first target, in seconds.
 const READY_S: f64 = 1.0;
 
-/// A step of the check.
+/// A step of a gaze accuracy check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum CalibrationEvent {
-    /// The check begins or restarts, with its targets in fractions of the display.
+    /// The accuracy check begins or restarts, with its targets in fractions of the display.
     Begun {
         /// The targets in the order in which they are shown, in fractions of the display.
         targets: Vec<[f64; 2]>,
     },
     /// The target with this index is shown.
     TargetShown {
-        /// Its index in the list of targets.
+        /// Index of the shown target in the list of targets.
         target: usize,
     },
     /// All targets have been shown.
     TargetsHidden,
-    /// Measured accuracy; `None` if too few samples were usable.
+    /// The gaze accuracy was measured.
     Measured {
-        /// What follows from the samples; none if too few were usable.
+        /// The measured accuracy; none if too few gaze samples were usable.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         found: Option<GazeAccuracy>,
     },
     /// The wizard accepts the gaze, with or without correction of the offset.
     Accepted {
-        /// The measured offset is taken off the gaze from now on.
+        /// Whether the measured offset is subtracted from the gaze from now on.
         corrected: bool,
     },
-    /// The accepted result of the previous recording is carried over.
+    /// The accepted result of the participant's previous recording is used again.
     Carried {
-        /// The result that was accepted there.
+        /// The result that was accepted in the previous recording.
         found: GazeAccuracy,
-        /// The measured offset is taken off the gaze.
+        /// Whether the measured offset is subtracted from the gaze.
         corrected: bool,
     },
-    /// The check is cancelled; the earlier accepted result remains valid.
+    /// The accuracy check is cancelled; the earlier accepted result remains valid.
     Dismissed,
 }
 
@@ -54,18 +54,18 @@ pub enum CalibrationEvent {
 pub struct RunningGazeCheck {
     /// The targets, in fractions of the display.
     pub targets: Vec<[f64; 2]>,
-    /// Index of the shown target with the time since which it is shown.
+    /// Index of the shown target, with the time at which it appeared.
     pub shown: Option<(usize, SessionTime)>,
-    /// By target.
+    /// Gaze samples of each target.
     pub(super) samples: Vec<Vec<GazeSample>>,
-    /// Time of its last event.
+    /// Time of the last event of the check.
     pub(super) at: SessionTime,
-    /// The result, once all targets were shown.
+    /// The result of the check, once all targets were shown.
     pub result: Option<GazeCheckResult>,
     pub(super) are_hidden: bool,
 }
 
-/// Result of a check.
+/// Result of a gaze accuracy check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GazeCheckResult {
     /// Measured accuracy; `None` if too few samples were usable.
@@ -75,16 +75,16 @@ pub struct GazeCheckResult {
 /// An accepted gaze accuracy check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcceptedGazeCheck {
-    /// When it was accepted, in session time.
+    /// Session time at which the wizard accepted the check.
     pub at: SessionTime,
-    /// The result of the check.
+    /// The measured accuracy.
     pub found: GazeAccuracy,
-    /// Whether the offset is corrected.
+    /// Whether the measured offset is corrected.
     pub corrected: bool,
 }
 
 impl AcceptedGazeCheck {
-    /// Accuracy of the gaze as it is used from then on, in degrees.
+    /// Accuracy of the gaze as it is used from then on (corrected or not), in degrees.
     pub fn accuracy_deg(&self) -> f64 {
         if self.corrected { self.found.corrected_deg } else { self.found.accuracy_deg }
     }
@@ -96,7 +96,7 @@ impl RunningGazeCheck {
         self.shown.and_then(|(index, _)| self.targets.get(index).copied())
     }
 
-    /// The next step with its time; `None` when all targets have been shown.
+    /// The next step of the check with its time; `None` when all targets have been shown.
     pub fn next(&self) -> Option<(SessionTime, CalibrationEvent)> {
         let (shown_s, target) = match self.shown {
             None if self.are_hidden => return None,
@@ -110,13 +110,13 @@ impl RunningGazeCheck {
         Some((self.at + SessionTime::from_secs_f64(shown_s), event))
     }
 
-    /// The measurement, once all targets have been shown.
+    /// The measurement event, once all targets have been shown.
     pub fn to_measure(&self, viewing: &ViewingGeometry) -> Option<CalibrationEvent> {
         let is_due = self.are_hidden && self.result.is_none();
         is_due.then(|| CalibrationEvent::Measured { found: measure(viewing, &self.targets, &self.samples) })
     }
 
-    /// Adds a sample taken at session time `taken`.
+    /// Adds a gaze sample taken at session time `taken`.
     pub(super) fn take(&mut self, taken: SessionTime, sample: GazeSample) {
         let Some((target, since)) = self.shown else { return };
         let counts = taken.secs_since(since) >= SETTLE_S && sample.confidence >= MIN_CONFIDENCE;
@@ -127,7 +127,7 @@ impl RunningGazeCheck {
 }
 
 impl CalibrationEvent {
-    /// The event that begins a check with the standard targets.
+    /// The event that begins an accuracy check with the standard targets.
     pub fn begin() -> CalibrationEvent {
         CalibrationEvent::Begun { targets: TARGETS.to_vec() }
     }

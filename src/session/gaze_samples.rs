@@ -1,14 +1,14 @@
-//! The stream of gaze samples: state changes by a sample, and faults of the stream.
+//! The stream of gaze samples in a session: state changes by a sample, and faults of the stream.
 
 use super::accuracy_check;
 use super::session_state::Session;
 use crate::base::time::SessionTime;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 
-/// Gap between samples after which the rate is measured anew, in seconds.
+/// Gap between gaze samples after which the sampling rate is measured anew, in seconds.
 const GAP_S: f64 = 0.5;
 
-/// Applies a gaze sample: counts it, updates the rate, and notes which locations are looked at.
+/// Applies a gaze sample: counts it, updates the sampling rate, and records which location the participant looks at.
 pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeSample) {
     let status = &mut session.gaze;
     status.samples += 1;
@@ -16,8 +16,8 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
     status.arrived = Some(now);
     match status.steady_since.filter(|_| interval_s < GAP_S) {
         Some(since) => {
-            // The mean since the last gap; after a second of it, of about the last second. A few milliseconds at least,
-            // so that samples of one packet are no rate.
+            // Sampling rate: the mean since the last gap; after a second of it, of about the last second. A few
+            // milliseconds at least, because samples of one packet arrive together.
             let window_s = now.secs_since(since).clamp(0.005, 1.0);
             status.rate_hz += ((1.0 - interval_s * status.rate_hz) / window_s).max(-status.rate_hz);
         }
@@ -40,7 +40,7 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
     }
     status.last = Some((now, sample));
     if session.probes.open.is_some() {
-        // The kitchen is not on the display.
+        // During a freeze probe the kitchen is not on the display, so the sample is no look at a location.
         return;
     }
     for (index, location) in session.kitchen.locations.iter().enumerate() {
@@ -50,7 +50,7 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
     }
 }
 
-/// Faults of the gaze stream so far: nonzero counts with what they count.
+/// Faults of the gaze stream so far: the kinds that occurred, with their numbers.
 pub fn faults(session: &Session) -> Vec<(u64, &'static str)> {
     let (dropped, read) = (session.tracker.dropped, session.gaze.judge.counts);
     let all = [

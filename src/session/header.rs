@@ -1,4 +1,4 @@
-//! The header: the first line of a log, with everything that a replay needs.
+//! The header of a log: its first line, with everything that a replay needs.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,70 +7,70 @@ use crate::base::time::SessionTime;
 
 /// The name of the log's format.
 pub const FORMAT: &str = "tomcom-session";
-/// The version of the format that this program writes. It reads all versions from 1 on.
+/// The version of the log's format that this program writes. It reads all versions from 1 on.
 pub const VERSION: u32 = 2;
-/// The version of the format since which recommendations become offers.
+/// The version of the log's format since which recommendations become offers to the wizard.
 const OFFERS_SINCE: u32 = 2;
-/// The version of the program since which simulated participants decide as they do now.
+/// The first version of the program whose simulated participants decide as they do now.
 pub const PEOPLE_SINCE: &str = "0.2.0";
 
-/// The header of a log.
+/// The header of a log: its first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Header {
     /// Always [`FORMAT`].
     pub format: String,
-    /// The version of the format.
+    /// The version of the log's format.
     pub version: u32,
     /// The version of the program that wrote the log.
     pub program: String,
     /// Index of the trial: with the same seed, another index gives other orders and another participant.
     pub trial: u64,
-    /// Wall clock time at the beginning of the recording (UTC, RFC 3339), which is session time 0 or that of [`Continues`]. Live
-    /// sessions only.
+    /// Wall clock time at the beginning of the recording (UTC, RFC 3339), which is session time 0 or that of
+    /// [`Continues`]. Live sessions only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub started: Option<String>,
     /// The earlier part that this recording continues.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub continues: Option<Continues>,
-    /// Name of the recording whose trial is repeated here.
+    /// Name of the recording whose trial this recording repeats.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub redoes: Option<String>,
     /// All settings in use, including the seed.
     pub session: SessionSpec,
-    /// The layout file.
+    /// The layout file of the kitchen, with its text.
     pub layout: FileText,
-    /// The recipe file.
+    /// The recipe file of the kitchen, with its text.
     pub recipes: FileText,
-    /// The key file, if the session had one.
+    /// The file of the wizard's keys, if the session had one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keys: Option<FileText>,
 }
 
-/// The previous part of a recording, after which the session continues.
+/// The previous part of a recording, after which this recording continues the session.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Continues {
-    /// Name of its folder, in the same parent folder.
+    /// Name of the previous part's folder, in the same parent folder.
     pub recording: String,
-    /// Number of events in all earlier parts: the sequence number of the first event here.
+    /// Number of events in all earlier parts, which is the sequence number of the first event in this part.
     pub events: u64,
     /// Session time at which the session continues.
     pub t_ns: SessionTime,
 }
 
-/// A file with its whole text.
+/// A text file of a session: its path and its complete text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FileText {
-    /// Path from which it was read, for messages.
+    /// Path from which the file was read, for messages.
     pub path: String,
-    /// The whole text.
+    /// The complete text of the file.
     pub text: String,
 }
 
 impl Header {
-    /// Whether a simulated participant of an earlier version, who decided otherwise, took part.
+    /// Whether a simulated participant of an earlier program version took part, whose decisions were different.
     pub fn has_earlier_people(&self) -> bool {
         let numbers =
             |version: &str| version.split('.').map(|part| part.parse::<u64>().ok()).collect::<Option<Vec<_>>>();

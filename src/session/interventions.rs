@@ -1,5 +1,5 @@
-//! Manual interventions of the experimenter: correcting the kitchen, holding, skipping and driving the robot, aborting and
-//! excluding trials. Their preconditions and state changes.
+//! Manual interventions of the experimenter: correcting the kitchen, holding, skipping and driving the robot, aborting
+//! and excluding trials. This file has their preconditions and state changes.
 
 use super::event::Event;
 use super::phase::Phase;
@@ -7,7 +7,7 @@ use super::session_state::Session;
 use crate::communication::Sender;
 use crate::kitchen::{ContentId, LocationKind};
 
-/// Whether an intervention is possible now.
+/// Whether the session accepts an intervention now.
 ///
 /// # Errors
 /// The reason for the refusal, in words for the wizard.
@@ -49,7 +49,7 @@ fn admit_correction(session: &Session, location: &str, content: &str) -> Result<
         return Err("the kitchen is corrected during a trial");
     }
     if session.is_frozen() {
-        // The questions are about the kitchen as it was when the task came to a stand.
+        // The probe's questions are about the kitchen as it was when the task was frozen.
         return Err("the kitchen is corrected after the probe");
     }
     let kitchen = &session.kitchen;

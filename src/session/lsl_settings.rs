@@ -1,46 +1,47 @@
-//! Settings of the Lab Streaming Layer (LSL) in a session file: which streams the program sends, and which stream gaze comes from.
+//! Settings of the Lab Streaming Layer (LSL) in a session file: which streams the program sends, and from which stream
+//! it receives gaze.
 
 use serde::{Deserialize, Serialize};
 
 use super::setting_checks::SettingError;
 
-/// The Lab Streaming Layer.
+/// Settings of the Lab Streaming Layer (LSL).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LslSpec {
-    /// Path of its library (liblsl), relative to the session file; `None` for the one that the system has.
+    /// Path of the library liblsl, relative to the session file; `None` for the one that the system has.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub library: Option<String>,
-    /// The streams that are sent; none by default.
+    /// The LSL streams that the program sends; none by default.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub outlets: Vec<LslOutlet>,
-    /// The stream that gaze comes from, with `gaze = "lsl"`.
+    /// The LSL stream from which gaze is received, with `gaze = "lsl"`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gaze: Option<LslGazeSpec>,
 }
 
-/// A stream that the program sends.
+/// An LSL stream that the program sends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LslOutlet {
-    /// Every event but samples, as a short code.
+    /// Every event of the session except samples, as a short code.
     Markers,
-    /// The same events as JSON, as the log has them.
+    /// Every event of the session except samples, as JSON, as in the log.
     Events,
-    /// Presses of both agents, with their effect.
+    /// Presses of both agents, with their effects.
     Presses,
-    /// Estimated probability of the truth for every state aspect.
+    /// Estimated probability of the true value for every state aspect.
     Beliefs,
-    /// Net benefit of every signal.
+    /// Estimated net benefit of every signal.
     NetBenefit,
-    /// Gaze samples.
+    /// Gaze samples of the participant.
     Gaze,
-    /// Joint angles of the simulated arm.
+    /// Joint angles of the simulated robot arm.
     Arm,
 }
 
 impl LslOutlet {
-    /// All streams, in the order of the documentation.
+    /// All LSL streams, in the order of the documentation.
     pub const ALL: [LslOutlet; 7] = [
         LslOutlet::Markers,
         LslOutlet::Events,
@@ -51,7 +52,7 @@ impl LslOutlet {
         LslOutlet::Arm,
     ];
 
-    /// Name in settings and in the names of streams.
+    /// Name of the stream in settings, and part of its name in the Lab Streaming Layer.
     pub fn name(self) -> &'static str {
         match self {
             LslOutlet::Markers => "markers",
@@ -65,30 +66,32 @@ impl LslOutlet {
     }
 }
 
-/// A stream of gaze on the display: how it is found, and what its channels are.
+/// An LSL stream of gaze on the display: how the program finds it, and the meaning of its channels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LslGazeSpec {
-    /// Name of the stream; any if `None`.
+    /// Name of the gaze stream; `None`: any name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Content type of the stream, such as "Gaze"; any if `None`.
+    /// Content type of the gaze stream, such as "Gaze"; `None`: any type.
     #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
     pub content: Option<String>,
     /// Channel of the horizontal coordinate: its label, or its number from 1.
     pub x: String,
-    /// Channel of the vertical coordinate.
+    /// Channel of the vertical coordinate: its label, or its number from 1.
     pub y: String,
-    /// Channel of the confidence, from 0 to 1; `None` if the stream has none: every sample counts as certain.
+    /// Channel of the confidence, from 0 to 1; `None` if the stream has none, in which case every sample counts as
+    /// certain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confidence: Option<String>,
-    /// Unit of the coordinates.
+    /// Unit of the gaze coordinates.
     #[serde(default)]
     pub unit: GazeUnit,
-    /// Where the coordinates are 0, and which way y points.
+    /// Point at which the gaze coordinates are 0, and the direction of y.
     #[serde(default)]
     pub origin: GazeOrigin,
-    /// Width and height of the display in the unit. Without it 1 and 1 for normalised coordinates, those of the layout for metres.
+    /// Width and height of the display in the unit of the coordinates. Without it, 1 and 1 for normalised coordinates,
+    /// and the layout's size for metres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<[f64; 2]>,
 }
@@ -106,21 +109,22 @@ pub enum GazeUnit {
     Metres,
 }
 
-/// Origin of gaze coordinates.
+/// Origin of gaze coordinates on the display, and the direction of y.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GazeOrigin {
-    /// The display's top left corner, y points down.
+    /// Origin at the display's top left corner, y points down.
     #[default]
     TopLeft,
-    /// The display's bottom left corner, y points up.
+    /// Origin at the display's bottom left corner, y points up.
     BottomLeft,
-    /// The display's centre, y points up.
+    /// Origin at the display's centre, y points up.
     Centre,
 }
 
 impl LslGazeSpec {
-    /// A point of the stream in fractions of the display, origin at the top left, on a display of `display_m` metres.
+    /// Converts a point of the gaze stream to fractions of the display, origin at the top left, for a display of
+    /// `display_m` metres.
     pub fn to_display(&self, [x, y]: [f64; 2], display_m: [f64; 2]) -> [f64; 2] {
         let [width, height] = self.size.unwrap_or(match self.unit {
             GazeUnit::Metres => display_m,
@@ -134,7 +138,7 @@ impl LslGazeSpec {
         }
     }
 
-    /// What the stream is called in messages: its name, else its type.
+    /// How messages call the gaze stream: by its name, else by its type.
     pub fn title(&self) -> String {
         match (&self.name, &self.content) {
             (Some(name), _) => format!("\"{name}\""),
@@ -175,7 +179,7 @@ impl LslGazeSpec {
     }
 }
 
-/// Whether a text can be a name in a query for streams, which has it in quotation marks.
+/// Whether a text can be a name in an LSL query for streams, which has names in quotation marks.
 fn is_name(text: &str) -> bool {
     let is_plain = |sign: char| !sign.is_control() && !matches!(sign, '\'' | '"');
     (1..=100).contains(&text.chars().count()) && text.chars().all(is_plain)

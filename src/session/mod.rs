@@ -1,18 +1,21 @@
-//! A session: its settings, its state, and [`apply()`], the one function through which a live run, a replay and an analysis
-//! move it on. It knows no clock, no file and no chance.
+//! A session: its settings, its state, and [`apply()`], the only function that changes the state, in a live run, a
+//! replay and an analysis alike. It uses no clock, no file and no random numbers.
 //!
 //! The files from the ground up:
 //!
-//! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`, `probe_settings`, [`wall_display`],
-//!   [`stream_settings`], [`tracker`] (with its events and state), and the specifications in [`plan`]; [`settings`], all of
-//!   them together. On these stand [`battery`], `session_file`, `requirements`, [`participant_code`], [`header`], [`orders`], and the
-//!   studies in [`plan`].
-//! - What happens: `gaze_check`, [`answer_value`], `protocol_event` (with the phases of a plan), `tutorial_event`, `probe_event`, `preflight_check`, [`wizard_screen`]; [`event`],
-//!   all of them together.
-//! - The state: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `tutorial_state`, `protocol_state`, `probe_state` with `probe_schedule`; `session_state`, all of them
-//!   together.
-//! - What can happen when, and what it changes: `trial_clock`, [`silence`], `unseen_changes`, `robot_changes`, [`accuracy_check`], [`gaze_samples`], [`tutorial`], [`protocol`], [`probes`] with [`probe_sampling`],
-//!   `interventions`; [`admit`] and [`mod@apply`], all of them together. On these stand the rules of [`offers`], [`proposals`], [`advice_moments`] and [`gaze_awareness`]. Beside them [`preflight_checks`], and the [`timers`] that [`apply()`] sets.
+//! - Settings: `setting_checks`, `condition`, `participant_settings`, `console_settings`, `robot_settings`,
+//!   `probe_settings`, [`wall_display`], [`stream_settings`], [`tracker`] (with its events and state), and the
+//!   specifications in [`plan`]; [`settings`], all of them together. These are used by [`battery`], `session_file`,
+//!   `requirements`, [`participant_code`], [`header`], [`orders`], and the studies in [`plan`].
+//! - Events: `gaze_check`, [`answer_value`], `protocol_event` (with the phases of a plan), `tutorial_event`,
+//!   `probe_event`, `preflight_check`, [`wizard_screen`]; [`event`], all of them together.
+//! - State: `phase`, `timeline_entry`, `gaze_status`, `robot_status`, `tutorial_state`, `protocol_state`, `probe_state`
+//!   with `probe_schedule`; `session_state`, all of them together.
+//! - Preconditions and effects of events: `trial_clock`, [`silence`], `unseen_changes`, `robot_changes`,
+//!   [`accuracy_check`], [`gaze_samples`], [`tutorial`], [`protocol`], [`probes`] with [`probe_sampling`],
+//!   `interventions`; [`admit`] and [`mod@apply`], all of them together. These are used by the rules of [`offers`],
+//!   [`proposals`], [`advice_moments`] and [`gaze_awareness`]. Further files: [`preflight_checks`], and the [`timers`]
+//!   that [`apply()`] sets.
 
 pub mod accuracy_check;
 pub mod admit;

@@ -1,7 +1,8 @@
-//! The rules of offers: when one opens and closes, and which one `enter` takes.
+//! The rules of offers to the wizard: when one opens and closes, and which one the key `enter` takes.
 //!
-//! A running session asks [`due`] after every event and at [`Timer::ReviewOffer`](super::Timer), and records the event that it
-//! returns; a replay applies the recorded ones. Ages are measured on the trial's clock, so they stand still in a pause.
+//! A running session asks [`due`] after every event and at [`Timer::ReviewOffer`](super::Timer), and records the event
+//! that it returns; a replay applies the recorded ones. Ages of offers are measured on the trial's clock, so they do
+//! not grow in a pause.
 
 use super::admit::{admit, hygiene};
 use super::event::Event;
@@ -17,12 +18,13 @@ use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::communication::{Sender, Signal, unavailable};
 use crate::kitchen::OrderContent;
 
-/// Whether the recommendations of a session become offers. An assistant that acts by itself sends its recommendation at once.
+/// Whether the recommendations of a session become offers to the wizard. An assistant that acts by itself sends its
+/// recommendation at once.
 pub fn are_made(session: &Session) -> bool {
     session.makes_offers && session.spec.trial.condition != Condition::Assistant
 }
 
-/// The change of the offer that is due now: `offer_opened`, `offer_closed`, or none.
+/// The change of offers that is due now: `offer_opened`, `offer_closed`, or none.
 pub fn due(session: &Session, now: SessionTime) -> Option<Event> {
     match session.offers.unclosed() {
         Some(offer) => {
@@ -55,7 +57,7 @@ fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferEn
     outdone(session, offer, session.advice.as_ref()?)
 }
 
-/// Whether the latest recommendation speaks against the offer.
+/// Why the latest recommendation closes the open offer, if it does.
 fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<OfferEnd> {
     let signal = match &offer.advice.what {
         OfferedAct::Signal(signal) => signal,
@@ -66,7 +68,7 @@ fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<
             };
         }
     };
-    // A signal that the recommendation does not list has no net benefit that could speak against it.
+    // A signal that is not in the recommendation's list has no net benefit that could close the offer.
     let net = advice.options.iter().find(|option| option.signal == *signal)?.net;
     let thresholds = OfferThresholds::for_concept(session.spec.assistant.concept);
     if net < thresholds.closes_below {
@@ -96,20 +98,20 @@ fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     let option = candidate(session, advice)?;
     let SignalOption { benefit, standard_error, net, .. } = *option;
     let worth = Some(OfferWorth { benefit, standard_error, net });
-    // The recommendation has a reason for its best signal only.
+    // The recommendation gives a reason for its best signal only.
     let reason = advice.reason.clone().filter(|_| advice.best.as_ref() == Some(&option.signal));
     Some(OfferedAdvice { what: OfferedAct::Signal(option.signal.clone()), for_seq, worth, reason, visible })
 }
 
-/// Whether a wizard could see an offer that opens now: something draws the console or a script reads it, and the settings show
+/// Whether a wizard could see an offer that opens now: a console shows it or a script reads it, and the settings show
 /// recommendations.
 fn is_visible(session: &Session) -> bool {
     let is_drawn = session.has_console && session.spec.console.visibility == Visibility::Recommendation;
     is_drawn || session.spec.script_reads_offers()
 }
 
-/// The signal that would be offered: the best one that is worth its cost, and of two orders of one dish the older one, if
-/// its recipe is worth its cost too.
+/// The signal that would be offered: the best one that exceeds its cost. If two orders want the same dish, the older
+/// one is chosen, provided that its recipe exceeds its cost, too.
 fn candidate<'a>(session: &Session, advice: &'a Recommendation) -> Option<&'a SignalOption> {
     let is_worth = |option: &&SignalOption| {
         option.net > 0.0 && unavailable(&session.kitchen, session.state, &option.signal).is_none()
@@ -132,23 +134,23 @@ fn wanted(session: &Session, signal: &Signal) -> Option<((SessionTime, usize), O
     Some(((session.changed_at[order.index()], index), session.state.order(order)))
 }
 
-/// Notes that the wizard sent a signal: of the open offer, or of the last one while it can still be taken.
+/// Records that the wizard sent a signal: that of the open offer, or of the last one while it can still be taken.
 pub(super) fn sends(session: &mut Session, now: SessionTime, signal: &Signal, is_taken: bool) {
     let how = if is_taken { OfferUse::Taken } else { OfferUse::OwnKey };
     let with_last = still_takes(session, now).is_some();
     session.offers.sends(signal, UsedOffer { how, at: now }, with_last);
 }
 
-/// The last offer that closed, while it can still be taken.
+/// The last offer that closed, as long as it can still be taken.
 fn still_takes(session: &Session, now: SessionTime) -> Option<&Offer> {
     session.offers.last().filter(|last| session.age(last.closed, now) <= TAKEN_AFTER).map(|last| &last.offer)
 }
 
-/// The offer that `enter` means at `now`: the open one; in its first 0.3 s, or while none is open, the last one if it closed at
-/// most 1.3 s ago and was not taken.
+/// The offer to which the key `enter` refers at `now`: the open one; in its first 0.3 s, or while none is open, the
+/// last one if it closed at most 1.3 s ago and was not taken.
 ///
 /// # Errors
-/// Why it means none, in words for the wizard.
+/// Why `enter` refers to no offer, in words for the wizard.
 pub fn meant(session: &Session, now: SessionTime) -> Result<&Offer, &'static str> {
     let open = session.offers.open();
     if let Some(offer) = open.filter(|offer| session.age(offer.opened, now) >= UNREAD) {
@@ -162,10 +164,10 @@ pub fn meant(session: &Session, now: SessionTime) -> Result<&Offer, &'static str
     }
 }
 
-/// The offer that `enter` takes at `now`, with the event that sends its signal.
+/// The offer that the key `enter` takes at `now`, with the event that sends its signal.
 ///
 /// # Errors
-/// Why `enter` means nothing now, in words for the wizard.
+/// Why `enter` has no effect now, in words for the wizard.
 pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), String> {
     if session.spec.console.visibility != Visibility::Recommendation {
         return Err("recommendations are not shown in this session".to_string());
@@ -177,7 +179,8 @@ pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), Str
     Ok((offer, event))
 }
 
-/// The event by which a scripted wizard takes the offer with this sequence number, if `enter` means it at `now`.
+/// The event by which a scripted wizard takes the offer with this sequence number, if the key `enter` would refer to it
+/// at `now`.
 pub fn script_takes(session: &Session, now: SessionTime, offer: u64) -> Option<Event> {
     meant(session, now).ok().filter(|meant| meant.seq == offer).and_then(take)
 }

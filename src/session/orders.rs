@@ -1,4 +1,4 @@
-//! The orders of a trial, drawn from a seeded random stream.
+//! The sequence of ordered dishes in a trial, drawn from a seeded random stream.
 
 use rand::RngExt;
 
@@ -6,7 +6,7 @@ use super::settings::SessionSpec;
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::DishId;
 
-/// Length of a run: after each run, matched lists contain the same dishes.
+/// Number of orders in a run: after each run, matched lists of orders contain the same dishes.
 const RUN: usize = 3;
 
 /// The sequence of dishes that a trial's orders show, independent of which order location is free.
@@ -17,21 +17,21 @@ pub struct OrderList {
     matched: Option<Matched>,
 }
 
-/// Matched lists: blocks contain every dish of the menu once, in an order that all trials of a participant share. Each block is
-/// divided into short runs, and each trial has its own order within a run. So two trials of a participant have the same dishes
-/// up to their last complete run.
+/// Matched lists of orders: blocks contain every dish of the menu once, in an order that all trials of a participant
+/// share. Each block is divided into short runs, and each trial has its own order within a run. So two trials of a
+/// participant have the same dishes up to their last complete run.
 #[derive(Clone, Debug)]
 struct Matched {
     shared: Stream,
-    /// Remaining dishes of the block, in reverse order.
+    /// Remaining dishes of the present block, in reverse order.
     block: Vec<u8>,
-    /// Remaining dishes of the run, in reverse order.
+    /// Remaining dishes of the present run, in reverse order.
     run: Vec<u8>,
 }
 
 impl OrderList {
-    /// The list of a trial: matched with the participant's other trials in a plan, else independent uniform draws. `menu` is the
-    /// number of dishes.
+    /// The order list of a trial: matched with the participant's other trials in a plan, else independent uniform
+    /// draws. `menu` is the number of dishes.
     pub fn new(menu: usize, spec: &SessionSpec, trial: u64) -> OrderList {
         let seed = spec.seed;
         let matched = spec.step.as_ref().map(|step| {
@@ -42,7 +42,7 @@ impl OrderList {
         OrderList { random: stream(seed, "orders", trial), menu, matched }
     }
 
-    /// The next dish.
+    /// Draws the dish of the next order.
     pub fn draw(&mut self) -> DishId {
         match &mut self.matched {
             None => DishId(self.random.random_range(0..self.menu) as u8),
@@ -65,7 +65,7 @@ impl Matched {
     }
 }
 
-/// Fisher-Yates shuffle.
+/// Shuffles a list of dishes (Fisher and Yates).
 fn shuffle(dishes: &mut [u8], random: &mut Stream) {
     for last in (1..dishes.len()).rev() {
         dishes.swap(last, random.random_range(0..=last));

@@ -1,10 +1,10 @@
-//! Which codes a participant of a new session may have.
+//! Decides which codes participants of new sessions may have.
 
 use super::plan::Participants;
 use super::settings::{SessionSpec, SettingError, is_code};
 
-/// The names of all tables and columns of a study, in the order of the alphabet; a test compares them with the study's
-/// dictionary.
+/// Names of all tables and columns of a study in alphabetical order, which participants must not have as codes; a test
+/// compares them with the study's dictionary.
 pub const TABLE_WORDS: &[&str] = &[
     "about",
     "actions",
@@ -211,7 +211,8 @@ pub const TABLE_WORDS: &[&str] = &[
     "x",
     "y",
 ];
-/// Further words of the program's own files: kinds of events, values of settings, names of files and folders.
+/// Further reserved words that participants must not have as codes: kinds of events, values of settings, names of files
+/// and folders.
 pub const FILE_WORDS: &[&str] = &[
     "aborted",
     "advised",
@@ -330,16 +331,16 @@ pub const FILE_WORDS: &[&str] = &[
     "wizard",
     "yes",
 ];
-/// What is right instead of a code that is refused.
+/// Description of a valid participant code, for the message that refuses another one.
 pub const REMEDY: &str = "1 to 32 letters, digits, - and _, beginning with a letter or digit, and no word of the program's own \
      files, such as \"P07\"; never a name";
 
-/// Whether a code can be that of a participant of a new session.
+/// Whether a text can be the code of a participant in a new session.
 pub fn is_participant_code(code: &str) -> bool {
     is_code(code) && fault(code).is_none()
 }
 
-/// What keeps a plain code from being that of a participant, in words.
+/// Why a code of valid characters is refused as a participant's code, in words; `None` if it is valid.
 pub fn fault(code: &str) -> Option<&'static str> {
     if !code.starts_with(|first: char| first.is_ascii_alphanumeric()) {
         return Some("it does not begin with a letter or digit");
@@ -351,18 +352,18 @@ pub fn fault(code: &str) -> Option<&'static str> {
     without_seed(&word).map(|_| "tables name simulated participants like that, by their seed")
 }
 
-/// The code in `seed7-S001`, the name that tables give to a participant simulated with seed 7.
+/// The participant's code in a name like `seed7-S001`, which tables give to a participant simulated with seed 7.
 pub fn without_seed(name: &str) -> Option<&str> {
     let (seed, code) = name.strip_prefix("seed")?.split_once('-')?;
     (!seed.is_empty() && seed.bytes().all(|digit| digit.is_ascii_digit())).then_some(code)
 }
 
 impl SessionSpec {
-    /// Whether the codes of this session can be those of participants. New sessions are refused otherwise; recordings of
+    /// Checks that the participant codes of this session are valid. New sessions are refused otherwise; recordings of
     /// earlier versions can have other codes, and open all the same.
     ///
     /// # Errors
-    /// The participant's code, or one in the plan, cannot be one.
+    /// The participant's code, or one in the plan, is invalid.
     pub fn check_participant_codes(&self) -> Result<(), SettingError> {
         let wrong = |path, found: String, fault| Err(SettingError::new(path, format!("{found}: {fault}"), REMEDY));
         let code = &self.participant.code;

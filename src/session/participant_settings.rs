@@ -8,17 +8,17 @@ use crate::participant::population::Population;
 
 const LOCALHOST: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
-/// The participant.
+/// Settings of the participant and of the gaze source.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ParticipantSpec {
-    /// Participant code, never a name.
+    /// Code of the participant, never a name.
     pub code: String,
-    /// Who plays the human's part.
+    /// Whether a simulated participant or a person takes part, and by which input.
     pub kind: ParticipantKind,
-    /// Where gaze samples come from.
+    /// Source of the gaze samples.
     pub gaze: GazeSource,
-    /// Port of the JSON gaze input.
+    /// UDP and TCP port of the JSON gaze input.
     pub gaze_port: u16,
     /// Address at which the JSON gaze input listens; this computer's own (localhost) by default.
     #[serde(skip_serializing_if = "is_localhost")]
@@ -61,7 +61,7 @@ impl ParticipantSpec {
     }
 }
 
-/// Who plays the human.
+/// Who takes the human's part: a simulation or a person, and by which input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ParticipantKind {
@@ -85,21 +85,21 @@ pub enum GazeSource {
     Pupil,
     /// A recorded file: Pupil Player's export, or a recording of this program.
     File,
-    /// Newline separated JSON over TCP and UDP.
+    /// Newline separated JSON over TCP and UDP (network) from another program.
     Json,
     /// A stream of the Lab Streaming Layer.
     Lsl,
-    /// No gaze at all.
+    /// No gaze samples at all.
     None,
 }
 
-/// Addresses from which the JSON gaze input reads datagrams.
+/// Addresses from which the JSON gaze input accepts datagrams.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GazeSenders {
     /// The address that sent the first sample, until it has been silent for 5 s.
     First,
-    /// Every address.
+    /// Datagrams from every address are accepted.
     Any,
 }
 

@@ -1,18 +1,18 @@
-//! Phase of a session's trial.
+//! Phase of a session's trial: ready, running, paused or over.
 
 use super::event::EndReason;
 
-/// Phase of the trial.
+/// Phase of a session's trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Before the trial's start.
+    /// The trial has not started.
     Ready,
     /// The trial runs.
     Running,
-    /// The trial's clock stands still.
+    /// The trial is paused: its clock stands still.
     Paused,
-    /// The trial is over.
+    /// The trial has ended, for this reason.
     Over(EndReason),
-    /// The session is over.
+    /// The session has ended.
     Closed,
 }

@@ -1,4 +1,4 @@
-//! The result of one preflight check: verdict, finding and remedy.
+//! The result of one preflight check (before a trial): verdict, finding and remedy.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PreflightVerdict {
-    /// All is well.
+    /// The check found nothing wrong.
     Ok,
-    /// Usable with limitations.
+    /// The checked part is usable with limitations.
     Warning,
-    /// Not usable.
+    /// The checked part is not usable.
     Failed,
 }
 
@@ -18,19 +18,19 @@ pub enum PreflightVerdict {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PreflightCheck {
-    /// What was looked at: "display", "disk".
+    /// What the check is about: "display", "disk".
     pub name: String,
-    /// How it was found.
+    /// The verdict of the check.
     pub verdict: PreflightVerdict,
-    /// What was found, in words.
+    /// The finding of the check, in words.
     pub found: String,
-    /// Remedy, unless the verdict is ok.
+    /// What to do about the finding; none if the verdict is ok.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remedy: Option<String>,
 }
 
 impl PreflightCheck {
-    /// A check with its result; an ok one needs no remedy and gets none.
+    /// A check with its result; a check with the verdict ok gets no remedy.
     pub fn new(
         name: &str,
         verdict: PreflightVerdict,
@@ -41,7 +41,7 @@ impl PreflightCheck {
         PreflightCheck { name: name.to_string(), verdict, found: found.into(), remedy }
     }
 
-    /// A check with the verdict ok.
+    /// A check with the verdict ok and this finding.
     pub fn ok(name: &str, found: impl Into<String>) -> PreflightCheck {
         PreflightCheck::new(name, PreflightVerdict::Ok, found, "")
     }

@@ -10,14 +10,15 @@ use super::tracker::TrackerConnection;
 use crate::base::time::SessionTime;
 use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 
-/// Sampling rate below which short looks are missed, in Hz.
+/// Sampling rate of the gaze below which short looks are missed, in Hz.
 const SLOW_HZ: f64 = 20.0;
-/// Time without a usable sample after which gaze counts as missing, in seconds.
+/// Time without a usable gaze sample after which gaze counts as missing, in seconds.
 const UNUSABLE_S: f64 = 1.0;
-/// Free disk space, in bytes, below which the check warns, and below which it fails; a session of 15 min takes about 10 MB.
+/// Free disk space, in bytes, below which the check warns, and below which it fails; a session of 15 min takes about 10
+/// MB.
 const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
 
-/// Checks the disk space for a recording; `None` if the system does not report the free space.
+/// Checks the free disk space for a recording; `None` if the system does not report it.
 pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     let remedy = "free some, or record elsewhere with --out";
     let Some(free) = free_bytes else {
@@ -36,7 +37,7 @@ pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     PreflightCheck::new("free space", verdict, format!("{} MB", free / 1_000_000), remedy)
 }
 
-/// What a plan's condition is, and whether the settings are those of its arm; `None` outside of plans.
+/// Checks whether the settings are those of the study arm that the plan prescribes; `None` outside of plans.
 fn condition(session: &Session) -> Option<PreflightCheck> {
     let spec = &session.spec;
     let planned = spec.step.as_ref()?.arm?;
@@ -53,7 +54,8 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
 }
 
-/// Checks condition, participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a gaze accuracy check.
+/// Checks condition, participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a gaze accuracy
+/// check.
 pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec<PreflightCheck> {
     let spec = &session.spec.participant;
     let who = match spec.kind {
@@ -133,11 +135,11 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
     let faults = faults(session);
     let (samples, wrong) = (session.gaze.samples, faults.iter().map(|(count, _)| count).sum::<u64>());
     if wrong > 0 {
-        // Real streams have some faulty samples; they are not used, and matter only if they are many.
+        // Real gaze streams have some faulty samples; they are ignored, and matter only if there are many.
         let verdict = if wrong * 20 > samples { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
         let kinds: Vec<String> = faults.iter().map(|(count, kind)| format!("{count} {kind}")).collect();
         let found = format!("{samples} samples; {}", kinds.join(", "));
-        // Only a slow computer or network delays samples; it makes no number of them wrong.
+        // Delayed samples come from a slow computer or network, not from wrong values.
         let remedy = match session.tracker.dropped.malformed * 2 > wrong {
             true => "look at what the tracker sends: values are missing, or are no numbers",
             false => "less load on the tracker's computer, a better network",
@@ -181,7 +183,7 @@ fn tracker(session: &Session) -> PreflightCheck {
     }
 }
 
-/// Checks the stream of the Lab Streaming Layer that gaze comes from.
+/// Checks the gaze stream from the Lab Streaming Layer.
 fn stream(session: &Session) -> PreflightCheck {
     let wanted = session.spec.lsl.as_ref().and_then(|lsl| lsl.gaze.as_ref()).map_or(String::new(), LslGazeSpec::title);
     let found = match &session.tracker.link {
@@ -193,7 +195,7 @@ fn stream(session: &Session) -> PreflightCheck {
     PreflightCheck::new("eye tracker", PreflightVerdict::Failed, found, remedy)
 }
 
-/// The result of the last gaze accuracy check, if there was one.
+/// Checks the result of the last gaze accuracy check, if there was one.
 fn calibration(session: &Session, check_gaze: &str) -> Option<PreflightCheck> {
     let accuracy_deg = session.calibrated.as_ref()?.accuracy_deg();
     let verdict = match accuracy_deg {

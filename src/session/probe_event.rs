@@ -1,95 +1,97 @@
-//! The events of freeze probes: the task stands still, and the participant answers what it believes (SAGAT, Endsley 1988).
+//! The events of freeze probes: the task stands still, and the participant answers questions about its beliefs (SAGAT,
+//! Endsley 1988).
 
 use serde::{Deserialize, Serialize};
 
 use super::wall_display::Answering;
 
-/// What happens around a freeze probe. Probes are numbered from 1 within a trial, scheduled and requested ones together.
+/// An event of a freeze probe. Probes are numbered from 1 within a trial, scheduled and requested ones together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "did", rename_all = "snake_case")]
 pub enum ProbeEvent {
-    /// The wizard asks for a probe.
+    /// The wizard requests a freeze probe.
     Requested,
-    /// A probe is due and may not begin yet; it waits.
+    /// A freeze probe is due but may not begin yet; it waits.
     Delayed {
-        /// The probe's number.
+        /// Number of the freeze probe in the trial.
         probe: u32,
-        /// What it waits for.
+        /// Why the probe has to wait.
         reason: ProbeBlock,
     },
-    /// A probe waited for the longest time allowed, and is not held.
+    /// A freeze probe has waited for the longest allowed time, and is cancelled.
     Dropped {
-        /// The probe's number.
+        /// Number of the freeze probe in the trial.
         probe: u32,
-        /// What it waited for at the end.
+        /// Why the probe still had to wait at the end.
         reason: ProbeBlock,
     },
-    /// The task stands still from now on. All questions of the probe are drawn.
+    /// A freeze probe begins: the task stands still from now on. All questions of the probe are drawn.
     Begun {
-        /// The probe's number.
+        /// Number of the freeze probe in the trial.
         probe: u32,
-        /// Who wanted it.
+        /// Whether the schedule or the wizard caused the probe.
         origin: ProbeOrigin,
-        /// Whether the belief estimate had a part in the choice of the questions.
+        /// Whether the belief estimate influenced the choice of the questions.
         uses_estimate: bool,
         /// The questions, in the order in which they are asked.
         questions: Vec<ProbeQuestion>,
     },
-    /// A question is shown.
+    /// A question of the freeze probe is shown.
     Asked {
-        /// The probe's number.
+        /// Number of the freeze probe in the trial.
         probe: u32,
-        /// The question, from 1.
+        /// Number of the question, from 1.
         question: u32,
     },
-    /// The participant answers the shown question.
+    /// The participant answers the shown question of the freeze probe.
     Answered {
-        /// The probe's number.
+        /// Number of the freeze probe in the trial.
         probe: u32,
-        /// The question, from 1.
+        /// Number of the question, from 1.
         question: u32,
-        /// One of the question's choices; `None`: "I don't know".
+        /// The chosen answer: one of the question's choices; `None`: "I don't know".
         #[serde(default, skip_serializing_if = "Option::is_none")]
         answer: Option<String>,
-        /// How sure the participant is, from 1 to 3, if it was asked.
+        /// The participant's confidence in the answer, from 1 to 3, if it was asked for.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         confidence: Option<u8>,
-        /// Where the answer was entered.
+        /// Where the answer was entered: on the display or at the console.
         on: Answering,
     },
-    /// The wizard skips the rest of the probe.
+    /// The wizard skips the remaining questions of the freeze probe.
     Skipped {
-        /// The probe's number.
+        /// Number of the freeze probe in the trial.
         probe: u32,
-        /// Why, in the wizard's words.
+        /// The wizard's reason for skipping the questions.
         reason: String,
     },
-    /// No more questions are asked: the count-down to the task begins, unless the trial is over.
+    /// No more questions of the freeze probe are asked: the count-down to the task begins, unless the trial is over.
     Closed {
-        /// The probe's number.
+        /// Number of the freeze probe in the trial.
         probe: u32,
-        /// Why.
+        /// Why no more questions are asked.
         reason: ProbeEnd,
     },
-    /// The task goes on.
+    /// The freeze probe ends, and the task continues.
     Ended {
-        /// The probe's number.
+        /// Number of the freeze probe in the trial.
         probe: u32,
     },
 }
 
-/// A question of a probe.
+/// A question of a freeze probe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbeQuestion {
-    /// What it is about.
+    /// What the question is about.
     pub about: ProbeSubject,
     /// The possible answers by their names in the log, in the order in which they are shown.
     pub choices: Vec<String>,
-    /// Probability with which the question came into this probe, given the settings, the session so far, and the number of questions.
+    /// Inclusion probability: the probability with which this question was drawn for the probe, given the settings, the
+    /// session so far, and the number of questions.
     pub inclusion: f64,
 }
 
-/// What a question is about.
+/// What a question of a freeze probe is about.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(tag = "asks", rename_all = "snake_case")]
 pub enum ProbeSubject {
@@ -109,18 +111,18 @@ pub enum ProbeSubject {
     NextPress,
 }
 
-/// What keeps a probe that is due from beginning.
+/// Why a freeze probe that is due cannot begin yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeBlock {
-    /// A signal was shown a short time ago.
+    /// A signal was shown a short time before.
     Signal,
-    /// Another probe ended a short time ago.
+    /// Another freeze probe ended a short time before.
     Probe,
 }
 
 impl ProbeBlock {
-    /// The reason in words.
+    /// The reason for the delay in words.
     pub fn words(self) -> &'static str {
         match self {
             ProbeBlock::Signal => "a signal was shown just before",
@@ -129,18 +131,18 @@ impl ProbeBlock {
     }
 }
 
-/// Who wanted a probe.
+/// What caused a freeze probe: the schedule or the wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeOrigin {
-    /// The times that were drawn before the trial.
+    /// The schedule, which was drawn before the trial.
     Schedule,
-    /// The wizard.
+    /// A request of the wizard.
     Wizard,
 }
 
 impl ProbeOrigin {
-    /// Name in logs.
+    /// Name of the cause in logs.
     pub fn name(self) -> &'static str {
         match self {
             ProbeOrigin::Schedule => "schedule",
@@ -149,22 +151,22 @@ impl ProbeOrigin {
     }
 }
 
-/// Why no more questions are asked.
+/// Why a freeze probe asks no more questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeEnd {
     /// All questions are answered.
     Answered,
-    /// The time for a probe is over.
+    /// The time limit of the probe was reached.
     TimeOver,
-    /// The wizard skipped the rest.
+    /// The wizard skipped the remaining questions.
     Skipped,
     /// The trial ended during the probe.
     TrialEnded,
 }
 
 impl ProbeEnd {
-    /// Name in logs.
+    /// Name of the reason in logs.
     pub fn name(self) -> &'static str {
         match self {
             ProbeEnd::Answered => "answered",
@@ -174,7 +176,7 @@ impl ProbeEnd {
         }
     }
 
-    /// The reason in words.
+    /// The reason for the end of the questions in words.
     pub fn words(self) -> &'static str {
         match self {
             ProbeEnd::Answered => "all questions are answered",

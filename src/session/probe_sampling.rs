@@ -1,13 +1,15 @@
-//! The questions of a freeze probe, drawn with known probabilities.
+//! Draws the questions of a freeze probe with known probabilities.
 //!
-//! In a probe that uses the estimate, every aspect belongs to one stratum: believed wrong by the estimate, changed unseen, recipe of a
-//! current order, or any other. Each stratum that is not empty has the same share of the questions, divided evenly among its aspects,
-//! above a floor that every aspect has. In a blind probe all aspects have the same probability. The inclusion probability of each drawn
-//! aspect is recorded, so that an analysis can weight by its inverse (Horvitz and Thompson 1952).
+//! In a probe that uses the belief estimate, every aspect belongs to one stratum: believed wrong by the estimate,
+//! changed unseen, recipe of a current order, or any other. Each stratum that is not empty has the same share of the
+//! questions, divided evenly among its aspects, above a minimum probability that every aspect has. In a blind probe all
+//! aspects have the same probability. The inclusion probability of each drawn aspect is recorded, so that an analysis
+//! can weight by its inverse (Horvitz and Thompson 1952).
 //!
 //! With `level_2` one further question is about what happens next.
 //!
-//! The draw is a systematic one of fixed size over the aspects in random order (Madow 1949), whose inclusion probabilities are exact.
+//! The draw is a systematic one of fixed size over the aspects in random order (Madow 1949), whose inclusion
+//! probabilities are exact.
 
 use rand::RngExt;
 
@@ -18,10 +20,11 @@ use super::session_state::Session;
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::{Agent, AspectId, AspectKind, DishId, Kitchen, LocationId, OrderContent};
 
-/// Number of strata.
+/// Number of strata of aspects from which questions are drawn.
 const STRATA: usize = 4;
 
-/// Draws the questions of a probe. `is_wrong`: whether each aspect is believed wrong by the estimate; `None` in a blind probe.
+/// Draws the questions of a freeze probe. `is_wrong` says for each aspect whether the belief is wrong by the estimate;
+/// `None` in a blind probe.
 pub fn questions(session: &Session, spec: &ProbeSpec, probe: u32, is_wrong: Option<&[bool]>) -> Vec<ProbeQuestion> {
     let name = format!("questions of probes in trial {}", session.trial);
     let mut random = stream(session.spec.seed, &name, u64::from(probe));
@@ -49,7 +52,7 @@ pub fn questions(session: &Session, spec: &ProbeSpec, probe: u32, is_wrong: Opti
     questions
 }
 
-/// A question about what happens next: about the orders, if there is one, or about the robot.
+/// Draws a question about what happens next: about the orders, if there is one, or about the robot.
 fn what_next(session: &Session, random: &mut Stream) -> ProbeQuestion {
     let kitchen = &session.kitchen;
     let is_order = |&order: &LocationId| matches!(session.state.order(order), OrderContent::Dish(_));
@@ -64,7 +67,8 @@ fn what_next(session: &Session, random: &mut Stream) -> ProbeQuestion {
     ProbeQuestion { about, choices, inclusion }
 }
 
-/// All answers that a question can have, by their names in the log; none, if the kitchen has no such question.
+/// All possible answers to a question, by their names in the log; none, if the kitchen does not have what the question
+/// is about.
 fn labels(kitchen: &Kitchen, about: &ProbeSubject) -> Vec<String> {
     match about {
         ProbeSubject::Location { .. } | ProbeSubject::Recipe { .. } => {
@@ -77,7 +81,7 @@ fn labels(kitchen: &Kitchen, about: &ProbeSubject) -> Vec<String> {
     }
 }
 
-/// The stratum of an aspect, from 0.
+/// The stratum of a state aspect, from 0.
 fn stratum(session: &Session, id: AspectId, is_wrong: &[bool]) -> usize {
     let is_current =
         |dish| session.kitchen.orders.iter().any(|&order| session.state.order(order) == OrderContent::Dish(dish));
@@ -89,7 +93,8 @@ fn stratum(session: &Session, id: AspectId, is_wrong: &[bool]) -> usize {
     }
 }
 
-/// The share of each aspect in the questions: strata that are not empty have equal shares, and so have the aspects of a stratum.
+/// The share of each aspect in the questions: strata that are not empty have equal shares, and so have the aspects
+/// within a stratum.
 fn stratum_shares(strata: &[usize]) -> Vec<f64> {
     let mut sizes = [0_usize; STRATA];
     strata.iter().for_each(|&stratum| sizes[stratum] += 1);
@@ -97,8 +102,8 @@ fn stratum_shares(strata: &[usize]) -> Vec<f64> {
     strata.iter().map(|&stratum| 1.0 / (filled * sizes[stratum]) as f64).collect()
 }
 
-/// Inclusion probabilities for `number` draws: a floor for every aspect, and the rest by these shares, which sum to 1. None exceeds 1,
-/// and they sum to `number`.
+/// Inclusion probabilities for `number` draws: a minimum for every aspect, and the rest in proportion to these shares,
+/// which sum to 1. None exceeds 1, and they sum to `number`.
 fn inclusions(shares: &[f64], number: usize, floor: f64) -> Vec<f64> {
     let mut is_certain = vec![false; shares.len()];
     loop {
@@ -106,7 +111,8 @@ fn inclusions(shares: &[f64], number: usize, floor: f64) -> Vec<f64> {
         let open = || shares.iter().zip(&is_certain).filter(|(_, certain)| !**certain).map(|(share, _)| share);
         let open_share: f64 = open().sum();
         let left = number as f64 - certain as f64;
-        // Where the floor alone is more than the number of questions allows, it is as high as it can be.
+        // If the minimum alone exceeds what the number of questions allows, it is lowered to the highest possible
+        // value.
         let floor = floor.min(left / open().count().max(1) as f64);
         let rest = left - floor * open().count() as f64;
         let chance = |(share, certain): (&f64, &bool)| match certain {
@@ -123,7 +129,8 @@ fn inclusions(shares: &[f64], number: usize, floor: f64) -> Vec<f64> {
     }
 }
 
-/// A systematic draw of `number` indices: those at which the sum of the probabilities passes `start`, `start` + 1, and so on.
+/// A systematic draw of `number` indices: those at which the cumulative sum of the probabilities passes `start`,
+/// `start` + 1, and so on.
 fn systematic(inclusion: &[f64], number: usize, start: f64) -> Vec<usize> {
     let mut drawn = Vec::with_capacity(number);
     let mut sum = 0.0;
@@ -133,7 +140,7 @@ fn systematic(inclusion: &[f64], number: usize, start: f64) -> Vec<usize> {
             drawn.push(index);
         }
     }
-    // Rounding can leave the sum just below the last mark.
+    // Rounding can leave the cumulative sum just below the last mark.
     if drawn.len() < number
         && let Some(last) = (0..inclusion.len()).rev().find(|index| !drawn.contains(index))
     {
@@ -142,7 +149,7 @@ fn systematic(inclusion: &[f64], number: usize, start: f64) -> Vec<usize> {
     drawn
 }
 
-/// The question about an aspect, with its choices in random order.
+/// The question about a state aspect, with its choices in random order.
 fn question(kitchen: &Kitchen, id: AspectId, inclusion: f64, random: &mut Stream) -> ProbeQuestion {
     let aspect = &kitchen.aspects[id.index()];
     let about = match aspect.kind {
@@ -151,11 +158,12 @@ fn question(kitchen: &Kitchen, id: AspectId, inclusion: f64, random: &mut Stream
     };
     let mut choices = labels(kitchen, &about);
     shuffle(&mut choices, random);
-    // Rounded for the log: the analysis divides by it.
+    // Rounded for the log, because the analysis divides by the recorded value.
     ProbeQuestion { about, choices, inclusion: (inclusion * 1e9).round() / 1e9 }
 }
 
-/// The aspect that a question is about; none, if it is about what happens next, or about what the kitchen does not have.
+/// The state aspect that a question is about; none if the question is about what happens next, or about something that
+/// the kitchen does not have.
 pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
     match about {
         ProbeSubject::Location { location } => kitchen.location_named(location).map(AspectId::of_location),
@@ -167,7 +175,7 @@ pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
     }
 }
 
-/// Whether a recorded question is one of this kitchen, with all its choices.
+/// Whether a recorded question fits this kitchen, with all its choices.
 pub(super) fn fits(kitchen: &Kitchen, question: &ProbeQuestion) -> bool {
     let is_chance = question.inclusion > 0.0 && question.inclusion <= 1.0;
     let labels = labels(kitchen, &question.about);

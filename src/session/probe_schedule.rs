@@ -1,7 +1,7 @@
-//! The times of a trial's freeze probes, drawn beforehand from a stream of their own.
+//! The times of a trial's freeze probes, drawn beforehand from a random stream of their own.
 //!
-//! Each probe comes between once and twice `apart_s` after the one before it (the first: after the start), so that nobody can foresee it. In
-//! a trial that is hardly long enough for all of them they come closer to once.
+//! Each probe comes between once and twice `apart_s` after the previous one (the first: after the start), so that
+//! nobody can foresee it. In a trial that is hardly long enough for all probes, the intervals are closer to `apart_s`.
 
 use rand::RngExt;
 
@@ -10,22 +10,23 @@ use super::settings::SessionSpec;
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 
-/// A scheduled probe.
+/// A freeze probe of the trial's schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScheduledProbe {
-    /// When it is due, on the trial's clock.
+    /// Time at which the probe is due, on the trial's clock.
     pub at: SessionTime,
-    /// Whether the belief estimate has a part in the choice of its questions.
+    /// Whether the belief estimate influences the choice of the probe's questions.
     pub uses_estimate: bool,
 }
 
-/// The settings of the probes of this session's trial; none in a familiarisation, which does not count.
+/// The settings of the freeze probes in this session's trial; none in a practice trial (familiarisation), which does
+/// not count.
 pub fn of_trial(spec: &SessionSpec) -> Option<&ProbeSpec> {
     let counts = spec.step.as_ref().is_none_or(|step| step.period.is_some());
     spec.probes.as_ref().filter(|_| counts)
 }
 
-/// The scheduled probes of a trial.
+/// Draws the schedule of the freeze probes in a trial.
 pub fn draw(spec: &SessionSpec, trial: u64) -> Vec<ScheduledProbe> {
     let Some(probes) = of_trial(spec) else { return Vec::new() };
     let mut random = stream(spec.seed, "times of probes", trial);
@@ -43,7 +44,8 @@ pub fn draw(spec: &SessionSpec, trial: u64) -> Vec<ScheduledProbe> {
     times.into_iter().zip(blind).map(|(at, is_blind)| ScheduledProbe { at, uses_estimate: !is_blind }).collect()
 }
 
-/// Which probes ignore the estimate: this share of them, in random order. Of a remainder a further one is drawn.
+/// Draws for each probe whether it ignores the estimate (blind): this share of the probes, in random order. A
+/// fractional remainder is the probability of one more.
 fn blind(number: usize, share: f64, random: &mut Stream) -> Vec<bool> {
     let wanted = number as f64 * share;
     let count = wanted.floor() as usize + usize::from(random.random::<f64>() < wanted.fract());
@@ -59,7 +61,7 @@ pub(super) fn shuffle<T>(list: &mut [T], random: &mut Stream) {
     }
 }
 
-/// Whether a probe that the wizard asked for uses the estimate: by chance, like those of the schedule.
+/// Whether a freeze probe that the wizard requested uses the estimate: drawn at random, as for scheduled probes.
 pub(super) fn requested_uses_estimate(spec: &SessionSpec, trial: u64, number: u32) -> bool {
     let share = spec.probes.as_ref().map_or(0.0, |probes| probes.blind_share);
     let name = format!("requested probes of trial {trial}");

@@ -5,37 +5,40 @@ use serde::{Deserialize, Serialize};
 use super::setting_checks::SettingError;
 use crate::kitchen::Kitchen;
 
-/// How often the task stands still and the participant is asked what it believes. Without the table there are no probes.
+/// Settings of freeze probes: how often the task stands still for questions about the participant's beliefs. Without
+/// this table there are no probes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ProbeSpec {
-    /// Number of probes that are scheduled in a trial.
+    /// Number of freeze probes that are scheduled in a trial.
     pub per_trial: u32,
-    /// Least time before the first probe and between two, in seconds of the trial's clock.
+    /// Least time before the first freeze probe and between two probes, in seconds of the trial's clock.
     pub apart_s: f64,
-    /// Time after a signal or a probe in which none begins, in seconds of the trial's clock.
+    /// Time after a signal or a probe in which no freeze probe begins, in seconds of the trial's clock.
     pub after_signal_s: f64,
-    /// Time for which a probe waits that may not begin, in seconds of the trial's clock; then it is dropped.
+    /// Time for which a freeze probe waits if it may not begin, in seconds of the trial's clock; afterwards it is
+    /// cancelled.
     pub wait_s: f64,
-    /// Time for all questions of a probe, in seconds.
+    /// Time limit for all questions of a freeze probe, in seconds.
     pub limit_s: f64,
-    /// Count-down before the task goes on, in seconds.
+    /// Duration of the count-down after a freeze probe before the task continues, in seconds.
     pub count_down_s: f64,
-    /// The least number of questions in a probe.
+    /// The least number of questions in a freeze probe.
     pub least_questions: u32,
-    /// The largest number of questions in a probe.
+    /// The largest number of questions in a freeze probe.
     pub most_questions: u32,
-    /// Share of a trial's probes whose questions are chosen without the belief estimate.
+    /// Share of blind probes in a trial, whose questions are chosen without the belief estimate.
     pub blind_share: f64,
-    /// The least probability with which any question comes into a probe.
+    /// The least inclusion probability of any question in a freeze probe.
     pub least_inclusion: f64,
-    /// Probability that the participant looks at a place because it was asked about it; the estimate is told so.
+    /// Probability that the participant looks at a place because a question was about it; the belief filter uses this
+    /// probability.
     pub teaches: f64,
-    /// Whether the participant says of each answer how sure it is.
+    /// Whether the participant also reports the confidence in each answer.
     pub confidence: bool,
-    /// Whether a probe can also ask what happens next.
+    /// Whether a freeze probe can also ask what happens next.
     pub level_2: bool,
-    /// Locations, and recipes as "recipe of DISH", about which nothing is asked.
+    /// Locations, and recipes as "recipe of DISH", about which no questions are asked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub leave_out: Vec<String>,
 }
@@ -62,10 +65,10 @@ impl Default for ProbeSpec {
 }
 
 impl ProbeSpec {
-    /// Whether the settings fit each other and a trial of this length.
+    /// Checks that the settings fit each other and a trial of this duration.
     ///
     /// # Errors
-    /// The first that does not.
+    /// The first setting that does not fit.
     pub(super) fn check(&self, trial_s: f64) -> Result<(), SettingError> {
         let ProbeSpec { per_trial, apart_s, wait_s, least_questions, most_questions, .. } = *self;
         if least_questions > most_questions {
@@ -84,10 +87,10 @@ impl ProbeSpec {
         Ok(())
     }
 
-    /// Whether the kitchen has what the settings name, and enough to ask about.
+    /// Checks that the kitchen has what the settings name, and enough aspects for the questions.
     ///
     /// # Errors
-    /// The first setting for which it does not.
+    /// The first setting that does not fit the kitchen.
     pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
         let is_there = |name: &String| kitchen.aspects.iter().any(|aspect| aspect.name == *name);
         if let Some(name) = self.leave_out.iter().find(|name| !is_there(name)) {
@@ -112,7 +115,7 @@ impl ProbeSpec {
         Ok(())
     }
 
-    /// Whether questions can be about the aspect of this name and number of values.
+    /// Whether probes can ask about the state aspect with this name and number of values.
     pub fn asks_about(&self, aspect: &str, values: usize) -> bool {
         values > 1 && !self.leave_out.iter().any(|name| name == aspect)
     }

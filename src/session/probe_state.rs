@@ -5,93 +5,93 @@ use super::probe_schedule::ScheduledProbe;
 use super::wall_display::Answering;
 use crate::base::time::SessionTime;
 
-/// The freeze probes of a trial.
+/// All freeze probes of a trial: the present one, past ones, and the schedule.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProbeBook {
-    /// The probe for which the task stands still, from `begun` to `ended`.
+    /// The freeze probe for which the task stands still, from `begun` to `ended`.
     pub open: Option<OpenProbe>,
-    /// The probes that are over.
+    /// The freeze probes that have ended.
     pub over: Vec<OpenProbe>,
-    /// A probe that is due and has not begun.
+    /// A freeze probe that is due and has not begun.
     pub waiting: Option<WaitingProbe>,
-    /// Numbers of the dropped probes, and what they waited for.
+    /// Numbers of the cancelled freeze probes, with the reason for which they had to wait.
     pub dropped: Vec<(u32, ProbeBlock)>,
-    /// The scheduled probes of the trial, whose times were drawn at its start.
+    /// The scheduled freeze probes of the trial, whose times were drawn at its start.
     pub schedule: Vec<ScheduledProbe>,
-    /// How many of the scheduled ones have become due.
+    /// Number of scheduled freeze probes that have become due.
     pub came_due: usize,
-    /// The highest number of a probe so far.
+    /// The highest number of a freeze probe so far.
     pub numbered: u32,
-    /// When the last signal was shown.
+    /// Session time at which the last signal was shown.
     pub signalled_at: Option<SessionTime>,
-    /// When the last probe ended.
+    /// Session time at which the last freeze probe ended.
     pub ended_at: Option<SessionTime>,
 }
 
-/// A probe that is due and has not begun.
+/// A freeze probe that is due and has not begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaitingProbe {
-    /// Its number.
+    /// Number of the freeze probe in the trial.
     pub number: u32,
-    /// Who wanted it.
+    /// Whether the schedule or the wizard caused the probe.
     pub origin: ProbeOrigin,
-    /// Whether the belief estimate has a part in the choice of its questions.
+    /// Whether the belief estimate influences the choice of the probe's questions.
     pub uses_estimate: bool,
-    /// When it became due, on the trial's clock.
+    /// Time at which the probe became due, on the trial's clock.
     pub since: SessionTime,
-    /// What it waits for, once that is recorded.
+    /// Why the probe has to wait, once that is recorded.
     pub reason: Option<ProbeBlock>,
 }
 
-/// A probe that has begun.
+/// A freeze probe that has begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenProbe {
-    /// Its number.
+    /// Number of the freeze probe in the trial.
     pub number: u32,
-    /// Who wanted it.
+    /// Whether the schedule or the wizard caused the probe.
     pub origin: ProbeOrigin,
-    /// Whether the belief estimate had a part in the choice of its questions.
+    /// Whether the belief estimate influenced the choice of the probe's questions.
     pub uses_estimate: bool,
-    /// Its questions.
+    /// The questions of the probe.
     pub questions: Vec<ProbeQuestion>,
-    /// Index of the shown question.
+    /// Index of the question that is shown.
     pub shown: Option<usize>,
-    /// The answers so far, by question.
+    /// The participant's answers so far, by question.
     pub answers: Vec<Option<ProbeAnswer>>,
-    /// When the task came to a stand, in session time.
+    /// Session time at which the task was frozen.
     pub begun: SessionTime,
-    /// When the shown question appeared, in session time.
+    /// Session time at which the present question appeared.
     pub asked_at: SessionTime,
-    /// Why the wizard skipped the rest, if it did.
+    /// The wizard's reason for skipping the remaining questions, if the wizard did.
     pub skipped: Option<String>,
     /// Why and when the questions ended.
     pub closed: Option<(ProbeEnd, SessionTime)>,
-    /// When the wizard paused the probe, if it is paused.
+    /// Session time at which the wizard paused the probe, if it is paused.
     pub paused_since: Option<SessionTime>,
-    /// Start and end of each finished pause of the probe.
+    /// Session times of start and end of each finished pause of the probe.
     pub pauses: Vec<(SessionTime, SessionTime)>,
 }
 
-/// An answer to a question.
+/// The participant's answer to a question of a freeze probe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbeAnswer {
-    /// The choice; `None`: "I don't know".
+    /// The chosen answer; `None`: "I don't know".
     pub answer: Option<String>,
-    /// How sure the participant is, 1 to 3.
+    /// The participant's confidence in the answer, 1 to 3.
     pub confidence: Option<u8>,
-    /// Time from the question to the answer, without pauses.
+    /// Response time: from the question to the answer, without pauses.
     pub took: SessionTime,
-    /// Where it was entered.
+    /// Where the answer was entered: on the display or at the console.
     pub on: Answering,
 }
 
 impl OpenProbe {
-    /// Whether the wizard paused the probe.
+    /// Whether the wizard paused the freeze probe.
     pub fn is_paused(&self) -> bool {
         self.paused_since.is_some()
     }
 
-    /// The question that waits for an answer, with its index.
+    /// The shown question, which waits for an answer, with its index.
     pub fn question(&self) -> Option<(usize, &ProbeQuestion)> {
         let shown = self.shown.filter(|&shown| self.closed.is_none() && self.answers[shown].is_none())?;
         Some((shown, &self.questions[shown]))
@@ -104,7 +104,7 @@ impl OpenProbe {
         paused.fold(end - at, |age, pause| age - pause)
     }
 
-    /// Session time at which `after` has passed since `at`, if no further pause comes.
+    /// Session time at which the duration `after` will have passed since `at`, if no further pause comes.
     pub fn when(&self, at: SessionTime, after: SessionTime) -> SessionTime {
         let paused = self.pauses.iter().map(|&(from, until)| until - from.max(at));
         paused.fold(at + after, |when, pause| when + pause)

@@ -1,7 +1,8 @@
 //! The rules of freeze probes: when one is due, which of its events a session accepts, and what they change.
 //!
-//! A running session asks [`upcoming`] after every event and raises what is due; a replay applies the recorded events. While a probe is
-//! open the trial is paused, and the probe has a time of its own, which stands still where the wizard pauses it.
+//! A running session asks [`upcoming`] after every event and records the event that is due; a replay applies the
+//! recorded events. While a probe is open the trial is paused, and the probe has its own time, which stands still while
+//! the wizard pauses the probe.
 
 use super::phase::Phase;
 pub use super::probe_event::{ProbeBlock, ProbeEnd, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
@@ -15,26 +16,27 @@ use super::timeline_entry::TimelineEvent;
 use super::trial_clock;
 use crate::base::time::SessionTime;
 
-/// Time between the stop of the task and the first question, in seconds: the kitchen is off the display before anything is asked.
+/// Time between the freeze of the task and the first question, in seconds: the kitchen disappears from the display
+/// before any question is shown.
 const BLANK_S: f64 = 1.0;
 
-/// What the rules of probes demand next.
+/// What the rules of freeze probes require next.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DueProbe {
-    /// A probe begins; its questions are to be drawn.
+    /// A freeze probe begins; its questions have to be drawn.
     Begin {
-        /// Its number.
+        /// Number of the freeze probe in the trial.
         probe: u32,
-        /// Who wanted it.
+        /// Whether the schedule or the wizard caused the probe.
         origin: ProbeOrigin,
-        /// Whether the belief estimate has a part in the choice of its questions.
+        /// Whether the belief estimate influences the choice of the probe's questions.
         uses_estimate: bool,
     },
-    /// Any other event.
+    /// Any other event of a freeze probe.
     Event(ProbeEvent),
 }
 
-/// What is due next and when; none without probes, and while a probe is paused.
+/// The next due event of freeze probes and its time; none without probes, and while a probe is paused.
 pub fn upcoming(session: &Session) -> Option<(SessionTime, DueProbe)> {
     let spec = of_trial(&session.spec)?;
     match &session.probes.open {
@@ -102,12 +104,12 @@ fn to_begin(session: &Session, spec: &ProbeSpec) -> Option<(SessionTime, DueProb
     })
 }
 
-/// Session time at which the running trial's clock shows `clock`; now, if it shows more already.
+/// Session time at which the running trial's clock will show `clock`; the present time, if it shows more already.
 fn at_clock(session: &Session, clock: SessionTime) -> SessionTime {
     session.time + (clock - session.trial_clock(session.time))
 }
 
-/// What keeps a probe from beginning at `at`, and until when.
+/// Why a freeze probe cannot begin at `at`, and until when.
 fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeBlock, SessionTime)> {
     let after = SessionTime::from_secs_f64(spec.after_signal_s);
     let last = [(ProbeBlock::Signal, session.probes.signalled_at), (ProbeBlock::Probe, session.probes.ended_at)];
@@ -118,7 +120,7 @@ fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeB
     blocks.max_by_key(|(_, until)| *until)
 }
 
-/// Whether the session accepts the event now.
+/// Whether the session accepts this event of a freeze probe now.
 ///
 /// # Errors
 /// The reason for the refusal, in words for the wizard.
@@ -175,7 +177,7 @@ pub(super) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
     }
 }
 
-/// The open probe of this number whose questions are not over.
+/// The open freeze probe with this number, if its questions have not ended.
 fn opened(session: &Session, probe: u32) -> Result<&OpenProbe, &'static str> {
     let open = session.probes.open.as_ref().filter(|open| open.number == probe).ok_or("that probe is not held")?;
     match open.closed.is_some() {
@@ -185,23 +187,24 @@ fn opened(session: &Session, probe: u32) -> Result<&OpenProbe, &'static str> {
 }
 
 impl Session {
-    /// Whether a freeze probe is held: from its beginning until the task goes on.
+    /// Whether the task is frozen for a probe: from the probe's beginning until the task continues.
     pub fn is_frozen(&self) -> bool {
         self.probes.open.is_some()
     }
 
-    /// Whether the wizard can pause now: the trial, or the probe that is held.
+    /// Whether the wizard can pause now: the trial, or the open freeze probe.
     pub fn can_be_paused(&self) -> bool {
         self.is_running() || self.probes.open.as_ref().is_some_and(|open| !open.is_paused())
     }
 }
 
-/// Begins the book of a trial.
+/// Draws the schedule of freeze probes at the start of a trial.
 pub(super) fn start(session: &mut Session) {
     session.probes = ProbeBook { schedule: draw(&session.spec, session.trial), ..ProbeBook::default() };
 }
 
-/// Applies an admitted event; returns for how long the task stood still, if it goes on.
+/// Applies an event of a freeze probe that the session accepts; returns for how long the task stood still, if it
+/// continues.
 pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent) -> Option<SessionTime> {
     if !matches!(event, ProbeEvent::Asked { .. } | ProbeEvent::Answered { .. }) {
         session.note(now, TimelineEvent::Probe(event.clone()));
@@ -252,7 +255,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
     None
 }
 
-/// Applies an event that concerns the open probe.
+/// Applies an event of the open freeze probe.
 fn in_open(session: &mut Session, now: SessionTime, event: &ProbeEvent) {
     let is_over = matches!(session.phase, Phase::Over(_));
     let Some(open) = &mut session.probes.open else { return };
@@ -279,7 +282,7 @@ fn in_open(session: &mut Session, now: SessionTime, event: &ProbeEvent) {
     }
 }
 
-/// Takes the probe that begins or is delayed: the waiting one, else the next of the schedule.
+/// Removes the freeze probe that begins or is delayed: the waiting one, else the next of the schedule.
 fn take_due(session: &mut Session, now: SessionTime) -> WaitingProbe {
     let clock = session.trial_clock(now);
     let book = &mut session.probes;
@@ -294,14 +297,14 @@ fn take_due(session: &mut Session, now: SessionTime) -> WaitingProbe {
     WaitingProbe { number, origin, uses_estimate, since: at, reason: None }
 }
 
-/// A pause by the wizard while a probe is held: its own time stops.
+/// Stops the freeze probe's own time, because the wizard pauses.
 pub(super) fn pause(session: &mut Session, now: SessionTime) {
     if let Some(open) = &mut session.probes.open {
         open.paused_since = Some(now);
     }
 }
 
-/// The probe goes on after a pause by the wizard.
+/// Continues the freeze probe after a pause by the wizard.
 pub(super) fn resume(session: &mut Session, now: SessionTime) {
     if let Some(open) = &mut session.probes.open
         && let Some(since) = open.paused_since.take()
@@ -310,7 +313,8 @@ pub(super) fn resume(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// The trial is over. A probe in its count-down is over with it; one whose questions are not over is closed by its own event.
+/// Handles the end of the trial: a freeze probe in its count-down ends, too; one with remaining questions is closed by
+/// an event of its own.
 pub(super) fn trial_ends(session: &mut Session, now: SessionTime) {
     resume(session, now);
     session.probes.waiting = None;
@@ -319,7 +323,7 @@ pub(super) fn trial_ends(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// The session is over, and so is a probe that is held.
+/// Handles the end of the session: an open freeze probe ends, too.
 pub(super) fn session_ends(session: &mut Session, now: SessionTime) {
     trial_ends(session, now);
     if let Some(mut open) = session.probes.open.take() {

@@ -1,11 +1,13 @@
-//! Proposed presses on the display: which are left, and when they are out of date.
+//! Proposed presses (of the concept DEV) on the participant's display: which are still to be made, and when the
+//! proposal is out of date.
 
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
 use crate::communication::{Signal, unavailable};
 use crate::kitchen::Agent;
 
-/// Names of the proposed presses on the display that are still to be made; `None` if none are on the display. Once another button was pressed, none are left.
+/// Names of the proposed presses on the display that the human has still to make; `None` if none are on the display.
+/// After a press of another button, none are left.
 pub fn left(session: &Session) -> Option<&[String]> {
     let Signal::Propose(presses) = &session.shown.as_ref()?.signal else { return None };
     let since = session.timeline.iter().rev().take_while(|entry| !matches!(entry.what, TimelineEvent::Signal { .. }));
@@ -22,13 +24,14 @@ pub fn left(session: &Session) -> Option<&[String]> {
     Some(if is_followed { &presses[made.len()..] } else { &[] })
 }
 
-/// Whether the proposal on the display is out of date: its presses were made, another one was made, or the next one would do nothing.
+/// Whether the proposal on the display is out of date: its presses were made, another button was pressed, or the next
+/// one would have no effect.
 pub fn is_outdated(session: &Session) -> bool {
     let Some(left) = left(session) else { return false };
     unavailable(&session.kitchen, session.state, &Signal::Propose(left.to_vec())).is_some()
 }
 
-/// Whether presses have been proposed since the human's last press: an error gets one proposal.
+/// Whether the display has proposed presses since the human's last press: an error gets one proposal only.
 pub fn was_made(session: &Session) -> bool {
     let newest = session.timeline.iter().rev().find(|entry| match &entry.what {
         TimelineEvent::Press { agent, .. } => *agent == Agent::Human,

@@ -1,4 +1,4 @@
-//! The study protocol: the phases of a recording of a plan, one after another.
+//! The study protocol: the phases of a recording of a plan, one after another, with their rules.
 
 use super::phase::Phase;
 use super::plan::{PhaseSpec, Questionnaire, StepSpec};
@@ -8,24 +8,25 @@ use super::session_state::Session;
 use super::tutorial;
 
 impl Session {
-    /// The plan step and the protocol state, if the recording belongs to a plan.
+    /// The recording's step in the plan and the protocol's state, if the recording belongs to a plan.
     pub fn step(&self) -> Option<(&StepSpec, &Protocol)> {
         self.spec.step.as_ref().zip(self.protocol.as_ref())
     }
 
-    /// The present phase of the protocol.
+    /// The present phase of the study protocol.
     pub fn study_phase(&self) -> Option<&PhaseSpec> {
         let (step, protocol) = self.step()?;
         step.phases.get(protocol.number.checked_sub(1)?)
     }
 
-    /// The phase after the present one.
+    /// The phase of the study protocol after the present one.
     pub fn next_phase(&self) -> Option<StudyPhase> {
         let (step, protocol) = self.step()?;
         step.phases.get(protocol.number).map(PhaseSpec::phase)
     }
 
-    /// The event that goes on from the shown item to the next one, or to all answers; `None` where all answers are shown.
+    /// The event that moves from the shown questionnaire item to the next one, or to the overview of all answers;
+    /// `None` if the overview is shown.
     pub fn next_item(&self) -> Option<ProtocolEvent> {
         let (questionnaire, protocol) = (self.questionnaire()?, self.protocol.as_ref()?);
         questionnaire.items.get(protocol.item)?;
@@ -43,7 +44,7 @@ impl Session {
         }
     }
 
-    /// Reason why the present phase cannot be left yet; `None` if it can.
+    /// Why the present phase cannot be left yet; `None` if it can.
     pub fn phase_lacks(&self) -> Option<&'static str> {
         let protocol = self.protocol.as_ref()?;
         if self.aborted.is_some() {
@@ -64,7 +65,7 @@ impl Session {
         }
     }
 
-    /// Whether all phases are done or the trial was aborted; true without a plan.
+    /// Whether all phases of the recording are done or the trial was aborted; true without a plan.
     pub fn is_step_done(&self) -> bool {
         match &self.protocol {
             None => true,
@@ -74,7 +75,7 @@ impl Session {
     }
 }
 
-/// Whether the session accepts the event now.
+/// Whether the session accepts this event of the study protocol now.
 ///
 /// # Errors
 /// The reason for the refusal, in words for the wizard.
@@ -150,7 +151,7 @@ fn shown_item<'a>(session: &'a Session, item: &str) -> Result<&'a Questionnaire,
     }
 }
 
-/// Applies an admitted event.
+/// Applies an event of the study protocol that the session accepts.
 pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
     let place = |item: &str| session.questionnaire().and_then(|questionnaire| questionnaire.position(item));
     let (steps, items) = match event {
@@ -200,7 +201,7 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
     }
 }
 
-/// Number of steps and of items of a phase.
+/// Numbers of steps and of questionnaire items in a phase.
 fn sizes(step: Option<&StepSpec>, number: usize) -> (usize, usize) {
     let phase = step.and_then(|step| step.phases.get(number.checked_sub(1)?));
     let items = match phase {

@@ -1,4 +1,4 @@
-//! The phases of a study, and the events in them around a trial.
+//! The phases of a study, and the events of the study protocol around a trial.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,15 +12,15 @@ use super::wall_display::Answering;
 pub enum StudyPhase {
     /// The wizard instructs the participant.
     Instruction,
-    /// The participant goes through the tutorial.
+    /// The participant goes through the tutorial on the display.
     Tutorial,
-    /// Practice.
+    /// Practice trial, which does not count.
     Familiarisation,
-    /// A trial that counts.
+    /// A trial that counts for the analysis.
     Trial,
     /// The participant answers a questionnaire.
     Questionnaire,
-    /// Debriefing of the wizard.
+    /// Debriefing of the wizard after the last trial.
     Debriefing,
 }
 
@@ -37,7 +37,7 @@ impl StudyPhase {
         }
     }
 
-    /// Whether the phase has a trial.
+    /// Whether the phase contains a trial.
     pub fn has_trial(self) -> bool {
         matches!(self, StudyPhase::Trial | StudyPhase::Familiarisation)
     }
@@ -47,69 +47,71 @@ impl StudyPhase {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum ProtocolEvent {
-    /// The participant consented; without consent nothing is recorded. Older recordings say only that.
+    /// The participant consented; without consent nothing is recorded. Older recordings contain no further details.
     ConsentGiven {
-        /// Where: by holding a button on the display, or told to the wizard, who confirmed it on the console.
+        /// How the participant consented: by holding a button on the display, or by telling the wizard, who confirmed
+        /// it on the console.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         on: Option<Answering>,
-        /// The text that was agreed to.
+        /// The text to which the participant consented.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         text: Option<String>,
-        /// Digest of the text.
+        /// Digest of the consent text.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         digest: Option<String>,
     },
-    /// The next phase of the recording begins; `number` counts from 1.
+    /// The next phase of the recording begins.
     PhaseStarted {
-        /// Which phase begins.
+        /// The kind of the phase.
         phase: StudyPhase,
-        /// Its place in the recording, counted from 1.
+        /// Number of the phase in the recording, counted from 1.
         number: usize,
     },
-    /// A step of an instruction or debriefing, counted from 1, was ticked or unticked.
+    /// The wizard ticked or unticked a step of an instruction or debriefing.
     Ticked {
-        /// The step, counted from 1.
+        /// Number of the step, counted from 1.
         step: usize,
-        /// Whether it is done now.
+        /// Whether the step is done now.
         done: bool,
     },
-    /// Something happens in the tutorial.
+    /// An event of the tutorial.
     Tutorial(TutorialEvent),
-    /// An item of a questionnaire is shown.
+    /// An item of the questionnaire is shown.
     ItemShown {
-        /// The item's name.
+        /// Identifier of the item.
         item: String,
     },
-    /// All answers are shown, to be confirmed.
+    /// All answers to the questionnaire are shown, for the participant to confirm them.
     AnswersShown,
-    /// Answer to the shown item; a later answer replaces it. The next item follows, but for sliders and choices of several.
+    /// The participant answered the shown item; a later answer replaces an earlier one. The next item follows at once,
+    /// except after sliders and choices of several options.
     ItemAnswered {
-        /// The item's name.
+        /// Identifier of the item.
         item: String,
-        /// The answer.
+        /// The participant's answer.
         answer: AnswerValue,
     },
-    /// The shown item is skipped. The next item follows.
+    /// The shown item of the questionnaire is skipped. The next item follows.
     ItemSkipped {
-        /// The item's name.
+        /// Identifier of the item.
         item: String,
     },
-    /// The participant confirms the answers: they hold.
+    /// The participant confirms the answers to the questionnaire, which become final.
     AnswersConfirmed,
-    /// Result of the practice, and whether it meets the criterion.
+    /// Result of the practice trial, and whether it meets the criterion.
     CriterionChecked {
-        /// Whether the criterion is met.
+        /// Whether the practice trial meets the criterion.
         met: bool,
-        /// Orders served in the practice.
+        /// Number of orders served in the practice trial.
         orders: u32,
-        /// The participant's presses in the practice.
+        /// Number of the participant's presses in the practice trial.
         presses: u32,
-        /// Of these, errors.
+        /// Number of errors among the participant's presses in the practice trial.
         errors: u32,
     },
-    /// The wizard waives the criterion, for this reason.
+    /// The wizard waives the criterion of the practice trial, for this reason.
     CriterionWaived {
-        /// Why, in the wizard's words.
+        /// The wizard's reason.
         reason: String,
     },
 }

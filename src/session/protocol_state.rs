@@ -1,55 +1,55 @@
-//! State of the study protocol in a recording: phase, completed steps, and answers.
+//! State of the study protocol in a recording: phase, completed steps, and answers to the questionnaire.
 
 use super::answer_value::AnswerValue;
 use super::tutorial_state::TutorialState;
 
-/// An answer to an item.
+/// The answer to a questionnaire item, or that it was skipped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ItemAnswer {
-    /// What the participant answered.
+    /// The participant's answer.
     Given(AnswerValue),
-    /// The participant gave no answer.
+    /// The participant gave no answer to the item.
     Skipped,
 }
 
-/// Result of the practice.
+/// Result of the practice trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Practice {
-    /// Whether the criterion was met.
+    /// Whether the practice trial met the criterion.
     pub met: bool,
-    /// Orders served.
+    /// Number of orders served in the practice trial.
     pub orders: u32,
-    /// The participant's presses.
+    /// Number of the participant's presses in the practice trial.
     pub presses: u32,
-    /// Of these, errors.
+    /// Number of errors among the participant's presses in the practice trial.
     pub errors: u32,
-    /// Reason for waiving the criterion, if it was waived.
+    /// The wizard's reason for waiving the criterion, if it was waived.
     pub waived: Option<String>,
 }
 
 /// State of the study protocol in a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Protocol {
-    /// The participant agreed to what the plan asks.
+    /// Whether the participant consented to what the plan asks for.
     pub consent: bool,
-    /// Number of the phase, from 1; 0 before the first.
+    /// Number of the present phase, from 1; 0 before the first phase.
     pub number: usize,
-    /// Whether each step of the phase is done.
+    /// Whether each step of the present phase is done.
     pub ticks: Vec<bool>,
-    /// Answers to the items of the phase.
+    /// Answers to the items of the present phase's questionnaire.
     pub answers: Vec<Option<ItemAnswer>>,
-    /// Index of the shown item; the number of items while all answers are shown for confirmation.
+    /// Index of the shown questionnaire item; the number of items while all answers are shown for confirmation.
     pub item: usize,
-    /// The answers of the phase are confirmed.
+    /// Whether the participant has confirmed the answers of the phase.
     pub confirmed: bool,
-    /// How the practice went, once it is over.
+    /// Result of the practice trial, once it is over.
     pub practice: Option<Practice>,
-    /// The tutorial, in its phase.
+    /// State of the tutorial, in the tutorial's phase.
     pub tutorial: Option<TutorialState>,
 }
 
 impl ItemAnswer {
-    /// The answer; `None` if the participant gave none.
+    /// The value of the answer; `None` if the item was skipped.
     pub fn value(&self) -> Option<&AnswerValue> {
         match self {
             ItemAnswer::Given(value) => Some(value),
@@ -59,13 +59,13 @@ impl ItemAnswer {
 }
 
 impl Protocol {
-    /// The answer to the item with this index, if one was given.
+    /// The answer to the item with this index, if the participant gave one.
     pub fn given(&self, index: usize) -> Option<&AnswerValue> {
         self.answers.get(index)?.as_ref()?.value()
     }
 
-    /// Records the answer to the shown item and shows the next one, unless this one stays; after the last item, the first unanswered
-    /// one or all answers.
+    /// Records the answer to the shown item and shows the next one, unless the shown item stays; after the last item,
+    /// the first unanswered one or all answers are shown.
     pub(super) fn answer(&mut self, answer: ItemAnswer, stays: bool) {
         if let Some(place) = self.answers.get_mut(self.item) {
             *place = Some(answer);
@@ -81,7 +81,7 @@ impl Protocol {
         };
     }
 
-    /// The first item without an answer.
+    /// Index of the first item without an answer.
     pub fn open_item(&self) -> Option<usize> {
         self.answers.iter().position(Option::is_none)
     }

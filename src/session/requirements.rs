@@ -1,10 +1,10 @@
-//! The optional parts of the crate that a session needs.
+//! Checks that the build contains the optional parts of the program that a session needs.
 
 use super::settings::{ArmKind, ParticipantKind, SessionSpec};
 use crate::base::features::{Feature, NotBuilt};
 
 impl SessionSpec {
-    /// Whether this build can run the session without a console (it may need the simulated arm).
+    /// Checks that this build can run the session without a console, which may need the simulated arm.
     ///
     /// # Errors
     /// The missing part.
@@ -15,7 +15,7 @@ impl SessionSpec {
         }
     }
 
-    /// Whether this build can run the session at the console.
+    /// Checks that this build can run the session at the console.
     ///
     /// # Errors
     /// The missing part.

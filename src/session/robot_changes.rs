@@ -1,11 +1,11 @@
-//! State changes of the robot by events.
+//! Changes of the robot's state in a session by events.
 
 use super::event::Event;
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
 use crate::base::time::SessionTime;
 
-/// Applies an event of the simulated arm.
+/// Applies an event of the simulated arm to the robot's state.
 pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
     match event {
         Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
@@ -13,7 +13,7 @@ pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
         Event::RobotSafety { mode, force_n, joint } => {
             let arm = &mut session.robot.arm;
             (arm.mode, arm.stopped_by_n) = (*mode, *force_n);
-            // A stop by the wizard has its own event.
+            // A stop by the wizard has an event of its own.
             if mode.is_stopped() && !session.robot.stopped {
                 session.robot.stopped = true;
                 session.robot.idle = None;
@@ -24,14 +24,14 @@ pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
     }
 }
 
-/// Applies the wizard's stop, or its end.
+/// Applies that the wizard stops the robot, or releases it.
 pub(super) fn stop(session: &mut Session, now: SessionTime, stopped: bool) {
     session.robot.stopped = stopped;
     session.robot.idle = None;
     session.note(now, if stopped { TimelineEvent::RobotStopped } else { TimelineEvent::RobotResumed });
 }
 
-/// Applies the wizard's hold, or its end.
+/// Applies that the wizard holds the robot, or lets it continue.
 pub(super) fn hold(session: &mut Session, now: SessionTime, held: bool) {
     session.robot.held = held;
     session.robot.idle = None;

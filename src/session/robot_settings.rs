@@ -6,15 +6,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ArmKind {
-    /// Presses have a random duration; the arm's motion is only displayed.
+    /// The timed arm: presses have a random duration; the arm's motion is only displayed.
     #[default]
     Timed,
-    /// A simulated UR5 presses buttons by contact; it slows near the human's hand and stops on contact with it.
+    /// The arm in the physics simulation: a simulated UR5 presses buttons by contact; it slows near the human's hand
+    /// and stops on contact with it.
     Physics,
 }
 
 impl ArmKind {
-    /// Name in files.
+    /// Name of the arm in files.
     pub fn name(self) -> &'static str {
         match self {
             ArmKind::Timed => "timed",
@@ -27,7 +28,7 @@ impl ArmKind {
     }
 }
 
-/// The robot.
+/// Settings of the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSpec {
@@ -36,7 +37,7 @@ pub struct RobotSpec {
     pub arm: ArmKind,
     /// Timed arm: median duration of a press, in seconds.
     pub press_s: f64,
-    /// Timed arm: standard deviation of the logarithm of the duration.
+    /// Timed arm: standard deviation of the logarithm of a press's duration.
     pub press_spread: f64,
 }
 

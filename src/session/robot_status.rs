@@ -1,4 +1,4 @@
-//! State of the robot in a session: its present action, its stops, and its arm.
+//! State of the robot in a session: its present press, its stops, and its arm.
 
 use crate::base::time::SessionTime;
 use crate::kitchen::ButtonId;
@@ -6,10 +6,10 @@ use crate::robot::moment::ArmSample;
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason};
 
-/// State of the robot.
+/// State of the robot in a session.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RobotStatus {
-    /// The ongoing press: button, start, and expected time of contact.
+    /// The robot's ongoing press: button, start, and expected time of contact.
     pub intention: Option<(ButtonId, SessionTime, SessionTime)>,
     /// Whether the robot is stopped, by the wizard or by itself, until the wizard resumes it.
     pub stopped: bool,
@@ -17,7 +17,7 @@ pub struct RobotStatus {
     pub held: bool,
     /// The press that the wizard chose for the robot, until it is made or aborted.
     pub driven_to: Option<ButtonId>,
-    /// Reason for being idle, if the robot is idle.
+    /// Why the robot is idle, if it is.
     pub idle: Option<IdleReason>,
     /// State of the simulated arm.
     pub arm: ArmStatus,
@@ -40,7 +40,7 @@ impl RobotStatus {
         self.stopped && !self.arm.mode.has_stopped_itself()
     }
 
-    /// Notes that the robot starts a press and will touch the button at `until`.
+    /// Records that the robot starts a press and will touch the button at `until`.
     pub(super) fn sets_out(&mut self, button: ButtonId, now: SessionTime, until: SessionTime) {
         self.intention = Some((button, now, until));
         self.idle = None;
@@ -48,11 +48,11 @@ impl RobotStatus {
 
     pub(super) fn gives_up(&mut self, reason: AbortReason) {
         self.intention = None;
-        // A press that the wizard chose is still pending.
+        // If the wizard chose another press, that press is still pending.
         self.driven_to = self.driven_to.filter(|_| reason == AbortReason::Driven);
     }
 
-    /// Notes the end of the trial.
+    /// Records the end of the trial: the robot rests.
     pub(super) fn rests(&mut self) {
         self.intention = None;
         self.driven_to = None;

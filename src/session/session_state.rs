@@ -21,53 +21,53 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{DishId, Kitchen, LocationId, State};
 use crate::wizard::settings::WizardKind;
 
-/// Time without a sample after which there is no gaze, in seconds.
+/// Time without a gaze sample after which gaze counts as missing, in seconds.
 const SILENT_S: f64 = 1.0;
 
-/// The state of a session after the events so far.
+/// The state of a session after its events so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
     /// The compiled kitchen.
     pub kitchen: Arc<Kitchen>,
-    /// The settings, as they are in force.
+    /// The settings in use.
     pub spec: SessionSpec,
-    /// Index of the trial.
+    /// Index of the session's trial.
     pub trial: u64,
-    /// The time of the last event.
+    /// The session time of the last event.
     pub time: SessionTime,
-    /// Where the trial is.
+    /// The phase of the trial: ready, running, paused or over.
     pub phase: Phase,
     /// Session time of the trial's start.
     pub trial_start: SessionTime,
-    /// How long the trial's clock stood still, in all pauses that are over.
+    /// Total duration of all finished pauses of the trial's clock.
     pub paused_total: SessionTime,
-    /// When the trial's clock last came to a stand: at the beginning of a pause, or at the trial's end.
+    /// Session time at which the trial's clock last stopped: at the beginning of a pause, or at the trial's end.
     pub paused_at: SessionTime,
-    /// Start and end of each finished pause.
+    /// Session times of start and end of each finished pause.
     pub pauses: Vec<(SessionTime, SessionTime)>,
     /// True state of the kitchen.
     pub state: State,
-    /// Time of the last change of each location.
+    /// Session time of the last change of each location.
     pub changed_at: [SessionTime; MAX_LOCATIONS],
-    /// Presses during the trial, indexed by [`crate::kitchen::Agent::index`].
+    /// Number of presses during the trial by each agent, indexed by [`crate::kitchen::Agent::index`].
     pub presses: [u32; 2],
-    /// Served orders.
+    /// The served orders.
     pub served: Vec<Served>,
-    /// What is known of the robot.
+    /// State of the robot.
     pub robot: RobotStatus,
-    /// The signal on the display, if there is one.
+    /// The signal on the participant's display, if there is one.
     pub shown: Option<ShownSignal>,
-    /// Latest recommendation of the assistant in the running trial.
+    /// The assistant's latest recommendation in the running trial.
     pub advice: Option<Recommendation>,
-    /// Whether recommendations become offers: not in recordings of format 1.
+    /// Whether recommendations become offers to the wizard: not in recordings of format 1.
     pub makes_offers: bool,
-    /// The offer to the wizard, and the last one.
+    /// The open offer to the wizard, and the closed ones.
     pub offers: OfferBook,
-    /// Whether a console shows the session to a wizard.
+    /// Whether a console shows the session to a person.
     pub has_console: bool,
     /// Sequence number of the latest event that the display marks with a flash (trial start, signal).
     pub cue: Option<u64>,
-    /// Time of the wizard's last signal.
+    /// Session time of the wizard's last signal.
     pub signalled_at: Option<SessionTime>,
     /// Whether the wizard saw the comparison with the assistants.
     pub unblinded: bool,
@@ -75,15 +75,15 @@ pub struct Session {
     pub aborted: Option<String>,
     /// Reason for excluding the trial from the analysis, if it is excluded.
     pub excluded: Option<String>,
-    /// The participant's gaze.
+    /// State of the participant's gaze stream.
     pub gaze: GazeStatus,
     /// State of the eye tracker.
     pub tracker: TrackerStatus,
-    /// Running gaze accuracy check, or one that waits for the wizard's decision.
+    /// The gaze accuracy check that is running or waits for the wizard's decision.
     pub calibration: Option<RunningGazeCheck>,
-    /// Last accepted gaze accuracy check.
+    /// The last accepted gaze accuracy check.
     pub calibrated: Option<AcceptedGazeCheck>,
-    /// All entries of the timeline (events without gaze samples).
+    /// All entries of the session's timeline (events without gaze samples).
     pub timeline: Vec<TimelineEntry>,
     /// The freeze probes of the trial.
     pub probes: ProbeBook,
@@ -91,34 +91,34 @@ pub struct Session {
     pub protocol: Option<Protocol>,
 }
 
-/// A served order.
+/// An order that was served.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Served {
-    /// Session time of serving.
+    /// Session time at which the order was served.
     pub time: SessionTime,
-    /// The dish that was wanted.
+    /// The ordered dish.
     pub dish: DishId,
     /// Number of presses of both agents in the trial, including the serving press.
     pub presses: u32,
 }
 
-/// A signal on the display.
+/// A signal on the participant's display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownSignal {
-    /// The signal.
+    /// The shown signal.
     pub signal: Signal,
     /// The location that the signal is about; `None` for proposed presses.
     pub location: Option<LocationId>,
-    /// Who sent it.
+    /// Who sent the signal.
     pub by: Sender,
-    /// When it appeared, in session time.
+    /// Session time at which the signal appeared.
     pub since: SessionTime,
-    /// When it vanishes by itself, in session time.
+    /// Session time at which the signal will disappear by itself.
     pub until: SessionTime,
 }
 
 impl Session {
-    /// Locations whose last change was at this time.
+    /// Locations whose last change was at this session time.
     pub fn changed_at(&self, time: SessionTime) -> impl Iterator<Item = LocationId> + '_ {
         let times = self.changed_at[..self.kitchen.locations.len()].iter().enumerate();
         times.filter(move |(_, at)| **at == time).map(|(index, _)| LocationId(index as u8))
@@ -163,7 +163,7 @@ impl Session {
         }
     }
 
-    /// The trial's clock at `now`: time since its start without the pauses; zero before the start.
+    /// The time on the trial's clock at `now`: time since the trial's start without pauses; zero before the start.
     pub fn trial_clock(&self, now: SessionTime) -> SessionTime {
         match self.phase {
             Phase::Ready => SessionTime::ZERO,
@@ -183,7 +183,7 @@ impl Session {
         paused.fold(end - at, |age, pause| age - pause)
     }
 
-    /// The location at which the participant looks, by the latest sample before `now`.
+    /// The location at which the participant looks, by the latest gaze sample before `now`.
     pub fn looked_at(&self, now: SessionTime) -> Option<LocationId> {
         let places = self.kitchen.locations.len();
         let at = self.gaze.looked_at[..places].iter().position(|at| *at == Some(now));
@@ -196,12 +196,12 @@ impl Session {
         arrived.map(|_| self.gaze.rate_hz)
     }
 
-    /// Seed of estimates and recommendations, unique to the trial.
+    /// Random seed of estimates and recommendations, unique to the trial.
     pub fn seed(&self) -> u64 {
         of_trial(self.spec.seed, self.trial)
     }
 
-    /// Whether the wizard, a person or a script, saw the assistant's recommendations.
+    /// Whether the wizard (a person or a script) saw the assistant's recommendations.
     pub fn wizard_saw_advice(&self) -> bool {
         let spec = &self.spec;
         match spec.wizard.kind {
@@ -213,12 +213,12 @@ impl Session {
         }
     }
 
-    /// The arm of the trial, by what is done in it.
+    /// The study arm of the trial, as it was actually carried out.
     pub fn study_arm(&self) -> StudyArm {
         StudyArm::from_settings(self.spec.trial.condition, self.spec.assistant.concept, self.wizard_saw_advice())
     }
 
-    /// Presses of both agents during the trial.
+    /// Number of presses of both agents during the trial.
     pub fn all_presses(&self) -> u32 {
         self.presses.iter().sum()
     }

@@ -1,16 +1,16 @@
-//! Errors of invalid settings, and checks that several settings share.
+//! Errors of invalid settings, and checks for several settings.
 
 use std::borrow::Cow;
 
 use crate::base::number_range::OutOfRange;
 
-/// An invalid setting.
+/// Error: an invalid setting in a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("found {found}, wanted {remedy}")]
 pub struct SettingError {
     /// Dotted path of the setting, outermost table first; inner tables may be left out: "rerun.address".
     pub path: String,
-    /// The value found.
+    /// The invalid value that was found.
     pub found: String,
     /// Description of a valid value.
     pub remedy: Cow<'static, str>,
@@ -19,7 +19,7 @@ pub struct SettingError {
 }
 
 impl SettingError {
-    /// An error about the first setting with this path.
+    /// An error in the first setting with this path.
     pub fn new(path: impl Into<String>, found: String, remedy: impl Into<Cow<'static, str>>) -> SettingError {
         SettingError { path: path.into(), found, remedy: remedy.into(), nth: 0 }
     }
@@ -36,7 +36,8 @@ impl From<OutOfRange> for SettingError {
     }
 }
 
-/// Whether a text is a valid code: 1 to 32 ASCII letters, digits, `-` and `_`, safe in folder names, keys and tables.
+/// Whether a text is a valid code: 1 to 32 ASCII letters, digits, `-` and `_`, which are safe in names of folders, keys
+/// and tables.
 pub fn is_code(text: &str) -> bool {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     !text.is_empty() && text.len() <= 32 && text.chars().all(is_plain)

@@ -1,4 +1,4 @@
-//! The settings of a session file.
+//! The settings of a session file, all together.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,52 +19,53 @@ use crate::mind::model::HumanModel;
 use crate::participant::population::Population;
 use crate::wizard::settings::{WizardKind, WizardSpec};
 
-/// A session file: who takes part, under which condition, and for how long.
+/// The settings of a session file: who takes part, under which condition, and for how long.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SessionSpec {
-    /// The layout file, relative to the session file.
+    /// Path of the layout file, relative to the session file.
     pub layout: String,
     /// Seed of all random streams of the session.
     #[serde(default = "default_seed")]
     pub seed: u64,
-    /// When a trial ends, and who sends signals.
+    /// When a trial ends, and under which condition it runs.
     #[serde(default)]
     pub trial: TrialSpec,
-    /// Who plays the human's part, and where gaze comes from.
+    /// The participant (person or simulation), and the source of gaze.
     #[serde(default)]
     pub participant: ParticipantSpec,
-    /// The eye tracker.
+    /// Settings of the eye tracker.
     #[serde(default, skip_serializing_if = "TrackerSpec::is_default")]
     pub tracker: TrackerSpec,
-    /// The robot's arm and its timing.
+    /// Settings of the robot's arm and its timing.
     #[serde(default)]
     pub robot: RobotSpec,
-    /// The wizard: a person, or a script.
+    /// Settings of the wizard: a person, or a script.
     #[serde(default, skip_serializing_if = "WizardSpec::is_default")]
     pub wizard: WizardSpec,
     /// How long signals are shown, and which are allowed.
     #[serde(default)]
     pub signals: SignalSpec,
-    /// The assistant that advises or acts.
+    /// Settings of the assistant that recommends or sends signals.
     #[serde(default)]
     pub assistant: AssistantSpec,
-    /// The wizard's console.
+    /// Settings of the wizard's console.
     #[serde(default)]
     pub console: ConsoleSpec,
-    /// The participant's display.
+    /// Settings of the participant's display.
     #[serde(default)]
     pub display: DisplaySpec,
-    /// Freeze probes; `None`: the task never stands still for questions.
+    /// Settings of freeze probes; `None`: the task never stands still for questions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub probes: Option<ProbeSpec>,
-    /// The stream to Rerun's viewers.
+    /// Settings of the stream to Rerun's viewers.
     #[serde(default)]
     pub rerun: RerunSpec,
-    /// The Lab Streaming Layer; `None`: nothing is sent or read.
+    /// Settings of the Lab Streaming Layer; `None`: nothing is sent or received.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lsl: Option<LslSpec>,
-    /// Path of a file with the parameters of the human model, relative to the session file; `None` for those in [`Self::human`].
+    /// Path of a file with the parameters of the human model, relative to the session file; `None` for those in
+    /// [`Self::human`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub human_model: Option<String>,
     /// Parameters of the human model; in a recording, the parameters in use.
@@ -92,16 +93,16 @@ impl SessionSpec {
         self.check_rules()
     }
 
-    /// The same of the settings in the header of a recording, whose numbers earlier versions may have taken.
+    /// Checks the settings in the header of a recording, whose numbers may have the wider ranges of earlier versions.
     ///
     /// # Errors
-    /// The first setting that cannot be.
+    /// The first invalid setting.
     pub fn check_recorded(&self) -> Result<(), SettingError> {
         ranges::check_recorded(self)?;
         self.check_rules()
     }
 
-    /// Checks all but the ranges of numbers.
+    /// Checks the settings except for the ranges of numbers.
     fn check_rules(&self) -> Result<(), SettingError> {
         if let Some(plan) = &self.plan {
             plan.check()?;
@@ -137,7 +138,7 @@ impl SessionSpec {
 }
 
 impl SessionSpec {
-    /// Checks the Lab Streaming Layer, and that there is a stream where gaze comes from one.
+    /// Checks the settings of the Lab Streaming Layer, and that a stream is set if gaze comes from one.
     fn check_lsl(&self) -> Result<(), SettingError> {
         if self.participant.gaze == GazeSource::Lsl && self.lsl.as_ref().is_none_or(|lsl| lsl.gaze.is_none()) {
             let found = "gaze = \"lsl\", and no stream".to_string();
@@ -159,13 +160,13 @@ impl SessionSpec {
         self.trial.condition == Condition::Assistant || self.assistant.shadow == Shadow::On
     }
 
-    /// Whether it is recorded that the human does not press for unusually long: where the assistant is asked then, or where waiting is
-    /// evidence.
+    /// Whether unusually long silence of the human is recorded: where the assistant is then asked for advice, or where
+    /// waiting is evidence.
     pub fn notes_silence(&self) -> bool {
         self.human.inference.waiting || self.assistant.asks_in_silence && self.asks_assistant()
     }
 
-    /// Whether it is recorded that the human seems to believe something wrong by the gaze alone.
+    /// Whether false beliefs that the gaze alone suggests are recorded, so that the assistant is asked for advice.
     pub fn notes_unawareness(&self) -> bool {
         self.assistant.asks_by_gaze && self.asks_assistant()
     }
@@ -175,13 +176,14 @@ impl SessionSpec {
         self.trial.condition == Condition::Wizard && self.wizard.kind == WizardKind::Scripted
     }
 
-    /// Whether a scripted wizard reads the assistant's offers: they are made, and the session shows recommendations.
+    /// Whether a scripted wizard reads the assistant's offers: there are offers, and the session shows recommendations.
     pub fn script_reads_offers(&self) -> bool {
         let is_shown = self.asks_assistant() && self.console.visibility == Visibility::Recommendation;
         self.scripts_wizard() && self.wizard.offers.is_some() && is_shown
     }
 
-    /// The condition without a person at the console: the wizard condition needs a scripted wizard, else it is unassisted.
+    /// The condition in a run without a person at the console: a wizard condition without a scripted wizard becomes
+    /// unassisted.
     pub fn unattended(&self, condition: Condition) -> Condition {
         match condition {
             Condition::Wizard if self.wizard.kind == WizardKind::Person => Condition::None,
@@ -190,21 +192,21 @@ impl SessionSpec {
     }
 }
 
-/// Condition and length of a trial.
+/// Condition of a trial, and when it ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrialSpec {
-    /// Who may send signals.
+    /// The condition: who may send signals.
     pub condition: Condition,
-    /// Largest number of presses of both agents; the default is the paper's mean.
+    /// Number of presses of both agents at which the trial ends; the default is the paper's mean.
     pub presses: u32,
-    /// The longest duration in seconds of the trial's clock, which stands still in pauses.
+    /// The longest duration of the trial in seconds of the trial's clock, which stands still in pauses.
     pub seconds: f64,
-    /// Number of served orders that also ends the trial, if set.
+    /// Number of served orders at which the trial ends, if set.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orders: Option<u32>,
-    /// Least time between two presses of a person, in seconds of the trial's clock; earlier presses are recorded and do not count. The
-    /// pace of simulated participants is that of their population.
+    /// Least time between two presses of a person, in seconds of the trial's clock; earlier presses are recorded but do
+    /// not count. The pace of simulated participants is that of their population.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pace_s: Option<f64>,
 }
@@ -215,11 +217,11 @@ impl Default for TrialSpec {
     }
 }
 
-/// The communication signals.
+/// Settings of the signals to the participant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SignalSpec {
-    /// Duration of a signal on the display, in seconds.
+    /// Time for which a signal is shown on the display, in seconds.
     pub shown_s: f64,
     /// Whether the human's own hand may be highlighted.
     pub own_hand: bool,

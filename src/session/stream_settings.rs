@@ -1,18 +1,18 @@
-//! Settings of the Rerun stream in a session file.
+//! Settings of the stream to the 3D viewer Rerun in a session file.
 
 use serde::{Deserialize, Serialize};
 
 use super::setting_checks::SettingError;
 
-/// Settings of the Rerun stream.
+/// Settings of the stream to the 3D viewer Rerun.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RerunSpec {
-    /// Whether viewers can connect while the session runs.
+    /// Whether Rerun's viewers can connect while the session runs.
     pub live: bool,
     /// Whether the stream is written to `recording.rrd` beside the log.
     pub record: bool,
-    /// Address at which viewers connect; if its port is taken, one of the next ports is used.
+    /// Address at which Rerun's viewers connect; if its port is taken, one of the next ports is used.
     pub address: String,
 }
 
@@ -23,7 +23,7 @@ impl Default for RerunSpec {
 }
 
 impl RerunSpec {
-    /// Whether there is a stream at all.
+    /// Whether there is a Rerun stream at all.
     pub fn is_on(&self) -> bool {
         self.live || self.record
     }

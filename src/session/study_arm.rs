@@ -1,4 +1,4 @@
-//! The arms of a study: who sends signals by which concept, and what the wizard sees.
+//! The arms of a study: who sends signals by which concept, and whether the wizard sees advice.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::communication::concept::ConceptName;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StudyArm {
-    /// Nobody sends signals (unassisted).
+    /// Unassisted: nobody sends signals.
     #[default]
     None,
     /// The wizard sends signals and does not see the assistant's recommendations, as in the paper.
@@ -17,20 +17,20 @@ pub enum StudyArm {
     /// The wizard sends signals and sees the estimated belief and the recommendations.
     #[serde(rename = "wizard+advice")]
     WizardWithAdvice,
-    /// The assistant sends signals: theory of mind with communication planning.
+    /// ToM-Com: the assistant sends signals by theory of mind with communication planning.
     TomCom,
-    /// The assistant sends signals: theory of mind without planning.
+    /// ToM: the assistant sends signals by theory of mind without planning.
     Tom,
-    /// The assistant proposes the next presses after an error.
+    /// DEV: the assistant proposes the next presses after an error.
     Dev,
 }
 
 impl StudyArm {
-    /// All arms, in the order of tables.
+    /// All study arms, in the order of tables.
     pub const ALL: [StudyArm; 6] =
         [StudyArm::None, StudyArm::Wizard, StudyArm::WizardWithAdvice, StudyArm::TomCom, StudyArm::Tom, StudyArm::Dev];
 
-    /// Name in files.
+    /// Name of the study arm in files.
     pub fn name(self) -> &'static str {
         match self {
             StudyArm::None => "none",
@@ -42,7 +42,7 @@ impl StudyArm {
         }
     }
 
-    /// Name in texts.
+    /// Name of the study arm in texts.
     pub fn title(self) -> &'static str {
         match self {
             StudyArm::None => "unassisted",
@@ -54,7 +54,7 @@ impl StudyArm {
         }
     }
 
-    /// Who sends signals in it.
+    /// Who sends signals in the study arm.
     pub fn condition(self) -> Condition {
         match self {
             StudyArm::None => Condition::None,
@@ -63,7 +63,7 @@ impl StudyArm {
         }
     }
 
-    /// The concept that acts in it, if one does.
+    /// The communication concept that sends signals in the study arm, if one does.
     pub fn concept(self) -> Option<ConceptName> {
         match self {
             StudyArm::None | StudyArm::Wizard | StudyArm::WizardWithAdvice => None,
@@ -73,7 +73,8 @@ impl StudyArm {
         }
     }
 
-    /// The arm of a trial in which so and so sends signals; `saw_advice`: the wizard saw the assistant's recommendations.
+    /// The study arm of a trial with these settings; `saw_advice` says whether the wizard saw the assistant's
+    /// recommendations.
     pub fn from_settings(condition: Condition, concept: ConceptName, saw_advice: bool) -> StudyArm {
         match (condition, concept) {
             (Condition::None, _) | (Condition::Assistant, ConceptName::None) => StudyArm::None,

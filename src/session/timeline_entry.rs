@@ -9,35 +9,35 @@ use crate::kitchen::no_effect::NoEffect;
 use crate::kitchen::{Agent, ButtonId, LocationId};
 use crate::robot::safety::SafetyMode;
 
-/// An entry of the timeline.
+/// An entry of the session's timeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimelineEntry {
-    /// Session time.
+    /// Session time of the entry.
     pub time: SessionTime,
-    /// What happened.
+    /// Content of the entry.
     pub what: TimelineEvent,
 }
 
-/// Content of a timeline entry.
+/// Content of an entry of the session's timeline.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TimelineEvent {
     /// An agent pressed a button.
     Press {
-        /// Who pressed.
+        /// The agent that pressed.
         agent: Agent,
-        /// The button, in the list of that agent's buttons.
+        /// The pressed button, as an index into that agent's buttons.
         button: ButtonId,
-        /// Why it changed nothing in the kitchen, and the location that the reason is about; `None` if it did.
+        /// Why the press had no effect, and the location that the reason is about; `None` if it had an effect.
         no_effect: Option<(NoEffect, LocationId)>,
     },
-    /// A signal appeared.
+    /// A signal appeared on the participant's display.
     Signal {
-        /// Who sent it.
+        /// Who sent the signal.
         by: Sender,
-        /// The signal.
+        /// The signal that appeared.
         signal: Signal,
     },
-    /// The signal vanished, for this reason.
+    /// The signal disappeared, for this reason.
     SignalEnded(SignalEnd),
     /// An order was served.
     Served {
@@ -49,40 +49,40 @@ pub enum TimelineEvent {
         /// The order's location.
         order: LocationId,
     },
-    /// The wizard marked the moment, with this note.
+    /// The wizard set a marker with this note.
     Marker(String),
     /// The wizard stopped the robot.
     RobotStopped,
     /// The arm stopped by itself, with the contact force in newtons or the number of the faulty joint.
     ArmStopped {
-        /// The safety mode that it is in since.
+        /// The safety mode since the stop.
         mode: SafetyMode,
-        /// The force that it felt, in newtons, if a contact stopped it.
+        /// The contact force that stopped the arm, in newtons, if a contact did.
         force_n: Option<f64>,
-        /// The faulty joint, if one stopped it; 1 is the first.
+        /// The number of the faulty joint that stopped the arm, if one did; 1 is the first.
         joint: Option<u8>,
     },
-    /// Somebody touched the arm.
+    /// Somebody touched the robot's arm.
     ArmTouched {
         /// The force of the contact in newtons.
         force_n: f64,
     },
-    /// The wizard let the stopped robot go on.
+    /// The wizard released the stopped robot.
     RobotResumed,
-    /// The robot is held before its next press.
+    /// The wizard holds the robot before its next press.
     RobotHeld,
-    /// The held robot goes on.
+    /// The robot, which was held, continues.
     RobotReleased,
-    /// The robot gave up its press of this button, because somebody skipped it.
+    /// The robot abandoned its press of this button, because the wizard skipped it.
     RobotSkipped(ButtonId),
-    /// Somebody chose this button for the robot's next press.
+    /// The wizard chose this button for the robot's next press.
     RobotDriven(ButtonId),
-    /// The wizard corrected what the program thought of a location.
+    /// The wizard corrected the content of a location in the program's state.
     Corrected {
-        /// The location.
+        /// The corrected location.
         location: LocationId,
     },
-    /// The trial reached this phase.
+    /// The trial entered this phase.
     Trial(Phase),
     /// An event of a freeze probe, other than a question or an answer.
     Probe(ProbeEvent),

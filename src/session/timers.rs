@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::apply::Timer;
 use crate::base::time::SessionTime;
 
-/// Timers in the order in which they are due; ties in the order in which they were set.
+/// Pending timers in the order in which they are due; ties in the order in which they were set.
 #[derive(Clone, Debug, Default)]
 pub struct TimerQueue {
     pending: BTreeSet<(SessionTime, u64, Timer)>,
@@ -35,12 +35,12 @@ impl TimerQueue {
         self.pending = pending.into_iter().map(|(time, serial, timer)| (time + by, serial, timer)).collect();
     }
 
-    /// Time of the next timer.
+    /// Session time at which the next timer is due.
     pub fn next_due(&self) -> Option<SessionTime> {
         self.pending.first().map(|(time, _, _)| *time)
     }
 
-    /// Removes and returns the next timer.
+    /// Removes and returns the timer that is due next.
     pub fn take_first(&mut self) -> Option<Timer> {
         self.pending.pop_first().map(|(_, _, timer)| timer)
     }

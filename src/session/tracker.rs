@@ -8,44 +8,45 @@ use crate::base::time::SessionTime;
 use crate::gaze::quality::DropCounts;
 use crate::gaze::surface::SurfaceMap;
 
-/// The eye tracker.
+/// Settings of the eye tracker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrackerSpec {
-    /// The host where Pupil Capture runs.
+    /// Network host on which the program Pupil Capture runs.
     pub address: String,
-    /// The port of Capture's Pupil Remote.
+    /// Network port of Pupil Capture's interface Pupil Remote.
     pub port: u16,
-    /// Name of the surface that Pupil Capture defines by the tags on the wall display.
+    /// Name of the surface that Pupil Capture defines by the AprilTags on the wall display.
     pub surface: String,
-    /// Corners of that surface in fractions of the display: top left, top right, bottom right, bottom left. By default the surface
-    /// that Capture creates by itself, the hull of the tags' black squares.
+    /// Corners of that surface in fractions of the display: top left, top right, bottom right, bottom left. By default
+    /// the surface that Pupil Capture creates by itself, the hull of the tags' black squares.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corners: Option<[[f64; 2]; 4]>,
-    /// Whether Pupil Capture records every trial. What it records is annotated in any case.
+    /// Whether Pupil Capture records every trial. Its recordings are annotated in any case.
     pub record: bool,
     /// Path of the file from which gaze is replayed, relative to the session file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// Time in that file at which the trial starts, in seconds after its first sample; negative: the trial starts before it.
+    /// Time in the replayed gaze file at which the trial starts, in seconds after the file's first sample; negative:
+    /// the trial starts before it.
     #[serde(skip_serializing_if = "is_zero")]
     pub file_start_s: f64,
     /// Distance from the participant's eyes to the wall display, in metres.
     pub distance_m: f64,
-    /// Drop-outs of the simulated tracker; none by default.
+    /// Drop-outs of the simulated eye tracker; none by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gaps: Option<GazeGapSpec>,
 }
 
-/// Drop-outs of the simulated tracker: stretches of time without any sample.
+/// Drop-outs of the simulated eye tracker: periods without any gaze sample.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GazeGapSpec {
     /// Mean time from the end of a drop-out to the beginning of the next one, in seconds.
     pub every_s: f64,
-    /// Shortest and longest drop-out, in seconds. Lengths are even on a logarithmic scale.
+    /// Shortest duration of a drop-out, in seconds. Durations are distributed evenly on a logarithmic scale.
     pub shortest_s: f64,
-    /// See `shortest_s`.
+    /// Longest duration of a drop-out, in seconds.
     pub longest_s: f64,
 }
 
@@ -87,7 +88,7 @@ impl TrackerSpec {
             let found = format!("address = {:?}", self.address);
             return Err(SettingError::new("tracker.address", found, "1 to 100 signs without spaces"));
         }
-        // Capture's own names have spaces: its first surface is "Surface 1".
+        // Pupil Capture's own names contain spaces: its first surface is "Surface 1".
         if !is_short(&self.surface) || self.surface.trim() != self.surface {
             let found = format!("surface = {:?}", self.surface);
             let remedy = "the surface's name in Capture: 1 to 100 signs, no space before and after it";
@@ -107,102 +108,102 @@ impl TrackerSpec {
     }
 }
 
-/// An event of the eye tracker. All of these come from outside.
+/// An event of the eye tracker. All of these events come from outside.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum TrackerEvent {
-    /// The tracker's program responds; `device` is its name.
+    /// The eye tracker's program responds.
     Connected {
-        /// What the tracker calls itself.
+        /// Name by which the eye tracker identifies itself.
         device: String,
     },
-    /// The tracker's program no longer responds; the connection is retried without limit.
+    /// The eye tracker's program does not respond any more; connecting is retried without limit.
     Lost {
-        /// What happened to the connection.
+        /// Why the connection was lost.
         reason: String,
     },
-    /// The tracker detects the display by its tags.
+    /// The eye tracker detects the wall display by its AprilTags.
     DisplayFound,
-    /// The tracker does not detect the display, so there is no gaze on it.
+    /// The eye tracker does not detect the wall display, so there is no gaze on it.
     DisplayLost,
-    /// The tracker sees surfaces, and none of them is the display's.
+    /// The eye tracker detects surfaces, but none of them is the wall display.
     OtherSurfaces {
-        /// Their names.
+        /// Names of the detected surfaces.
         names: Vec<String>,
     },
-    /// What became of the recording that the tracker's program makes of the trial.
+    /// The eye tracker's program reports on its own recording of the trial.
     Recording {
-        /// What it did.
+        /// The state of the tracker's recording.
         state: TrackerRecording,
     },
-    /// Counts of input that could not be recorded since the session began; at most once per second.
+    /// Number of inputs from the tracker that could not be recorded since the session began; at most once per second.
     Dropped(DropCounts),
-    /// A finished fixation, as detected by the tracker; its position in fractions of the display.
+    /// A finished fixation that the eye tracker detected.
     Fixation {
-        /// Its place in fractions of the display, if it was there.
+        /// Position of the fixation in fractions of the display, if it was on the display.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         at: Option<[f64; 2]>,
-        /// How long it was, in milliseconds.
+        /// Duration of the fixation, in milliseconds.
         duration_ms: f64,
-        /// How far its samples are spread, in degrees.
+        /// Dispersion of the fixation's gaze samples, in degrees.
         dispersion_deg: f64,
-        /// The tracker's confidence, 0 to 1.
+        /// The tracker's confidence in the fixation, 0 to 1.
         confidence: f64,
-        /// When it began on the tracker's clock, in nanoseconds.
+        /// Beginning of the fixation on the tracker's clock, in nanoseconds.
         device_ns: u64,
-        /// Session time of its beginning.
+        /// Session time at which the fixation began.
         began_ns: SessionTime,
     },
-    /// The clock of the tracker's time stamps was set, as samples that agree show.
+    /// The clock of the tracker's time stamps was set, as several samples agree.
     ClockSet {
-        /// By how much it went ahead, in seconds; negative: back.
+        /// By how much the tracker's clock was set ahead, in seconds; negative: back.
         by_s: f64,
-        /// Arrival, in session time, of the first sample whose time was uncertain until now.
+        /// Arrival, in session time, of the first gaze sample whose time was uncertain until the step was detected.
         uncertain_since_ns: SessionTime,
     },
-    /// Onset or offset of a blink, as detected by the tracker.
+    /// Onset or offset of a blink that the eye tracker detected.
     Blink {
-        /// Closed (onset); false: opened (offset).
+        /// Whether the eyes closed (onset); false: they opened (offset).
         closed: bool,
-        /// The tracker's confidence, 0 to 1.
+        /// The tracker's confidence in the blink, 0 to 1.
         confidence: f64,
-        /// When, on the tracker's clock, in nanoseconds.
+        /// Time of the onset or offset on the tracker's clock, in nanoseconds.
         device_ns: u64,
-        /// When, in session time.
+        /// Session time of the onset or offset.
         taken_ns: SessionTime,
     },
 }
 
-/// What became of the recording that the tracker's program makes of the trial.
+/// State of the recording that the eye tracker's own program makes of the trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrackerRecording {
-    /// It began at our request.
+    /// The tracker's recording began at our request.
     Begun,
-    /// It did not begin: the tracker's program records already, or cannot.
+    /// The tracker's recording did not begin: its program is recording already, or cannot record.
     NotBegun,
-    /// It ended before the trial.
+    /// The tracker's recording ended before the trial.
     Ended,
-    /// The tracker's program takes no annotations.
+    /// The tracker's program accepts no annotations.
     NotAnnotated,
 }
 
-/// State of the connection to the tracker's program.
+/// State of the connection to the eye tracker's program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum TrackerConnection {
-    /// No message received yet.
+    /// No message has been received yet.
     #[default]
     Unknown,
-    /// Its program answers.
+    /// The eye tracker's program responds.
     Connected {
-        /// What the tracker calls itself.
+        /// Name by which the eye tracker identifies itself.
         device: String,
     },
-    /// Its program does not answer any more.
+    /// The eye tracker's program does not respond any more.
     Lost {
-        /// Since when, in session time.
+        /// Session time since which the tracker's program has not responded.
         since: SessionTime,
-        /// What happened to the connection.
+        /// Why the connection was lost.
         reason: String,
     },
 }
@@ -210,26 +211,26 @@ pub enum TrackerConnection {
 /// State of the eye tracker in a session.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrackerStatus {
-    /// Whether its program is there.
+    /// State of the connection to the tracker's program.
     pub link: TrackerConnection,
-    /// Whether it detects the display; `None` if it has not reported that.
+    /// Whether the tracker detects the wall display; `None` if it has not reported that.
     pub sees_display: Option<bool>,
-    /// Names of the surfaces that it sees instead.
+    /// Names of the surfaces that the tracker detects instead of the wall display.
     pub other_surfaces: Vec<String>,
-    /// Number of connection losses.
+    /// Number of lost connections to the tracker's program.
     pub losses: u64,
-    /// What came and could not be recorded, by kind.
+    /// Numbers of inputs that could not be recorded, by kind.
     pub dropped: DropCounts,
-    /// How often the clock of its time stamps was set.
+    /// How often the clock of the tracker's time stamps was set.
     pub clock_steps: u64,
-    /// Number of fixations that it found.
+    /// Number of fixations that the tracker detected.
     pub fixations: u64,
-    /// Number of blinks that it found.
+    /// Number of blinks that the tracker detected.
     pub blinks: u64,
 }
 
 impl TrackerStatus {
-    /// Applies an admitted event.
+    /// Applies an event of the eye tracker that the session accepts.
     pub(super) fn apply(&mut self, now: SessionTime, event: &TrackerEvent) {
         match event {
             TrackerEvent::Connected { device } => self.link = TrackerConnection::Connected { device: device.clone() },
@@ -254,7 +255,7 @@ impl TrackerStatus {
     }
 }
 
-/// Whether the session accepts the event.
+/// Whether the session accepts this event of the eye tracker.
 ///
 /// # Errors
 /// The reason for the refusal.

@@ -1,17 +1,17 @@
-//! The trial's clock: how it stops and goes on. It stands still in pauses and freeze probes.
+//! The trial's clock: how it stops and continues. It stands still in pauses and freeze probes.
 
 use super::phase::Phase;
 use super::session_state::Session;
 use crate::base::time::SessionTime;
 
-/// Brings the trial to a stand.
+/// Pauses the trial and stops its clock.
 pub(super) fn pause(session: &mut Session, now: SessionTime) {
     stop(session, now);
     session.phase = Phase::Paused;
     session.gaze.steady_since = None;
 }
 
-/// Stops the clock, if it goes.
+/// Stops the trial's clock, if it is running.
 pub(super) fn stop(session: &mut Session, now: SessionTime) {
     match session.phase {
         Phase::Running => session.paused_at = now,
@@ -23,7 +23,7 @@ pub(super) fn stop(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Lets the trial go on; returns for how long it stood still, by which all pending times are to be postponed.
+/// Resumes the trial; returns for how long it stood still, by which all pending times have to be postponed.
 pub(super) fn resume(session: &mut Session, now: SessionTime) -> SessionTime {
     let by = now - session.paused_at;
     session.pauses.push((session.paused_at, now));

@@ -1,4 +1,4 @@
-//! The participant's tutorial, a phase of a plan: which of its events a session accepts, and what they change.
+//! The participant's tutorial, a phase of a study plan: which of its events a session accepts, and what they change.
 
 use super::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
 use super::session_state::Session;
@@ -7,7 +7,7 @@ pub use super::tutorial_state::{TutorialPress, TutorialState};
 use crate::kitchen::Agent;
 
 impl Session {
-    /// The tutorial of the present phase and its state, if it has one.
+    /// The tutorial of the present phase and its state, if the phase has one.
     pub fn tutorial(&self) -> Option<(&Tutorial, &TutorialState)> {
         let (_, protocol) = self.step()?;
         match self.study_phase()? {
@@ -16,14 +16,14 @@ impl Session {
         }
     }
 
-    /// The step of a tutorial that is not over.
+    /// The shown step of a tutorial that is not over.
     pub fn tutorial_step(&self) -> Option<(&TutorialStep, &TutorialState)> {
         let (tutorial, state) = self.tutorial().filter(|(_, state)| !state.is_over)?;
         Some((tutorial.steps.get(state.step)?, state))
     }
 }
 
-/// Whether the session accepts the event now.
+/// Whether the session accepts this event of the tutorial now.
 ///
 /// # Errors
 /// The reason for the refusal, in words for the wizard.
@@ -60,7 +60,7 @@ pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
     }
 }
 
-/// Begins the tutorial of the phase that has just begun, if it has one.
+/// Begins the tutorial of the phase that has just begun, if the phase has one.
 pub(super) fn begin(session: &mut Session) {
     let begun = match session.study_phase() {
         Some(PhaseSpec::Tutorial { tutorial }) => Some(TutorialState::new(tutorial, &session.kitchen)),
@@ -71,7 +71,7 @@ pub(super) fn begin(session: &mut Session) {
     }
 }
 
-/// Applies an admitted event.
+/// Applies an event of the tutorial that the session accepts.
 pub(super) fn apply(session: &mut Session, event: &TutorialEvent) {
     let Some((tutorial, state)) = session.tutorial() else { return };
     let Some(step) = tutorial.steps.get(state.step) else { return };

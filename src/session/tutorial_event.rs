@@ -1,19 +1,19 @@
-//! The events of a tutorial.
+//! The events of the participant's tutorial.
 
 use serde::{Deserialize, Serialize};
 
-/// Who turns a page of a tutorial.
+/// Who turned a page of a tutorial: participant or wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TutorialReader {
-    /// The participant, who goes on only when a step is done.
+    /// The participant, who can continue only when a step is done.
     Participant,
-    /// The wizard, who may leave out a step.
+    /// The wizard, who may skip a step.
     Wizard,
 }
 
 impl TutorialReader {
-    /// Name in logs.
+    /// Name of the reader in logs.
     pub fn name(self) -> &'static str {
         match self {
             TutorialReader::Participant => "participant",
@@ -22,37 +22,38 @@ impl TutorialReader {
     }
 }
 
-/// What happens in a tutorial. Its presses act on a kitchen of its own: they are no presses of a trial, and no evidence of beliefs.
+/// An event of a tutorial. Presses in a tutorial act on a kitchen of its own: they are no presses of a trial, and no
+/// evidence of beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "did", rename_all = "snake_case")]
 pub enum TutorialEvent {
-    /// A step is shown.
+    /// A step of the tutorial is shown.
     Shown {
-        /// The step's id.
+        /// Identifier of the tutorial step.
         step: String,
         /// Who turned the page.
         by: TutorialReader,
     },
-    /// The participant pressed a button in it.
+    /// The participant pressed a button in the shown step of the tutorial.
     Pressed {
         /// The button's name.
         button: String,
     },
-    /// The set time of the recipe cards is over: they vanish.
+    /// The set time of the tutorial's recipe cards is over: they disappear.
     CardsHidden {
-        /// The step's id.
+        /// Identifier of the tutorial step.
         step: String,
     },
-    /// The participant answered the question of the step.
+    /// The participant answered the question of the tutorial step.
     Answered {
-        /// The step's id.
+        /// Identifier of the tutorial step.
         step: String,
-        /// The choice, counted from 1.
+        /// Number of the choice, counted from 1.
         choice: u8,
     },
     /// The tutorial is over: the participant read its last step, or the wizard skipped the rest.
     Ended {
-        /// Who ended it.
+        /// Who ended the tutorial.
         by: TutorialReader,
     },
 }

@@ -1,44 +1,45 @@
-//! State of a tutorial: its step, its kitchen, and the answers so far.
+//! State of the participant's tutorial: its step, its kitchen, and the answers so far.
 
 use super::plan::{Tutorial, TutorialStep, TutorialStepKind};
 use crate::kitchen::no_effect::NoEffect;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 
-/// A press in a tutorial.
+/// A press of the participant in a tutorial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TutorialPress {
-    /// Number of the press, from 1.
+    /// Number of the press in the tutorial, from 1.
     pub number: u32,
-    /// The button.
+    /// The pressed button.
     pub button: ButtonId,
-    /// It was the one that the step asks for.
+    /// Whether it was the button that the step asks for.
     pub is_right: bool,
-    /// Why it has no effect, and on which location, if the rules of the kitchen say so.
+    /// Why the press has no effect by the rules of the kitchen, and the location that the reason is about; none if it
+    /// has an effect.
     pub no_effect: Option<(NoEffect, LocationId)>,
 }
 
-/// State of a tutorial.
+/// State of the participant's tutorial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TutorialState {
-    /// Index of the shown step.
+    /// Index of the shown tutorial step.
     pub step: usize,
-    /// The tutorial's kitchen.
+    /// The state of the tutorial's own kitchen.
     pub kitchen: State,
-    /// Number of the step's presses that are done.
+    /// Number of the step's requested presses that are done.
     pub presses: usize,
     /// The last press of the step.
     pub last: Option<TutorialPress>,
-    /// Presses in the tutorial so far.
+    /// Number of presses in the tutorial so far.
     pub pressed: u32,
-    /// The cards of the step were shown for their time.
+    /// Whether the recipe cards of the step were shown for their set time.
     pub are_cards_hidden: bool,
-    /// Wrong choice of the step's question, counted from 1, until another is made.
+    /// The wrong choice in the step's question, counted from 1, until the participant chooses again.
     pub wrong: Option<u8>,
-    /// Whether each step was done.
+    /// Whether each step of the tutorial was done.
     pub done: Vec<bool>,
-    /// Wrong answers to each step's question.
+    /// Number of wrong answers to each step's question.
     pub wrong_answers: Vec<u32>,
-    /// The tutorial is over.
+    /// Whether the tutorial is over.
     pub is_over: bool,
 }
 
@@ -62,12 +63,13 @@ impl TutorialState {
         state
     }
 
-    /// Shows a step from its beginning.
+    /// Shows a tutorial step from its beginning.
     pub(super) fn show(&mut self, tutorial: &Tutorial, kitchen: &Kitchen, step: usize) {
         self.step = step;
         self.kitchen = tutorial.state_at(kitchen, step);
         (self.presses, self.last, self.wrong) = (0, None, None);
-        // Cards that were shown for their time are not shown again after a look back: they have to be remembered.
+        // Recipe cards that were shown for their time are not shown again when the participant goes back: the recipes
+        // have to be remembered.
         self.are_cards_hidden = tutorial.steps.get(step).is_some_and(TutorialStep::is_timed) && self.is_done();
         let needs_nothing = tutorial.steps.get(step).is_some_and(|step| match step.kind {
             TutorialStepKind::Text | TutorialStepKind::Signal => true,
@@ -77,17 +79,18 @@ impl TutorialState {
         self.finish(needs_nothing);
     }
 
-    /// Whether the participant may go on from the shown step.
+    /// Whether the participant may continue from the shown step.
     pub fn is_done(&self) -> bool {
         self.done.get(self.step) == Some(&true)
     }
 
-    /// The button that the step asks for now.
+    /// The button that the tutorial step asks for now.
     pub fn wanted<'a>(&self, step: &'a TutorialStep) -> Option<&'a String> {
         step.presses.get(self.presses)
     }
 
-    /// A press of the participant. Only the button that the step asks for moves the kitchen on, so that hints stay true.
+    /// Applies a press of the participant. Only the button that the step asks for changes the tutorial's kitchen, so
+    /// that hints remain correct.
     pub(super) fn press(&mut self, step: &TutorialStep, kitchen: &Kitchen, button: ButtonId) {
         self.pressed += 1;
         let is_right =
@@ -101,7 +104,7 @@ impl TutorialState {
         }
     }
 
-    /// An answer to the step's question.
+    /// Applies an answer to the step's question.
     pub(super) fn answer(&mut self, step: &TutorialStep, choice: u8) {
         let is_right = step.right == Some(choice);
         self.wrong = (!is_right).then_some(choice);
@@ -111,7 +114,7 @@ impl TutorialState {
         self.finish(is_right);
     }
 
-    /// The cards of the step were shown for their time.
+    /// Hides the recipe cards of the step, because they were shown for their time.
     pub(super) fn hide_cards(&mut self) {
         self.are_cards_hidden = true;
         self.finish(true);

@@ -1,6 +1,7 @@
-//! The participant's wall display: its settings in a session file, and its reports. The room `display` computes its content.
+//! The participant's wall display (a page in a browser): its settings in a session file, and its reports. The module
+//! `display` computes its content.
 
-// Addresses are plain values here; nothing connects to them.
+// Addresses are plain values here; this module opens no connections.
 use core::net::{IpAddr, Ipv4Addr};
 use std::collections::BTreeMap;
 
@@ -9,38 +10,40 @@ use serde::{Deserialize, Serialize};
 use super::setting_checks::SettingError;
 use crate::base::time::SessionTime;
 
-/// The `[display]` of a session file.
+/// `[display]` of a session file: settings of the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct DisplaySpec {
-    /// Address at which the page is served; other addresses than localhost need the pairing code that the console shows.
+    /// Address at which the display's page is served; other addresses than localhost need the pairing code that the
+    /// console shows.
     pub listen: IpAddr,
-    /// The TCP port of the page.
+    /// The TCP port of the display's page.
     pub port: u16,
-    /// Language of the page: "en", "de", or the path of a file with words, relative to the session file.
+    /// Language of the display's page: "en", "de", or the path of a file with words, relative to the session file.
     pub language: String,
-    /// Words from that file; in a recording, the words in use.
+    /// Words of the page from that file; in a recording, the words in use.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub words: BTreeMap<String, String>,
-    /// What is written beside the pictures.
+    /// Which pictures on the page have names beside them.
     pub names: Names,
-    /// Whether each button shows its key.
+    /// Whether each button on the page shows its keyboard key.
     pub keys: bool,
-    /// Whether the robot's next press is shown. The paper does not show it, since a shown intention is communication.
+    /// Whether the page shows the robot's next press. The paper does not show it, since a shown intention is
+    /// communication.
     pub intention: bool,
-    /// How the robot is shown that nobody can see otherwise. A session file without it means a hand; a recording without it was
-    /// made when nothing was shown.
+    /// How the page shows a robot that the participant cannot see otherwise. A session file without this setting means
+    /// a hand; a recording without it was made when the page showed no robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arm: Option<DisplayedArm>,
     /// Whether AprilTags are shown in the corners, by which an eye tracker finds the display.
     pub tags: bool,
-    /// Whether a square flashes at the start of the trial and at signals, to synchronise video recordings.
+    /// Whether a square on the page flashes at the start of the trial and at signals, to synchronise video recordings.
     pub flash: bool,
-    /// Whether a press without effect says why. A session file without it means yes; a recording without it was made when nothing
-    /// was said.
+    /// Whether the page says why a press has no effect. A session file without this setting means yes; a recording
+    /// without it was made when the page gave no reasons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reasons: Option<bool>,
-    /// Where questionnaires are answered.
+    /// Where questionnaires are answered: on the display or at the console.
     pub questionnaire: Answering,
 }
 
@@ -64,17 +67,17 @@ impl Default for DisplaySpec {
 }
 
 impl DisplaySpec {
-    /// Whether the page can be reached from other computers.
+    /// Whether other computers can open the display's page.
     pub fn is_open(&self) -> bool {
         !self.listen.is_loopback()
     }
 
-    /// Language code; a file with words contains its own.
+    /// Language code of the page; a file with words contains its own.
     pub fn code(&self) -> &str {
         self.words.get("language").unwrap_or(&self.language)
     }
 
-    /// Built-in languages.
+    /// Built-in languages of the display's page.
     pub const LANGUAGES: [&str; 2] = ["en", "de"];
 
     pub(super) fn check(&self) -> Result<(), SettingError> {
@@ -89,32 +92,33 @@ impl DisplaySpec {
     }
 }
 
-/// Which pictures have labels. Contents of places never have one, since telling salmon from tuna is part of the task.
+/// Which pictures on the participant's display have names beside them. Contents of places never have one, since telling
+/// salmon from tuna is part of the task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Names {
-    /// Nothing: pictures alone.
+    /// Nothing has a name.
     None,
-    /// Labels at storages.
+    /// Storages have names.
     Storages,
-    /// Labels at storages and orders.
+    /// Storages and orders have names.
     Orders,
 }
 
-/// How the robot is shown. An approaching hand tells an intention, as a real robot's does.
+/// How the participant's display shows the robot. An approaching hand reveals an intention, as a real robot's does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayedArm {
-    /// Not at all: a real robot stands there.
+    /// Not at all: a real robot stands beside the display.
     None,
-    /// A hand that moves between the places with what it holds.
+    /// A hand that moves between the places with its content.
     Hand,
-    /// The same with an arm, seen from above.
+    /// A hand with an arm, seen from above.
     Arm,
 }
 
 impl DisplayedArm {
-    /// Name in settings and tables.
+    /// Name of the setting in files and tables.
     pub fn name(self) -> &'static str {
         match self {
             DisplayedArm::None => "none",
@@ -124,35 +128,34 @@ impl DisplayedArm {
     }
 }
 
-/// Who enters the answers of a questionnaire.
+/// Where answers are entered, and by whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Answering {
-    /// The wizard reads the items out and enters the answers.
+    /// At the console: the wizard reads the items out and enters the answers.
     Console,
-    /// The participant answers on the display; the wizard can also enter answers.
+    /// On the display: the participant answers there; the wizard can also enter answers.
     Display,
 }
 
-/// Reports of the acting page; all are witnesses.
+/// Reports of the participant's display; all are witnesses (only recorded).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum DisplayEvent {
-    /// The page is connected, with this size in pixels.
+    /// The display's page is connected.
     Connected {
         /// Width of the page in pixels.
         width_px: u32,
         /// Height of the page in pixels.
         height_px: u32,
     },
-    /// The page is disconnected.
+    /// The display's page is disconnected.
     Lost,
-    /// The page drew the event with this sequence number (trial start, signal) with a flash, at this session time by its
-    /// synchronised clock.
+    /// The page has drawn a frame with the flash for an event (trial start, signal).
     Drawn {
-        /// Sequence number of that event.
+        /// Sequence number of the event for which the page flashed.
         cue: u64,
-        /// When it was drawn by the page's own clock, in session time.
+        /// Session time at which the page drew the frame, by its synchronised clock.
         at_ns: SessionTime,
     },
 }

@@ -1,4 +1,4 @@
-//! Visible content of the wizard's screen, recorded at every change, since the wizard's decisions depend on it.
+//! Visible content of the wizard's screen. It is recorded at every change, since the wizard's decisions depend on it.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,11 +7,11 @@ use super::console_settings::Visibility;
 /// Visible content of the wizard's screen.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VisibleScreen {
-    /// What the wizard may see in this session.
+    /// How much the wizard may see in this session.
     pub visibility: Visibility,
-    /// Size class: `small`, `medium`, `large`, or `too_small` for anything but questions.
+    /// Size class of the screen: `small`, `medium`, `large`, or `too_small` for anything but questions.
     pub room: String,
-    /// The names of the panels, from top to bottom.
+    /// The names of the visible panels, from top to bottom.
     pub panels: Vec<String>,
     /// Name of the open dialog, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -40,7 +40,8 @@ pub struct ScriptedWizard {
     presses: VecDeque<ObservedPress>,
     /// The planned signal: its time, and the suspected false belief that it is about.
     about_to: Option<(SessionTime, Thought)>,
-    /// Locations changed by others, with the times at which the wizard checks whether the participant has seen the change.
+    /// Locations changed by others, with the times at which the wizard checks whether the participant has seen the
+    /// change.
     watched: Vec<(SessionTime, LocationId)>,
     signalled_at: Option<SessionTime>,
     /// The part that reads the assistant's offers, if the wizard does.
@@ -191,8 +192,8 @@ impl ScriptedWizard {
         self.about_to = Some((now + SessionTime::from_secs_f64(reaction_s), thought));
     }
 
-    /// Another aspect that the participant may be wrong about: a different requested recipe, or a location that it has not seen
-    /// since its last change.
+    /// Another aspect that the participant may be wrong about: a different requested recipe, or a location that it has
+    /// not seen since its last change.
     fn another(&mut self, cause: Thought, state: State) -> Option<Thought> {
         let suspected = cause.location();
         let could_be = |at: LocationId| match state.order(at) {

@@ -70,8 +70,9 @@ impl WeightedWorlds<u32> {
         }
     }
 
-    /// Predicts a press of the robot, of which the human notices only that it happened: the weight of every world is divided evenly
-    /// among the presses that the robot's policy allows in it. `draw`, uniform in [0, 1), distributes remainders.
+    /// Predicts a press of the robot, of which the human notices only that it happened: the weight of every world is
+    /// divided evenly among the presses that the robot's policy allows in it. `draw`, uniform in [0, 1), distributes
+    /// remainders.
     pub fn robot_pressed(&mut self, kitchen: &Kitchen, cost: &mut CostToGo, policy: &mut RobotPolicy, draw: f64) {
         let n = self.draws();
         for index in 0..self.all.len() {

@@ -33,7 +33,8 @@ impl RobotChoices {
     }
 }
 
-/// The robot's task policy with a cache by fidelity, state and ordered recipes. The cache changes computing time, never results.
+/// The robot's task policy with a cache by fidelity, state and ordered recipes. The cache changes computing time, never
+/// results.
 #[derive(Clone, Debug)]
 pub struct RobotPolicy {
     known: Vec<Option<(Fidelity, State, Recipes, RobotChoices)>>,

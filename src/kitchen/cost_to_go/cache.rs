@@ -40,8 +40,8 @@ impl ValueCache {
         (mix(key >> KIND_BITS) & self.mask) as usize
     }
 
-    /// Prefetches the bucket of a key. Callers with several keys prefetch all of them first; the result must be passed to a black box
-    /// so that the compiler keeps the load.
+    /// Prefetches the bucket of a key. Callers with several keys prefetch all of them first; the result must be passed
+    /// to a black box so that the compiler keeps the load.
     #[inline]
     pub fn fetch(&self, key: u64) -> u64 {
         self.buckets[self.bucket(key)].0[0]

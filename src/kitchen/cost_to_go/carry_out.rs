@@ -8,8 +8,9 @@ use super::partial_plan::{BLOCKED, PressPlan};
 const MAX_STEPS: usize = 40;
 
 impl PressPlan<'_> {
-    /// Length of the whole plan in presses; [`BLOCKED`] if it gets stuck or exceeds `limit`. Obstacles are cleared greedily; with
-    /// `second_thought`, one deviation from the greedy choice is tried (Harvey and Ginsberg 1995, Limited Discrepancy Search).
+    /// Length of the whole plan in presses; [`BLOCKED`] if it gets stuck or exceeds `limit`. Obstacles are cleared
+    /// greedily; with `second_thought`, one deviation from the greedy choice is tried (Harvey and Ginsberg 1995,
+    /// Limited Discrepancy Search).
     pub fn carry_out(mut self, limit: u32, second_thought: bool) -> u32 {
         if limit < BLOCKED && self.choice.demand.bound(self.ground, &self.state) > limit {
             return BLOCKED;

@@ -5,8 +5,8 @@ use crate::base::rng::mix;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
 use crate::kitchen::{Agent, World};
 
-/// A world's costs to go are computed with [`Fidelity::PlanBound`] if it has at least this share of all draws, or of the
-/// posterior weight; else with [`Fidelity::LowerBound`].
+/// A world's costs to go are computed with [`Fidelity::PlanBound`] if it has at least this share of all draws, or of
+/// the posterior weight; else with [`Fidelity::LowerBound`].
 const COUNTS: f64 = 0.01;
 
 /// Number of worlds by which prefetching is ahead of the computation.

@@ -75,8 +75,8 @@ pub struct BeliefFilter {
     lessons: Vec<Lesson>,
     sampler: Sampler,
     shown: State,
-    /// Number of presses of both agents so far. It seeds the random stream of an update, so that other events in a log do not
-    /// change the estimate.
+    /// Number of presses of both agents so far. It seeds the random stream of an update, so that other events in a log
+    /// do not change the estimate.
     presses: u64,
     /// Time up to which forgetting has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
@@ -198,8 +198,8 @@ impl BeliefFilter {
         }
     }
 
-    /// Accounts for unknown gaze up to `now`. The estimate before a press includes it; [`BeliefFilter::observe`] does the same
-    /// first, so calling it changes no later estimate.
+    /// Accounts for unknown gaze up to `now`. The estimate before a press includes it; [`BeliefFilter::observe`] does
+    /// the same first, so calling it changes no later estimate.
     pub fn advance(&mut self, now: SessionTime, cost: &mut CostToGo) {
         let now = self.frozen.unwrap_or(now);
         if self.forgot.is_some() {

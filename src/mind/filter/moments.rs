@@ -1,9 +1,11 @@
-//! Accumulation of weighted belief samples of one aspect, and their projection onto a Dirichlet by mean and second moment.
+//! Accumulation of weighted belief samples of one aspect, and their projection onto a Dirichlet by mean and second
+//! moment.
 
 use super::urn::Urn;
 use crate::mind::dirichlet::Dirichlet;
 
-/// Mean and second moment of a mixture of Dirichlets that share one prior, accumulated as changes to the prior's moments.
+/// Mean and second moment of a mixture of Dirichlets that share one prior, accumulated as changes to the prior's
+/// moments.
 pub struct Moments<'a> {
     prior: &'a Dirichlet,
     mean: Vec<f64>,
@@ -27,7 +29,8 @@ impl Moments<'_> {
         Moments { prior, mean, second: prior.second(), square, share: 0.0, pure, counts: Vec::new() }
     }
 
-    /// Adds Dir(alpha + counts of the drawn values) with this weight; `draws` is the number of draws. All weights sum to 0.
+    /// Adds Dir(alpha + counts of the drawn values) with this weight; `draws` is the number of draws. All weights sum
+    /// to 0.
     pub fn add(&mut self, drawn: impl Iterator<Item = (u8, u32)>, draws: usize, weight: f64) {
         self.counts.clear();
         for (value, times) in drawn {

@@ -93,7 +93,8 @@ impl Serving {
     }
 }
 
-/// The draws of order, plate and recipes conditioned on an effective or ineffective press; `None` if its probability is 0.
+/// The draws of order, plate and recipes conditioned on an effective or ineffective press; `None` if its probability is
+/// 0.
 fn condition(dishes: &[&Served], draws: &[Draw], effective: bool) -> Option<Vec<Vec<f64>>> {
     let (order, plate) = (&draws[0].now, &draws[1].now);
     let place = |value: Option<usize>| value.map(|value| draws[1].part_of[value]);

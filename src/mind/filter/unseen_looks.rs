@@ -57,7 +57,8 @@ impl Sampler {
             for (location, (&[base, extra], reading)) in looks.hazards.iter().zip(&looks.readings).enumerate() {
                 let before = self.read_sums[location];
                 self.read_sums[location] -= (-(base + extra * needs[location])).exp_m1();
-                // Systematic sampling: over all samples the number of readings differs from its expectation by less than 1.
+                // Systematic sampling: over all samples the number of readings differs from its expectation by less
+                // than 1.
                 if self.read_sums[location].floor() > before.floor() && !reading.is_empty() {
                     let value = value_at(reading, random.random::<f64>());
                     self.news.push(LookNews { aspect: location, value, is_read: true });

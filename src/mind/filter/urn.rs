@@ -103,7 +103,8 @@ impl Urn {
         counts
     }
 
-    /// First draws of many samples by stratified sampling from the mean (or the mixture of [`Urn::spread`]), in random order.
+    /// First draws of many samples by stratified sampling from the mean (or the mixture of [`Urn::spread`]), in random
+    /// order.
     pub fn first_draws(&self, random: &mut Stream, out: &mut [u8]) {
         let from = if self.proposal.is_empty() { &self.order } else { &self.proposal };
         let step = 1.0 / out.len() as f64;
@@ -121,8 +122,8 @@ impl Urn {
         }
     }
 
-    /// Fills `drawn` with the draws that follow the first one. Returns true if all draws are equal; the content of `drawn` is
-    /// then undefined.
+    /// Fills `drawn` with the draws that follow the first one. Returns true if all draws are equal; the content of
+    /// `drawn` is then undefined.
     #[inline]
     pub fn draw_on(&self, random: &mut Stream, first: u8, drawn: &mut [u8]) -> bool {
         let mut next_new = self.next_new(random, 0);

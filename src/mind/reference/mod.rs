@@ -68,7 +68,8 @@ impl ReferenceFilter {
         self.log_p
     }
 
-    /// Updates the estimate with one observation. The random stream depends on the seed and the number of observations only.
+    /// Updates the estimate with one observation. The random stream depends on the seed and the number of observations
+    /// only.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
         self.observed += 1;
         let mut random = stream(self.seed, "reference", self.observed);
@@ -99,7 +100,8 @@ impl ReferenceFilter {
         }
     }
 
-    /// Draws all explicit beliefs anew; the number of beliefs that have read each location in the present look is preserved.
+    /// Draws all explicit beliefs anew; the number of beliefs that have read each location in the present look is
+    /// preserved.
     fn draw(&mut self, estimate: &DirichletBelief, random: &mut Stream) {
         let count = self.people.of.len() as f64;
         let read = |index: usize| self.people.of.iter().filter(|person| person.read[index]).count() as f64 / count;

@@ -1,8 +1,8 @@
-//! One explicit belief of a human (a categorical distribution per aspect) and its update by the human model, implemented directly
-//! from the equations.
+//! One explicit belief of a human (a categorical distribution per aspect) and its update by the human model,
+//! implemented directly from the equations.
 //!
-//! The same code serves as a belief sample of the reference filter, as a particle of an unprojected filter, and as a human
-//! simulated from the model.
+//! The same code serves as a belief sample of the reference filter, as a particle of an unprojected filter, and as a
+//! human simulated from the model.
 
 use rand::RngExt;
 use rand_distr::{Distribution, Gamma};
@@ -91,8 +91,8 @@ impl Particle {
         }
     }
 
-    /// E_b[C(s)], and E_b[C(s')] after every button of the human, over worlds drawn from the belief, or over all worlds where there
-    /// are few.
+    /// E_b[C(s)], and E_b[C(s')] after every button of the human, over worlds drawn from the belief, or over all worlds
+    /// where there are few.
     pub fn prospects(
         &self,
         kitchen: &Kitchen,

@@ -1,26 +1,27 @@
-//! Starting groups: the orders in which conditions are tried, balanced for what one trial leaves to the next.
+//! Starting groups of a study: the orders in which participants have the conditions, balanced for carry-over effects
+//! between trials.
 
 use serde::Serialize;
 
 use crate::session::study_arm::StudyArm;
 
-/// A starting group: an order of the conditions.
+/// A starting group: an order of the study's conditions.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct StartingGroup {
-    /// "AB": the first condition of the plan comes first.
+    /// Name of the group: "AB" if the first condition of the plan comes first.
     pub name: String,
-    /// The condition of each trial.
+    /// The study arm of each trial, in order.
     pub conditions: Vec<StudyArm>,
 }
 
-/// The orders of a Williams design (Williams 1949) for `count` conditions, as indices, the plan's own order first where it is one of
-/// them: every condition stands equally often in every place, and directly after every other one. An odd number of conditions needs
-/// twice as many orders.
+/// The orders of a Williams design (Williams 1949) for `count` conditions, as indices; the plan's own order is first if
+/// it is one of them. Every condition is equally often in every position, and equally often directly after every other
+/// one. An odd number of conditions needs twice as many orders.
 pub fn orders(count: usize) -> Vec<Vec<usize>> {
     if count == 0 {
         return vec![Vec::new()];
     }
-    // 0, 1, n-1, 2, n-2, ...: the steps between neighbours are all different modulo n.
+    // The sequence 0, 1, n-1, 2, n-2, ...: the differences between neighbours are all different modulo n.
     let first = |place: usize| if place % 2 == 1 { place.div_ceil(2) } else { (count - place / 2) % count };
     let mut all: Vec<Vec<usize>> =
         (0..count).map(|shift| (0..count).map(|place| (first(place) + shift) % count).collect()).collect();

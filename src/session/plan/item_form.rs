@@ -1,87 +1,87 @@
-//! How an item of a questionnaire is answered: on a scale, by choice, with a number, in words, or on a slider.
+//! Answer formats of questionnaire items: a scale, a choice, a number, words, or a slider.
 
 use serde::{Deserialize, Serialize};
 
 use crate::session::answer_value::AnswerValue;
 
-/// The greatest position of a slider; the least is 0.
+/// The greatest position of a slider in a questionnaire; the least is 0.
 pub const SLIDER_END: i64 = 100;
 
-/// The kinds of items.
+/// The kinds of questionnaire items, by their answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ItemKind {
-    /// A point of a scale.
+    /// The answer is a point of a rating scale.
     Scale,
-    /// One of the options, or several.
+    /// The answer is one of the options, or several.
     Choice,
-    /// A whole number.
+    /// The answer is a whole number.
     Number,
-    /// Words.
+    /// The answer is a text.
     Text,
-    /// A position from 0 to 100.
+    /// The answer is a slider's position from 0 to 100.
     Slider,
 }
 
-/// A rating scale: 1 to `points`.
+/// A rating scale with points from 1 to `points`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scale {
-    /// Number of points.
+    /// Number of points of the rating scale.
     pub points: u8,
-    /// What 1 means.
+    /// Label of the scale's lowest point, 1.
     pub low: String,
-    /// What the highest point means.
+    /// Label of the scale's highest point.
     pub high: String,
 }
 
-/// An option of an item.
+/// An answer option of a questionnaire item.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ItemOption {
-    /// Stands for the option in logs and tables, the same in all languages.
+    /// Identifier of the option in logs and tables, the same in all languages.
     pub id: String,
-    /// The option, as the participant reads it.
+    /// Text of the option, as the participant reads it.
     pub text: String,
 }
 
-/// How an item is answered, with what belongs to its kind.
+/// The answer format of a questionnaire item, with the settings of its kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ItemForm<'a> {
-    /// A point of this scale.
+    /// The answer is a point of this rating scale.
     Scale(&'a Scale),
-    /// One of these options, or several.
+    /// The answer is one of these options, or several.
     Choice {
-        /// The options in their order.
+        /// The options in their order on the page.
         options: &'a [ItemOption],
         /// Whether several can be chosen.
         several: bool,
     },
-    /// A whole number.
+    /// The answer is a whole number.
     Number {
-        /// The least and the greatest number.
+        /// The least and the greatest allowed number.
         range: [i64; 2],
-        /// What is counted; empty without a unit.
+        /// The unit of the number; empty if it has none.
         unit: &'a str,
     },
-    /// Words.
+    /// The answer is a text.
     Text {
-        /// Most characters.
+        /// Largest length of the text, in characters.
         length: u32,
     },
-    /// A position from 0 to 100.
+    /// The answer is a slider's position from 0 to 100.
     Slider {
-        /// What 0 means.
+        /// Label of the slider's position 0.
         low: &'a str,
-        /// What 100 means.
+        /// Label of the slider's position 100.
         high: &'a str,
-        /// Positions are multiples of it.
+        /// Slider positions are multiples of this number.
         step: i64,
     },
 }
 
 impl ItemKind {
-    /// The name in files and tables.
+    /// Name of the item's kind in files and tables.
     pub fn name(self) -> &'static str {
         match self {
             ItemKind::Scale => "scale",
@@ -94,7 +94,7 @@ impl ItemKind {
 }
 
 impl<'a> ItemForm<'a> {
-    /// The least and the greatest answer of scales and sliders, whose answers can be turned round.
+    /// The least and the greatest answer of scales and sliders, whose answers can be reversed.
     pub fn ends(&self) -> Option<[i64; 2]> {
         match self {
             ItemForm::Scale(scale) => Some([1, i64::from(scale.points)]),
@@ -103,15 +103,16 @@ impl<'a> ItemForm<'a> {
         }
     }
 
-    /// Whether the item stays after an answer, which is likely to be changed: the next one follows only when it is asked for.
+    /// Whether the item stays on the page after an answer, because participants are likely to change the answer; the
+    /// next item then follows only on request.
     pub fn stays(&self) -> bool {
         matches!(self, ItemForm::Choice { several: true, .. } | ItemForm::Slider { .. })
     }
 
-    /// Whether this is an answer to the item.
+    /// Whether a value is a valid answer to the item.
     ///
     /// # Errors
-    /// Why it is none, in words for the wizard.
+    /// Why the answer is invalid, in words for the wizard.
     pub fn admit(&self, answer: &AnswerValue) -> Result<(), &'static str> {
         let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
         let is_option = |options: &[ItemOption], id: &String| options.iter().any(|option| option.id == *id);
@@ -143,7 +144,7 @@ impl<'a> ItemForm<'a> {
         }
     }
 
-    /// The answer after this option was chosen, or chosen once more.
+    /// The answer after the participant selects this option, or deselects it.
     pub fn choose(&self, index: usize, given: Option<&AnswerValue>) -> Option<AnswerValue> {
         let ItemForm::Choice { options, several } = self else { return None };
         let chosen = &options.get(index)?.id;
@@ -151,13 +152,13 @@ impl<'a> ItemForm<'a> {
             return Some(AnswerValue::Text(chosen.clone()));
         }
         let before = given.map_or(&[][..], AnswerValue::options);
-        // In the order of the options, whatever the order of choosing.
+        // The ids keep the order of the options, whatever the order of choosing.
         let is_chosen = |id: &String| before.contains(id) != (id == chosen);
         let ids = options.iter().map(|option| &option.id).filter(|id| is_chosen(id));
         Some(AnswerValue::Options(ids.cloned().collect()))
     }
 
-    /// The answer as people read it: options by their texts, numbers with their unit.
+    /// The answer in words: options by their texts, numbers with their unit.
     pub fn words(&self, answer: &AnswerValue) -> String {
         match (self, answer) {
             (ItemForm::Choice { options, .. }, _) => {

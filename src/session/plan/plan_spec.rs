@@ -1,4 +1,4 @@
-//! The `[plan]` of a session file.
+//! The `[plan]` of a session file: a study's participants, conditions and phases.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,32 +15,33 @@ use crate::session::wall_display::Answering;
 pub struct PlanSpec {
     /// Name of the plan, which identifies its recordings.
     pub name: String,
-    /// Who takes part.
+    /// The participants of the study.
     pub participants: Participants,
-    /// Conditions, by their arms; each participant has one trial in each, in counterbalanced order.
+    /// Study arms that are compared; each participant has one trial in each, in counterbalanced order.
     pub conditions: Vec<StudyArm>,
-    /// What the analysis compares first between the conditions, and what counts as not worse.
+    /// The primary outcome of the study, and its margin of non-inferiority.
     #[serde(default, skip_serializing_if = "StudyAims::are_default")]
     pub aims: StudyAims,
     /// Size of a permuted block, in participants; by default each order of the conditions occurs twice in a block.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub block: Option<u32>,
-    /// Consent text, shown before anything is recorded.
+    /// Consent text, which is shown before anything is recorded.
     #[serde(default = "default_consent")]
     pub consent: String,
-    /// Where the participant agrees: on the display by holding a button, or told to the wizard at the console.
+    /// How the participant consents: on the display by holding a button, or by telling the wizard, who confirms it at
+    /// the console.
     #[serde(default = "on_console", skip_serializing_if = "is_console")]
     pub consent_on: Answering,
-    /// Steps of the instruction.
+    /// Steps of the wizard's instruction to the participant.
     #[serde(default)]
     pub instruction: Vec<String>,
-    /// The participant's tutorial on the display after the instruction, a file relative to the session file.
+    /// The participant's tutorial on the display after the instruction: a file, relative to the session file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tutorial: Option<String>,
-    /// Practice before the first trial, if the plan has any.
+    /// Practice trial before the first trial, if the plan has any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub familiarisation: Option<FamiliarisationSpec>,
-    /// Which questionnaires are asked, and when.
+    /// The questionnaires, and after which trials the participant answers them.
     #[serde(default)]
     pub questionnaire: Vec<QuestionnaireSpec>,
     /// Steps of the wizard's debriefing after the last trial.
@@ -60,50 +61,51 @@ fn is_console(consent_on: &Answering) -> bool {
     *consent_on == Answering::Console
 }
 
-/// The participants of a plan: their number (P01, P02, …), or their codes.
+/// The participants of a plan: their number, from which codes follow (P01, P02, …), or their codes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "a number of participants, or a list of their codes")]
 pub enum Participants {
-    /// So many participants, with the codes P01, P02, …
+    /// This number of participants, with the codes P01, P02, …
     Count(u32),
     /// The participants with these codes.
     Codes(Vec<String>),
 }
 
-/// Practice before the first trial, repeated until the criterion is met.
+/// Practice trial (familiarisation) before the first trial, repeated until the participant meets a criterion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FamiliarisationSpec {
-    /// Who may send signals during the practice.
+    /// The study arm of the practice trial: who may send signals.
     #[serde(default)]
     pub condition: StudyArm,
-    /// End of the practice: presses of both agents, unless time or orders end it earlier.
+    /// Number of presses of both agents at which the practice trial ends, unless time or orders end it earlier.
     pub presses: u32,
-    /// The practice ends after this time on the trial's clock, in seconds.
+    /// Duration after which the practice trial ends, in seconds on the trial's clock.
     pub seconds: f64,
-    /// Criterion: least number of served orders.
+    /// Criterion of the practice trial: least number of served orders.
     pub orders: u32,
-    /// Criterion: largest share of errors among the human's presses.
+    /// Criterion of the practice trial: largest share of errors among the human's presses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_rate: Option<f64>,
 }
 
-/// A questionnaire with the trials after which it is asked.
+/// A questionnaire of a plan, with the trials after which the participant answers it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuestionnaireSpec {
-    /// The file, relative to the session file.
+    /// The questionnaire's file, relative to the session file.
     pub file: String,
-    /// Numbers of the trials after which it is asked, from 1; by default after each.
+    /// Numbers of the trials after which the questionnaire is asked, from 1; by default after each.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<Vec<u32>>,
-    /// Whether it is asked once before the first trial, and after trials only if `after` says so.
+    /// Whether the questionnaire is asked once before the first trial; after trials it is then asked only if `after`
+    /// says so.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub before: bool,
 }
 
 impl QuestionnaireSpec {
-    /// Whether it is asked after the trial with this number.
+    /// Whether the questionnaire is asked after the trial with this number.
     pub fn is_asked_after(&self, period: u32) -> bool {
         self.after.as_ref().map_or(!self.before, |after| after.contains(&period))
     }
@@ -127,7 +129,7 @@ impl PlanSpec {
         }
     }
 
-    /// Checks ranges and consistency.
+    /// Checks ranges and consistency of the plan.
     ///
     /// # Errors
     /// The first invalid setting.
@@ -161,10 +163,10 @@ impl PlanSpec {
         Ok(())
     }
 
-    /// Checks that the arms fit what the wizard sees in the session.
+    /// Checks that the study arms agree with what the wizard sees in the session.
     ///
     /// # Errors
-    /// The plan has a wizard without advice, and the settings show recommendations.
+    /// The plan has a wizard without advice, but the settings show recommendations.
     pub fn check_visibility(&self, visibility: Visibility) -> Result<(), SettingError> {
         let practice = self.familiarisation.iter().map(|practice| practice.condition);
         let is_blind = self.conditions.iter().copied().chain(practice).any(|arm| arm == StudyArm::Wizard);
@@ -198,7 +200,7 @@ impl PlanSpec {
     }
 }
 
-/// "P07", of up to 99 participants.
+/// The code of a participant with this number: "P07" if there are up to 99 participants.
 fn numbered(number: u32, count: u32) -> String {
     let digits = count.to_string().len().max(2);
     format!("P{number:0digits$}")

@@ -1,4 +1,4 @@
-//! A study plan with its session settings and questionnaires, and the settings of each recording.
+//! A study: its plan with session settings and questionnaires, and the settings of each recording.
 
 use serde::Serialize;
 
@@ -17,47 +17,47 @@ use crate::session::tracker::TrackerSpec;
 use crate::session::wall_display::{Answering, DisplaySpec};
 use crate::wizard::settings::WizardKind;
 
-/// A slot in a participant's series: it needs one complete recording.
+/// A planned trial in a participant's series (familiarisation or counted trial): it needs one complete recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Slot {
     /// Number of the trial, from 1; `None` for the familiarisation.
     pub period: Option<u32>,
-    /// Its arm.
+    /// The study arm of the trial.
     pub condition: StudyArm,
 }
 
-/// A study plan with its session settings and questionnaires.
+/// A study: its plan with session settings and questionnaires.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// The plan of the session file.
+    /// The plan from the session file.
     pub plan: PlanSpec,
     /// Questionnaires in the order of the plan.
     pub questionnaires: Vec<Questionnaire>,
     /// The participant's tutorial, if the plan has one.
     pub tutorial: Option<Tutorial>,
-    /// Session settings that all trials share.
+    /// Settings that all sessions of the study share.
     pub session: SessionSpec,
-    /// A checksum of the plan, its questionnaires, kitchen, and all settings that can change a trial: recordings with another one belong
-    /// to another study.
+    /// A checksum of the plan, its questionnaires, kitchen, and all settings that can change a trial: recordings with
+    /// another checksum belong to another study.
     pub digest: String,
 }
 
-/// Identifies one recording of a study.
+/// Identifies a recording of a study that is to be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WantedRecording {
     /// Index of the participant in the plan.
     pub participant: usize,
-    /// Index of the slot in its series.
+    /// Index of the planned trial in the participant's series.
     pub slot: usize,
-    /// Number of the attempt, from 1.
+    /// Number of the attempt at this trial, from 1.
     pub attempt: u32,
     /// Whether the participant has completed the instruction.
     pub instructed: bool,
 }
 
 impl Study {
-    /// The study of a session file, with the questionnaires of its plan in order, its tutorial, and the texts of the files of its kitchen; `None`
-    /// without a plan.
+    /// The study of a session file, with the questionnaires of its plan in order, its tutorial, and the texts of the
+    /// kitchen's files; `None` if the session file has no plan.
     pub fn new(
         session: &SessionSpec,
         questionnaires: Vec<Questionnaire>,
@@ -66,10 +66,10 @@ impl Study {
     ) -> Option<Study> {
         let plan = session.plan.clone()?;
         let session = SessionSpec { plan: None, ..session.clone() };
-        // All serialised maps have string keys.
+        // Serialisation cannot fail, because all maps have string keys.
         let all = (&plan, &questionnaires, kitchen, what_can_change_a_trial(&session));
         let mut text = serde_json::to_string(&all).unwrap_or_default();
-        // A plan without a tutorial keeps the digest that it had before there were tutorials.
+        // Without a tutorial, the digest stays as it was before there were tutorials.
         if let Some(tutorial) = &tutorial {
             text += &serde_json::to_string(tutorial).unwrap_or_default();
         }
@@ -82,13 +82,13 @@ impl Study {
         self.plan.group(self.session.seed, participant)
     }
 
-    /// The event of a consent to what the plan asks, given there.
+    /// The event that the participant consented to the plan's text, at the display or at the console.
     pub fn consent_given(&self, on: Answering) -> ProtocolEvent {
         let (text, digest) = (self.plan.consent.clone(), digest(&self.plan.consent));
         ProtocolEvent::ConsentGiven { on: Some(on), text: Some(text), digest: Some(digest) }
     }
 
-    /// The series of a participant.
+    /// The planned trials of a participant, in order.
     pub fn slots(&self, participant: usize) -> Vec<Slot> {
         let practice = self.plan.familiarisation.as_ref().map(|practice| (None, practice.condition));
         let trials = self.group(participant).conditions.into_iter().enumerate();
@@ -125,8 +125,8 @@ impl Study {
         (spec, trial_number(wanted))
     }
 
-    /// The settings of a simulated trial, and its number. There is no instruction and no questionnaire; without a scripted wizard,
-    /// the wizard conditions are unassisted.
+    /// The settings of a simulated trial, and the trial's number. There is no instruction and no questionnaire; without
+    /// a scripted wizard, the wizard conditions are unassisted.
     pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
         let slots = self.slots(participant);
         let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
@@ -141,7 +141,7 @@ impl Study {
         (spec, trial)
     }
 
-    /// The settings of a recording of the tutorial alone; `None` without a tutorial.
+    /// The settings of a recording with only the tutorial; `None` if the study has none.
     pub fn tutorial_alone(&self, code: &str) -> Option<SessionSpec> {
         let phases = vec![PhaseSpec::Tutorial { tutorial: self.tutorial.clone()? }];
         let mut spec = self.session.clone();
@@ -167,7 +167,7 @@ impl Study {
         if !wanted.instructed && !self.plan.instruction.is_empty() {
             phases.push(PhaseSpec::Instruction { steps: self.plan.instruction.clone() });
         }
-        // The tutorial happens on the display: at the keyboard of the console there is nothing to show it.
+        // The tutorial is shown on the participant's display only, not at the keyboard of the console.
         let is_there = !wanted.instructed && self.session.participant.kind == ParticipantKind::Display;
         if let Some(tutorial) = self.tutorial.as_ref().filter(|_| is_there) {
             phases.push(PhaseSpec::Tutorial { tutorial: tutorial.clone() });
@@ -191,7 +191,7 @@ impl Study {
     }
 }
 
-/// Gives a trial the settings of its arm.
+/// Sets the settings of a trial to those of its study arm.
 fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
     spec.trial.condition = arm.condition();
     if let Some(concept) = arm.concept() {
@@ -210,8 +210,9 @@ fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
     }
 }
 
-/// The settings without those that cannot change a trial: addresses, viewers, look and texts of the wizard's console. Who takes part in
-/// a recording, and which device its gaze comes from, is chosen at its start, stands in its header, and is no part of the plan.
+/// The settings without those that cannot change a trial: addresses, viewers, appearance and texts of the wizard's
+/// console. Who takes part in a recording and which device its gaze comes from are chosen at its start, written to its
+/// header, and not part of the plan.
 fn what_can_change_a_trial(session: &SessionSpec) -> SessionSpec {
     let ParticipantSpec { population, .. } = session.participant.clone();
     let TrackerSpec { surface, corners, distance_m, .. } = session.tracker.clone();
@@ -222,14 +223,15 @@ fn what_can_change_a_trial(session: &SessionSpec) -> SessionSpec {
         console: ConsoleSpec { visibility: session.console.visibility, ..ConsoleSpec::default() },
         display: DisplaySpec { listen: display.listen, port: display.port, ..session.display.clone() },
         rerun: RerunSpec::default(),
-        // Its parameters stand in `human`, the layout's text beside the settings.
+        // The parameters are in `human`, and the layout's text is passed beside the settings.
         human_model: None,
         layout: String::new(),
         ..session.clone()
     }
 }
 
-/// A unique trial number for every recording of a plan; its decimal digits encode participant, slot and attempt.
+/// A unique trial number for every recording of a plan; its decimal digits encode participant, planned trial and
+/// attempt.
 fn trial_number(wanted: WantedRecording) -> u64 {
     (wanted.participant as u64 + 1) * 1_000_000 + wanted.slot as u64 * 10_000 + u64::from(wanted.attempt)
 }

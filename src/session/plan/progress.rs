@@ -1,75 +1,76 @@
-//! Progress of a study plan, computed from the recordings alone, so that the next step is correct after a crash at any time.
+//! Progress of participants through a study plan, computed from the recordings alone, so that the next step is correct
+//! after a crash at any time.
 
 use serde::Serialize;
 
 use super::planned_study::{Slot, Study, WantedRecording};
 use super::step::StepSpec;
 
-/// Outcome of a recording of a plan.
+/// State of a recording of a plan: complete, open, excluded or void.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
 pub enum RecordingOutcome {
-    /// Complete: all its phases are done.
+    /// The recording is complete: all its phases are done.
     Complete,
-    /// Unfinished: cut off or left early; it can be continued.
+    /// The recording is unfinished: cut off or left early; it can be continued.
     Open,
-    /// Finished and excluded from the analysis, but not repeated.
+    /// The recording is finished and excluded from the analysis, but not repeated.
     Excluded {
-        /// Why it is left out.
+        /// Why the recording is excluded.
         reason: String,
     },
-    /// Finished and invalid: it must be repeated.
+    /// The recording is finished and invalid: it must be repeated.
     Void {
-        /// Why it does not count.
+        /// Why the recording is invalid.
         reason: String,
     },
 }
 
-/// Facts about a recording of a plan, all its parts together.
+/// Facts about one recording of a study plan, over all its parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanRecording {
-    /// The name of its last folder.
+    /// Name of the recording's last folder.
     pub recording: String,
     /// The participant's code.
     pub code: String,
-    /// Its place in the plan.
+    /// Position of the recording in the plan.
     pub step: StepSpec,
     /// Whether the participant consented.
     pub consent: bool,
     /// Whether the participant completed the instruction, if there is one.
     pub instructed: bool,
-    /// The presses of both agents in its trial.
+    /// Number of presses of both agents in the trial.
     pub presses: u32,
-    /// How it ended.
+    /// Whether the recording is complete, open, excluded or void.
     pub outcome: RecordingOutcome,
 }
 
-/// The next recording of a participant.
+/// The recording that a participant needs next.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
 pub enum NextRecording {
-    /// A new recording.
+    /// A new recording begins.
     Begin {
-        /// The index of the place in the series that it is for.
+        /// The index of the planned trial in the participant's series.
         slot: usize,
-        /// Which attempt at that place it is, counted from 1.
+        /// The number of the attempt at this trial, counted from 1.
         attempt: u32,
     },
-    /// An unfinished recording, which is continued or repeated as this attempt.
+    /// An unfinished recording exists: the experimenter continues it, or repeats it as this attempt.
     Choose {
-        /// The name of the open recording's folder.
+        /// Name of the unfinished recording's folder.
         recording: String,
-        /// The index of its place in the series.
+        /// The index of the planned trial in the participant's series.
         slot: usize,
-        /// The attempt that doing it again would be, counted from 1.
+        /// The number of the attempt if the recording is repeated, counted from 1.
         attempt: u32,
     },
-    /// Nothing: the participant has had everything.
+    /// No recording: the participant has completed the series.
     Finished,
 }
 
 impl NextRecording {
-    /// Index of the slot; `None` when all slots are done.
+    /// Index of the planned trial; `None` when all are done.
     pub fn slot(&self) -> Option<usize> {
         match self {
             NextRecording::Begin { slot, .. } | NextRecording::Choose { slot, .. } => Some(*slot),
@@ -78,34 +79,34 @@ impl NextRecording {
     }
 }
 
-/// A slot of the series with its attempts.
+/// A planned trial of a participant's series, with the attempts at it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SlotProgress {
-    /// The place.
+    /// The planned trial.
     #[serde(flatten)]
     pub slot: Slot,
-    /// A recording fills it.
+    /// Whether the trial has a valid recording.
     pub is_done: bool,
-    /// Attempts in order.
+    /// The attempts at the trial, in order.
     pub recordings: Vec<Attempt>,
 }
 
-/// One attempt at a slot.
+/// One attempt at a planned trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Attempt {
     /// The name of the recording's last folder.
     pub recording: String,
     /// Number of the attempt, from 1.
     pub attempt: u32,
-    /// Presses of both agents in its trial.
+    /// Number of presses of both agents in the attempt's trial.
     pub presses: u32,
-    /// How it ended.
+    /// Whether the attempt's recording is complete, open, excluded or void.
     pub outcome: RecordingOutcome,
-    /// Whether it was recorded under another version of the plan.
+    /// Whether the attempt was recorded under another version of the plan.
     pub other_version: bool,
 }
 
-/// Progress of one participant.
+/// Progress of one participant through the study plan.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Progress {
     /// The participant's code.
@@ -113,21 +114,21 @@ pub struct Progress {
     /// Index of the participant in the plan.
     #[serde(skip)]
     pub participant: usize,
-    /// The name of the starting group.
+    /// Name of the participant's starting group.
     pub group: String,
-    /// The participant agreed to be recorded.
+    /// Whether the participant consented to being recorded.
     pub consent: bool,
-    /// The participant went through the instruction, if there is one.
+    /// Whether the participant completed the instruction, if there is one.
     #[serde(skip)]
     pub instructed: bool,
-    /// The places of the series, in their order.
+    /// The planned trials of the series, in order.
     pub steps: Vec<SlotProgress>,
-    /// What comes next.
+    /// The recording that comes next.
     pub next: NextRecording,
 }
 
 impl Progress {
-    /// Progress of a participant; `made` holds all recordings of the plan in any order.
+    /// Progress of a participant; `made` contains all recordings of the plan in any order.
     ///
     /// # Errors
     /// A recording that does not belong to this plan, in words.
@@ -149,19 +150,19 @@ impl Progress {
         Ok(Progress { code, participant, group, consent, instructed, steps, next })
     }
 
-    /// The recording that a new attempt at a slot needs.
+    /// The recording to make for a new attempt at a planned trial.
     pub fn wanted(&self, slot: usize, attempt: u32) -> WantedRecording {
         WantedRecording { participant: self.participant, slot, attempt, instructed: self.instructed }
     }
 
-    /// Makes a slot the next one, even if it is done.
+    /// Makes this planned trial the next one, even if it is done.
     pub fn redo(&mut self, slot: Option<usize>) {
         if let Some((slot, stand)) = slot.and_then(|slot| Some((slot, self.steps.get(slot)?))) {
             self.next = NextRecording::Begin { slot, attempt: stand.attempts() + 1 };
         }
     }
 
-    /// Number of completed slots.
+    /// Number of completed trials of the series.
     pub fn done(&self) -> usize {
         self.steps.iter().filter(|stand| stand.is_done).count()
     }
@@ -191,7 +192,7 @@ impl SlotProgress {
         self.recordings.last().map_or(0, |last| last.attempt)
     }
 
-    /// The recording that this slot still needs; `None` if it is done.
+    /// The recording that this planned trial still needs; `None` if it is done.
     fn next(&self, slot: usize) -> Option<NextRecording> {
         let attempt = self.attempts() + 1;
         match self.recordings.last() {

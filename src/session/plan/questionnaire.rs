@@ -1,4 +1,4 @@
-//! Questionnaires: items that are answered on a rating scale (Likert 1932) or in another form.
+//! Questionnaires: items that participants answer on a rating scale (Likert 1932) or in another format.
 
 use std::collections::BTreeMap;
 
@@ -7,26 +7,26 @@ use serde::{Deserialize, Serialize};
 use super::item_form::{ItemForm, ItemKind, ItemOption, Scale};
 use crate::session::condition::Condition;
 
-/// Most characters of an answer in words, unless the item says how many.
+/// Largest length of a text answer in characters, unless the item sets another one.
 const LENGTH: u32 = 200;
 
-/// A questionnaire file.
+/// A questionnaire of a study, as its file has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Questionnaire {
-    /// Stands for the questionnaire in the log and in tables.
+    /// Identifier of the questionnaire in the log and in tables.
     pub name: String,
     /// Heading above the items.
     pub title: String,
-    /// The language of the items, as in "en".
+    /// Language code of the items: "en".
     pub language: String,
-    /// How the questionnaire's score follows from its answers, if it has one.
+    /// How the questionnaire's score is computed from its answers, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub score: Option<ScoreRule>,
-    /// The scale of all items that name no other.
+    /// The rating scale of all items that do not name another one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<Scale>,
-    /// Further scales by name.
+    /// Further rating scales by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub scales: BTreeMap<String, Scale>,
     /// The items, in the order in which they are asked.
@@ -34,18 +34,19 @@ pub struct Questionnaire {
     pub items: Vec<Item>,
 }
 
-/// How a questionnaire's score follows from its answers. Answers to reversed items are turned round on their scale first. There is no
-/// score where an item was left out.
+/// How a questionnaire's score is computed from its answers. Answers to reversed items are first reversed on their
+/// scale. There is no score if an item was left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ScoreRule {
     /// Mean of the answers, as in the raw task load index of Hart (2006).
     Mean,
-    /// System usability scale of Brooke (1996): ten items of five points; 2.5 times the sum of the points above the lowest, 0 to 100.
+    /// System usability scale of Brooke (1996): ten items of five points; 2.5 times the sum of the points above the
+    /// lowest, 0 to 100.
     Sus,
 }
 
-/// A statement to be rated, or a question.
+/// An item of a questionnaire: a statement to be rated, or a question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Item {
@@ -53,37 +54,37 @@ pub struct Item {
     pub id: String,
     /// The statement or question, as the participant reads it.
     pub text: String,
-    /// How it is answered; on a scale by default.
+    /// The kind of answer; a rating scale by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<ItemKind>,
-    /// Name of the item's scale; by default that of all items.
+    /// Name of the item's rating scale; by default that of all items.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<String>,
-    /// What can be chosen.
+    /// The options of an item that is answered by choice.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub options: Vec<ItemOption>,
     /// Whether several options can be chosen.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub several: bool,
-    /// The least number.
+    /// The least number that can be answered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min: Option<i64>,
-    /// The greatest number.
+    /// The greatest number that can be answered.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<i64>,
-    /// What the number counts, as in "years".
+    /// Unit of the answered number: "years".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
-    /// Most characters of an answer in words.
+    /// Largest length of a text answer, in characters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length: Option<u32>,
-    /// What 0 on the slider means.
+    /// Label of the slider's position 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub low: Option<String>,
-    /// What 100 on the slider means.
+    /// Label of the slider's position 100.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub high: Option<String>,
-    /// The positions of the slider are multiples of it.
+    /// Slider positions are multiples of this number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<u8>,
     /// Construct that the item measures; items with the same construct form a scale.
@@ -92,7 +93,7 @@ pub struct Item {
     /// Whether the item is reverse coded.
     #[serde(default)]
     pub reversed: bool,
-    /// Conditions after which the item is asked; all by default.
+    /// Conditions of a trial after which the item is asked; all by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub conditions: Option<Vec<Condition>>,
 }
@@ -105,13 +106,14 @@ impl Questionnaire {
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
     }
 
-    /// The questionnaire before the first trial; `None` if it has no items. Items about a condition are not asked.
+    /// The questionnaire before the first trial; `None` if it has no items. Items for certain conditions are left out.
     pub fn before_trials(&self) -> Option<Questionnaire> {
         let items: Vec<Item> = self.items.iter().filter(|item| item.conditions.is_none()).cloned().collect();
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
     }
 
-    /// How the item with this index is answered; `None` if there is none, or if it lacks what its kind needs.
+    /// The answer format of the item with this index; `None` if there is no such item, or if it lacks settings that its
+    /// kind needs.
     pub fn form(&self, index: usize) -> Option<ItemForm<'_>> {
         let item = self.items.get(index)?;
         Some(match item.kind.unwrap_or(ItemKind::Scale) {
@@ -131,7 +133,7 @@ impl Questionnaire {
         })
     }
 
-    /// Index of an item.
+    /// Index of the item with this identifier.
     pub fn position(&self, id: &str) -> Option<usize> {
         self.items.iter().position(|item| item.id == id)
     }

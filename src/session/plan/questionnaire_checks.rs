@@ -5,11 +5,11 @@ use super::questionnaire::{Item, Questionnaire, ScoreRule};
 use crate::session::ranges;
 use crate::session::setting_checks::{SettingError, is_code};
 
-/// Most options of an item: each is a digit.
+/// Largest number of options of an item: each is chosen by a digit key.
 const MOST_OPTIONS: usize = 9;
 
 impl Questionnaire {
-    /// Checks ranges and consistency.
+    /// Checks ranges and consistency of the questionnaire.
     ///
     /// # Errors
     /// The first invalid setting.
@@ -26,7 +26,7 @@ impl Questionnaire {
         self.check_ids()?;
         for (index, item) in self.items.iter().enumerate() {
             self.check_item(item).map_err(|(key, found, remedy)| {
-                // Among several settings of one name, those count that the file has.
+                // Only items that have this setting in the file count for its index.
                 let nth = self.items[..index].iter().filter(|before| has(before, key)).count();
                 SettingError { nth, ..SettingError::new(format!("item.{key}"), found, remedy) }
             })?;
@@ -47,13 +47,13 @@ impl Questionnaire {
         }
     }
 
-    /// Whether an item has what its kind needs, and nothing else.
+    /// Checks that an item has the settings that its kind needs, and no others.
     fn check_item(&self, item: &Item) -> Result<(), WrongItem> {
         let kind = item.kind.unwrap_or(ItemKind::Scale);
         if let Some((key, owner)) = OWNED.into_iter().find(|(key, owner)| *owner != kind && has(item, key)) {
             return Err((key, format!("{key} in an item of the kind \"{}\"", kind.name()), remedy_for(owner)));
         }
-        // The setting whose line is told where one is missing.
+        // The line that the message names if a setting is missing.
         let line = if item.kind.is_some() { "kind" } else { "id" };
         let found = format!("kind = \"{}\" in the item \"{}\"", kind.name(), item.id);
         match kind {
@@ -111,7 +111,7 @@ impl Questionnaire {
     }
 }
 
-/// What is wrong in an item: the setting, what was found, and what would be right.
+/// Error in an item: the setting, what was found, and what would be right.
 type WrongItem = (&'static str, String, &'static str);
 
 fn check_options(item: &Item, line: &'static str) -> Result<(), WrongItem> {
@@ -132,7 +132,7 @@ fn check_options(item: &Item, line: &'static str) -> Result<(), WrongItem> {
     }
 }
 
-/// The settings of one kind of items, with that kind.
+/// The settings that belong to one kind of items, with that kind.
 const OWNED: [(&str, ItemKind); 10] = [
     ("scale", ItemKind::Scale),
     ("options", ItemKind::Choice),
@@ -156,7 +156,7 @@ fn remedy_for(owner: ItemKind) -> &'static str {
     }
 }
 
-/// Whether the file has this setting in the item.
+/// Whether the item has this setting in the file.
 fn has(item: &Item, key: &str) -> bool {
     match key {
         "kind" => item.kind.is_some(),

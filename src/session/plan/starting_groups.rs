@@ -1,5 +1,5 @@
-//! Assignment of participants to starting groups by permuted blocks (Pocock 1983, Clinical Trials, ch. 5): groups are equal
-//! after every block, and the next assignment is unpredictable.
+//! Assignment of participants to starting groups by permuted blocks (Pocock 1983, Clinical Trials, ch. 5): groups are
+//! equal after every block, and the next assignment is unpredictable.
 
 use rand::RngExt;
 
@@ -8,7 +8,7 @@ use super::plan_spec::PlanSpec;
 use crate::base::rng::stream;
 
 impl PlanSpec {
-    /// The group of the participant with this index: a function of plan and seed alone.
+    /// The starting group of the participant with this index: a function of plan and seed alone.
     pub fn group(&self, seed: u64, participant: usize) -> StartingGroup {
         let orders = orders(self.conditions.len());
         let block = self.block.map_or(2 * orders.len(), |block| block as usize);

@@ -1,4 +1,4 @@
-//! A step of a plan: one recording with at most one trial and the phases around it.
+//! A step of a study plan: one recording with at most one trial and the phases around it.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,65 +8,66 @@ use super::tutorial::Tutorial;
 use crate::session::protocol_event::StudyPhase;
 use crate::session::study_arm::StudyArm;
 
-/// Position of a recording in its plan, and its phases; part of the settings of every recording of a plan.
+/// Position of a recording in its study plan, and its phases; part of the settings of every recording of a plan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepSpec {
     /// The name of the plan.
     pub plan: String,
-    /// Digest of plan, settings and questionnaires.
+    /// Digest of the plan, its settings and questionnaires.
     pub digest: String,
-    /// The participant's place in the plan, from 0.
+    /// Index of the participant in the plan, from 0.
     pub participant: u32,
-    /// The starting group, as in "AB".
+    /// Name of the participant's starting group: "AB".
     pub group: String,
     /// Number of the trial, from 1; `None` for the familiarisation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period: Option<u32>,
-    /// Number of trials per participant.
+    /// Number of counted trials per participant.
     pub periods: u32,
-    /// The arm that the plan gives to the trial; absent in recordings from before plans had arms.
+    /// The study arm that the plan assigns to the trial; absent in recordings from before plans had arms.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arm: Option<StudyArm>,
-    /// What the study asks, if it is not the default.
+    /// The aims of the study, if they are not the default.
     #[serde(default, skip_serializing_if = "StudyAims::are_default")]
     pub aims: StudyAims,
-    /// Number of the attempt, from 1.
+    /// Number of the attempt at this trial, from 1.
     pub attempt: u32,
-    /// Criterion of the familiarisation.
+    /// Criterion of the practice trial (familiarisation).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub criterion: Option<Criterion>,
-    /// Phases in order.
+    /// The phases of the recording, in order.
     #[serde(rename = "phase")]
     pub phases: Vec<PhaseSpec>,
 }
 
-/// Criterion of the familiarisation: least number of served orders, largest share of errors among the human's presses.
+/// Criterion of the practice trial (familiarisation): least number of served orders, largest share of errors among the
+/// human's presses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Criterion {
-    /// The least number of orders served.
+    /// The least number of served orders.
     pub orders: u32,
-    /// The greatest share of errors among the human's presses, 0 to 1; none: errors do not matter.
+    /// The largest share of errors among the human's presses, 0 to 1; none: errors do not matter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_rate: Option<f64>,
 }
 
 impl Criterion {
-    /// Whether these numbers of served orders, human presses and errors meet the criterion.
+    /// Whether a practice trial with these numbers of served orders, human presses and errors meets the criterion.
     pub fn is_met(&self, orders: u32, presses: u32, errors: u32) -> bool {
         let share = f64::from(errors) / f64::from(presses.max(1));
         orders >= self.orders && self.error_rate.is_none_or(|most| share <= most)
     }
 }
 
-/// A phase with its content.
+/// A phase of a recording, with its content.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
 pub enum PhaseSpec {
     /// The wizard instructs the participant.
     Instruction {
-        /// What is told or shown, step by step.
+        /// The instructions, step by step.
         steps: Vec<String>,
     },
     /// The participant goes through a tutorial on the display.
@@ -74,9 +75,9 @@ pub enum PhaseSpec {
         /// The tutorial, with all its texts.
         tutorial: Tutorial,
     },
-    /// A trial for practice.
+    /// A practice trial, which does not count.
     Familiarisation,
-    /// A trial that counts.
+    /// A trial that counts for the analysis.
     Trial,
     /// The participant answers a questionnaire.
     Questionnaire {
@@ -85,13 +86,13 @@ pub enum PhaseSpec {
     },
     /// The participant is debriefed.
     Debriefing {
-        /// What the wizard goes through, step by step.
+        /// The steps of the debriefing.
         steps: Vec<String>,
     },
 }
 
 impl PhaseSpec {
-    /// The kind of the phase, without what is shown in it.
+    /// The kind of the phase, without its content.
     pub fn phase(&self) -> StudyPhase {
         match self {
             PhaseSpec::Instruction { .. } => StudyPhase::Instruction,
@@ -103,7 +104,7 @@ impl PhaseSpec {
         }
     }
 
-    /// The steps to be ticked in it.
+    /// The steps of the phase that the wizard ticks off.
     pub fn steps(&self) -> &[String] {
         match self {
             PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps } => steps,
@@ -113,7 +114,7 @@ impl PhaseSpec {
 }
 
 impl StepSpec {
-    /// Whether the recording has the participant's tutorial and nothing else.
+    /// Whether the recording has only the participant's tutorial.
     pub fn is_tutorial_alone(&self) -> bool {
         matches!(self.phases[..], [PhaseSpec::Tutorial { .. }])
     }

@@ -1,14 +1,15 @@
-//! What a study asks: its primary outcome, and what counts as not worse.
+//! The aims of a study: its primary outcome, and its margin of non-inferiority.
 
 use serde::{Deserialize, Serialize};
 
-/// The aims of a study, which are set before it begins.
+/// The aims of a study, which are set before the study begins.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct StudyAims {
-    /// What the analysis compares first between the conditions.
+    /// The outcome that the analysis compares first between the conditions.
     pub outcome: PrimaryOutcome,
-    /// Margin of non-inferiority: the assistant is not worse than the wizard if the ratio of their rates is below it.
+    /// Margin of non-inferiority: the assistant counts as not worse than the wizard if the ratio of their rates is
+    /// below the margin.
     pub margin: f64,
 }
 
@@ -31,14 +32,14 @@ pub enum PrimaryOutcome {
     /// Errors of the human.
     #[default]
     Errors,
-    /// Errors that a false belief caused; of people they are known from two raters' codes.
+    /// Errors that a false belief caused; for people these are known from two raters' codes.
     BeliefRelatedErrors,
-    /// Sequences of related errors; of people they are known from two raters' codes.
+    /// Error sequences (related errors); for people these are known from two raters' codes.
     Sequences,
 }
 
 impl PrimaryOutcome {
-    /// Name in texts.
+    /// Name of the primary outcome in texts.
     pub fn title(self) -> &'static str {
         match self {
             PrimaryOutcome::Errors => "errors",

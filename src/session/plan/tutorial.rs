@@ -1,103 +1,106 @@
-//! Tutorials: what the participant is shown on the display before the first practice, a page a step, at the participant's own
-//! pace.
+//! Tutorials: pages for the participant on the display before the first practice, one page per step, at the
+//! participant's own pace.
 
 use serde::{Deserialize, Serialize};
 
 use crate::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use crate::session::setting_checks::{SettingError, is_code};
 
-/// Longest time for which recipe cards may be shown, in seconds.
+/// Longest time for which a tutorial may show the recipe cards, in seconds.
 const LONGEST_S: f64 = 3600.0;
-/// Largest number of choices of a question: each has a digit.
+/// Largest number of choices of a tutorial question: each is chosen by a digit key.
 const MOST_CHOICES: usize = 9;
 
-/// A tutorial file.
+/// A tutorial for participants, as its file has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tutorial {
-    /// Stands for the tutorial in the log.
+    /// Identifier of the tutorial in the log.
     pub name: String,
-    /// The language of its texts, as in "en".
+    /// Language code of the tutorial's texts: "en".
     pub language: String,
-    /// The steps in order; each is a page.
+    /// The steps of the tutorial in order; each is a page.
     #[serde(rename = "step")]
     pub steps: Vec<TutorialStep>,
 }
 
-/// What a step is for.
+/// The kind of a tutorial step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TutorialStepKind {
-    /// A text, and places to which it points.
+    /// A text, with places on the display that are framed.
     Text,
-    /// Buttons that the participant presses one after another; each is marked.
+    /// Buttons for the participant to press one after another; each is marked in turn.
     Press,
-    /// The recipe cards of all dishes.
+    /// The recipe cards of all dishes, for the participant to learn.
     Recipes,
-    /// A signal as it looks in a trial.
+    /// A signal, shown as in a trial.
     Signal,
-    /// A guided order: as `press`, with a dish that is wanted and hints that fade.
+    /// A guided order: as `press`, but with a dish to prepare and hints that fade.
     Order,
     /// A question with one right choice.
     Question,
 }
 
-/// A step of a tutorial.
+/// A step of a tutorial: one page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TutorialStep {
     /// Identifier of the step in the log.
     pub id: String,
-    /// What the step is for.
+    /// The kind of the step.
     pub kind: TutorialStepKind,
     /// Heading of the page.
     pub title: String,
-    /// Text of the page; of a question, the question.
+    /// Text of the page; for the kind `question`, the question.
     pub text: String,
-    /// Locations, human's buttons, or "human" and "robot" for their areas, which are framed.
+    /// Names of what the page frames: locations, the human's buttons, or "human" and "robot" for their areas.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub point_at: Vec<String>,
-    /// Of `press` and `order`: the human's buttons, in the order in which they are to be pressed.
+    /// For the kinds `press` and `order`: the human's buttons, in the order in which the participant has to press them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub presses: Vec<String>,
-    /// Of `order`, and of the signal that shows a recipe: the wanted dish.
+    /// For the kind `order`, and for a signal that shows a recipe: the ordered dish.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dish: Option<String>,
-    /// Of `signal`: the location that is highlighted; without it, the signal shows the recipe of `dish`.
+    /// For the kind `signal`: the location that is highlighted; without it, the signal shows the recipe of `dish`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub highlight: Option<String>,
-    /// Of `order`: number of presses whose button is marked at once; the others are marked after `hint_after_s`.
+    /// For the kind `order`: number of presses whose button is marked at once; the others are marked after
+    /// `hint_after_s`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hints: Option<usize>,
-    /// Of `order`: time without the right press after which the button is marked, in seconds.
+    /// For the kind `order`: time without the right press after which the button is marked, in seconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hint_after_s: Option<f64>,
-    /// Of `recipes`: time for which the cards are shown, in seconds; 0, until the participant goes on.
+    /// For the kind `recipes`: time for which the recipe cards are shown, in seconds; 0: until the participant
+    /// continues.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
-    /// Of `question`: what can be chosen.
+    /// For the kind `question`: the choices.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<String>,
-    /// Of `question`: the right choice, counted from 1.
+    /// For the kind `question`: the number of the right choice, counted from 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub right: Option<u8>,
-    /// Of `question`: what is shown after a wrong choice, before it is asked again.
+    /// For the kind `question`: text after a wrong choice, before the question is asked again.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explanation: Option<String>,
 }
 
 impl TutorialStep {
-    /// Whether the participant presses buttons in it.
+    /// Whether the participant presses buttons in this step.
     pub fn has_presses(&self) -> bool {
         matches!(self.kind, TutorialStepKind::Press | TutorialStepKind::Order)
     }
 
-    /// Whether its recipe cards vanish after a set time.
+    /// Whether the recipe cards of this step disappear after a set time.
     pub fn is_timed(&self) -> bool {
         self.kind == TutorialStepKind::Recipes && self.seconds.is_some_and(|seconds| seconds > 0.0)
     }
 
-    /// Time without the right press after which the button of this press, counted from 0, is marked; in seconds.
+    /// Time without the right press after which the button of the step's press with this index (from 0) is marked, in
+    /// seconds.
     pub fn hint_after_s(&self, press: usize) -> f64 {
         match self.kind {
             TutorialStepKind::Order if press >= self.hints.unwrap_or(3) => self.hint_after_s.unwrap_or(8.0),
@@ -107,12 +110,12 @@ impl TutorialStep {
 }
 
 impl Tutorial {
-    /// Index of a step.
+    /// Index of the tutorial step with this identifier.
     pub fn position(&self, id: &str) -> Option<usize> {
         self.steps.iter().position(|step| step.id == id)
     }
 
-    /// The kitchen at the beginning of a step: that of all presses before it.
+    /// The state of the tutorial's kitchen at the beginning of a step: after all presses of the steps before.
     pub fn state_at(&self, kitchen: &Kitchen, step: usize) -> State {
         let mut state = kitchen.empty_state();
         for (nth, one) in self.steps.iter().enumerate().take(step + 1) {
@@ -130,7 +133,7 @@ impl Tutorial {
         state
     }
 
-    /// Checks what can be checked without a kitchen.
+    /// Checks the tutorial as far as possible without a kitchen.
     ///
     /// # Errors
     /// The first invalid setting.
@@ -158,7 +161,8 @@ impl Tutorial {
         Ok(())
     }
 
-    /// Checks the names of locations, buttons and dishes, and that every press has an effect when its turn comes.
+    /// Checks the names of locations, buttons and dishes, and that every press of the tutorial has an effect when its
+    /// turn comes.
     ///
     /// # Errors
     /// The first one that does not fit the kitchen.
@@ -188,18 +192,18 @@ impl Tutorial {
     }
 }
 
-/// The kitchen after an effective press.
+/// The state of the kitchen after the human's press; `None` if it has no effect.
 fn pressed(kitchen: &Kitchen, state: State, button: ButtonId) -> Option<State> {
     let press = kitchen.try_press(state, Agent::Human, button);
     press.effective.then_some(press.after)
 }
 
-/// The dish that a step's first order wants.
+/// The dish that a tutorial step's first order wants.
 fn dish_of(kitchen: &Kitchen, step: &TutorialStep) -> Option<DishId> {
     kitchen.dish_named(step.dish.as_ref()?)
 }
 
-/// An error of a step is shown at its id, which every step has once.
+/// Places the error of a step at the step's id, which every step has exactly once.
 fn placed(error: SettingError, nth: usize, step: &TutorialStep) -> SettingError {
     let found = format!("step \"{}\": {}", step.id, error.found);
     SettingError { nth, found, path: "step.id".to_string(), ..error }
@@ -280,10 +284,10 @@ fn check_names(kitchen: &Kitchen, step: &TutorialStep) -> Result<(), SettingErro
     }
 }
 
-/// What a step points at.
+/// An element of the display that a tutorial step can frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TutorialTarget {
-    /// The area of an agent.
+    /// The area of an agent on the display.
     Area(Agent),
     /// A location.
     Location(LocationId),
@@ -292,7 +296,7 @@ pub enum TutorialTarget {
 }
 
 impl TutorialTarget {
-    /// The target with this name in a tutorial file.
+    /// The element with this name in a tutorial file.
     pub fn named(kitchen: &Kitchen, name: &str) -> Option<TutorialTarget> {
         match name {
             "human" => Some(TutorialTarget::Area(Agent::Human)),

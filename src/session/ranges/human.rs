@@ -1,16 +1,17 @@
-//! Ranges of the parameters of the human model.
+//! Allowed ranges of the parameters of the human model.
 
 use crate::base::number_range::{ABOVE_0, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRange};
 
-/// What earlier versions took of a number of draws.
+/// Range of sample sizes that earlier versions of the program accepted.
 const TO_65536: [f64; 2] = [1.0, 65_536.0];
-/// The angle whose tangent is the radius was below 45 degrees.
+/// Range of the reading radius as an angle: below 45 degrees, since the radius on the display is a tangent of the
+/// angle.
 const BELOW_45: [f64; 2] = [ABOVE_0[0], 44.999_999];
-/// Of looks a second.
+/// Range of rates of looks, per second.
 const LOOKS: [f64; 2] = [0.0, 100.0];
 const FEW_LOOKS: &str = "eyes look at a few places a second";
 const CHANCE: &str = "it is a probability";
-/// Of what may be neither impossible nor certain.
+/// Reason for the bounds of probabilities that must be neither 0 nor 1.
 const UNSURE: &str = "certainty could not be corrected by any observation";
 const PRECISION: &str = "less is no belief, more a certain one";
 const DRAWS: &str = "more take seconds to minutes a press";

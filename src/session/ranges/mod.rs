@@ -1,8 +1,8 @@
-//! The ranges of all numbers in session files, files with parameters of the human model, and questionnaires. Those of layouts
-//! are in [`crate::kitchen::layout_ranges`]; `docs/settings.md` shows both.
+//! The allowed ranges of all numbers in session files, in files with parameters of the human model, and in
+//! questionnaires. Those of layouts are in [`crate::kitchen::layout_ranges`]; `docs/settings.md` shows both.
 //!
-//! A number outside of its range is refused where its file is read. Of the header of a recording the
-//! program only warns, where an earlier version took the number.
+//! A file with a number outside of its range is refused. For the header of a recording the program only warns, if an
+//! earlier version accepted the number.
 
 mod human;
 mod people;
@@ -12,18 +12,19 @@ use serde::Serialize;
 
 use crate::base::number_range::{self, NumberRange, OutOfRange, numbers};
 
-/// The table of a session file around the parameters of the human model; a file of their own has none.
+/// The table of a session file that contains the parameters of the human model; a separate file of parameters has no
+/// such table.
 pub const HUMAN: &str = "human";
 
-/// Those of session files.
+/// Allowed ranges of all numbers in session files.
 pub fn of_sessions() -> Vec<NumberRange> {
     [&trial::RANGES[..], &people::RANGES, &human::RANGES].concat()
 }
 
-/// Those of questionnaires.
+/// Allowed ranges of all numbers in questionnaires.
 pub const OF_QUESTIONNAIRES: [NumberRange; 6] = trial::OF_ITEMS;
 
-/// Whether a session file may have all these numbers.
+/// Checks that a session file may have all these numbers.
 ///
 /// # Errors
 /// The first number outside of its range.
@@ -31,7 +32,7 @@ pub fn check_session(spec: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&of_sessions(), &numbers(spec, "")?)
 }
 
-/// Whether a file may have all these parameters of the human model.
+/// Checks that a file may have all these parameters of the human model.
 ///
 /// # Errors
 /// The first number outside of its range; its path begins with [`HUMAN`].
@@ -39,7 +40,7 @@ pub fn check_human_model(model: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&human::RANGES, &numbers(model, HUMAN)?)
 }
 
-/// Whether a questionnaire may have all these numbers.
+/// Checks that a questionnaire may have all these numbers.
 ///
 /// # Errors
 /// The first number outside of its range.
@@ -47,10 +48,10 @@ pub fn check_questionnaire(questionnaire: &impl Serialize) -> Result<(), OutOfRa
     number_range::check_file(&OF_QUESTIONNAIRES, &numbers(questionnaire, "")?)
 }
 
-/// Whether the settings of a session in a recording may have all these numbers.
+/// Checks that the session settings in a recording may have all these numbers.
 ///
 /// # Errors
-/// The first number that no version of the program took.
+/// The first number that no version of the program accepted.
 pub fn check_recorded(spec: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_recorded(&of_sessions(), &numbers(spec, "")?)
 }

@@ -1,4 +1,4 @@
-//! Ranges of simulated people: the population of participants, and the scripted wizard.
+//! Allowed ranges of settings of simulated people: the population of participants, and the scripted wizard.
 
 use crate::base::number_range::{ABOVE_0, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRange};
 
@@ -6,13 +6,13 @@ const SECONDS: &str = "s";
 const CHANCE: &str = "it is a probability";
 const LATE: &str = "a wizard who takes longer cannot help";
 
-/// A probability that differs from person to person: its odds are drawn, and have to be neither 0 nor infinite.
+/// Range of a probability that differs between people: its odds are drawn, so it must be neither 0 nor 1.
 const fn chance(path: &'static str) -> NumberRange {
     let reason = "a probability; its odds are drawn, so neither 0 nor 1";
     NumberRange::real(path, [0.000_001, 0.999_999], "", reason).recorded(INSIDE_0_AND_1)
 }
 
-/// The same of a trait that nobody may have.
+/// Range of a probability that differs between people, or is 0 for everybody.
 const fn rare_chance(path: &'static str) -> NumberRange {
     NumberRange::real(path, [0.0, 0.999_999], "", "a probability; its odds are drawn, so not 1; 0: nobody does")
         .recorded([0.0, INSIDE_0_AND_1[1]])

@@ -1,20 +1,20 @@
-//! Ranges around the trial: trial, robot, signals, assistant, devices and plan.
+//! Allowed ranges of settings of trial, robot, signals, assistant, devices and plan.
 
 use crate::base::number_range::{ABOVE_0, ANY, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRange};
 
-/// What earlier versions took of a number of rollouts.
+/// Range of numbers of rollouts that earlier versions of the program accepted.
 const TO_65536: [f64; 2] = [1.0, 65_536.0];
-/// A probability that is not 1.
+/// Range of a probability that must be below 1.
 const BELOW_1: [f64; 2] = [0.0, INSIDE_0_AND_1[1]];
 const SECONDS: &str = "s";
 const CHANCE: &str = "it is a probability";
 const PORT: &str = "ports of TCP and UDP have these numbers";
-/// Of the timed arm and of people at a button.
+/// Reason for the bounds of durations of presses and of intervals between them.
 const PRESS: &str = "less is no movement, more no cooperation";
-/// No trial is longer: a day.
+/// Longest allowed trial, in seconds: a day.
 const DAY_S: f64 = 86_400.0;
 const LONGEST: &str = "no trial is longer than a day";
-/// What 32 bits hold: as much as no limit at all.
+/// Largest number that 32 bits hold, which is practically no limit.
 const COUNT: f64 = 4_294_967_295.0;
 
 pub(super) const RANGES: [NumberRange; 50] = [

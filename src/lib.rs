@@ -1,35 +1,37 @@
 //! tomcom: Wizard-of-Oz experiments in human-robot cooperation, with a model of what the human believes.
 //!
-//! A human and a robot cook together in a virtual kitchen: each press of a button moves, processes or serves something. The
-//! human may hold *false beliefs*, having missed what the robot did, or misremembering a recipe. A wizard, or an assistant, sends
-//! *signals* that show the human a recipe or a location. The crate is the program `tomcom` that runs such experiments, and the
-//! model behind it for other projects.
+//! A human and a robot cook together in a virtual kitchen: each press of a button moves, processes or serves something.
+//! The human may hold *false beliefs*, having missed what the robot did, or misremembering a recipe. A wizard, or an
+//! assistant, sends *signals* that show the human a recipe or a location. The crate is the program `tomcom` that runs
+//! such experiments, and the model behind it for other projects.
 //!
 //! # The model
 //!
-//! - A **kitchen** ([`kitchen::Kitchen`]) is computed from a layout and a recipe file: contents, locations, buttons, rules. A
-//!   [`kitchen::State`] is 16 bytes. The **cost to go** ([`kitchen::cost_to_go::CostToGo`]) of a state is the least number of
-//!   presses until all orders are served.
-//! - A **belief** ([`mind::dirichlet::DirichletBelief`]) is a distribution over each aspect of the state: what lies where, which
-//!   recipe a dish has. The **filter** ([`mind::filter::BeliefFilter`]) estimates it from gaze, presses, orders and signals,
-//!   under a human model with named parameters ([`mind::model::HumanModel`]): people prefer presses that reduce the cost to go
-//!   in the world that they believe in (softmax).
-//! - A **communication concept** ([`communication::concept`]) decides from state and belief which signal to send, if any. The
-//!   **planner** ([`communication::planner::Planner`]) compares paired rollouts with and without each signal: a signal is worth
-//!   sending if it saves more presses than it costs.
-//! - A **session** ([`session::Session`]) is its event log. [`session::apply()`] is the only way to change one. The **engine**
-//!   ([`run::engine::Engine`]) raises the events of robot, simulated participant and clock; its caller passes the time.
+//! - A **kitchen** ([`kitchen::Kitchen`]) is computed from a layout and a recipe file: contents, locations, buttons,
+//!   rules. A [`kitchen::State`] is 16 bytes. The **cost to go** ([`kitchen::cost_to_go::CostToGo`]) of a state is the
+//!   least number of presses until all orders are served.
+//! - A **belief** ([`mind::dirichlet::DirichletBelief`]) is a distribution over each aspect of the state: what lies
+//!   where, which recipe a dish has. The **filter** ([`mind::filter::BeliefFilter`]) estimates it from gaze, presses,
+//!   orders and signals, under a human model with named parameters ([`mind::model::HumanModel`]): people prefer presses
+//!   that reduce the cost to go in the world that they believe in (softmax).
+//! - A **communication concept** ([`communication::concept`]) decides from state and belief which signal to send, if
+//!   any. The **planner** ([`communication::planner::Planner`]) compares paired rollouts with and without each signal:
+//!   a signal is worth sending if it saves more presses than it costs.
+//! - A **session** ([`session::Session`]) is its event log. [`session::apply()`] is the only way to change one. The
+//!   **engine** ([`run::engine::Engine`]) raises the events of robot, simulated participant and clock; its caller
+//!   passes the time.
 //!
 //! # The modules
 //!
 //! Imports go one way, from right to left: [`base`], [`kitchen`], [`robot`] and [`gaze`], [`mind`], [`measures`],
-//! [`communication`], [`participant`], [`wizard`] and [`arm`], [`session`], [`history`], [`analysis`]; then, as Cargo features ask
-//! for them, `console`, `study`, `display`, `scene`, `edge`; then [`run`], and `cli`. ARCHITECTURE.md says what each contains, and what it must not depend on.
+//! [`communication`], [`participant`], [`wizard`] and [`arm`], [`session`], [`history`], [`analysis`]; then, as Cargo
+//! features ask for them, `console`, `study`, `display`, `scene`, `edge`; then [`run`], and `cli`. ARCHITECTURE.md says
+//! what each contains, and what it must not depend on.
 //!
 //! # Features
 //!
-//! All are on by default. With `default-features = false` the crate is the model: 28 packages, no terminal, no network, no
-//! async. It reads no files; texts come from the caller.
+//! All are on by default. With `default-features = false` the crate is the model: 28 packages, no terminal, no network,
+//! no async. It reads no files; texts come from the caller.
 //!
 //! | feature | adds |
 //! |---|---|
@@ -43,7 +45,8 @@
 //!
 //! # Example
 //!
-//! A person takes the wrong ingredient. What do they believe, and which signal should be sent? The folder `examples` has more.
+//! A person takes the wrong ingredient. What do they believe, and which signal should be sent? The folder `examples`
+//! has more.
 //!
 //! ```
 //! use std::sync::Arc;

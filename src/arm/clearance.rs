@@ -70,11 +70,11 @@ impl Capsule {
 /// What blocks a pose or a path of the robot arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Obstruction {
-    /// The table.
+    /// The table blocks the robot arm.
     Table,
     /// A link of the arm itself.
     ItsOwnLinks,
-    /// A known obstacle.
+    /// A known obstacle blocks the robot arm.
     Obstacle,
 }
 

@@ -5,19 +5,19 @@ use nalgebra::{Isometry3, Point3, Unit, Vector3};
 /// A simple collision shape of a link, about its own centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LinkShape {
-    /// A box.
+    /// A box-shaped part of the link.
     Box {
         /// Half of the box's edges along x, y and z, in metres.
         half_m: [f64; 3],
     },
-    /// A cylinder along z.
+    /// A cylindrical part of the link, along z.
     Cylinder {
         /// The radius of the cylinder, in metres.
         radius_m: f64,
         /// The length of the cylinder, in metres.
         length_m: f64,
     },
-    /// A sphere.
+    /// A spherical part of the link.
     Sphere {
         /// The radius of the sphere, in metres.
         radius_m: f64,
@@ -27,7 +27,7 @@ pub enum LinkShape {
 /// A collision shape and its pose on its link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CollisionSolid {
-    /// The collision shape.
+    /// The kind and size of the collision shape.
     pub shape: LinkShape,
     /// The pose of the shape in the frame of its link.
     pub link_from_solid: Isometry3<f64>,

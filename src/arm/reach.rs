@@ -29,7 +29,7 @@ const SINGULAR: f64 = 0.03;
 pub enum Unreachable {
     /// No joint angles bring the arm's tip to the button.
     TooFar,
-    /// A joint limit is exceeded.
+    /// A joint limit of the arm is exceeded at the button.
     JointLimit,
     /// The pose at the button is singular: the arm could not move in every direction.
     Singular,

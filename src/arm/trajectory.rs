@@ -30,7 +30,7 @@ const HIGHER_M: [f64; 3] = [0.08, 0.16, 0.24];
 /// The purpose of a leg of the robot arm's trajectory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LegKind {
-    /// Moves the tip straight up.
+    /// Moves the arm's tip straight up.
     Up,
     /// Moves all joints from one pose above the buttons to another.
     Over,
@@ -41,7 +41,7 @@ pub enum LegKind {
 /// One leg of the robot arm's trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrajectoryLeg {
-    /// The purpose of the leg.
+    /// The purpose of the leg of the trajectory.
     pub kind: LegKind,
     /// Four poses at equal distances along the leg.
     poses: [JointAngles; 4],

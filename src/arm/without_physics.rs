@@ -22,7 +22,7 @@ impl SteppedArm {
         match *self {}
     }
 
-    /// Abandons the present press.
+    /// Abandons the robot arm's present press.
     pub fn give_up(&mut self) {
         match *self {}
     }
@@ -37,7 +37,7 @@ impl SteppedArm {
         match *self {}
     }
 
-    /// Starts the pending press.
+    /// Starts the robot arm's pending press.
     pub fn go_on(&mut self) -> Option<(ButtonId, AbortReason)> {
         match *self {}
     }

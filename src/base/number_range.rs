@@ -20,9 +20,9 @@ pub struct NumberRange {
     /// The number's path in the settings, from the outermost table on: `human.decision.tau`. A `*` stands for any one
     /// name.
     pub path: &'static str,
-    /// The least allowed value, included.
+    /// The least allowed value of the number, included.
     pub least: f64,
-    /// The greatest allowed value, included.
+    /// The greatest allowed value of the number, included.
     pub most: f64,
     /// Whether only whole numbers are allowed.
     pub is_whole: bool,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Name of a communication concept.
+/// Name of a communication concept (the rule by which an assistant sends signals).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ConceptName {
@@ -13,7 +13,7 @@ pub enum ConceptName {
     Tom,
     /// Deviation based: proposes the next good presses after an error.
     Dev,
-    /// No communication.
+    /// No concept: the assistant sends no signals.
     None,
 }
 

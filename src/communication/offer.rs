@@ -26,7 +26,7 @@ pub const TAKEN_AFTER: SessionTime = SessionTime(1_300_000_000);
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OfferedAct {
-    /// A signal to the participant.
+    /// A signal that can be sent to the participant.
     Signal(Signal),
     /// Presses that the DEV concept proposes, by the names of their buttons. They are shown to the wizard, who cannot
     /// send them.
@@ -38,7 +38,7 @@ pub enum OfferedAct {
 pub struct OfferWorth {
     /// Expected saving in presses; for ToM the expected belief deviation.
     pub benefit: f64,
-    /// Standard error of the benefit.
+    /// Standard error of the signal's expected saving.
     pub standard_error: f64,
     /// Net benefit: benefit minus the cost of communication; for ToM minus the threshold.
     pub net: f64,
@@ -104,7 +104,7 @@ impl Offer {
     }
 }
 
-/// Why an offer closed.
+/// Why an offer to the wizard closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum OfferEnd {
@@ -202,7 +202,7 @@ impl OfferBook {
         self.present.iter().chain(self.last().map(|last| &last.offer)).find(|offer| offer.seq == seq)
     }
 
-    /// Opens an offer.
+    /// Opens an offer to the wizard.
     pub fn opens(&mut self, seq: u64, now: SessionTime, advice: OfferedAdvice) {
         self.present = Some(Offer { seq, opened: now, used: None, advice });
     }

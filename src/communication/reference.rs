@@ -25,7 +25,7 @@ use crate::robot::policy;
 /// Estimated benefit of one signal by the reference planner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceBenefit {
-    /// The evaluated signal.
+    /// The signal whose benefit was estimated.
     pub signal: Signal,
     /// Expected saving in presses of both agents.
     pub benefit: f64,
@@ -42,7 +42,7 @@ pub struct ReferencePlanner {
     seed: u64,
 }
 
-/// State of a rollout.
+/// State of a simulated continuation of the trial (rollout).
 struct Future {
     state: State,
     person: Particle,
@@ -70,7 +70,7 @@ impl ReferencePlanner {
         ReferencePlanner { kitchen, human, spec, seed }
     }
 
-    /// Benefit of each available signal.
+    /// Expected benefit of each available signal, by rollouts.
     pub fn advise(&self, cost: &mut CostToGo, moment: &DecisionPoint) -> Vec<ReferenceBenefit> {
         let situation = &moment.situation;
         let possible =

@@ -12,7 +12,7 @@ pub struct Situation<'a> {
     pub belief: &'a DirichletBelief,
     /// Locations that have just changed, and may attract the human's gaze.
     pub changed: &'a [AspectId],
-    /// The robot's present action.
+    /// What the robot is doing now.
     pub robot: RobotIntent,
     /// Duration of a robot press, in seconds.
     pub robot_press_s: f64,
@@ -25,7 +25,7 @@ impl<'a> Situation<'a> {
     }
 }
 
-/// The robot's present action.
+/// What the robot is doing now: moving to a button, following its policy, or standing still.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RobotIntent {
     /// The robot's arm is moving to a button.

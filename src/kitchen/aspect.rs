@@ -21,7 +21,7 @@ impl AspectId {
     }
 }
 
-/// Kind of a state aspect.
+/// What a state aspect is about: a location's content or a dish's recipe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AspectKind {
     /// The content of a location; its possible values are the bytes of [`super::State::code`].

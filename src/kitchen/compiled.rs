@@ -35,7 +35,7 @@ pub struct Kitchen {
     pub locations: Vec<Location>,
     /// The buttons of the human and of the robot, indexed by [`Agent::index`] and [`ButtonId`].
     pub buttons: [Vec<Button>; 2],
-    /// The storages.
+    /// The storages: endless supplies of one ingredient each.
     pub storages: Vec<Storage>,
     /// The dishes of the menu.
     pub dishes: Vec<Dish>,
@@ -44,7 +44,7 @@ pub struct Kitchen {
     pub aspects: Vec<Aspect>,
     /// The processing steps: cutting, cooking and their like.
     pub processes: Vec<Process>,
-    /// The order locations.
+    /// The locations that show orders.
     pub orders: Vec<LocationId>,
     /// The hand of each agent, indexed by [`Agent::index`].
     pub hands: [LocationId; 2],

@@ -11,7 +11,7 @@ use super::location::DisplayArea;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LayoutSpec {
-    /// Identifier of the kitchen.
+    /// Identifier of the kitchen's layout.
     pub name: String,
     /// The kitchen's title on screens.
     pub title: String,
@@ -21,7 +21,7 @@ pub struct LayoutSpec {
     pub display: WallDisplaySpec,
     /// The table, and the timing of orders.
     pub table: TableSpec,
-    /// The orders: at least one.
+    /// The order locations: at least one.
     pub order: Vec<OrderSpec>,
     /// The hands: one for each agent.
     pub hand: Vec<HandSpec>,
@@ -112,7 +112,7 @@ pub struct ButtonSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OrderSpec {
-    /// Identifier of the location.
+    /// Identifier of the order's location.
     pub name: Spanned<String>,
     /// The order's area on the wall display.
     pub display: Spanned<DisplayArea>,
@@ -127,7 +127,7 @@ pub struct OrderSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandSpec {
-    /// Identifier of the location.
+    /// Identifier of the hand's location.
     pub name: Spanned<String>,
     /// The agent whose hand it is.
     pub agent: Spanned<Agent>,
@@ -144,7 +144,7 @@ pub struct HandSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlaceSpec {
-    /// Identifier of the location.
+    /// Identifier of the place.
     pub name: Spanned<String>,
     /// Whether items are stacked here: true for exactly one place.
     #[serde(default)]

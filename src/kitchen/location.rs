@@ -56,7 +56,7 @@ impl DisplayArea {
     }
 }
 
-/// Kind of a location.
+/// What kind of location it is: order, hand or place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LocationKind {
     /// An order: shows the ordered dish.

@@ -13,7 +13,7 @@ pub const SHAPES: [&str; 32] = [
 /// The appearance of an ingredient, dish or place on the display: "fillet #f58a5f".
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Appearance {
-    /// The shape: one of [`SHAPES`].
+    /// Name of the shape: one of [`SHAPES`].
     pub shape: String,
     /// The colours of the shape as "#rrggbb"; if empty, the shape has its default colours.
     pub colours: Vec<String>,

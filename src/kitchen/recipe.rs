@@ -12,9 +12,9 @@ use super::agent::Agent;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecipesSpec {
-    /// Identifier of the menu.
+    /// Identifier of the recipe file's menu.
     pub name: String,
-    /// The ingredients with their states.
+    /// The ingredients with their possible states.
     pub ingredient: Vec<IngredientSpec>,
     /// The processing steps.
     #[serde(default)]
@@ -24,7 +24,7 @@ pub struct RecipesSpec {
     /// Names for sets of items that places can accept.
     #[serde(default)]
     pub group: Vec<GroupSpec>,
-    /// The menu.
+    /// The dishes of the menu.
     pub dish: Vec<DishSpec>,
     /// How people may misremember the recipes of dishes.
     #[serde(default)]
@@ -90,7 +90,7 @@ pub struct SlotSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GroupSpec {
-    /// The group's name.
+    /// The name of the group of items.
     pub name: Spanned<String>,
     /// The items that belong to the group, as "ingredient state"; a stack belongs to it if each of its items does.
     pub made_of: Vec<Spanned<String>>,
@@ -125,7 +125,7 @@ pub struct DeviationSpec {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DeviationSlotSpec {
-    /// The slot's name.
+    /// The name of the slot that can be misremembered.
     pub slot: Spanned<String>,
     /// The items that may be remembered in this slot.
     pub items: Vec<Spanned<String>>,
@@ -137,7 +137,7 @@ pub enum DeviationCombination {
     /// At most one slot deviates from the true recipe.
     #[serde(rename = "one at a time")]
     OneAtATime,
-    /// Every combination of the items.
+    /// Every combination of the slots' items can be remembered.
     #[serde(rename = "all")]
     All,
 }

@@ -14,10 +14,10 @@ pub const MAX_DISHES: usize = 16;
 #[repr(align(16))]
 pub struct State([u8; MAX_LOCATIONS]);
 
-/// Content of an order location.
+/// What an order location shows: no order, an ordered dish, or that the order was served.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum OrderContent {
-    /// No order.
+    /// The location shows no order.
     None,
     /// The order was served a moment ago.
     Served,
@@ -35,7 +35,7 @@ impl OrderContent {
         }
     }
 
-    /// The inverse of [`OrderContent::code`].
+    /// Reads the content of an order location from its byte, the inverse of [`OrderContent::code`].
     pub const fn from_code(code: u8) -> Self {
         match code {
             0 => OrderContent::None,
@@ -58,7 +58,7 @@ impl State {
         self.0[location.index() & (MAX_LOCATIONS - 1)] = content.0;
     }
 
-    /// Content of an order location.
+    /// What an order location shows.
     #[inline]
     pub fn order(self, location: LocationId) -> OrderContent {
         OrderContent::from_code(self.code(location))

@@ -6,7 +6,7 @@ use super::content::ContentId;
 /// Transition tables over contents, computed once per kitchen.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TransitionTables {
-    /// Number of contents.
+    /// Number of contents: the width of the tables' rows.
     pub(super) width: usize,
     /// `accepts[location * width + content]`: whether the location, when empty, accepts the content.
     pub(super) accepts: Vec<bool>,

@@ -107,7 +107,7 @@ impl Cause {
     }
 }
 
-/// Attributes errors to causes.
+/// Attributes errors of the human to causes.
 #[derive(Clone, Debug)]
 pub struct Attributor {
     model: DecisionModel,

@@ -25,7 +25,7 @@ pub const CALIBRATION_BINS: usize = 10;
 /// Area under the ROC curve of one aspect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AspectAuc {
-    /// The aspect's name.
+    /// Name of the state aspect.
     pub aspect: String,
     /// Area under the ROC curve; null if the belief about the aspect was never or always false.
     pub auc: Option<f64>,

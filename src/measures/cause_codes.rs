@@ -29,7 +29,7 @@ pub enum Code {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CauseKind {
-    /// A false belief.
+    /// A false belief of the participant.
     Belief,
     /// A slip of hand or attention.
     Slip,

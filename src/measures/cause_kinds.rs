@@ -52,7 +52,7 @@ impl CauseKindCounts {
         counts
     }
 
-    /// Sum of two counts.
+    /// Sum of two counts of belief related errors.
     pub fn plus(self, other: CauseKindCounts) -> CauseKindCounts {
         CauseKindCounts {
             orders: self.orders + other.orders,

@@ -13,7 +13,7 @@ pub struct JudgedPress {
     pub seq: u64,
     /// Session time of the press.
     pub time: SessionTime,
-    /// State before the press.
+    /// State of the kitchen before the press.
     pub before: State,
     /// The regret of the press, and whether it was an error.
     pub verdict: PressVerdict,

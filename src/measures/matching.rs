@@ -57,11 +57,11 @@ pub struct CommunicationEvent {
 /// Which part of the content of two communications must agree for a match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatchCriterion {
-    /// Signal and target must agree.
+    /// Signal and target of two communications must agree.
     Signal,
     /// The kind of signal must agree.
     Kind,
-    /// Any content matches.
+    /// The content of the communications may differ: only the time has to match.
     Any,
 }
 

@@ -8,7 +8,7 @@ use crate::mind::recorded_estimate::EstimateWitness;
 /// The participant's belief and its estimate directly before a press of the human.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressView {
-    /// State before the press.
+    /// State of the kitchen before the press.
     pub state: State,
     /// The pressed button, as an index into the human's buttons.
     pub button: ButtonId,

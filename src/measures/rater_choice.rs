@@ -9,14 +9,14 @@ use super::cause_codes::Codes;
 pub struct RaterPair {
     /// The names of the raters.
     pub raters: [String; 2],
-    /// The codes of each rater.
+    /// The codes of errors by each rater.
     pub codes: [Codes; 2],
 }
 
 /// The choice of the two raters who coded most errors of a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RaterChoice {
-    /// These two raters.
+    /// The chosen two raters with their codes.
     Pair(RaterPair),
     /// There are fewer than two raters.
     TooFew,

@@ -28,7 +28,7 @@ pub enum HumanChoice {
 /// The probabilities of all choices of the human: waiting and each button.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChoiceProbabilities {
-    /// Probability of waiting.
+    /// Probability that the human waits.
     pub wait: f64,
     /// Probability of each button, by [`ButtonId`], given that a button is pressed.
     pub press: Vec<f64>,

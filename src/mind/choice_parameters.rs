@@ -17,7 +17,7 @@ pub struct DecisionModel {
     /// Share of the slips that hit any button. The other slips hit the neighbouring and the look-alike button with
     /// equal probability.
     pub lapse_anywhere: f64,
-    /// Cost of waiting, in presses.
+    /// Cost of waiting instead of pressing, in presses.
     pub wait_cost: f64,
     /// Number of worlds that represent a belief.
     pub cases: usize,

@@ -100,7 +100,7 @@ impl Dirichlet {
     /// Normalises the mean and enforces the bounds of means and precision.
     fn put_right(&mut self, precision: f64) {
         for mean in &mut self.mean {
-            // `max` also replaces NaN.
+            // `max` also replaces a mean that is NaN.
             *mean = mean.max(LEAST_MEAN);
         }
         let total = sum_of(&self.mean, |m| m);

@@ -59,7 +59,7 @@ impl Parameter {
         }
     }
 
-    /// Unit of the parameter.
+    /// Unit of the human model's parameter.
     pub fn unit(self) -> &'static str {
         match self {
             Parameter::Tau => "1/press",
@@ -127,7 +127,7 @@ impl Parameter {
         }
     }
 
-    /// The inverse of [`Parameter::to_scale`].
+    /// The value of a parameter from the scale of the fit, the inverse of [`Parameter::to_scale`].
     pub fn from_scale(self, scaled: f64) -> f64 {
         match self {
             Parameter::Lapse | Parameter::Foresight | Parameter::Capture => 1.0 / (1.0 + (-scaled).exp()),
@@ -167,9 +167,9 @@ pub struct ProbedValue {
 /// Observations of a trial, and its answers to freeze probes in order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitObservations {
-    /// Seed of the filter.
+    /// Random seed of the belief filter.
     pub seed: u64,
-    /// What the belief filter observes.
+    /// The observations of the trial for the belief filter.
     pub observations: Vec<Observation>,
     /// The answers to freeze probes; empty if they are not used.
     pub answers: Vec<ProbedValue>,

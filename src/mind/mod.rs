@@ -49,7 +49,7 @@ pub enum PressOrigin {
 /// A participant's belief about one state aspect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AspectBelief {
-    /// The aspect's name.
+    /// Name of the state aspect.
     pub aspect: String,
     /// Name of the most probable value.
     pub believes: String,

@@ -18,11 +18,11 @@ pub struct HumanModel {
     pub perception: PerceptionModel,
     /// Where people look while the gaze is unknown.
     pub looking: LookingModel,
-    /// How beliefs change between observations.
+    /// How the human's beliefs change between observations.
     pub transition: TransitionModel,
-    /// How presses follow from beliefs.
+    /// How the human's presses follow from beliefs.
     pub decision: DecisionModel,
-    /// How signals are noticed and read.
+    /// How the human notices and reads signals.
     pub signal: SignalModel,
     /// How the belief is inferred: settings of the computation, not properties of people.
     pub inference: InferenceModel,
@@ -218,7 +218,7 @@ pub struct InferenceModel {
     pub states: usize,
     /// The number of belief samples is doubled while the effective sample size is below this.
     pub min_effective: f64,
-    /// Largest number of belief samples.
+    /// Largest number of belief samples in an update by a press.
     pub max_beliefs: usize,
     /// Number of worlds from which a press of the robot is predicted.
     pub predictions: usize,

@@ -41,7 +41,7 @@ impl ProposedPresses {
 pub struct Observation {
     /// Session time of the observation.
     pub time: SessionTime,
-    /// What happened.
+    /// The observed evidence about the human's belief.
     pub what: Observed,
 }
 
@@ -62,7 +62,7 @@ pub enum Observed {
     },
     /// The eye tracker finds the display in its view (true), or does not any more (false).
     DisplayInView(bool),
-    /// An agent pressed a button.
+    /// One of the agents pressed a button.
     Pressed(Press),
     /// The display changes without a press, for instance because an order appears or disappears.
     Displayed {
@@ -84,7 +84,7 @@ pub enum Observed {
     },
     /// The trial is paused: nothing is read or forgotten until it resumes.
     Paused,
-    /// The trial resumes.
+    /// The trial resumes after a pause.
     Resumed,
     /// The task is frozen for a probe, and the kitchen is off the display.
     Frozen,

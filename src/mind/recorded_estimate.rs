@@ -25,7 +25,7 @@ pub struct EstimateWitness {
 /// The estimated belief about one state aspect.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AspectEstimate {
-    /// The aspect's name.
+    /// Name of the state aspect.
     pub aspect: String,
     /// Name of the value with the highest expected probability.
     pub believes: String,

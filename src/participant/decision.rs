@@ -60,11 +60,11 @@ pub enum Urgency {
 /// The data for a decision on the next presses, except for the world in which it is made.
 #[derive(Clone, Debug)]
 pub struct Decision<'a> {
-    /// The kitchen.
+    /// The kitchen in which the participant works.
     pub kitchen: &'a Kitchen,
     /// What the participant knows of the kitchen's buttons and processing steps.
     pub knowledge: &'a TaskKnowledge,
-    /// The participant's habits.
+    /// The participant's habits, such as the order in which it fetches parts.
     pub habits: &'a Habits,
     /// Number of own presses that the participant thinks through.
     pub depth: usize,

@@ -22,7 +22,7 @@ const DRIFT: f64 = 0.05;
 const BLINK_EVERY_S: f64 = 4.5;
 const BLINK_S: [f64; 2] = [0.1, 0.2];
 
-/// Progress of the present fixation.
+/// Progress of the simulated eyes' present fixation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FixationProgress {
     /// The saccade is under way, or the fixation continues.

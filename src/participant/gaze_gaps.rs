@@ -36,7 +36,7 @@ impl GazeGaps {
     }
 }
 
-/// The drop-out that follows `time`.
+/// Draws the eye tracker's drop-out that follows `time`.
 fn after(time: SessionTime, every_s: f64, [shortest, longest]: [f64; 2], random: &mut Stream) -> [SessionTime; 2] {
     let wait_s = -every_s * (1.0 - random.random::<f64>()).ln();
     let length_s = (shortest + (longest - shortest) * random.random::<f64>()).exp();

@@ -41,7 +41,7 @@ pub struct OrderGoal {
 /// use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Goals {
-    /// One goal per order.
+    /// The participant's goal for each order that it believes in.
     pub orders: Vec<OrderGoal>,
     claimed: u32,
 }
@@ -49,7 +49,7 @@ pub struct Goals {
 /// What a simulated participant takes into account when it determines its goals.
 #[derive(Clone, Copy, Debug)]
 pub struct Prospect<'a> {
-    /// The kitchen.
+    /// The kitchen in which the participant works.
     pub kitchen: &'a Kitchen,
     /// What the participant knows of the kitchen's buttons and processing steps.
     pub knowledge: &'a TaskKnowledge,

@@ -95,7 +95,7 @@ impl Memory {
         }
     }
 
-    /// Seconds since the last fading.
+    /// Seconds since the memory of recipes last faded.
     pub fn since_s(&self, now: SessionTime) -> f64 {
         now.secs_since(self.last)
     }

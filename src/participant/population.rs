@@ -73,7 +73,7 @@ pub(super) fn normal(random: &mut Stream) -> f64 {
     StandardNormal.sample(random)
 }
 
-/// True with probability `p`.
+/// Draws whether an event with probability `p` happens.
 pub(super) fn chance(random: &mut Stream, p: f64) -> bool {
     random.random::<f64>() < p
 }
@@ -204,7 +204,7 @@ pub struct Population {
 /// A participant's experience from earlier trials.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Experience {
-    /// Number of earlier trials.
+    /// Number of the participant's earlier trials.
     pub trials: u32,
     /// Number of the participant's own presses in the earlier trials.
     pub presses: f64,

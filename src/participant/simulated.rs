@@ -129,7 +129,7 @@ impl SimulatedParticipant {
         &self.person
     }
 
-    /// Present beliefs of the participant.
+    /// Present beliefs of the simulated participant.
     pub fn beliefs(&self) -> &ParticipantBeliefs {
         &self.beliefs
     }

@@ -51,7 +51,7 @@ pub(super) fn rounded(p: f64) -> f64 {
 pub struct PressReason {
     /// Whether the press comes from the plan, from a false belief, or from a slip.
     pub origin: PressOrigin,
-    /// The reason in words.
+    /// The reason of the press, in words.
     pub cause: String,
     /// The aspects whose replacement by the truth changes the decision.
     pub targets: Vec<AspectId>,

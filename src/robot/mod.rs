@@ -84,7 +84,7 @@ impl AbortReason {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum IdleReason {
-    /// No order is shown.
+    /// No order is shown, so the robot has nothing to do.
     NoOrder,
     /// No press of the robot reduces the cost to go; the human has to act.
     HumanTurn,
@@ -95,7 +95,7 @@ pub enum IdleReason {
 /// An activity of the robot, as it is recorded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RobotActivity {
-    /// The robot begins a press.
+    /// The robot begins a press: its arm starts to move to the button.
     Intend {
         /// The button that the robot is going to press.
         button: ButtonId,

@@ -23,7 +23,7 @@ pub enum Effect {
         /// What happens when the timer is due.
         timer: Timer,
     },
-    /// Cancel a timer.
+    /// Cancel a timer that has been set.
     Cancel(Timer),
     /// Cancel all timers, at the end of the trial.
     CancelAll,

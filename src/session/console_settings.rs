@@ -77,9 +77,9 @@ impl ConsoleSpec {
 pub enum ThemeChoice {
     /// Colours that fit the background which the terminal reports; dark if it reports none.
     Auto,
-    /// Colours for a dark background.
+    /// Colours for a dark terminal background.
     Dark,
-    /// Colours for a light background.
+    /// Colours for a light terminal background.
     Light,
 }
 
@@ -89,7 +89,7 @@ pub enum ThemeChoice {
 pub enum Visibility {
     /// Kitchen and gaze only, as in the paper.
     State,
-    /// Kitchen, gaze and estimated belief.
+    /// The wizard sees kitchen, gaze and estimated belief.
     Belief,
     /// Kitchen, gaze, estimated belief and recommendations.
     Recommendation,

@@ -33,7 +33,7 @@ pub struct Stamped {
     /// Session time of the event; never decreases along the log.
     #[serde(rename = "t_ns")]
     pub time: SessionTime,
-    /// The event itself.
+    /// What happened in the session.
     #[serde(flatten)]
     pub event: Event,
 }
@@ -55,7 +55,7 @@ pub enum Event {
     TrialPaused,
     /// The paused trial resumes: clock, robot and orders continue.
     TrialResumed,
-    /// The trial is over.
+    /// The trial has ended.
     TrialEnded {
         /// The reason for the end of the trial.
         reason: EndReason,
@@ -82,7 +82,7 @@ pub enum Event {
     Press {
         /// The agent that pressed.
         agent: Agent,
-        /// The button's name.
+        /// Name of the pressed button.
         button: String,
         /// Session time of the press by the display's synchronised clock; slightly before the event's time, at which
         /// the session received it.
@@ -115,24 +115,24 @@ pub enum Event {
     },
     /// The robot starts a press and will touch the button at `until_ns` unless it is interrupted.
     RobotIntends {
-        /// The button's name.
+        /// Name of the button that the robot is going to press.
         button: String,
         /// Session time at which the robot will touch the button if it is not interrupted.
         until_ns: SessionTime,
     },
     /// The robot aborts its ongoing press.
     RobotAborts {
-        /// The button's name.
+        /// Name of the button that the robot does not press.
         button: String,
         /// Why the robot abandoned the press.
         reason: AbortReason,
     },
-    /// The robot becomes idle.
+    /// The robot becomes idle: it has no useful press.
     RobotIdles {
         /// Why the robot is idle.
         reason: IdleReason,
     },
-    /// Witness: a sample of the simulated arm's motion, about 12 per second while it moves.
+    /// Recorded only (witness): a sample of the simulated arm's motion, about 12 per second while it moves.
     RobotMoves(ArmSample),
     /// The safety mode of the simulated arm changes. After a protective stop or a fault the arm does not move until the
     /// wizard resumes it.
@@ -146,7 +146,7 @@ pub enum Event {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         joint: Option<u8>,
     },
-    /// Witness: a contact between the simulated arm and the human, with its peak force in newtons; once per contact.
+    /// Recorded only (witness): a contact between the simulated arm and the human, with its peak force in newtons; once per contact.
     RobotTouched {
         /// The greatest force of the contact in newtons.
         force_n: f64,
@@ -158,36 +158,36 @@ pub enum Event {
     /// The wizard holds the robot: it starts no press and waits before the button of the ongoing press, until it is
     /// released.
     RobotHeld {
-        /// Who holds the robot.
+        /// Who holds the robot (wizard or assistant).
         by: Sender,
     },
     /// The robot continues after it was held.
     RobotReleased {
-        /// Who releases the robot.
+        /// Who releases the robot (wizard or assistant).
         by: Sender,
     },
     /// The wizard skips the robot's ongoing press; the robot decides anew.
     RobotSkipped {
-        /// Who skips the press.
+        /// Who skips the press (wizard or assistant).
         by: Sender,
     },
     /// The wizard chooses the robot's next press.
     RobotDriven {
-        /// Who chose the press.
+        /// Who chose the press (wizard or assistant).
         by: Sender,
-        /// The button's name.
+        /// Name of the button that the robot shall press.
         button: String,
     },
     /// The wizard corrects the content of a location in the program's state, which differed from the real one.
     KitchenCorrected {
         /// Name of the corrected location.
         location: String,
-        /// Name of the real content.
+        /// Name of the content that really is at the location.
         content: String,
     },
     /// A signal is shown to the participant and replaces the previous one.
     SignalShown {
-        /// Who sent the signal.
+        /// Who sent the signal (wizard or assistant).
         by: Sender,
         /// The signal that is shown.
         signal: Signal,
@@ -210,7 +210,7 @@ pub enum Event {
         /// Why the offer closes.
         reason: OfferEnd,
     },
-    /// Witness: the first frame with the signal of this sequence number was written to the terminal.
+    /// Recorded only (witness): the first frame with the signal of this sequence number was written to the terminal.
     SignalDrawn {
         /// Sequence number of the event that showed the signal.
         signal: u64,
@@ -229,28 +229,28 @@ pub enum Event {
     Probe(ProbeEvent),
     /// An event of the study protocol.
     Protocol(ProtocolEvent),
-    /// Witness: the wall clock advanced by this much more than session time, in milliseconds (negative: less), because
+    /// Recorded only (witness): the wall clock advanced by this much more than session time, in milliseconds (negative: less), because
     /// the computer was suspended or its clock was set.
     ClockJumped {
         /// By how much more the wall clock advanced than session time, in milliseconds; negative: less.
         by_ms: i64,
     },
-    /// Witness: a report of the participant's display.
+    /// Recorded only (witness): a report of the participant's display.
     Display(DisplayEvent),
-    /// Witness: the visible content of the wizard's screen changes.
+    /// Recorded only (witness): the visible content of the wizard's screen changes.
     Screen(VisibleScreen),
-    /// Witness: from now on the wizard sees the comparison with these communication concepts.
+    /// Recorded only (witness): from now on the wizard sees the comparison with these communication concepts.
     Unblinded {
         /// Names of the communication concepts.
         concepts: Vec<ConceptName>,
     },
-    /// Witness: the terminal lost or regained keyboard focus; without it no key arrives, including the robot stop.
+    /// Recorded only (witness): the terminal lost or regained keyboard focus; without it no key arrives, including the robot stop.
     FocusLost,
-    /// Witness: the terminal has keyboard focus again.
+    /// Recorded only (witness): the terminal has keyboard focus again.
     FocusRegained,
-    /// Witness: the belief of a simulated participant before its next press.
+    /// Recorded only (witness): the belief of a simulated participant before its next press.
     ParticipantBelieves(BeliefWitness),
-    /// Witness: the belief estimate before the last press of the human.
+    /// Recorded only (witness): the belief estimate before the last press of the human.
     BeliefEstimated(EstimateWitness),
     /// The session ends; a log without this event was cut off.
     SessionEnded,
@@ -322,7 +322,7 @@ impl Event {
 pub enum EndReason {
     /// The set number of presses was reached.
     Presses,
-    /// The set time was reached.
+    /// The set duration of the trial was reached.
     Time,
     /// The set number of orders was served.
     Orders,

@@ -25,7 +25,7 @@ pub enum CalibrationEvent {
         /// Index of the shown target in the list of targets.
         target: usize,
     },
-    /// All targets have been shown.
+    /// All targets of the accuracy check have been shown.
     TargetsHidden,
     /// The gaze accuracy was measured.
     Measured {
@@ -77,7 +77,7 @@ pub struct GazeCheckResult {
 pub struct AcceptedGazeCheck {
     /// Session time at which the wizard accepted the check.
     pub at: SessionTime,
-    /// The measured accuracy.
+    /// The measured gaze accuracy.
     pub found: GazeAccuracy,
     /// Whether the measured offset is corrected.
     pub corrected: bool,

@@ -18,7 +18,7 @@ pub const PEOPLE_SINCE: &str = "0.2.0";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Header {
-    /// Always [`FORMAT`].
+    /// Name of the log's format, always [`FORMAT`].
     pub format: String,
     /// The version of the log's format.
     pub version: u32,

@@ -100,12 +100,12 @@ pub struct LslGazeSpec {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GazeUnit {
-    /// Fractions of the display.
+    /// Gaze coordinates are fractions of the display.
     #[default]
     Normalised,
-    /// Pixels of the display.
+    /// Gaze coordinates are pixels of the display.
     Pixels,
-    /// Metres on the display.
+    /// Gaze coordinates are metres on the display.
     Metres,
 }
 

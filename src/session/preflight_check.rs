@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Verdict of a preflight check.
+/// Verdict of a preflight check (a check before a trial).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PreflightVerdict {

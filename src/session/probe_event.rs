@@ -82,7 +82,7 @@ pub enum ProbeEvent {
 /// A question of a freeze probe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbeQuestion {
-    /// What the question is about.
+    /// What the question of the probe is about.
     pub about: ProbeSubject,
     /// The possible answers by their names in the log, in the order in which they are shown.
     pub choices: Vec<String>,
@@ -95,19 +95,19 @@ pub struct ProbeQuestion {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(tag = "asks", rename_all = "snake_case")]
 pub enum ProbeSubject {
-    /// The content of a location.
+    /// The question is about the content of a location.
     Location {
         /// The location's name.
         location: String,
     },
-    /// The recipe of a dish.
+    /// The question is about the recipe of a dish.
     Recipe {
         /// The dish's name.
         dish: String,
     },
-    /// The order that will be served next.
+    /// The question is about the order that will be served next.
     NextOrder,
-    /// The robot's next press.
+    /// The question is about the robot's next press.
     NextPress,
 }
 
@@ -155,7 +155,7 @@ impl ProbeOrigin {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeEnd {
-    /// All questions are answered.
+    /// All questions of the probe are answered.
     Answered,
     /// The time limit of the probe was reached.
     TimeOver,

@@ -6,7 +6,7 @@ use super::answer_value::AnswerValue;
 use super::tutorial_event::TutorialEvent;
 use super::wall_display::Answering;
 
-/// A phase of a study.
+/// A phase of a study, such as instruction, trial or questionnaire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StudyPhase {
@@ -78,7 +78,7 @@ pub enum ProtocolEvent {
     Tutorial(TutorialEvent),
     /// An item of the questionnaire is shown.
     ItemShown {
-        /// Identifier of the item.
+        /// Identifier of the questionnaire item.
         item: String,
     },
     /// All answers to the questionnaire are shown, for the participant to confirm them.
@@ -86,14 +86,14 @@ pub enum ProtocolEvent {
     /// The participant answered the shown item; a later answer replaces an earlier one. The next item follows at once,
     /// except after sliders and choices of several options.
     ItemAnswered {
-        /// Identifier of the item.
+        /// Identifier of the questionnaire item.
         item: String,
-        /// The participant's answer.
+        /// The participant's answer to the item.
         answer: AnswerValue,
     },
     /// The shown item of the questionnaire is skipped. The next item follows.
     ItemSkipped {
-        /// Identifier of the item.
+        /// Identifier of the questionnaire item.
         item: String,
     },
     /// The participant confirms the answers to the questionnaire, which become final.
@@ -111,7 +111,7 @@ pub enum ProtocolEvent {
     },
     /// The wizard waives the criterion of the practice trial, for this reason.
     CriterionWaived {
-        /// The wizard's reason.
+        /// The wizard's reason for waiving the criterion.
         reason: String,
     },
 }

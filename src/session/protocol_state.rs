@@ -6,7 +6,7 @@ use super::tutorial_state::TutorialState;
 /// The answer to a questionnaire item, or that it was skipped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ItemAnswer {
-    /// The participant's answer.
+    /// The participant's answer to the item.
     Given(AnswerValue),
     /// The participant gave no answer to the item.
     Skipped,

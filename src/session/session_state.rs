@@ -27,9 +27,9 @@ const SILENT_S: f64 = 1.0;
 /// The state of a session after its events so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Session {
-    /// The compiled kitchen.
+    /// The kitchen of the session, compiled from its files.
     pub kitchen: Arc<Kitchen>,
-    /// The settings in use.
+    /// The settings of the session in use.
     pub spec: SessionSpec,
     /// Index of the session's trial.
     pub trial: u64,
@@ -51,7 +51,7 @@ pub struct Session {
     pub changed_at: [SessionTime; MAX_LOCATIONS],
     /// Number of presses during the trial by each agent, indexed by [`crate::kitchen::Agent::index`].
     pub presses: [u32; 2],
-    /// The served orders.
+    /// The orders that were served in the trial.
     pub served: Vec<Served>,
     /// State of the robot.
     pub robot: RobotStatus,
@@ -96,7 +96,7 @@ pub struct Session {
 pub struct Served {
     /// Session time at which the order was served.
     pub time: SessionTime,
-    /// The ordered dish.
+    /// The dish that the order wanted.
     pub dish: DishId,
     /// Number of presses of both agents in the trial, including the serving press.
     pub presses: u32,
@@ -105,7 +105,7 @@ pub struct Served {
 /// A signal on the participant's display.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownSignal {
-    /// The shown signal.
+    /// The signal that the display shows.
     pub signal: Signal,
     /// The location that the signal is about; `None` for proposed presses.
     pub location: Option<LocationId>,

@@ -12,7 +12,7 @@ pub struct SettingError {
     pub path: String,
     /// The invalid value that was found.
     pub found: String,
-    /// Description of a valid value.
+    /// Description of a valid value of the setting.
     pub remedy: Cow<'static, str>,
     /// Index among several settings with the same path.
     pub nth: usize,

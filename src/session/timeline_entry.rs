@@ -14,7 +14,7 @@ use crate::robot::safety::SafetyMode;
 pub struct TimelineEntry {
     /// Session time of the entry.
     pub time: SessionTime,
-    /// Content of the entry.
+    /// What happened, as the timeline shows it.
     pub what: TimelineEvent,
 }
 
@@ -51,7 +51,7 @@ pub enum TimelineEvent {
     },
     /// The wizard set a marker with this note.
     Marker(String),
-    /// The wizard stopped the robot.
+    /// The wizard stopped the robot's arm.
     RobotStopped,
     /// The arm stopped by itself, with the contact force in newtons or the number of the faulty joint.
     ArmStopped {
@@ -79,10 +79,10 @@ pub enum TimelineEvent {
     RobotDriven(ButtonId),
     /// The wizard corrected the content of a location in the program's state.
     Corrected {
-        /// The corrected location.
+        /// The location that the wizard corrected.
         location: LocationId,
     },
-    /// The trial entered this phase.
+    /// The trial entered this phase (running, paused, over).
     Trial(Phase),
     /// An event of a freeze probe, other than a question or an answer.
     Probe(ProbeEvent),

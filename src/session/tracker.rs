@@ -119,7 +119,7 @@ pub enum TrackerEvent {
     },
     /// The eye tracker's program does not respond any more; connecting is retried without limit.
     Lost {
-        /// Why the connection was lost.
+        /// Why the connection to the tracker's program was lost.
         reason: String,
     },
     /// The eye tracker detects the wall display by its AprilTags.
@@ -128,7 +128,7 @@ pub enum TrackerEvent {
     DisplayLost,
     /// The eye tracker detects surfaces, but none of them is the wall display.
     OtherSurfaces {
-        /// Names of the detected surfaces.
+        /// Names of the surfaces that the tracker detects.
         names: Vec<String>,
     },
     /// The eye tracker's program reports on its own recording of the trial.
@@ -203,7 +203,7 @@ pub enum TrackerConnection {
     Lost {
         /// Session time since which the tracker's program has not responded.
         since: SessionTime,
-        /// Why the connection was lost.
+        /// Why the connection to the tracker's program was lost.
         reason: String,
     },
 }

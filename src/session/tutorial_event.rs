@@ -31,12 +31,12 @@ pub enum TutorialEvent {
     Shown {
         /// Identifier of the tutorial step.
         step: String,
-        /// Who turned the page.
+        /// Who turned the tutorial's page.
         by: TutorialReader,
     },
     /// The participant pressed a button in the shown step of the tutorial.
     Pressed {
-        /// The button's name.
+        /// Name of the pressed button.
         button: String,
     },
     /// The set time of the tutorial's recipe cards is over: they disappear.

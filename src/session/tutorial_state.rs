@@ -9,7 +9,7 @@ use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 pub struct TutorialPress {
     /// Number of the press in the tutorial, from 1.
     pub number: u32,
-    /// The pressed button.
+    /// The button that the participant pressed.
     pub button: ButtonId,
     /// Whether it was the button that the step asks for.
     pub is_right: bool,

@@ -97,11 +97,11 @@ impl DisplaySpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Names {
-    /// Nothing has a name.
+    /// No picture has a name beside it.
     None,
-    /// Storages have names.
+    /// Pictures of storages have names beside them.
     Storages,
-    /// Storages and orders have names.
+    /// Pictures of storages and orders have names beside them.
     Orders,
 }
 

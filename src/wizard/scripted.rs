@@ -19,7 +19,7 @@ use crate::kitchen::{Kitchen, LocationId, OrderContent, Press, State};
 /// Number of the participant's last presses that the wizard remembers.
 const REMEMBERED_PRESSES: usize = 6;
 
-/// Action of the scripted wizard.
+/// An action of the scripted wizard: a signal, or taking an offer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WizardAction {
     /// Sends a signal by its own judgement.

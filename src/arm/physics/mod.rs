@@ -79,7 +79,7 @@ pub struct PhysicsWorld {
     multibodies: MultibodyJointSet,
     ccd: CCDSolver,
     pipeline: PhysicsPipeline,
-    /// Handles of the revolute joints.
+    /// Handles of the arm's revolute joints in the physics engine.
     joints: Vec<MultibodyJointHandle>,
     /// The rigid body of each link of the arm; parts fixed to a link belong to its body.
     links: Vec<RigidBodyHandle>,
@@ -107,7 +107,7 @@ impl Clone for PhysicsWorld {
             impulse_joints: self.impulse_joints.clone(),
             multibodies: self.multibodies.clone(),
             ccd: self.ccd.clone(),
-            // Working memory without state.
+            // The physics engine's working memory has no state, so a copy of the world gets a new one.
             pipeline: PhysicsPipeline::new(),
             joints: self.joints.clone(),
             links: self.links.clone(),

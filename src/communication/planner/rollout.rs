@@ -52,9 +52,9 @@ impl RolloutDraws {
 
 /// Data shared by all rollouts of one recommendation.
 pub struct RolloutContext<'a> {
-    /// The kitchen.
+    /// The kitchen in which the rollout is simulated.
     pub kitchen: &'a Kitchen,
-    /// The true recipes.
+    /// The true recipes of all dishes.
     pub recipes: Recipes,
     /// The human's choice model.
     pub choice: &'a ChoiceModel,

@@ -18,7 +18,7 @@ pub struct RobotChoices {
 }
 
 impl RobotChoices {
-    /// Number of equally likely choices.
+    /// Number of equally likely presses among which the robot chooses.
     pub fn count(self) -> u32 {
         self.choices.count_ones()
     }

@@ -15,7 +15,7 @@ const TOO_MANY: &str = "at most 255 items and stacks: fewer ingredients, states 
 /// The items, which are ingredients in a state ("rice cooked"), with their names and ids.
 pub(super) struct IngredientItems {
     pub(super) names: Vec<String>,
-    /// For each item, its ingredient.
+    /// For each item, its ingredient, as an index into the recipe file's list.
     pub(super) ingredient: Vec<usize>,
     /// For each item, its state, as an index into the states of its ingredient.
     pub(super) state: Vec<usize>,

@@ -15,7 +15,7 @@ pub const MAX_TASKS: usize = 16;
 pub struct Assignment {
     /// The tasks; only the first [`Self::count`] are valid.
     pub tasks: [AssemblyTask; MAX_TASKS],
-    /// Number of tasks.
+    /// Number of valid tasks in the assignment.
     pub count: usize,
     /// The target dishes in the order in which they will be served.
     pub order: [usize; MAX_TARGETS],
@@ -195,7 +195,7 @@ impl Assignment {
         Assignment { order: [self.order[1], self.order[0]], ..*self }
     }
 
-    /// Bit set of all tasks.
+    /// Bit set of all tasks of the assignment.
     pub fn all(&self) -> u32 {
         (1 << self.count) - 1
     }

@@ -28,7 +28,7 @@ impl ItemValue {
         self.0 as u8
     }
 
-    /// The location of the item.
+    /// The index of the item's location.
     #[inline]
     pub fn location(self) -> u8 {
         !((self.0 >> 8) as u8)

@@ -39,7 +39,7 @@ pub struct KitchenTables {
 }
 
 impl KitchenTables {
-    /// The tables of this kitchen.
+    /// Computes the cost-to-go tables of this kitchen.
     pub fn new(kitchen: &Kitchen) -> KitchenTables {
         let contents = kitchen.contents.len();
         let first = kitchen.orders.len();

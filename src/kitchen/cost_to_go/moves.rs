@@ -23,21 +23,21 @@ pub enum ClearingMove {
     },
     /// Brings the item of a task to a place or into a hand.
     Bring {
-        /// The index of the task.
+        /// The index of the task whose item is brought.
         task: usize,
         /// The location index that the item is brought to.
         to: usize,
     },
     /// Throws away the item of a task, which can be taken anew from a storage.
     Discard {
-        /// The index of the task.
+        /// The index of the task whose item is thrown away.
         task: usize,
     },
     /// Takes an item of this class from a storage early and brings it to a place on its way to the board.
     Fetch {
         /// The index of the task that the item is for.
         task: usize,
-        /// The class of the item.
+        /// The equivalence class of the item that is taken.
         class: u8,
         /// The location index of the hand that takes it.
         hand: usize,

@@ -14,7 +14,7 @@ pub struct TargetNeeds {
     pub needs: FreeMask,
     /// Free hands and places that all remaining tasks require.
     pub later: FreeMask,
-    /// Whether both hands hold something.
+    /// Whether both agents' hands hold something.
     pub hands_full: bool,
 }
 

@@ -18,7 +18,7 @@ use crate::kitchen::{ContentId, State};
 /// Limits of a best-first search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SearchLimits {
-    /// Largest number of expanded states.
+    /// Largest number of states that the search expands.
     expansions: usize,
     /// Whether items may be taken from a storage before their way to the board is free.
     takes: bool,
@@ -47,7 +47,7 @@ struct Open {
     gap: u32,
     /// Number of the state in order of discovery.
     met: usize,
-    /// Number of presses so far.
+    /// Number of presses from the start state to this one.
     presses: u32,
     state: ContentClasses,
 }

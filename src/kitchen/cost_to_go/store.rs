@@ -40,7 +40,7 @@ pub struct CostToGo {
 pub struct EvaluationCounts {
     /// Number of decisions that were not in the cache.
     pub decisions_missed: u64,
-    /// Number of requested single values.
+    /// Number of requests for the cost to go of a single state.
     pub values: u64,
     /// Values that had to be computed, because no cache held them.
     pub values_missed: u64,

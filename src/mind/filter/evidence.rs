@@ -119,7 +119,7 @@ struct Alike {
 
 /// The models that define the likelihood of an action of the human.
 pub struct EvidenceModel<'a> {
-    /// The kitchen.
+    /// The kitchen, with the rules of its buttons.
     pub kitchen: &'a Kitchen,
     /// The human's choice model.
     pub choice: &'a ChoiceModel,

@@ -24,9 +24,9 @@ pub struct SampleLooks {
 /// A value that a belief sample holds since a look at a time of unknown gaze.
 #[derive(Clone, Copy, Debug)]
 pub struct LookNews {
-    /// Index of the aspect.
+    /// Index of the state aspect that the value belongs to.
     pub aspect: usize,
-    /// Index of the value.
+    /// Index of the value among the aspect's possible values.
     pub value: u8,
     /// Whether the value was read, and is certain; else it is a draw of a recipe on which the decision depends since an
     /// order was read.

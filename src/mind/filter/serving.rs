@@ -145,7 +145,7 @@ fn condition(dishes: &[&Served], draws: &[Draw], effective: bool) -> Option<Vec<
 /// Repeated draws of a categorical distribution from a Dirichlet, with some values merged into classes.
 struct Draw {
     aspect: AspectId,
-    /// Class of each value.
+    /// Class to which each value belongs.
     part_of: Vec<usize>,
     means: Vec<f64>,
     precision: f64,

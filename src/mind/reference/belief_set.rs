@@ -27,7 +27,7 @@ pub struct Particles {
     pub prior: DirichletBelief,
     /// Distribution that replaces a belief after an observation that was impossible under it.
     pub doubt: DirichletBelief,
-    /// The explicit beliefs.
+    /// The explicit beliefs of the set.
     pub of: Vec<Particle>,
     sight: GazeFollower,
     presence: GazePresence,
@@ -66,7 +66,7 @@ impl Particles {
         self.show(now, state);
     }
 
-    /// Replaces all beliefs.
+    /// Replaces all explicit beliefs of the set.
     pub fn replace(&mut self, people: Vec<Particle>) {
         (self.of, self.unseen) = (people, None);
     }

@@ -31,7 +31,7 @@ pub struct Particle {
     pub read: Vec<bool>,
 }
 
-/// A world with its probability.
+/// A hypothesis of kitchen state and recipes, with its probability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PossibleWorld {
     /// The content of every location.

@@ -12,7 +12,7 @@ const ELSEWHERE: f64 = 0.1;
 /// The effect of a gaze sample at one location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocationReading {
-    /// The location near the gaze.
+    /// The location that the gaze sample may read.
     pub location: LocationId,
     /// Whether the sample begins a new look, in which the location can be read again.
     pub begins: bool,

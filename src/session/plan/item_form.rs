@@ -54,7 +54,7 @@ pub enum ItemForm<'a> {
     Choice {
         /// The options in their order on the page.
         options: &'a [ItemOption],
-        /// Whether several can be chosen.
+        /// Whether several options can be chosen.
         several: bool,
     },
     /// The answer is a whole number.

@@ -82,7 +82,7 @@ impl NextRecording {
 /// A planned trial of a participant's series, with the attempts at it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SlotProgress {
-    /// The planned trial.
+    /// The planned trial of the participant's series.
     #[serde(flatten)]
     pub slot: Slot,
     /// Whether the trial has a valid recording.
@@ -123,7 +123,7 @@ pub struct Progress {
     pub instructed: bool,
     /// The planned trials of the series, in order.
     pub steps: Vec<SlotProgress>,
-    /// The recording that comes next.
+    /// The recording that the participant needs next.
     pub next: NextRecording,
 }
 

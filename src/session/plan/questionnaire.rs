@@ -16,7 +16,7 @@ const LENGTH: u32 = 200;
 pub struct Questionnaire {
     /// Identifier of the questionnaire in the log and in tables.
     pub name: String,
-    /// Heading above the items.
+    /// Heading above the questionnaire's items.
     pub title: String,
     /// Language code of the items: "en".
     pub language: String,

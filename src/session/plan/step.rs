@@ -12,7 +12,7 @@ use crate::session::study_arm::StudyArm;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepSpec {
-    /// The name of the plan.
+    /// The name of the study plan.
     pub plan: String,
     /// Digest of the plan, its settings and questionnaires.
     pub digest: String,
@@ -67,7 +67,7 @@ impl Criterion {
 pub enum PhaseSpec {
     /// The wizard instructs the participant.
     Instruction {
-        /// The instructions, step by step.
+        /// The wizard's instructions, step by step.
         steps: Vec<String>,
     },
     /// The participant goes through a tutorial on the display.

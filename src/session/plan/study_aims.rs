@@ -29,7 +29,7 @@ impl StudyAims {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PrimaryOutcome {
-    /// Errors of the human.
+    /// All errors of the human.
     #[default]
     Errors,
     /// Errors that a false belief caused; for people these are known from two raters' codes.

@@ -48,9 +48,9 @@ pub enum TutorialStepKind {
 pub struct TutorialStep {
     /// Identifier of the step in the log.
     pub id: String,
-    /// The kind of the step.
+    /// The kind of the tutorial step.
     pub kind: TutorialStepKind,
-    /// Heading of the page.
+    /// Heading of the tutorial page.
     pub title: String,
     /// Text of the page; for the kind `question`, the question.
     pub text: String,
@@ -289,9 +289,9 @@ fn check_names(kitchen: &Kitchen, step: &TutorialStep) -> Result<(), SettingErro
 pub enum TutorialTarget {
     /// The area of an agent on the display.
     Area(Agent),
-    /// A location.
+    /// A location on the display.
     Location(LocationId),
-    /// A button of the human.
+    /// A button of the human on the display.
     Button(ButtonId),
 }
 

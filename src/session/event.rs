@@ -146,7 +146,8 @@ pub enum Event {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         joint: Option<u8>,
     },
-    /// Recorded only (witness): a contact between the simulated arm and the human, with its peak force in newtons; once per contact.
+    /// Recorded only (witness): a contact between the simulated arm and the human, with its peak force in newtons; once
+    /// per contact.
     RobotTouched {
         /// The greatest force of the contact in newtons.
         force_n: f64,
@@ -229,8 +230,8 @@ pub enum Event {
     Probe(ProbeEvent),
     /// An event of the study protocol.
     Protocol(ProtocolEvent),
-    /// Recorded only (witness): the wall clock advanced by this much more than session time, in milliseconds (negative: less), because
-    /// the computer was suspended or its clock was set.
+    /// Recorded only (witness): the wall clock advanced by this much more than session time, in milliseconds (negative:
+    /// less), because the computer was suspended or its clock was set.
     ClockJumped {
         /// By how much more the wall clock advanced than session time, in milliseconds; negative: less.
         by_ms: i64,
@@ -244,7 +245,8 @@ pub enum Event {
         /// Names of the communication concepts.
         concepts: Vec<ConceptName>,
     },
-    /// Recorded only (witness): the terminal lost or regained keyboard focus; without it no key arrives, including the robot stop.
+    /// Recorded only (witness): the terminal lost or regained keyboard focus; without it no key arrives, including the
+    /// robot stop.
     FocusLost,
     /// Recorded only (witness): the terminal has keyboard focus again.
     FocusRegained,

@@ -62,7 +62,7 @@ pub struct Detection {
 }
 
 impl Detection {
-    /// Compares estimates with known beliefs. `thresholds` are the probabilities from which an aspect is flagged; with
+    /// Compares estimates with known beliefs. `thresholds` are those from which an aspect is flagged; with
     /// `None` they are chosen on other trials than they are evaluated on (see [`Flags`]).
     pub fn from_trials(kitchen: &Kitchen, trials: &[TrialView], thresholds: Option<Thresholds>) -> Detection {
         let estimated = |press: &PressView, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);

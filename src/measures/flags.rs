@@ -1,5 +1,5 @@
-//! Flags: aspects whose estimated probability of a false belief exceeds a threshold, and the false belief episodes that
-//! flags detect in time.
+//! Flags: aspects whose expected belief deviation, 1 - E[P(truth)], reaches a threshold, and the false belief episodes
+//! that flags detect in time.
 //!
 //! An episode counts if it caused two or more errors; it is detected if its aspect is flagged after the belief became
 //! false and before the third error (the estimate from before a press is before that press). A false flag is a flag on
@@ -26,12 +26,12 @@ const BEFORE_ERROR: u32 = 3;
 /// Number of candidate thresholds for each group of aspects.
 const CANDIDATES: usize = 200;
 
-/// Probability of a false belief above which an aspect is flagged, for locations and for recipes.
+/// Expected belief deviation, 1 - E[P(truth)], from which on an aspect is flagged, for locations and for recipes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Thresholds {
-    /// The threshold for locations, as a probability.
+    /// Flag threshold of the expected belief deviation for locations.
     pub locations: f64,
-    /// The threshold for recipes, as a probability.
+    /// Flag threshold of the expected belief deviation for recipes.
     pub recipes: f64,
 }
 
@@ -220,7 +220,7 @@ fn p_wrong(press: &PressView, aspect: usize) -> f64 {
     press.estimate.as_ref().map_or(0.0, |estimate| estimate.p_wrong[aspect])
 }
 
-/// Estimated probabilities of a false belief for all (press, aspect) pairs with a right belief.
+/// Expected belief deviations, 1 - E[P(truth)], of all (press, aspect) pairs with a right belief.
 fn while_right<'a>(trials: &'a [&'a TrialView], group: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
     let is_right = |press: &PressView, aspect: usize| press.is_wrong(aspect) == Some(false);
     trials.iter().flat_map(|trial| trial.iter()).flat_map(move |press| {

@@ -22,7 +22,7 @@ const NEVER: TraitSpread = TraitSpread::from_median(0.0, 0.4);
 /// Default probability of a wrong answer to a question of a probe: small, since otherwise wrong answers would hide the
 /// few false beliefs.
 const ANSWERS_WRONG: TraitSpread = TraitSpread::from_median(0.01, 0.4);
-/// Probability above which a belief is not false, see `measures::sequences::FALSE_BELOW`.
+/// Least P(truth) with which a belief is not false, see `measures::sequences::FALSE_BELOW`.
 const ANSWERS_FROM: f64 = 0.5;
 const ANSWER_S: TraitSpread = TraitSpread::from_median(3.0, 0.3);
 /// Default probability of following a noticed proposal; it is an assumption, since proposals were never shown to

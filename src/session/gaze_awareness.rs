@@ -16,7 +16,7 @@ use crate::kitchen::{AspectId, AspectKind, LocationId};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
 
-/// P(truth) above which a belief about an aspect counts as right again after it was below [`FALSE_BELOW`].
+/// Least P(truth) with which a belief about an aspect counts as right again after it was below [`FALSE_BELOW`].
 const RIGHT_FROM: f64 = 0.6;
 /// Time of known gaze since a change of a location after which the human counts as having looked past the change, in
 /// seconds.

@@ -1,5 +1,5 @@
-//! The assistant of a session: answers a request for advice after every press and every order change, and at other moments where
-//! the session's settings say so.
+//! The assistant of a session: answers a request for advice after every press and every order change, and at the other
+//! moments that the session's settings name.
 
 use super::follower::Follower;
 use crate::base::time::SessionTime;
@@ -16,9 +16,9 @@ use crate::session::Session;
 /// A request for advice: the session after an event and all its immediate consequences.
 #[derive(Clone, Debug)]
 pub struct AdviceRequest {
-    /// Sequence number of the event.
+    /// Sequence number of the event after which advice is requested.
     pub seq: u64,
-    /// The session time of the event.
+    /// Session time of that event.
     pub time: SessionTime,
     presses: u32,
     state: State,
@@ -26,7 +26,7 @@ pub struct AdviceRequest {
     changed: Vec<AspectId>,
     robot: RobotIntent,
     robot_press_s: f64,
-    /// The signals that can be sent.
+    /// The signals that can be sent at that time.
     signals: Vec<Signal>,
     /// Sequence number of the human's last press, if that press was an error.
     error: Option<u64>,
@@ -53,7 +53,7 @@ impl AdviceRequest {
         AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, signals, error }
     }
 
-    /// The request as a concept receives it.
+    /// The request in the form in which a communication concept receives it.
     pub fn moment(&self) -> DecisionPoint<'_> {
         let AdviceRequest {
             seq,

@@ -12,7 +12,7 @@ use crate::session::gaze_samples::faults;
 pub struct GazeSummary {
     /// Recorded samples.
     pub samples: u64,
-    /// Recorded samples outside the display or below the least confidence.
+    /// Recorded samples outside the display or with a confidence below the threshold.
     pub unusable: u64,
     /// Recorded samples that the filter does not use, by fault.
     #[serde(flatten)]
@@ -20,7 +20,7 @@ pub struct GazeSummary {
     /// Input that was not recorded, by kind.
     #[serde(flatten)]
     pub dropped: DropCounts,
-    /// How often the clock of the tracker's time stamps was set.
+    /// Number of times that the tracker's clock was matched anew to the session's clock.
     pub clock_steps: u64,
     /// Number of fixations that the tracker found.
     pub fixations: u64,
@@ -35,7 +35,7 @@ pub struct GazeSummary {
 }
 
 impl GazeSummary {
-    /// The gaze of a session up to its last event.
+    /// Gaze quality of a session up to its last event.
     pub fn from_session(session: &Session) -> GazeSummary {
         let (gaze, tracker) = (&session.gaze, &session.tracker);
         let calibrated = session.calibrated.as_ref();

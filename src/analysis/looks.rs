@@ -1,4 +1,4 @@
-//! Looks at locations: gaze that has rested in a location's area since its last change for long enough to read it.
+//! Looks at locations: time for which gaze has rested in a location's area since the content there last changed.
 
 use crate::base::time::SessionTime;
 use crate::kitchen::LocationId;
@@ -15,12 +15,12 @@ pub struct Looks {
 }
 
 impl Looks {
-    /// Notes a change of a location: what was read there before no longer holds.
+    /// Notes a change of a location's content: a look at the earlier content does not count for the new one.
     pub fn changed(&mut self, location: LocationId) {
         self.since[location.index()] = None;
     }
 
-    /// Ends all looks, as a pause does.
+    /// Ends all looks, which a pause of the trial interrupts.
     pub fn interrupted(&mut self) {
         self.since = Default::default();
     }

@@ -28,26 +28,26 @@ const CLOSE: f64 = 1e-9;
 /// The bound at which a variable has its maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoundReached {
-    /// The lower bound.
+    /// The maximum lies at the lower bound.
     Low,
-    /// The upper bound.
+    /// The maximum lies at the upper bound.
     High,
 }
 
 /// Estimate of one variable with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedVariable {
-    /// Its best value.
+    /// Best value of the variable.
     pub at: f64,
-    /// `None` at a bound, and where the log likelihood is not concave.
+    /// Standard error of the variable; `None` at a bound, and where the log likelihood is not concave.
     pub standard_error: Option<f64>,
     /// The bound at which the variable has its maximum, if any.
     pub end: Option<BoundReached>,
-    /// Other end of the 95 % profile interval of a variable at a bound; `None` if it was not found.
+    /// Other end of the 95 % profile likelihood interval of a variable at a bound; `None` if that end was not found.
     pub limit: Option<f64>,
 }
 
-/// Result of a search.
+/// Result of a search for the maximum of a log likelihood.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Maximum {
     /// The variables, in the order in which they were given.
@@ -58,7 +58,8 @@ pub struct Maximum {
     pub converged: bool,
 }
 
-/// Maximises a log likelihood within bounds; `loss` is its negative in nats. Uses about `most` evaluations at most.
+/// Maximises a log likelihood within bounds; `loss` is its negative in nats. Stops after about `most` evaluations of
+/// `loss`.
 pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> Maximum {
     let inside = |(at, [low, high]): (&f64, &[f64; 2])| at.clamp(*low, *high);
     let at: Vec<f64> = start.iter().zip(bounds).map(inside).collect();
@@ -105,7 +106,7 @@ pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]
 struct Search<'a, F> {
     loss: F,
     bounds: &'a [[f64; 2]],
-    /// Best point so far.
+    /// Best point that the search has found so far.
     at: Vec<f64>,
     steps: Vec<f64>,
     evaluations: usize,
@@ -259,7 +260,8 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         found
     }
 
-    /// Least loss over these variables near the best point, and the standard deviation of a difference of two such values.
+    /// Least loss over the variables `others` near the best point, and the standard deviation of a difference between
+    /// two such minima.
     fn profile(&mut self, others: &[usize]) -> Option<(f64, f64)> {
         if others.is_empty() {
             self.evaluations += 1;
@@ -271,7 +273,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
     }
 }
 
-/// Standard deviation of a difference between the minima of two surfaces, as a share of that of single values.
+/// Standard deviation of a difference between the minima of two surfaces, as a multiple of the noise of single values.
 fn share_of_noise(variables: usize) -> f64 {
     let count = variables as f64;
     let terms = 1.0 + count + count * (count + 1.0) / 2.0;
@@ -285,7 +287,7 @@ mod tests {
     use super::*;
     use crate::base::rng::stream;
 
-    /// Of 2 variables: known with standard errors of 0.1 and 0.2.
+    /// Loss with its minimum at a point of 2 variables, which it determines with standard errors of 0.1 and 0.2.
     fn bowl(at: &[f64]) -> f64 {
         50.0 * (at[0] - 0.7).powi(2) + 12.5 * (at[1] + 1.2).powi(2)
     }

@@ -27,7 +27,7 @@ fn whole(description: &str) -> Value {
     json!({ "type": "integer", "description": description })
 }
 
-/// An object all of whose fields are there, unless they are named.
+/// Schema of an object; its fields are required unless `optional` names them.
 fn object(description: &str, properties: Value, optional: &[&str]) -> Value {
     let fields = properties.as_object().into_iter().flatten().map(|(name, _)| name.as_str());
     let required: Vec<&str> = fields.filter(|name| !optional.contains(name)).collect();

@@ -61,7 +61,7 @@ const WRONG: u8 = 2;
 /// Period of polling a running session for new events.
 const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Runs the command of the arguments. Exit codes: 0 done, 1 failed, 2 wrong arguments or files.
+/// Runs the command that the program's arguments name. Exit codes: 0 done, 1 failed, 2 wrong arguments or files.
 pub fn main() -> ExitCode {
     // Messages are not wrapped, so that file and line can be searched for; an existing hook is kept.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
@@ -120,7 +120,7 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
     print(args.format, &frozen, || frozen.describe())
 }
 
-/// Warns of recordings with settings outside of the ranges for settings files.
+/// Warns of recordings whose settings are outside the ranges that settings files allow.
 fn warn_of(recordings: &[PathBuf]) -> Result<(), Failure> {
     for recording in recordings {
         if let Some(OutOfRange { found, remedy, .. }) = LogReader::open(recording)?.unusual() {

@@ -76,23 +76,26 @@ pub(super) struct ReplayArgs {
     /// Compare the estimates before each press with the recorded beliefs of simulated participants, and with the presses.
     #[arg(long, conflicts_with_all = ["verify", "follow"])]
     pub(super) check_beliefs: bool,
-    /// With --check-beliefs: choose the thresholds of flags on this recording, of another seed (several: repeat it). Without it
-    /// each half of the recordings is judged with the thresholds of the other half.
+    /// With --check-beliefs: choose the thresholds for flagging false beliefs on this recording, which has another seed
+    /// (several: repeat the option). Without it, each half of the recordings is judged with the thresholds of the other
+    /// half.
     #[arg(long, value_name = "RECORDING", requires = "check_beliefs")]
     pub(super) choose_on: Vec<PathBuf>,
     /// Measure computing times of inference and planning.
     #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs"])]
     pub(super) timing: bool,
-    /// Compare the planner's answers with those from 64 times as many rollouts, and with the plain reference. Takes long.
+    /// Compare the planner's answers with those from 64 times as many rollouts, and with the plain reference planner.
+    /// Takes long.
     #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing"])]
     pub(super) accuracy: bool,
     /// With --accuracy: largest number of steps, spread evenly over the recordings.
     #[arg(long, default_value_t = 500, requires = "accuracy", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(super) steps: u64,
-    /// With --accuracy: largest number of steps for the plain reference; 0 for none.
+    /// With --accuracy: largest number of steps for the plain reference planner; 0 for none.
     #[arg(long, default_value_t = 30, requires = "accuracy", value_parser = clap::value_parser!(u64).range(0..=100_000))]
     pub(super) reference_steps: u64,
-    /// Measure how steady offers are: how long they stand, and whether a scripted hand sends what it has read.
+    /// Measure how steady offers are: how long they stand, and whether a simulated hand that reads an offer sends what
+    /// it has read.
     #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy"])]
     pub(super) offers: bool,
     /// Watch a session that is still running, until it ends.
@@ -168,8 +171,8 @@ pub(super) struct SimulateArgs {
     /// unless --condition says otherwise. With a plan, its settings apply, and every trial has another participant.
     #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
     pub(super) sweep: Vec<SweepAxis>,
-    /// Compute the assistant's recommendations in trials in which it does not act, too; they are recorded. A scripted wizard reads them
-    /// where the session shows recommendations; nobody else sees them.
+    /// Compute the assistant's recommendations also in trials in which the assistant does not act, and record them. A
+    /// scripted wizard reads them where the session shows recommendations; nobody else sees them.
     #[arg(long)]
     pub(super) shadow: bool,
     /// Also write a stream for the Rerun viewer beside every log, as recording.rrd.
@@ -201,7 +204,8 @@ pub(super) struct FitArgs {
     /// recordings.
     #[arg(long, value_name = "FILE")]
     pub(super) start: Option<PathBuf>,
-    /// Use answers to probes beside presses, and tell by how much they narrow the intervals; takes a second search without them.
+    /// Use answers to freeze probes beside presses, and tell by how much they narrow the intervals; needs a second
+    /// search, without the answers.
     #[arg(long)]
     pub(super) probes: bool,
     /// Largest number of likelihood evaluations.
@@ -230,11 +234,11 @@ pub(super) enum FitParameter {
     HalfLife,
     /// Share of the robot's unseen presses whose consequences the human infers.
     Foresight,
-    /// Looks a second at what the next press needs, where gaze is unknown.
+    /// Looks at what the next press needs, per second, where gaze is unknown.
     Looks,
-    /// Looks a second at other places, where gaze is unknown.
+    /// Looks at other locations, per second, where gaze is unknown.
     OtherLooks,
-    /// Share of the changes by others that draw the eye, where gaze is unknown.
+    /// Share of changes by others that attract a look, where gaze is unknown.
     Capture,
 }
 
@@ -279,7 +283,7 @@ pub(super) struct KeysArgs {
     pub(super) session: Option<PathBuf>,
 }
 
-/// Excludes a recording from the analysis, or takes that back.
+/// Excludes a recording from the analysis, or includes it again.
 ///
 /// The recording must be closed. Its log stays as it is.
 #[derive(Debug, Args)]
@@ -320,7 +324,7 @@ pub(super) struct DoctorArgs {
     pub(super) format: OutputFormat,
 }
 
-/// Prints the completions of a shell.
+/// Prints the completion script for a shell.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom completions bash > ~/.local/share/bash-completion/completions/tomcom")]
 pub(super) struct CompletionsArgs {
@@ -331,6 +335,6 @@ pub(super) struct CompletionsArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom man operate | man -l -")]
 pub(super) struct ManArgs {
-    /// The command.
+    /// Command whose man page to print; by default that of the program.
     pub(super) command: Option<String>,
 }

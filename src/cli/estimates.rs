@@ -1,4 +1,4 @@
-//! Commands that check estimates: beliefs, benefits of signals, parameters of the human model.
+//! Commands that check estimates: beliefs, net benefits of signals, parameters of the human model.
 
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
 pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
     let extent =
         AccuracySample { steps: args.steps as usize, reference_steps: args.reference_steps.min(args.steps) as usize };
-    // Each step is planned twice.
+    // Each step is planned twice: with the budget of a session, and with the larger one.
     let bar = progress(2 * args.steps + args.reference_steps, "answers at most");
     let found = accuracy::measure(&args.recordings, extent, || bar.inc(1))?;
     bar.finish_and_clear();
@@ -48,7 +48,7 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
         Failure::Failed(miette::miette!(help = help, "{}: cannot be written: {error}", path.display()))
     };
     if let Some(path) = &args.out {
-        // Before the search, so that it is not in vain.
+        // The output file is checked before the long search.
         files::check_fitted(path).map_err(|error| unwritable(path, error))?;
     }
     let trials = fit::FitTrials::read(&args.recordings, args.probes)?;

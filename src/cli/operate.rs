@@ -1,4 +1,4 @@
-//! `tomcom operate`.
+//! The command `tomcom operate`.
 
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -47,7 +47,8 @@ pub(super) struct OperateFlags {
     /// Marker Mapper, or the folder of a recording.
     #[arg(long, value_name = "PATH")]
     pub(super) gaze_file: Option<PathBuf>,
-    /// Time in the gaze file at which the trial starts, in seconds after its first sample; negative: the trial starts before it.
+    /// Time in the gaze file at which the trial starts, in seconds after the file's first sample; negative if the trial
+    /// starts before that sample.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) gaze_start: Option<f64>,
     /// Kind of the robot's arm, instead of the session file's.
@@ -124,7 +125,7 @@ pub(super) fn new_session(
     }
 }
 
-/// Parses an address of this computer. A port beside it has no meaning here.
+/// Parses an address of this computer; a port is refused, since none is needed here.
 pub(super) fn address_without_port(text: &str) -> Result<IpAddr, String> {
     text.parse().map_err(|_| match text.parse::<SocketAddr>() {
         Ok(with_port) => format!(

@@ -43,14 +43,14 @@ pub(super) fn put(text: &str) -> io::Result<()> {
 
 /// Prints a text on standard error.
 pub(super) fn put_aside(text: &str) {
-    // A message that cannot be printed is lost.
+    // If standard error cannot be written, nobody can be told.
     let _ = terminal::print(true, printable_lines(text).into_owned().into_bytes());
 }
 
-/// Prints an error on standard error.
+/// Prints an error report on standard error.
 pub(super) fn put_error(report: Report) {
     let report = Report::new(PrintableReport(report));
-    // A message that cannot be printed is lost.
+    // If standard error cannot be written, nobody can be told.
     let _ = terminal::print(true, format!("{report:?}\n").into_bytes());
 }
 

@@ -1,4 +1,4 @@
-//! `tomcom tutorial`.
+//! The command `tomcom tutorial`.
 
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,8 @@ use crate::session::settings::{ArmKind, GazeSource, ParticipantKind};
 
 /// Runs the participant's tutorial alone, on the display.
 ///
-/// It is recorded as a session without a trial, so that it can be replayed, into a folder of its own: no study reads it there.
+/// The tutorial is recorded as a session without a trial, so that it can be replayed. The recording gets a folder that
+/// no study reads.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom tutorial sessions/study.toml --language de\nMore: docs/display.md")]
 pub(super) struct TutorialArgs {

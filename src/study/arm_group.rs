@@ -13,7 +13,7 @@ pub struct ArmGroup {
     pub kind: ArmKind,
     /// Number of trials.
     pub trials: u64,
-    /// Sums over these trials.
+    /// Sums of the robot statistics over the trials.
     #[serde(flatten)]
     pub robot: RobotSummary,
 }

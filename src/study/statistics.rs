@@ -1,4 +1,4 @@
-//! Textbook statistics for small samples: a study with some tens of participants.
+//! Textbook statistics for small samples, such as a study with some tens of participants.
 //!
 //! Distributions come from the crate `statrs`. `tests/outside/study.py` compares every result with SciPy, pingouin and
 //! scikit-learn.
@@ -12,13 +12,13 @@ use crate::base::rng::stream;
 /// Result of an F test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FTest {
-    /// The value of F.
+    /// F statistic.
     pub f: f64,
     /// Degrees of freedom of the effect and of the residuals.
     pub df: [f64; 2],
-    /// The probability of at least this value without an effect.
+    /// p value: probability, without an effect, of an F statistic at least this large.
     pub p: f64,
-    /// Partial eta squared: the effect's share of its own and the residual sum of squares.
+    /// Partial eta squared: the effect's sum of squares divided by its sum with the residual one.
     pub partial_eta_sq: f64,
 }
 
@@ -37,11 +37,11 @@ impl FTest {
 /// Mixed analysis of variance with two measurements per person (within) and any number of groups (between).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MixedAnova {
-    /// The factor within participants.
+    /// F test of the factor within participants.
     pub within: Option<FTest>,
-    /// The factor between groups.
+    /// F test of the factor between groups.
     pub between: Option<FTest>,
-    /// The interaction of both.
+    /// F test of the interaction of both factors.
     pub interaction: Option<FTest>,
 }
 
@@ -78,7 +78,7 @@ pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
 pub struct Correlation {
     /// Pearson's r.
     pub r: f64,
-    /// The two-sided p.
+    /// Two-sided p value.
     pub p: f64,
     /// Number of pairs.
     pub n: usize,
@@ -103,7 +103,7 @@ pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
     Some(Correlation { r, p, n })
 }
 
-/// Largest number of permutations that are enumerated; beyond it they are sampled.
+/// Largest number of permutations that are enumerated; with more, permutations are sampled.
 const MAX_ENUMERATED: f64 = 200_000.0;
 /// Number of sampled permutations.
 const SAMPLED_PERMUTATIONS: u32 = 100_000;
@@ -162,7 +162,7 @@ fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
 /// An estimate with its confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
-    /// The estimate.
+    /// Point estimate.
     pub estimate: f64,
     /// The lower end of the interval.
     pub low: f64,
@@ -251,8 +251,8 @@ pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<Interval> {
     wilson(part as f64 / whole as f64, whole as f64, level)
 }
 
-/// The proportion `p` of `n` observations with its Wilson score interval; `n` may be the fractional number of independent observations
-/// with the same variance. `None` if it is 0.
+/// The proportion `p` of `n` observations with its Wilson score interval; `n` may be the fractional number of
+/// independent observations with the same variance. `None` if `n` is 0.
 pub fn wilson(p: f64, n: f64, level: f64) -> Option<Interval> {
     if n <= 0.0 {
         return None;

@@ -1,4 +1,4 @@
-//! The report: one self-contained HTML page for screen and print.
+//! The study report: one self-contained HTML page for screen and print.
 
 mod arm_section;
 mod assistance;
@@ -19,10 +19,10 @@ use super::facts::Facts;
 use super::figures::StudySummary;
 use super::trial_statistics::Trial;
 
-/// Style sheet of the page, and of its charts.
+/// Style sheet of the report's page and its charts.
 pub const STYLE: &str = include_str!("style.css");
 
-/// The report as an HTML page; it refers to the files of these tables.
+/// The report as an HTML page, with links to the files of these tables.
 pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[Table]) -> String {
     let captions = &mut Captions::default();
     let sections = [

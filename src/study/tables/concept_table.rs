@@ -1,4 +1,4 @@
-//! Table of the prevention counts of communication concepts.
+//! Table of errors that communication concepts would have prevented.
 
 use crate::communication::concept::ConceptName;
 use crate::study::column::{Column, Table, TableCell, TableRow};
@@ -6,7 +6,7 @@ use crate::study::prevention::PreventionCounts;
 use crate::study::roc::SweptTrial;
 use crate::study::trial_statistics::Trial;
 
-/// A concept with one parameter value in an unassisted trial.
+/// Row of the table of concepts: a concept with one parameter value in an unassisted trial.
 #[derive(Clone, Copy, Debug)]
 pub struct ConceptRow<'a> {
     trial: &'a Trial,

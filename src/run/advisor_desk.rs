@@ -1,4 +1,4 @@
-//! The assistant of a live session on its own thread, which always answers the latest request.
+//! The assistant of a live session, which runs on a thread of its own and always answers the latest request.
 
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
@@ -15,7 +15,7 @@ impl Advisor {
         let (answer, answers) = unbounded_channel();
         thread::spawn(move || {
             while let Ok(question) = questions.recv() {
-                // A newer request replaces this one.
+                // The newest request replaces earlier ones that have not been answered.
                 let newest = questions.try_iter().last().unwrap_or(question);
                 if answer.send(self.answer(&newest)).is_err() {
                     return;
@@ -30,7 +30,7 @@ impl Advisor {
 #[derive(Debug)]
 pub struct AdvisorDesk {
     ask: Sender<AdviceRequest>,
-    /// The recommendations, in the order of the requests.
+    /// Recommendations of the assistant, in the order of the requests.
     pub answers: UnboundedReceiver<Recommendation>,
 }
 

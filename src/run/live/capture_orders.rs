@@ -1,4 +1,4 @@
-//! Requests to Pupil Capture about the trial.
+//! Requests to Pupil Capture, the eye tracker's program, at events of the trial.
 
 use std::time::Instant;
 
@@ -12,19 +12,19 @@ use crate::session::{Event, Phase, Session};
 const RUNNING: &str = "trial running";
 const PAUSED: &str = "trial paused";
 
-/// Requests to Pupil Capture about a recording.
+/// Sends requests to Pupil Capture for one recording.
 #[derive(Debug, Default)]
 pub(super) struct CaptureOrders {
-    /// Channel to Pupil Capture, if it is in use.
+    /// Channel to Pupil Capture, if that is the tracker.
     orders: Option<Sender<CaptureRequest>>,
-    /// The name of the recording.
+    /// Name of the recording.
     name: String,
-    /// Whether the trial was begun and is not over.
+    /// Whether the trial has begun and not ended.
     is_on: bool,
-    /// Labels of the trial's state: whether it runs, and the signal that is shown.
+    /// Label of the trial's phase that was sent to Pupil Capture last.
     phase: Option<&'static str>,
     signal: Option<String>,
-    /// Number of the freeze probe that is held.
+    /// Number of the freeze probe that is open.
     probe: Option<u32>,
 }
 
@@ -99,7 +99,7 @@ impl CaptureOrders {
         }
     }
 
-    /// Ends Capture's recording of a trial that is left before its end.
+    /// Ends Pupil Capture's recording when the wizard leaves before the end of the trial.
     pub fn leave(&mut self, at: Instant) {
         if std::mem::take(&mut self.is_on) {
             (self.phase, self.signal, self.probe) = (None, None, None);

@@ -1,4 +1,4 @@
-//! Timing of the targets in a gaze accuracy check.
+//! Timing of the targets in a check of gaze accuracy.
 
 use super::live_session::Live;
 use crate::base::time::SessionTime;
@@ -20,7 +20,7 @@ impl Live {
         }
     }
 
-    /// Time of the next target; `None` without a running check.
+    /// Session time at which the next target is due; `None` without a running check.
     pub(super) fn target_due(&self) -> Option<SessionTime> {
         self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next).map(|(time, _)| time)
     }

@@ -19,12 +19,12 @@ use crate::session::{Applied, Event, Session, Stamped};
 use crate::study::prevention::{ConceptSignal, TrialTruth};
 use crate::study::roc::{CONCEPTS, LEAST_COST, SweptTrial, parameters};
 
-/// A concept with one parameter value, and its hypothetical signals.
+/// A concept with one value of its parameter, and its hypothetical signals.
 #[derive(Debug)]
 struct SweptConcept {
     concept: ConceptName,
     parameter: f64,
-    /// Signals that must not be repeated yet.
+    /// Signals that the concept may not repeat yet.
     repeats: Repeats,
     sent: Vec<ConceptSignal>,
 }
@@ -32,13 +32,14 @@ struct SweptConcept {
 /// Replays a session and evaluates all concepts when the assistant is asked.
 #[derive(Debug)]
 pub struct ConceptSweep {
-    /// The session, with the estimate.
+    /// The session with the belief estimate.
     pub follower: Follower,
     planner: Planner,
     tom: TomConcept,
     cost: CostToGo,
     swept_concepts: Vec<SweptConcept>,
-    /// Log number and time of the event after which the concepts are evaluated, once simultaneous events have been applied.
+    /// Sequence number and time of the event after which the concepts are evaluated, once simultaneous events have been
+    /// applied.
     pending: Option<(u64, SessionTime)>,
 }
 
@@ -46,7 +47,7 @@ impl ConceptSweep {
     /// Creates the replay of a session that has no events yet.
     pub fn new(session: Session, cost: CostToGo) -> ConceptSweep {
         let (kitchen, spec) = (session.kitchen.clone(), &session.spec);
-        // The planner's accuracy is that for the smallest swept cost.
+        // The planner is as accurate as the smallest of the analysed costs requires.
         let assistant = AssistantSpec { cost_of_communication: LEAST_COST, ..spec.assistant.clone() };
         let swept = |concept: ConceptName, parameter: f64| SweptConcept {
             concept,
@@ -116,7 +117,8 @@ impl ConceptSweep {
         }
     }
 
-    /// Prevention counts of every concept and parameter value by the truth about the trial; to be called after the last event.
+    /// What each concept would have prevented with each parameter value, given the trial's true errors and false
+    /// beliefs; to be called after the last event.
     pub fn swept(&self, truth: &TrialTruth) -> Vec<SweptTrial> {
         let signalled = self.swept_concepts.iter().map(|swept| SweptTrial {
             concept: swept.concept,

@@ -1,4 +1,5 @@
-//! Checks the belief estimate before each press against the participant's recorded beliefs and against the press itself.
+//! Checks the belief estimate before each press against the participant's recorded beliefs and against the press
+//! itself.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate. Live sessions
-//! and replays use the same code.
+//! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate.
+//! Live sessions and replays use the same code.
 
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::aspects_told;
@@ -142,7 +142,8 @@ impl Follower {
         self.filter.at(now, &mut self.cost)
     }
 
-    /// The estimate from which a request for advice at `now` starts. Most requests follow an event that has just updated it.
+    /// The estimate from which a request for advice at `now` starts. Most requests follow an event that has just
+    /// updated it.
     pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
         match self.updated_at {
             Some(updated) if updated >= now => self.filter.belief().clone(),

@@ -28,7 +28,8 @@ pub struct GazeSummary {
     pub blinks: u64,
     /// Number of times that the connection to the tracker was lost.
     pub losses: u64,
-    /// Accuracy in the last accepted gaze check, in degrees, after correction if the correction is in use; null without a check.
+    /// Accuracy in the last accepted gaze check, in degrees, after correction if the correction is in use; null without
+    /// a check.
     pub accuracy_deg: Option<f64>,
     /// Precision of the gaze in that check, in degrees.
     pub precision_deg: Option<f64>,

@@ -1,6 +1,6 @@
-//! Predictive accuracy of the human model: mean log probability per press, compared with two baselines that need no inference:
-//! an informed human, who knows the true world, with softmax temperature and lapse rate fitted to these presses, and a human who
-//! presses random buttons.
+//! Predictive accuracy of the human model: mean log probability per press, compared with two baselines that need no
+//! inference: an informed human, who knows the true world, with softmax temperature and lapse rate fitted to these
+//! presses, and a human who presses random buttons.
 
 use serde::Serialize;
 

@@ -25,8 +25,8 @@ impl Looks {
         self.since = Default::default();
     }
 
-    /// Notes a usable gaze sample that has just been applied to the session. Returns whether the participant has seen the location's
-    /// present content by now.
+    /// Notes a usable gaze sample that has just been applied to the session. Returns whether the participant has seen
+    /// the location's present content by now.
     pub fn sampled(&mut self, session: &Session, location: LocationId) -> bool {
         let since = &mut self.since[location.index()];
         let is_there = session.gaze.looked_at[location.index()] == Some(session.time);

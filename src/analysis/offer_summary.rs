@@ -100,7 +100,8 @@ pub struct OfferSummary {
 }
 
 impl OfferSummary {
-    /// The summary of offers of one or several trials. An offer that was still open where a recording was cut is not counted.
+    /// The summary of offers of one or several trials. An offer that was still open where a recording was cut is not
+    /// counted.
     pub fn from_offers<'a>(offers: impl IntoIterator<Item = &'a TimedOffer>) -> OfferSummary {
         let mut summary = OfferSummary::default();
         let (mut stood, mut reactions) = (Vec::new(), Vec::new());

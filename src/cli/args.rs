@@ -66,14 +66,15 @@ pub(super) enum CliCommand {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify\nMore: docs/recordings.md")]
 pub(super) struct ReplayArgs {
-    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs, --accuracy and --offers. Of a folder of
-    /// recordings, one is chosen from a list.
+    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs, --accuracy and --offers. Of a
+    /// folder of recordings, one is chosen from a list.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
     /// Run the session again from the recording's header and inputs; every line must be identical.
     #[arg(long, conflicts_with = "follow")]
     pub(super) verify: bool,
-    /// Compare the estimates before each press with the recorded beliefs of simulated participants, and with the presses.
+    /// Compare the estimates before each press with the recorded beliefs of simulated participants, and with the
+    /// presses.
     #[arg(long, conflicts_with_all = ["verify", "follow"])]
     pub(super) check_beliefs: bool,
     /// With --check-beliefs: choose the thresholds for flagging false beliefs on this recording, which has another seed
@@ -101,13 +102,13 @@ pub(super) struct ReplayArgs {
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,
-    /// Code the errors of the recording as this rater (a code, never a name), without estimate, signals or condition in view: letters
-    /// code false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Begins at the first error without a code. Codes
-    /// are saved beside the log at once.
+    /// Code the errors of the recording as this rater (a code, never a name), without estimate, signals or condition in
+    /// view: letters code false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Begins at the first
+    /// error without a code. Codes are saved beside the log at once.
     #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
     pub(super) rater: Option<String>,
-    /// Settle as two raters together what they coded differently: goes through these errors with both codes in view, and saves the
-    /// consensus beside the log.
+    /// Settle as two raters together what they coded differently: goes through these errors with both codes in view,
+    /// and saves the consensus beside the log.
     #[arg(long, value_names = ["A", "B"], num_args = 2, conflicts_with_all = ["rater", "verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
     pub(super) settle: Option<Vec<String>>,
     /// Output format.
@@ -126,8 +127,8 @@ pub(super) struct PlanArgs {
     /// Folder of the recordings.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
-    /// Freeze the plan before the study (preregistration): write plan, definitions and analysis with a digest to this new file, which
-    /// tomcom study --frozen checks.
+    /// Freeze the plan before the study (preregistration): write plan, definitions and analysis with a digest to this
+    /// new file, which tomcom study --frozen checks.
     #[arg(long, value_name = "FILE")]
     pub(super) freeze: Option<PathBuf>,
     /// Output format.
@@ -146,8 +147,8 @@ pub(super) struct PlanArgs {
 pub(super) struct SimulateArgs {
     /// The session file.
     pub(super) session: PathBuf,
-    /// Number of trials; each has its own orders and participant and does not depend on their number. With a plan: the first
-    /// trials of the plan, participant by participant. Default: 1, or the whole plan.
+    /// Number of trials; each has its own orders and participant and does not depend on their number. With a plan: the
+    /// first trials of the plan, participant by participant. Default: 1, or the whole plan.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(super) trials: Option<u64>,
     /// Simulate one shard of the trials, such as "2/8", the second of eight disjoint shards, for job arrays.
@@ -165,10 +166,10 @@ pub(super) struct SimulateArgs {
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,
-    /// Simulate the trials for every value of a setting and without signals, and print the effects: cost=0.5,1.5, threshold
-    /// (of tom), horizon, rollouts, tau, radius, gaze=on,off, asks=presses,silence,gaze,silence+gaze, waiting=on,off. Several settings
-    /// make a grid. The assistant sends the signals
-    /// unless --condition says otherwise. With a plan, its settings apply, and every trial has another participant.
+    /// Simulate the trials for every value of a setting and without signals, and print the effects: cost=0.5,1.5,
+    /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off, asks=presses,silence,gaze,silence+gaze,
+    /// waiting=on,off. Several settings make a grid. The assistant sends the signals unless --condition says otherwise.
+    /// With a plan, its settings apply, and every trial has another participant.
     #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
     pub(super) sweep: Vec<SweepAxis>,
     /// Compute the assistant's recommendations also in trials in which the assistant does not act, and record them. A
@@ -306,8 +307,8 @@ pub(super) struct ExcludeArgs {
 
 /// Checks whether this machine is ready for a session.
 ///
-/// Checks terminal, disk space, clocks, the port of the wall display, the Rerun viewer and the gaze source, and gives a remedy
-/// for each problem.
+/// Checks terminal, disk space, clocks, the port of the wall display, the Rerun viewer and the gaze source, and gives a
+/// remedy for each problem.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Exit code 0: the session works here. 1: something is broken.\nExamples: tomcom doctor --out recordings\n          \

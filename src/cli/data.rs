@@ -104,9 +104,9 @@ fn check_terminal() -> Result<(), Failure> {
 
 /// Deletes everything about a participant below a folder.
 ///
-/// Recordings with their parts, streams and codes; rows of tables, by the columns that name the participant or the recording;
-/// reports about the participant; what a wizard has trained on the recordings. With a wizard's code: the records of training.
-/// Only what tomcom wrote is deleted. It is listed first, and what is left, with the reason.
+/// Recordings with their parts, streams and codes; rows of tables, by the columns that name the participant or the
+/// recording; reports about the participant; what a wizard has trained on the recordings. With a wizard's code: the
+/// records of training. Only what tomcom wrote is deleted. It is listed first, and what is left, with the reason.
 #[derive(Debug, Args)]
 #[command(after_help = "Session files stay, and so does what other programs have written, such as an eye tracker.\n\
                   A code that begins with - stands behind --: tomcom forget --in sessions -- -7\n\

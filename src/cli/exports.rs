@@ -15,9 +15,9 @@ use crate::run::bids_export::{self, BidsSummary};
 
 /// Exports recordings for other programs.
 ///
-/// As a BIDS data set (Brain Imaging Data Structure, 1.10 and later): a session for each recording with its events, gaze as eye-tracking
-/// recording, questionnaires as phenotype. As MCAP, for robotics tools: joints, frames and log in Foxglove's types, gaze, beliefs and
-/// events. The logs stay as they are.
+/// As a BIDS data set (Brain Imaging Data Structure, 1.10 and later): a session for each recording with its events,
+/// gaze as eye-tracking recording, questionnaires as phenotype. As MCAP, for robotics tools: joints, frames and log in
+/// Foxglove's types, gaze, beliefs and events. The logs stay as they are.
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("what").required(true).multiple(true).args(["bids", "mcap"])))]
 #[command(after_help = "Labels of participants are the letters and digits of their codes; what is changed is told.\n\

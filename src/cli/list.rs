@@ -18,8 +18,8 @@ const MOST_NAMED: usize = 12;
 
 /// Lists the recordings of a folder.
 ///
-/// Code, condition, date, length of the trial, errors, and state: whole, cut (without its end), excluded (or aborted), running,
-/// unreadable. Sorted by code and date.
+/// Code, condition, date, length of the trial, errors, and state: whole, cut (without its end), excluded (or aborted),
+/// running, unreadable. Sorted by code and date.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom list sessions\n          tomcom list recordings --format json\nMore: docs/recordings.md"

@@ -43,8 +43,8 @@ pub(super) struct OperateFlags {
     /// Gaze source, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) gaze: Option<GazeArg>,
-    /// Replay gaze from this file: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of Pupil Cloud's
-    /// Marker Mapper, or the folder of a recording.
+    /// Replay gaze from this file: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of Pupil
+    /// Cloud's Marker Mapper, or the folder of a recording.
     #[arg(long, value_name = "PATH")]
     pub(super) gaze_file: Option<PathBuf>,
     /// Time in the gaze file at which the trial starts, in seconds after the file's first sample; negative if the trial
@@ -60,18 +60,19 @@ pub(super) struct OperateFlags {
     /// Communication concept of the assistant, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) concept: Option<ConceptArg>,
-    /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the console
-    /// shows. An address without a port: the port is that of the session file.
+    /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the
+    /// console shows. An address without a port: the port is that of the session file.
     #[arg(long, value_name = "ADDRESS", value_parser = address_without_port)]
     pub(super) listen: Option<IpAddr>,
     /// Seed of all random numbers; by default that of the session file.
     #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// Address at which Rerun viewers connect, instead of the session file's. Whoever reaches it can watch without a password,
-    /// and change nothing. An address with a port, such as 127.0.0.1:9876.
+    /// Address at which Rerun viewers connect, instead of the session file's. Whoever reaches it can watch without a
+    /// password, and change nothing. An address with a port, such as 127.0.0.1:9876.
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub(super) rerun_listen: Option<String>,
-    /// Folder in which the recording's folder is created. Not with --continue: a further part is created beside the recording.
+    /// Folder in which the recording's folder is created. Not with --continue: a further part is created beside the
+    /// recording.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
 }

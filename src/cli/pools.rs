@@ -25,8 +25,9 @@ const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";
 
 /// Says how many participants a study needs.
 ///
-/// Simulates a pool of participants with the plan's conditions, and each trial once more without signals; draws studies of whole persons from
-/// it; analyses each as the plan will be, and prints power, the least effect that is found, and how many participants are needed.
+/// Simulates a pool of participants with the plan's conditions, and each trial once more without signals; draws studies
+/// of whole persons from it; analyses each as the plan will be, and prints power, the least effect that is found, and
+/// how many participants are needed.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom power sessions/paper.toml --pool 200 --seed 9741 --out pool.jsonl --picture power.svg\n          \
@@ -59,8 +60,9 @@ pub(super) struct PowerArgs {
 
 /// Compares all conditions of a plan with simulated participants.
 ///
-/// Each participant has a trial in every condition. Prints a table with errors, belief related errors, lengths of error sequences, orders,
-/// signals and the time with a signal on the display, with intervals, and the contrasts between conditions. Nothing is recorded.
+/// Each participant has a trial in every condition. Prints a table with errors, belief related errors, lengths of error
+/// sequences, orders, signals and the time with a signal on the display, with intervals, and the contrasts between
+/// conditions. Nothing is recorded.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: tomcom arms sessions/all-arms.toml --participants 60 --seed 1\nMore: docs/planning.md"

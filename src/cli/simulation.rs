@@ -75,8 +75,8 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     print(args.format, &figures, || simulate::describe(&figures))
 }
 
-/// Reports assistant settings of the session file that only apply at the console: simulated trials ignore them unless options ask
-/// for the assistant.
+/// Reports assistant settings of the session file that only apply at the console: simulated trials ignore them unless
+/// options ask for the assistant.
 fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     if spec.plan.is_some() || !args.sweep.is_empty() {
         return;

@@ -13,8 +13,8 @@ use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError};
 
 /// Analyses the recordings of a study: report and tables.
 ///
-/// Errors and their causes, effect of assistance, similarity of wizard and assistant, comparison of concepts. Writes a report
-/// (HTML) and tables (CSV).
+/// Errors and their causes, effect of assistance, similarity of wizard and assistant, comparison of concepts. Writes a
+/// report (HTML) and tables (CSV).
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom study recordings\n          tomcom study shards/* --out results --format json\nMore: docs/study.md, docs/analysis.md"

@@ -30,8 +30,8 @@ use crate::session::settings::is_code;
     after_help = "Examples: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev\n          tomcom compare sessions/2026-03-14-P07-* --only tom\n          tomcom compare sessions/2026-03-14-P07-1 --follow\n          tomcom compare sessions/default.toml\nMore: docs/analysis.md"
 )]
 pub(super) struct CompareArgs {
-    /// Folders of recordings, or their events.jsonl; or a session file, to operate it with the comparison in front (by default
-    /// sessions/default.toml). That unblinds the wizard, and the recording says so.
+    /// Folders of recordings, or their events.jsonl; or a session file, to operate it with the comparison in front (by
+    /// default sessions/default.toml). That unblinds the wizard, and the recording says so.
     #[arg(value_name = "RECORDING|SESSION")]
     paths: Vec<PathBuf>,
     /// Open the console over a session that is still running, read-only from this terminal.
@@ -67,8 +67,8 @@ pub(super) struct CompareArgs {
 
 /// Trains a wizard on simulated recordings.
 ///
-/// The wizard watches recordings with known beliefs, sends signals with the usual keys, and gets immediate feedback and a
-/// score.
+/// The wizard watches recordings with known beliefs, sends signals with the usual keys, and gets immediate feedback and
+/// a score.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom train --wizard W1 --hits 0.6 --wrong 0.4\nMore: docs/training.md")]
 pub(super) struct TrainArgs {

@@ -41,8 +41,8 @@ pub fn code(code: &Code) -> String {
     }
 }
 
-/// Why the human's press of this button would have no effect now: "no effect: the cooking pot is empty"; `None` if it would have one.
-/// Short, since it stands beside the keys at 80 columns.
+/// Why the human's press of this button would have no effect now: "no effect: the cooking pot is empty"; `None` if it
+/// would have one. Short, since it stands beside the keys at 80 columns.
 pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String> {
     let (why, about) = kitchen.no_effect(state, Agent::Human, id)?;
     Some(format!("no effect: {}", because(kitchen, why, about, kitchen.content_label(state, about))))

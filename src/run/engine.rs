@@ -175,8 +175,8 @@ impl Engine {
         std::mem::take(&mut self.out)
     }
 
-    /// Applies an event from outside (wizard, participant, tracker) at `time`, after all internal events due before. A time before the
-    /// last event is replaced by that of the last event.
+    /// Applies an event from outside (wizard, participant, tracker) at `time`, after all internal events due before. A
+    /// time before the last event is replaced by that of the last event.
     pub fn input(&mut self, time: SessionTime, event: Event) -> InputResult {
         while self.next_due().is_some_and(|due| due <= time) {
             self.fire_next();
@@ -343,7 +343,8 @@ impl Engine {
         self.record(now, event).expect("an engine's own events fit its session");
     }
 
-    /// Stamps and applies an event, performs its effects, informs robot and participant, and queues the event for the caller.
+    /// Stamps and applies an event, performs its effects, informs robot and participant, and queues the event for the
+    /// caller.
     fn record(&mut self, now: SessionTime, event: Event) -> Result<(), ApplyError> {
         let event = match event {
             Event::Gaze(sample) => Event::Gaze(sample.rounded()),

@@ -218,8 +218,8 @@ fn serve(recordings: &[PathBuf], at: Option<SessionTime>, because: &'static str)
     Ok(ReviewOutcome::Served { url, because, _serving: Box::new((writer, viewer)) })
 }
 
-/// The first free pair of ports for stream and web viewer; the web viewer is served at once. Ports are taken in pairs, because
-/// Rerun's server does not report that another program took its port in the meantime.
+/// The first free pair of ports for stream and web viewer; the web viewer is served at once. Ports are taken in pairs,
+/// because Rerun's server does not report that another program took its port in the meantime.
 fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
     let mut failed = io::Error::from(io::ErrorKind::AddrInUse);
     for nth in 0..=PORTS {
@@ -269,8 +269,8 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<SavedStream, Reru
     }
 }
 
-/// Builds the stream file of these recordings. An existing file is replaced only when the new one is complete, so a damaged log
-/// loses nothing.
+/// Builds the stream file of these recordings. An existing file is replaced only when the new one is complete, so a
+/// damaged log loses nothing.
 fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError> {
     let mut begun = path.as_os_str().to_os_string();
     begun.push(BEGUN);

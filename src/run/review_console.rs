@@ -27,8 +27,8 @@ const WORK: Duration = Duration::from_millis(20);
 /// Length of a seek step, 10 s.
 const SEEK: SessionTime = SessionTime(10_000_000_000);
 
-/// Opens the console over a recording; with `follow`, at the growing end of a running session; optionally with a comparison of
-/// wizard and assistants.
+/// Opens the console over a recording; with `follow`, at the growing end of a running session; optionally with a
+/// comparison of wizard and assistants.
 ///
 /// # Errors
 /// The recording cannot be read, or there is no terminal.
@@ -37,8 +37,8 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) 
     at_desk(film, recording, follow, compare, None)
 }
 
-/// Opens the console over a recording for a rater, who codes its errors without seeing estimates, signals or condition; codes are
-/// saved beside the log after every key.
+/// Opens the console over a recording for a rater, who codes its errors without seeing estimates, signals or condition;
+/// codes are saved beside the log after every key.
 ///
 /// # Errors
 /// The recording or its codes cannot be read, another program codes as this rater, or there is no terminal.
@@ -49,12 +49,12 @@ pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
     at_desk(film, recording, false, None, Some(coding))
 }
 
-/// Opens the console over a recording for two raters, who settle together what they coded differently; their consensus is saved
-/// beside the log after every key.
+/// Opens the console over a recording for two raters, who settle together what they coded differently; their consensus
+/// is saved beside the log after every key.
 ///
 /// # Errors
-/// The recording or its codes cannot be read, one of the raters has no codes, other raters settled the recording already, the
-/// consensus cannot be written, or there is no terminal.
+/// The recording or its codes cannot be read, one of the raters has no codes, other raters settled the recording
+/// already, the consensus cannot be written, or there is no terminal.
 pub fn settle(recording: &Path, raters: [&str; 2]) -> Result<(), ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
     let _lock = RecordingLock::take_for_codes(film.replay.log().folder(), &raters)?;

@@ -52,7 +52,8 @@ enum CohortPart {
 
 const PARTS: [CohortPart; 3] = [CohortPart::Assisted, CohortPart::Unassisted, CohortPart::ChosenOn];
 
-/// Simulates all cohorts on all processors and judges them. `done` is called after each trial, `finished` after each cohort.
+/// Simulates all cohorts on all processors and judges them. `done` is called after each trial, `finished` after each
+/// cohort.
 pub fn measure(
     request: &RobustnessRequest,
     done: impl Fn() + Sync,

@@ -94,8 +94,8 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     spec
 }
 
-/// Simulates the trials on all processors. Complete recordings that exist already are read instead. `done` is called after each
-/// trial.
+/// Simulates the trials on all processors. Complete recordings that exist already are read instead. `done` is called
+/// after each trial.
 ///
 /// # Errors
 /// A recording cannot be written, its folder holds another recording, or an exclusion file is damaged.

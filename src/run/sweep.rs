@@ -156,8 +156,8 @@ pub fn trials(simulation: &SimulationRequest, axes: &[SweepAxis]) -> u64 {
     (cells as u64 + 1) * simulation.own_trials().count() as u64
 }
 
-/// Simulates the trials for every combination of the values, each in a folder of its own, and writes the table beside them.
-/// `done` is called after each trial.
+/// Simulates the trials for every combination of the values, each in a folder of its own, and writes the table beside
+/// them. `done` is called after each trial.
 ///
 /// # Errors
 /// Errors of simulations, too many combinations, or an invalid value.

@@ -1,5 +1,5 @@
-//! A session as Rerun shows it, as plain data: updates of entities with their times. Entities are the kitchen, the arm, beliefs,
-//! net benefits of signals, probes, and a text log.
+//! A session as Rerun shows it, as plain data: updates of entities with their times. Entities are the kitchen, the arm,
+//! beliefs, net benefits of signals, probes, and a text log.
 //!
 //! A [`SessionScene`] follows a session event by event, live and from a recording. It does not depend on the viewer.
 

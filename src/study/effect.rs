@@ -1,8 +1,9 @@
-//! Effect of assistance in a cross-over design: each participant has one assisted and one unassisted trial, in either order.
+//! Effect of assistance in a cross-over design: each participant has one assisted and one unassisted trial, in either
+//! order.
 //!
-//! The second trial also profits from practice. The analysis therefore compares the improvement from the first to the second trial
-//! between the two starting groups. The additional improvement of the group whose second trial is assisted is the effect of
-//! assistance (the interaction of period and starting group; Senn 2002, Cross-over Trials, chapter 3).
+//! The second trial also profits from practice. The analysis therefore compares the improvement from the first to the
+//! second trial between the two starting groups. The additional improvement of the group whose second trial is assisted
+//! is the effect of assistance (the interaction of period and starting group; Senn 2002, Cross-over Trials, chapter 3).
 
 use serde::{Serialize, Serializer};
 
@@ -38,11 +39,12 @@ impl TrialPair {
     }
 }
 
-/// A statistic of a trial that is compared between assisted and unassisted trials; lower is better. It is a column of the table of
-/// trials, two columns of the table of participants, and a line of the report's tests.
+/// A statistic of a trial that is compared between assisted and unassisted trials; lower is better. It is a column of
+/// the table of trials, two columns of the table of participants, and a line of the report's tests.
 #[derive(Clone, Copy, Debug)]
 pub struct StudyMeasure {
-    /// Column name in the table of trials, and key in the summary; the table of participants adds the suffixes `_1` and `_2`.
+    /// Column name in the table of trials, and key in the summary; the table of participants adds the suffixes `_1` and
+    /// `_2`.
     pub name: &'static str,
     /// Unit of the columns.
     pub unit: &'static str,
@@ -82,7 +84,8 @@ pub struct AssistanceEffect {
     pub improvements: [Option<f64>; 2],
     /// Mixed analysis of variance: period within, starting group between; assistance is the interaction.
     pub by_period: MixedAnova,
-    /// Mixed analysis of variance in the paper's coding: condition within, starting group between; assistance is the within factor.
+    /// Mixed analysis of variance in the paper's coding: condition within, starting group between; assistance is the
+    /// within factor.
     pub by_condition: MixedAnova,
     /// Correlation of starting group (1: assisted second) and improvement; positive if assistance helps.
     pub pearson: Option<Correlation>,

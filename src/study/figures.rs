@@ -82,8 +82,8 @@ pub struct StudySummary {
     pub roc_trials: u64,
     /// Largest false positive rate that all concepts reach.
     pub roc_common_fpr: Option<f64>,
-    /// Similarity of the wizard's signals (first lane) and the assistant's hypothetical ones, over trials in which the wizard did not
-    /// see the assistant's recommendations; null without such trials.
+    /// Similarity of the wizard's signals (first lane) and the assistant's hypothetical ones, over trials in which the
+    /// wizard did not see the assistant's recommendations; null without such trials.
     pub similarity: Option<Similarity>,
     /// Similarity over trials in which the wizard saw the assistant's recommendations, which are not part of
     /// `similarity`; null without such trials.

@@ -1,9 +1,9 @@
-//! A mixed negative binomial model of counts: y ~ NB(mu, size), log mu = log exposure + X beta + b, b ~ N(0, v_b) per participant; variance
-//! mu + mu^2 / size. Errors come in runs, so that their variance exceeds the mean.
+//! A mixed negative binomial model of counts: y ~ NB(mu, size), log mu = log exposure + X beta + b, b ~ N(0, v_b) per
+//! participant; variance mu + mu^2 / size. Errors come in runs, so that their variance exceeds the mean.
 //!
-//! Maximum likelihood with Laplace's approximation of the integral over b (Brooks et al. 2017, The R Journal 9, section 2), by Newton's method
-//! with numeric derivatives. Tests are Wald's z tests. `tests/outside/arms.py` compares it with glmmTMB where that is installed, and the
-//! likelihood with numeric integration.
+//! Maximum likelihood with Laplace's approximation of the integral over b (Brooks et al. 2017, The R Journal 9, section
+//! 2), by Newton's method with numeric derivatives. Tests are Wald's z tests. `tests/outside/arms.py` compares it with
+//! glmmTMB where that is installed, and the likelihood with numeric integration.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -106,7 +106,8 @@ impl NegativeBinomialModel {
     }
 }
 
-/// The log likelihood of fixed effects, log standard deviation and log size; participants are integrated out by Laplace's method.
+/// The log likelihood of fixed effects, log standard deviation and log size; participants are integrated out by
+/// Laplace's method.
 fn log_likelihood(trials: &[TrialCount], effects: usize, at: &[f64]) -> f64 {
     let (beta, sd, size) = (&at[..effects], at[effects].exp(), at[effects + 1].exp());
     let participants = trials.iter().map(|one| one.participant + 1).max().unwrap_or(0);

@@ -24,8 +24,8 @@ const BAND_STEPS: usize = 40;
 /// Confidence level of bootstrap intervals and bands.
 const COVERED: f64 = 0.95;
 
-/// Swept values of a concept's parameter: cost of communication, threshold, or number of proposed presses. They extend beyond the
-/// paper's 0.5 to 2.4 and 0.4 to 0.99, so that all concepts cover the compared numbers of signals.
+/// Swept values of a concept's parameter: cost of communication, threshold, or number of proposed presses. They extend
+/// beyond the paper's 0.5 to 2.4 and 0.4 to 0.99, so that all concepts cover the compared numbers of signals.
 pub fn parameters(concept: ConceptName) -> Vec<f64> {
     match concept {
         ConceptName::TomCom => {
@@ -91,7 +91,8 @@ pub struct BootstrapInterval {
 pub struct Roc {
     /// The communication concept.
     pub concept: ConceptName,
-    /// Mean true positive rate over the false positive rates that all concepts reach: partial area divided by the range's width.
+    /// Mean true positive rate over the false positive rates that all concepts reach: partial area divided by the
+    /// range's width.
     pub auc: Option<f64>,
     /// Lower end of the 95 % interval of `auc`.
     pub auc_low: Option<f64>,
@@ -125,8 +126,8 @@ pub struct ConceptComparison {
 
 /// Curves of all concepts for one bootstrap sample of participants.
 struct Curves {
-    /// For each concept: true positive rate against false positive rate, true positive rate against signals per 100 human presses,
-    /// and useless signals against signals, both per 100 human presses.
+    /// For each concept: true positive rate against false positive rate, true positive rate against signals per 100
+    /// human presses, and useless signals against signals, both per 100 human presses.
     of: Vec<[Vec<(f64, f64)>; 3]>,
 }
 

@@ -45,8 +45,8 @@ pub struct MixedAnova {
     pub interaction: Option<FTest>,
 }
 
-/// Mixed analysis of variance; each row holds a person's group and its two measurements. The within factor's sums of squares are
-/// those over all persons, as in pingouin's `mixed_anova`.
+/// Mixed analysis of variance; each row holds a person's group and its two measurements. The within factor's sums of
+/// squares are those over all persons, as in pingouin's `mixed_anova`.
 pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     let groups = rows.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
     let in_group = |group: usize| rows.iter().filter(move |(other, _)| *other == group).map(|(_, values)| *values);
@@ -110,9 +110,9 @@ const SAMPLED_PERMUTATIONS: u32 = 100_000;
 /// Relative tolerance within which differences count as equal.
 const EQUALITY_TOLERANCE: f64 = 1e-12;
 
-/// Two-sided permutation test of the difference between two groups' means (Fisher 1935): the share of assignments to groups with
-/// at least the observed difference. Exact up to 200,000 assignments, else from 100,000 random ones and the observed one, with a
-/// random stream seeded by `seed`. `None` with an empty group.
+/// Two-sided permutation test of the difference between two groups' means (Fisher 1935): the share of assignments to
+/// groups with at least the observed difference. Exact up to 200,000 assignments, else from 100,000 random ones and the
+/// observed one, with a random stream seeded by `seed`. `None` with an empty group.
 pub fn permutation_p(a: &[f64], b: &[f64], seed: u64) -> Option<f64> {
     if a.is_empty() || b.is_empty() {
         return None;
@@ -172,8 +172,9 @@ pub struct Interval {
     pub level: f64,
 }
 
-/// Hodges-Lehmann estimate of the shift from `b` to `a` (median of all differences) with the Mann-Whitney test's confidence
-/// interval (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` with an empty group.
+/// Hodges-Lehmann estimate of the shift from `b` to `a` (median of all differences) with the Mann-Whitney test's
+/// confidence interval (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` with an
+/// empty group.
 pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<Interval> {
     let mut differences: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
     differences.sort_by(f64::total_cmp);

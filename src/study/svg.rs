@@ -1,5 +1,5 @@
-//! SVG charts: axes with round ticks, points, lines, bands, bars. CSS classes in the page's style sheet set the colours for light
-//! and dark screens and for print.
+//! SVG charts: axes with round ticks, points, lines, bands, bars. CSS classes in the page's style sheet set the colours
+//! for light and dark screens and for print.
 
 use std::fmt::Write;
 

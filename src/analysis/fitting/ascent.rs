@@ -1,8 +1,9 @@
-//! Maximises a noisy log likelihood within bounds by a sequence of response surfaces (Box and Wilson 1951). Single comparisons
-//! are unreliable under noise; a surface averages the noise over its points and estimates its size.
+//! Maximises a noisy log likelihood within bounds by a sequence of response surfaces (Box and Wilson 1951). Single
+//! comparisons are unreliable under noise; a surface averages the noise over its points and estimates its size.
 //!
-//! A variable whose maximum lies at a bound, or whose bound is not significantly worse than the maximum, is held at that bound.
-//! It gets one end of a profile likelihood interval instead of a standard error (Venzon and Moolgavkar 1988).
+//! A variable whose maximum lies at a bound, or whose bound is not significantly worse than the maximum, is held at
+//! that bound. It gets one end of a profile likelihood interval instead of a standard error (Venzon and Moolgavkar
+//! 1988).
 
 use super::response_surface::{QuadraticSurface, REACH, points, surface};
 
@@ -15,12 +16,13 @@ const STEP_NOISE: f64 = 0.5;
 /// Bounds of a step, and the largest factor between successive steps.
 const STEPS: [f64; 2] = [0.02, 1.6];
 const STEP_CHANGE: f64 = 2.5;
-/// Difference of log likelihoods that is significant at 5 %: half the 95 % quantile of chi squared with one degree of freedom.
+/// Difference of log likelihoods that is significant at 5 %: half the 95 % quantile of chi squared with one degree of
+/// freedom.
 const REJECTED_NATS: f64 = 1.92;
 /// First step of the search for the end of a profile interval; the end is found to within a quarter of it.
 const PROFILE_STEP: f64 = 0.3;
-/// A bound that lowers the log likelihood by more than this (plus the noise), with the other variables at the maximum, is rejected
-/// without optimising the other variables.
+/// A bound that lowers the log likelihood by more than this (plus the noise), with the other variables at the maximum,
+/// is rejected without optimising the other variables.
 const HOPELESS_NATS: f64 = 30.0;
 /// Distance to a bound below which a variable is at the bound.
 const CLOSE: f64 = 1e-9;
@@ -114,8 +116,8 @@ struct Search<'a, F> {
 }
 
 impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
-    /// Maximises over the free variables. Returns the surface around the maximum (`Some(None)` without free variables), or `None` if
-    /// the search did not converge.
+    /// Maximises over the free variables. Returns the surface around the maximum (`Some(None)` without free variables),
+    /// or `None` if the search did not converge.
     fn climb(&mut self, free: &[usize]) -> Option<Option<QuadraticSurface>> {
         if free.is_empty() {
             return Some(None);
@@ -143,8 +145,8 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         }
     }
 
-    /// A surface over the free variables around the best point, inside the bounds, with its centre; `None` if too few evaluations
-    /// are left.
+    /// A surface over the free variables around the best point, inside the bounds, with its centre; `None` if too few
+    /// evaluations are left.
     fn survey(&mut self, free: &[usize]) -> Option<(Vec<f64>, QuadraticSurface)> {
         if self.evaluations + points(free.len()) > self.most {
             return None;
@@ -232,8 +234,8 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         None
     }
 
-    /// End of the profile interval of a variable at a bound: where the profile log likelihood is significantly below that at the
-    /// bound, beyond the noise.
+    /// End of the profile interval of a variable at a bound: where the profile log likelihood is significantly below
+    /// that at the bound, beyond the noise.
     fn limit(&mut self, index: usize, end: BoundReached, held: &[Option<BoundReached>]) -> Option<f64> {
         let others: Vec<usize> = (0..held.len()).filter(|&other| other != index && held[other].is_none()).collect();
         let best = self.at.clone();

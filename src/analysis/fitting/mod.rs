@@ -1,10 +1,11 @@
 //! Maximum likelihood fits of the human model to recorded presses.
 //!
-//! The log likelihood is the sum over all presses of ln p(press | estimate before the press), and, if probes are used, over all
-//! answers of ln p(answer | estimate at the freeze). Parameters are transformed to an
-//! unbounded scale and searched within bounds. The filter's random numbers make the log likelihood noisy by some nats, so the
-//! search uses a sequence of quadratic surfaces ([`ascent`]). Standard errors follow from the curvature of the last surface (the
-//! observed information) and from the noise. A parameter whose maximum lies at a bound is not identified; its interval is one-sided.
+//! The log likelihood is the sum over all presses of ln p(press | estimate before the press), and, if probes are used,
+//! over all answers of ln p(answer | estimate at the freeze). Parameters are transformed to an unbounded scale and
+//! searched within bounds. The filter's random numbers make the log likelihood noisy by some nats, so the search uses a
+//! sequence of quadratic surfaces ([`ascent`]). Standard errors follow from the curvature of the last surface (the
+//! observed information) and from the noise. A parameter whose maximum lies at a bound is not identified; its interval
+//! is one-sided.
 
 pub mod ascent;
 pub mod downhill_simplex;

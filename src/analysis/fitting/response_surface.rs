@@ -1,5 +1,5 @@
-//! Quadratic response surfaces: least squares fits to the values of a noisy function over a central composite design (Box and
-//! Wilson 1951), with their minimum and curvature.
+//! Quadratic response surfaces: least squares fits to the values of a noisy function over a central composite design
+//! (Box and Wilson 1951), with their minimum and curvature.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -30,8 +30,8 @@ pub fn points(variables: usize) -> usize {
     design(variables).len()
 }
 
-/// Fits a surface around `centre`, with steps of the given sizes along each variable and each pair of variables. Values that
-/// are not finite are ignored; `None` if too few remain.
+/// Fits a surface around `centre`, with steps of the given sizes along each variable and each pair of variables. Values
+/// that are not finite are ignored; `None` if too few remain.
 pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<QuadraticSurface> {
     let n = centre.len();
     let (mut rows, mut values) = (Vec::new(), Vec::new());

@@ -1,4 +1,5 @@
-//! JSON Schemas of the messages. Joints, frames and log are Foxglove's types of these names, with the fields that are used.
+//! JSON Schemas of the messages. Joints, frames and log are Foxglove's types of these names, with the fields that are
+//! used.
 
 use serde_json::{Value, json};
 

@@ -24,8 +24,8 @@ pub fn code(stamped: &Stamped) -> String {
     std::iter::once(stamped.event.kind().to_string()).chain(parts).collect::<Vec<_>>().join("/")
 }
 
-/// The event as the log has it, without what people typed or answered and without names of devices; `left_out` lists the fields
-/// that are missing.
+/// The event as the log has it, without what people typed or answered and without names of devices; `left_out` lists
+/// the fields that are missing.
 pub fn event_text(stamped: &Stamped) -> String {
     let mut text = json!({ "seq": stamped.seq, "t_ns": stamped.time });
     if let Value::Object(text) = &mut text {
@@ -48,8 +48,8 @@ fn fields(event: &Event) -> Map<String, Value> {
     fields
 }
 
-/// A value as a part of a code: a word, several of them, or the name and content of a variant (`highlight/cooking_pot`); `None` for
-/// anything else.
+/// A value as a part of a code: a word, several of them, or the name and content of a variant
+/// (`highlight/cooking_pot`); `None` for anything else.
 fn part_text(value: &Value) -> Option<String> {
     match value {
         Value::String(word) => Some(word.clone()),

@@ -29,7 +29,8 @@ pub(super) struct CaptureOrders {
 }
 
 impl CaptureOrders {
-    /// Prepares Pupil Capture for a recording with this name; the trial of a continued recording is recorded from now on.
+    /// Prepares Pupil Capture for a recording with this name; the trial of a continued recording is recorded from now
+    /// on.
     pub fn begin(tracker: &GazeTracker, name: String, session: &Session, now: Instant) -> CaptureOrders {
         let mut capture = CaptureOrders { orders: tracker.orders(), name, ..CaptureOrders::default() };
         capture.probe = session.probes.open.as_ref().map(|open| open.number);

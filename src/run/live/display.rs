@@ -133,8 +133,8 @@ fn answered(reply: PageReply, session: &Session) -> Option<Event> {
     }
 }
 
-/// A press of the participant. Its event is stamped at reception, since time in the log never decreases; the time at which the
-/// button went down is recorded in addition.
+/// A press of the participant. Its event is stamped at reception, since time in the log never decreases; the time at
+/// which the button went down is recorded in addition.
 fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> PageEvent {
     if session.kitchen.button_named(Agent::Human, &button).is_none() {
         let text = "the display told a button that the kitchen does not have".to_string();

@@ -31,8 +31,8 @@ impl Live {
         None
     }
 
-    /// Passes an event to the engine and records the result. Refusals are shown to the wizard, except for gaze samples and late
-    /// recommendations.
+    /// Passes an event to the engine and records the result. Refusals are shown to the wizard, except for gaze samples
+    /// and late recommendations.
     pub(super) fn input(&mut self, event: Event) {
         let is_silent = matches!(event, Event::Gaze(_) | Event::Advised(_));
         let outcome = self.engine.input(self.clock.now(), event);

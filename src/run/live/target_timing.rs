@@ -7,8 +7,8 @@ use crate::session::accuracy_check::{AcceptedGazeCheck, CalibrationEvent, Runnin
 use crate::session::settings::GazeSource;
 
 impl Live {
-    /// Carries an accepted check over from the previous recording, since tracker and participant are the same (not for simulated
-    /// participants, whose eyes are drawn anew).
+    /// Carries an accepted check over from the previous recording, since tracker and participant are the same (not for
+    /// simulated participants, whose eyes are drawn anew).
     pub(super) fn carry_calibration(&mut self, before: Option<&AcceptedGazeCheck>) {
         let session = self.engine.session();
         let is_wanted = !matches!(session.spec.participant.gaze, GazeSource::None | GazeSource::Simulated);

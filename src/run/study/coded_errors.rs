@@ -72,9 +72,9 @@ impl CodedErrors {
         }
     }
 
-    /// Human presses with the causes of errors, and the source of the causes: recorded beliefs for simulated participants; for people
-    /// the raters' consensus, the codes of two raters who both coded every error, else the estimate. The source is `None` for a simulated
-    /// participant without recorded beliefs.
+    /// Human presses with the causes of errors, and the source of the causes: recorded beliefs for simulated
+    /// participants; for people the raters' consensus, the codes of two raters who both coded every error, else the
+    /// estimate. The source is `None` for a simulated participant without recorded beliefs.
     pub fn judged(
         &self,
         follower: &Follower,

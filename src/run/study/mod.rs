@@ -114,7 +114,8 @@ fn name(recording: &Path) -> String {
 /// Analyses recordings of one kitchen and calls `done` after each. Returns the summary and the report's path.
 ///
 /// # Errors
-/// A recording cannot be read or replayed, or belongs to another kitchen than the first; or the results cannot be written.
+/// A recording cannot be read or replayed, or belongs to another kitchen than the first; or the results cannot be
+/// written.
 pub fn study(
     analysis: &AnalysisRequest,
     recordings: &NamedRecordings,

@@ -1,5 +1,5 @@
-//! Hypothetical signals of communication concepts in an unassisted trial, for all values of their parameters in one replay. The
-//! planner runs once per decision; all costs of communication are then applied to the same benefits.
+//! Hypothetical signals of communication concepts in an unassisted trial, for all values of their parameters in one
+//! replay. The planner runs once per decision; all costs of communication are then applied to the same benefits.
 
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::follower::Follower;

@@ -53,9 +53,9 @@ use crate::run::replay::Replay;
 use crate::run::review_console as console_over;
 use crate::run::{options, standing, timing, verify};
 
-/// Exit code: something failed.
+/// Exit code of a command that failed.
 const FAILED: u8 = 1;
-/// Exit code: wrong arguments or files.
+/// Exit code of a command with wrong arguments or files.
 const WRONG: u8 = 2;
 
 /// Period of polling a running session for new events.

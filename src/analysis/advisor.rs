@@ -71,7 +71,7 @@ impl AdviceRequest {
         DecisionPoint { seq, time, presses, situation, signals, error }
     }
 
-    /// The same request with another estimate and other available signals.
+    /// This request for advice with another estimate and other available signals.
     pub fn about(&self, belief: &DirichletBelief, signals: Vec<Signal>) -> AdviceRequest {
         AdviceRequest { belief: belief.clone(), signals, ..self.clone() }
     }
@@ -96,7 +96,7 @@ impl Advisor {
         Advisor { concept: concept(name, kitchen.clone(), &spec.human, &spec.assistant, session.seed()), cost }
     }
 
-    /// The recommendation for a request.
+    /// The assistant's recommendation for a request for advice.
     pub fn answer(&mut self, question: &AdviceRequest) -> Recommendation {
         self.concept.advise(&mut self.cost, &question.moment())
     }

@@ -29,13 +29,13 @@ const SEED: u64 = 1;
 /// The output of `tomcom replay --check-beliefs`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BeliefCheck {
-    /// Number of recordings.
+    /// Number of recordings that were checked.
     pub recordings: u64,
     /// Presses of the human in the trials.
     pub human_actions: u64,
     /// Source of what participants believed: recorded beliefs, or answers to probes; null if there is neither.
     pub beliefs_from: Option<BeliefBasis>,
-    /// How well the estimate finds false beliefs.
+    /// How well the estimate of the participant's beliefs finds false ones.
     #[serde(flatten)]
     pub detection: Detection,
     /// Log likelihood of the human's presses under the model, per press, in nats.
@@ -218,7 +218,7 @@ pub fn describe(check: &BeliefCheck) -> String {
 /// Least number of recordings for which statistics of single aspects are printed.
 const TELLING: u64 = 20;
 
-/// Explains the printed statistics.
+/// Explanation of the statistics that the check prints, as text.
 fn legend(check: &BeliefCheck) -> String {
     let few = match check.recordings {
         TELLING.. => String::new(),

@@ -39,7 +39,7 @@ pub struct CohortRates {
     pub related_per_100: f64,
     /// Signals per 100 presses of the human.
     pub signals_per_100: f64,
-    /// Orders served per minute.
+    /// Orders served per minute of the trials.
     pub orders_per_minute: f64,
 }
 
@@ -48,9 +48,9 @@ pub struct CohortRates {
 pub struct CohortRow {
     /// The cohort's name.
     pub cohort: String,
-    /// Number of judged trials.
+    /// Number of trials on which the estimate and the assistant are judged.
     pub trials: u64,
-    /// How well the estimate finds false beliefs in the unassisted trials.
+    /// How well the estimate finds false beliefs of the participants in the unassisted trials.
     #[serde(flatten)]
     pub detection: Detection,
     /// Log likelihood of the presses in the unassisted trials.

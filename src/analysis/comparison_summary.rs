@@ -42,7 +42,7 @@ pub struct LanePairSummary {
     /// Number of the human's presses within which communications can match; the estimate leaves out signals sent within
     /// this window.
     pub window_actions: u32,
-    /// How far the communications of the two lanes agree.
+    /// Similarity of the two lanes' communications: how many of them match.
     #[serde(flatten)]
     pub similarity: Similarity,
 }
@@ -103,7 +103,7 @@ pub struct UnmatchedSummary {
     pair: usize,
     #[serde(skip)]
     by_sender: bool,
-    /// The communication.
+    /// The communication that has no match.
     #[serde(flatten)]
     pub spoken: CommunicationSummary,
     /// Context of the communication; null if the assistants had not been asked for advice before.

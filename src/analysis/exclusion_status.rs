@@ -19,7 +19,7 @@ impl ExclusionStatus {
         ExclusionStatus { aborted: session.aborted.clone(), excluded: session.excluded.clone() }
     }
 
-    /// Whether analyses include the trial.
+    /// Whether analyses include the trial: it was neither aborted nor excluded.
     pub fn counts(&self) -> bool {
         self.aborted.is_none() && self.excluded.is_none()
     }

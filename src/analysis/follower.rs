@@ -61,7 +61,7 @@ pub struct Follower {
 /// The belief estimate when the task stopped for a freeze probe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbedEstimate {
-    /// Number of the probe.
+    /// Number of the freeze probe in the trial.
     pub probe: u32,
     /// True state of the kitchen when the task stopped.
     pub state: State,
@@ -94,9 +94,9 @@ impl PressEstimate {
 pub struct InferenceTiming {
     /// The caller's monotonic clock, in nanoseconds.
     now_ns: fn() -> u64,
-    /// Time for each gaze sample.
+    /// Computing times of updates by a gaze sample, in nanoseconds.
     pub gaze_ns: Vec<u64>,
-    /// Time for each press of the human or the robot.
+    /// Computing times of updates by a press of the human or the robot, in nanoseconds.
     pub action_ns: Vec<u64>,
 }
 

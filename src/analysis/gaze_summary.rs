@@ -7,14 +7,14 @@ use crate::gaze::quality::{DropCounts, FaultCounts};
 use crate::session::Session;
 use crate::session::gaze_samples::faults;
 
-/// Gaze quality of a recording.
+/// Gaze quality of a recording: numbers of samples, faults and losses, and measured accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GazeSummary {
-    /// Recorded samples.
+    /// Number of recorded gaze samples.
     pub samples: u64,
-    /// Recorded samples outside the display or with a confidence below the threshold.
+    /// Number of recorded gaze samples outside the display or with a confidence below the threshold.
     pub unusable: u64,
-    /// Recorded samples that the filter does not use, by fault.
+    /// Number of recorded gaze samples that the belief filter does not use, by fault.
     #[serde(flatten)]
     pub faults: FaultCounts,
     /// Input that was not recorded, by kind.

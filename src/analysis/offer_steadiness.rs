@@ -48,7 +48,7 @@ pub struct SteadinessSummary {
     /// Median time for which the assistant's recommendation, before it becomes an offer, stayed the same, in seconds;
     /// null without recommendations.
     pub raw_median_s: Option<f64>,
-    /// Results of the scripted hand.
+    /// How often the scripted hand's key meant the offer that the hand had read.
     pub hand: HandSummary,
     /// Closed offers, without those that the wizard used and those at the end of a trial.
     pub could_reopen: u64,

@@ -20,7 +20,7 @@ pub struct TimedOffer {
     pub opened_s: f64,
     /// Duration for which the offer stood, in seconds; `None` if the recording was cut while the offer was open.
     pub stood_s: Option<f64>,
-    /// Why the offer closed.
+    /// Why the offer to the wizard closed.
     pub reason: Option<OfferEnd>,
     /// Time at which the wizard sent the offered signal, on the trial's clock.
     pub sent: Option<SessionTime>,

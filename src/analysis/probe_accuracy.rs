@@ -32,13 +32,13 @@ pub enum AccuracyGrouping {
 pub struct ProbeAccuracy {
     /// Property by which questions were grouped.
     pub by: AccuracyGrouping,
-    /// Name of the group.
+    /// Name of the group of questions.
     pub group: String,
-    /// Number of questions that were answered in time.
+    /// Number of questions in the group that were answered in time.
     pub n: u64,
     /// Number of these answered with "I don't know", which counts as wrong.
     pub unsure: u64,
-    /// Weighted share of right answers.
+    /// Share of right answers, weighted by the inverse of the questions' inclusion probability.
     pub accuracy: Option<f64>,
     /// 95 % interval of the accuracy, by bootstrap over participants; null with fewer than five participants.
     pub interval: Option<[f64; 2]>,

@@ -206,7 +206,7 @@ fn subject(kitchen: &Kitchen, about: &ProbeSubject) -> (ProbedKind, Option<Aspec
     }
 }
 
-/// Name of an aspect's value.
+/// Name of a state aspect's value, as tables show it.
 fn label(kitchen: &Kitchen, aspect: AspectId, value: usize) -> String {
     kitchen.aspects[aspect.index()].labels[value].clone()
 }

@@ -42,7 +42,7 @@ impl<'a> WeighedBelief<'a> {
 /// false.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeDetection {
-    /// Weighted share of false beliefs.
+    /// Weighted share of the beliefs that are false.
     pub wrong: Option<f64>,
     /// Mean of the areas under the ROC curves of locations and of recipes.
     pub auc: Option<f64>,

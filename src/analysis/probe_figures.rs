@@ -52,25 +52,25 @@ pub struct ProbeFigures {
 /// Numbers of probes and questions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ProbeCounts {
-    /// Probes that began.
+    /// Number of freeze probes that began.
     pub probes: u64,
     /// Probes that did not begin in time and were dropped.
     pub dropped: u64,
     /// Probes of which the wizard skipped the rest.
     pub skipped: u64,
-    /// Questions that were shown.
+    /// Number of questions that were shown to participants.
     pub questions: u64,
-    /// Questions in the main results.
+    /// Number of questions in the main results.
     pub counted: u64,
-    /// Questions in the main results that were answered with "I don't know".
+    /// Number of questions in the main results that were answered with "I don't know".
     pub unsure: u64,
-    /// Questions left out because they were not answered in time.
+    /// Number of questions left out because they were not answered in time.
     pub unanswered: u64,
-    /// Questions left out because the wizard skipped the rest of the probe while they were shown.
+    /// Number of questions left out because the wizard skipped the rest of the probe while they were shown.
     pub questions_skipped: u64,
-    /// Questions left out because the wizard, not the schedule, started the probe; answered ones only.
+    /// Number of answered questions left out because the wizard, not the schedule, started the probe.
     pub by_wizard: u64,
-    /// Questions left out because they ask what comes next; answered ones only.
+    /// Number of answered questions left out because they ask what comes next.
     pub level_2: u64,
     /// Effective sample size of the main results: the number of questions of equal weight that would be as informative
     /// (Kish 1965).

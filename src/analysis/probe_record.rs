@@ -14,7 +14,7 @@ pub enum ProbedKind {
     Order,
     /// The recipe of a dish.
     Recipe,
-    /// The content of another location.
+    /// The content of a location other than an order.
     Place,
     /// Which order will be ready next (level 2 of situation awareness).
     NextOrder,
@@ -56,11 +56,11 @@ impl ProbedKind {
 pub enum ProbeResponse {
     /// The answered value, by its name.
     Value(String),
-    /// "I don't know".
+    /// The answer "I don't know".
     Unsure,
-    /// No response: the wizard skipped the rest of the probe.
+    /// No answer, because the wizard skipped the rest of the probe.
     Skipped,
-    /// No response in time.
+    /// No answer within the time of the probe.
     Missing,
 }
 
@@ -101,7 +101,7 @@ pub struct FrozenBelief {
 }
 
 impl FrozenBelief {
-    /// Whether the belief is false.
+    /// Whether the participant's belief is false.
     pub fn is_wrong(&self) -> bool {
         self.p_truth < FALSE_BELOW
     }
@@ -120,7 +120,7 @@ pub struct ProbedQuestion {
     pub origin: ProbeOrigin,
     /// Whether the belief estimate took part in the choice of questions.
     pub uses_estimate: bool,
-    /// Kind of the question.
+    /// Kind of the probe question.
     pub kind: ProbedKind,
     /// Name of the state aspect; for questions of level 2, name of the kind.
     pub aspect: String,
@@ -128,7 +128,7 @@ pub struct ProbedQuestion {
     pub inclusion: f64,
     /// Name of the right answer; `None` for questions of level 2 if the trial ended before the answer was known.
     pub truth: Option<String>,
-    /// Response of the participant.
+    /// The participant's response to the question.
     pub response: ProbeResponse,
     /// Confidence of the participant from 1 to 3, if it was asked.
     pub confidence: Option<u8>,
@@ -176,7 +176,7 @@ impl ProbedQuestion {
 pub struct ProbedTrial {
     /// Study arm of the trial.
     pub study_arm: StudyArm,
-    /// Number of probes that began.
+    /// Number of freeze probes that began in the trial.
     pub begun: u64,
     /// Number of probes that did not begin in time and were dropped.
     pub dropped: u64,

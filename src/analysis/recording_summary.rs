@@ -11,7 +11,7 @@ use crate::base::words::count;
 /// Summary of one recording, as `tomcom replay RECORDING` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingSummary {
-    /// Number of events.
+    /// Number of events in the recording.
     pub events: u64,
     /// The recording lacks its end event, and no session is writing to it.
     pub cut: bool,
@@ -31,11 +31,11 @@ pub struct RecordingSummary {
     /// Errors that follow from false beliefs.
     #[serde(flatten)]
     pub beliefs: BeliefErrorSummary,
-    /// Signals that were shown.
+    /// Number of signals that were shown to the participant.
     pub signals: u64,
     /// The wizard saw the assistants' recommendations beside the signals sent.
     pub unblinded: bool,
-    /// Orders served.
+    /// Number of orders served.
     pub orders_served: u64,
     /// Duration of the trial by its own clock, in seconds.
     pub trial_s: f64,

@@ -71,7 +71,7 @@ impl RecordingList {
     /// Column headings of [`ListedRecording::cells`].
     pub const HEADINGS: [&'static str; 7] = ["code", "condition", "date", "length", "errors", "state", "recording"];
 
-    /// The list, sorted.
+    /// The list of recordings, sorted by the participant's code, then by date, then by name.
     pub fn new(folder: String, mut recordings: Vec<ListedRecording>) -> RecordingList {
         let key = |one: &ListedRecording| (one.code.clone(), one.date.clone(), one.recording.clone());
         recordings.sort_by_key(key);

@@ -20,7 +20,7 @@ pub struct TrialErrors {
 pub struct SweepRow {
     /// Values of the varied settings, by name; empty in the row without signals.
     pub settings: serde_json::Map<String, serde_json::Value>,
-    /// Number of trials.
+    /// Number of trials with this combination of values.
     pub trials: u64,
     /// Errors per 100 presses of the human.
     pub errors_per_100: f64,
@@ -49,7 +49,7 @@ pub struct SweepRow {
     pub related_fewer_error: Option<f64>,
 }
 
-/// The same trials under two settings, in the same order.
+/// The same trials under two combinations of values, in the same order.
 type PairedTrials<'a> = [&'a [TrialErrors]; 2];
 
 impl SweepRow {

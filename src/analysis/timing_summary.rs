@@ -23,7 +23,7 @@ pub struct TimingSummary {
 /// Percentiles of measured computing times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DurationPercentiles {
-    /// Number of measurements.
+    /// Number of computing times measured.
     pub n: u64,
     /// Median of the computing times.
     pub p50: f64,

@@ -42,7 +42,7 @@ pub struct JudgedRecording {
     /// The false beliefs that led to errors, if they began in the part that was watched.
     #[serde(default)]
     pub beliefs: Vec<JudgedBelief>,
-    /// Performance of the wizard.
+    /// Measures of the wizard's performance: hits and wrong signals.
     pub measures: WizardMeasures,
     /// Cohen's kappa between the wizard's signals now and in the previous pass through the same recording; null without
     /// a previous pass.

@@ -17,15 +17,15 @@ use crate::session::study_arm::StudyArm;
 /// Summary of one trial: presses, errors, signals, served orders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialSummary {
-    /// Presses of the human.
+    /// Number of presses of the human.
     pub human_actions: u64,
-    /// Presses of the robot.
+    /// Number of presses of the robot.
     pub robot_actions: u64,
     /// The human's presses that were errors.
     pub errors: u64,
     /// Presses of the human that the robot may have overtaken; they are not counted as errors.
     pub races: u64,
-    /// Signals that were shown.
+    /// Number of signals shown to the participant.
     pub signals: u64,
     /// Errors that follow from false beliefs; `None` where the participant's beliefs are not known.
     pub beliefs: Option<TrialBeliefErrors>,
@@ -155,11 +155,11 @@ pub struct ArmTotals {
     pub arm: StudyArm,
     /// Number of trials.
     pub trials: u64,
-    /// Presses of the human.
+    /// Number of presses of the human.
     pub human_actions: u64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Signals that were shown.
+    /// Number of signals shown to the participant.
     pub signals: u64,
 }
 
@@ -168,11 +168,11 @@ pub struct ArmTotals {
 pub struct SimulationSummary {
     /// Number of trials.
     pub trials: u64,
-    /// Presses of the human.
+    /// Number of presses of the human.
     pub human_actions: u64,
-    /// Presses of the robot.
+    /// Number of presses of the robot.
     pub robot_actions: u64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
     /// Presses of the human shortly after a change by the robot at the same location (races); they do not count as
     /// errors.
@@ -180,11 +180,11 @@ pub struct SimulationSummary {
     /// Errors that follow from false beliefs.
     #[serde(flatten)]
     pub beliefs: BeliefErrorSummary,
-    /// Signals that were shown.
+    /// Number of signals shown to the participants.
     pub signals: u64,
     /// Durations of offers, whether a wizard could see them or not.
     pub offers: OfferDurations,
-    /// Orders served.
+    /// Number of orders served.
     pub orders_served: u64,
     /// Median over served orders of the number of presses of both agents since the previously served order.
     pub presses_per_order: Option<f64>,

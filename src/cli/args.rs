@@ -1,4 +1,4 @@
-//! Commands and their arguments.
+//! The commands of the program `tomcom` and their arguments.
 
 use std::path::PathBuf;
 
@@ -145,7 +145,7 @@ pub(super) struct PlanArgs {
                   tomcom simulate sessions/default.toml --trials 100 --sweep cost=0.5,1.5,2.4 --sweep gaze=on,off --out grid\nMore: docs/study.md"
 )]
 pub(super) struct SimulateArgs {
-    /// The session file.
+    /// The session file to simulate.
     pub(super) session: PathBuf,
     /// Number of trials; each has its own orders and participant and does not depend on their number. With a plan: the
     /// first trials of the plan, participant by participant. Default: 1, or the whole plan.
@@ -229,7 +229,7 @@ pub(super) enum FitParameter {
     Lapse,
     /// Radius of the area around the fixation.
     Radius,
-    /// Reading rate per second.
+    /// Rate at which gaze at a location becomes knowledge of its content, per second.
     Reading,
     /// Half-life of recipe memory.
     HalfLife,

@@ -21,7 +21,7 @@ pub(super) enum GazeArg {
     Simulated,
     /// The mouse pointer over the kitchen, at the console or on the wall display.
     Mouse,
-    /// Pupil Core, through Pupil Capture.
+    /// The eye tracker Pupil Core, through the program Pupil Capture.
     Pupil,
     /// Recorded gaze from the file that --gaze-file names.
     File,
@@ -132,7 +132,7 @@ impl From<SimulatedCondition> for Condition {
 /// Who sends signals in simulated trials.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum SimulatedCondition {
-    /// Nobody sends signals.
+    /// Nobody sends signals in the simulated trials.
     None,
     /// The scripted wizard of the session sends signals.
     Wizard,

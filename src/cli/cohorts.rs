@@ -46,7 +46,7 @@ pub(super) struct RobustnessArgs {
     format: OutputFormat,
 }
 
-/// `tomcom robustness BATTERY`.
+/// Runs the command `tomcom robustness BATTERY`.
 pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
     let mut battery = read_battery(&args.battery)?;
     let names: Vec<String> = battery.cohorts.iter().map(|cohort| cohort.name.get_ref().clone()).collect();

@@ -10,7 +10,7 @@ use crate::edge::files;
 use crate::run::accuracy::AccuracySample;
 use crate::run::{accuracy, check_beliefs, fit, steadiness};
 
-/// `tomcom replay RECORDING... --check-beliefs`.
+/// Runs the command `tomcom replay RECORDING... --check-beliefs`.
 pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
     let bar = progress((args.recordings.len() + args.choose_on.len()) as u64, "recordings");
     let found = check_beliefs::check(&args.recordings, &args.choose_on, || bar.inc(1))?;
@@ -18,7 +18,7 @@ pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
     print(args.format, &found, || belief_check::describe(&found))
 }
 
-/// `tomcom replay RECORDING... --accuracy`.
+/// Runs the command `tomcom replay RECORDING... --accuracy`.
 pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
     let extent =
         AccuracySample { steps: args.steps as usize, reference_steps: args.reference_steps.min(args.steps) as usize };
@@ -29,7 +29,7 @@ pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
     print(args.format, &found, || planner_accuracy::describe(&found))
 }
 
-/// `tomcom replay RECORDING... --offers`.
+/// Runs the command `tomcom replay RECORDING... --offers`.
 pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
     let bar = progress(args.recordings.len() as u64, "recordings");
     let found = steadiness::measure(&args.recordings, || bar.inc(1))?;
@@ -37,7 +37,7 @@ pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
     print(args.format, &found, || offer_steadiness::describe(&found))
 }
 
-/// `tomcom fit RECORDING...`.
+/// Runs the command `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     let start = args.start.as_deref().map(files::read_human_model).transpose()?;
     let mut parameters: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();

@@ -51,7 +51,7 @@ struct ExportSummary {
     mcap: Option<Value>,
 }
 
-/// `tomcom export`.
+/// Runs the command `tomcom export`.
 pub(super) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let recordings = meant(&args.recordings)?;
     let mut bids = None;

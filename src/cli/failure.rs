@@ -9,12 +9,12 @@ use crate::edge::log::{ExclusionError, WriteError};
 use crate::run::error::{LiveError, ReviewError, RunError};
 use crate::session::settings::SettingError;
 
-/// Failure of a command.
+/// Failure of a command, which decides the program's exit code and message.
 #[derive(Debug)]
 pub(super) enum Failure {
     /// Arguments or files are invalid.
     Wrong(miette::Report),
-    /// An operation failed.
+    /// The command could not do its work.
     Failed(miette::Report),
     /// The command ran, and the result of its check is negative and has been printed.
     No,

@@ -33,7 +33,7 @@ pub(super) struct ListArgs {
     format: OutputFormat,
 }
 
-/// `tomcom list DIR`.
+/// Runs the command `tomcom list DIR`.
 pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
     exists(&args.folder)?;
     let bar = progress(0, "recordings");

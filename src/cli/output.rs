@@ -14,12 +14,12 @@ use super::failure::Failure;
 use crate::base::printable::printable_lines;
 use crate::edge::terminal;
 
-/// Output format.
+/// Format of a command's output: text or JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum OutputFormat {
-    /// Text.
+    /// Text for people.
     Text,
-    /// One JSON object.
+    /// One JSON object for programs.
     Json,
 }
 
@@ -36,7 +36,7 @@ pub(super) fn print(
     Ok(put(&text)?)
 }
 
-/// Prints a text.
+/// Prints a text on standard output.
 pub(super) fn put(text: &str) -> io::Result<()> {
     terminal::print(false, printable_lines(text).into_owned().into_bytes())
 }

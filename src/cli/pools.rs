@@ -172,7 +172,7 @@ impl PoolArgs {
     }
 }
 
-/// `tomcom power PLAN`.
+/// Runs the command `tomcom power PLAN`.
 pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
     power_files::check_power(args.csv.as_deref(), args.picture.as_deref())?;
     let Some(pool) = args.pool.pool(!args.null, true)? else { return Ok(()) };
@@ -194,7 +194,7 @@ pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
     print(args.pool.format, &found, || power_answer::describe(&found))
 }
 
-/// `tomcom arms PLAN`.
+/// Runs the command `tomcom arms PLAN`.
 pub(super) fn arms(args: &ArmsArgs) -> Result<(), Failure> {
     let Some(pool) = args.pool.pool(true, false)? else { return Ok(()) };
     if !pool.header.arms {

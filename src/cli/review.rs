@@ -48,7 +48,7 @@ fn moment(text: &str) -> Result<SessionTime, String> {
     seconds.map(|seconds| SessionTime::from_secs_f64(minutes * 60.0 + seconds)).ok_or_else(wrong)
 }
 
-/// `tomcom review RECORDING`.
+/// Runs the command `tomcom review RECORDING`.
 pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
     Feature::Rerun.require()?;
     let (mut recordings, mut save) = (args.recordings.clone(), args.save.clone());

@@ -15,7 +15,7 @@ use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use crate::session::study_arm::StudyArm;
 use crate::wizard::settings::WizardKind;
 
-/// `tomcom simulate SESSION`.
+/// Runs the command `tomcom simulate SESSION`.
 pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     if args.rerun {
         Feature::Rerun.require()?;

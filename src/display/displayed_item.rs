@@ -39,30 +39,30 @@ pub enum DisplayedForm {
     Scale {
         /// Number of points of the scale.
         points: u8,
-        /// Meaning of point 1.
+        /// Meaning of the scale's first point.
         low: String,
-        /// Meaning of the highest point.
+        /// Meaning of the scale's highest point.
         high: String,
     },
     /// One or several of listed options.
     Choice {
-        /// The options in their order.
+        /// Options from which to choose, in their order.
         options: Vec<ItemOption>,
         /// Whether several options can be chosen.
         several: bool,
     },
-    /// A whole number.
+    /// A whole number that the participant enters.
     Number {
-        /// Least number allowed.
+        /// Least number that may be entered.
         min: i64,
-        /// Greatest number allowed.
+        /// Greatest number that may be entered.
         max: i64,
         /// Unit of the number; empty for none.
         unit: String,
     },
-    /// Free text.
+    /// Text that the participant writes.
     Text {
-        /// Largest number of characters.
+        /// Largest number of characters of the text.
         length: u32,
     },
     /// No questionnaire item: consent to a text, given by holding a button.
@@ -72,9 +72,9 @@ pub enum DisplayedForm {
     },
     /// A position on a slider from 0 to 100.
     Slider {
-        /// Meaning of position 0.
+        /// Meaning of the slider's position 0.
         low: String,
-        /// Meaning of position 100.
+        /// Meaning of the slider's position 100.
         high: String,
         /// Step of the slider: positions are multiples of it.
         step: i64,

@@ -23,7 +23,7 @@ pub struct DisplayedProbe {
     pub question: u32,
     /// Number of questions in the probe.
     pub of: usize,
-    /// The question as text.
+    /// Text of the question.
     pub text: String,
     /// Picture of what the question is about.
     pub about: Option<ProbePicture>,
@@ -45,7 +45,7 @@ pub struct DisplayedProbe {
 pub struct ProbeChoice {
     /// Number of the choice, from 1.
     pub number: usize,
-    /// The choice in words.
+    /// Text of the choice.
     pub words: String,
     /// Picture of the choice.
     pub shows: Option<ProbePicture>,
@@ -76,9 +76,9 @@ pub enum ProbePicture {
 /// Text of a freeze probe question and of its choices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbeWording {
-    /// The question as text.
+    /// Text of the question.
     pub question: String,
-    /// The choices as text, in their order.
+    /// Texts of the choices, in their order.
     pub choices: Vec<String>,
 }
 

@@ -111,7 +111,7 @@ pub struct DisplayButton {
 /// Appearance and name of an item or a dish.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LabelledAppearance {
-    /// Name in the display's language.
+    /// Name of the item or dish in the display's language.
     pub label: String,
     /// Appearance of the item or dish, if a file of the kitchen sets one.
     pub look: Option<Appearance>,

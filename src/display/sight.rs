@@ -56,7 +56,7 @@ pub enum DisplayStage {
     Tutorial,
     /// The kitchen before the trial starts.
     Ready,
-    /// The trial runs.
+    /// The trial is running.
     Running,
     /// The trial is paused.
     Paused,

@@ -11,7 +11,7 @@ use crate::session::tutorial::TutorialState;
 /// A step of the tutorial, as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedTutorial {
-    /// Identifier of the tutorial's step.
+    /// Identifier of the tutorial's step, as in the tutorial file.
     pub step: String,
     /// Kind of the tutorial's step.
     pub kind: TutorialStepKind,
@@ -47,7 +47,7 @@ pub struct DisplayedTutorial {
 pub enum TutorialFrame {
     /// The locations and storages of an agent.
     Area(Agent),
-    /// A location or storage.
+    /// A location or storage of the kitchen.
     Place(DisplayPlace),
     /// A button of the human, by its name.
     Button(String),
@@ -74,7 +74,7 @@ pub struct RecipeCard {
 /// A question of the tutorial's check of understanding.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedQuestion {
-    /// Possible answers.
+    /// Answers from which the participant chooses.
     pub choices: Vec<String>,
     /// Number, from 1, of the wrong answer that the participant gave last; `None` once another is given.
     pub wrong: Option<u8>,

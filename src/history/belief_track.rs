@@ -41,7 +41,7 @@ pub struct BeliefSnapshot {
     pub time: SessionTime,
     /// Whether only gaze samples came since the previous snapshot.
     by_gaze: bool,
-    /// Estimate by state aspect.
+    /// Estimated belief about each state aspect.
     pub held: Vec<AspectSnapshot>,
     /// For each state aspect, the start of the present false belief; `None` where the belief is right.
     wrong_since: Vec<Option<SessionTime>>,

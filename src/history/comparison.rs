@@ -128,7 +128,7 @@ pub struct UnmatchedCommunication {
 pub struct LanePair {
     /// Strict matches, as pairs of indices into the first and the other lane.
     pub matched: Vec<(usize, usize)>,
-    /// How far the two lanes agree.
+    /// Similarity of the two lanes' communications: how many of them match.
     pub similarity: Similarity,
 }
 

@@ -5,7 +5,7 @@
 pub enum ReplayLandmark {
     /// A press that was an error.
     Error,
-    /// A signal was shown.
+    /// A signal was shown to the participant.
     Signal,
     /// A marker that the wizard set.
     Marker,

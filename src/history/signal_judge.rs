@@ -14,11 +14,11 @@ use crate::session::{Event, Session, Stamped};
 /// Counts of a sender's signals by how they were judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SignalTally {
-    /// Signals about a false belief.
+    /// Number of signals about a false belief of the participant.
     pub hits: u64,
     /// Signals about a belief that became right at most [`LATE_PRESSES`] presses of the human before.
     pub late: u64,
-    /// Signals about a right belief.
+    /// Number of signals about a belief that was right already.
     pub needless: u64,
     /// Signals that the sender took back; they count among hits, late and needless ones, too.
     pub taken_back: u64,
@@ -45,7 +45,7 @@ pub struct SignalJudge {
     beliefs: Vec<Standing>,
     wizard: SignalTally,
     assistant: SignalTally,
-    /// Sender of the last signal.
+    /// Who sent the last signal: wizard or assistant.
     last: Option<Sender>,
 }
 

@@ -28,7 +28,7 @@ pub fn button(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> 
     kitchen.button(agent, id).name.replace('_', " ")
 }
 
-/// A location's name in words.
+/// A location of the kitchen in words, such as "cutting board".
 pub fn location(name: &str) -> String {
     name.replace('_', " ")
 }
@@ -75,7 +75,7 @@ pub fn place(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> L
     }
 }
 
-/// A signal in words.
+/// A signal to the participant in words, such as "recipe of order 1".
 pub fn signal(signal: &Signal) -> String {
     match signal {
         Signal::ShowRecipe(order) => format!("recipe of {}", location(order)),
@@ -105,7 +105,7 @@ pub fn reason(kitchen: &Kitchen, reason: &Reason) -> Reason {
     Reason { believes: worded(&reason.believes), truth: worded(&reason.truth), ..reason.clone() }
 }
 
-/// A sender in words.
+/// The sender of a signal in words: wizard or assistant.
 pub fn sender(by: Sender) -> &'static str {
     match by {
         Sender::Wizard => "wizard",

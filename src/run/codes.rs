@@ -24,9 +24,9 @@ pub struct CodedRecording {
     pub codable: Codable,
     /// Errors of the recording, with times and presses.
     pub errors: Vec<ListedError>,
-    /// Codes by rater.
+    /// Codes of the errors, by the rater's identifier.
     pub codes: BTreeMap<String, Codes>,
-    /// Consensus codes of two raters.
+    /// Consensus of two raters about the codes.
     pub consensus: Option<Consensus>,
     /// True causes of the errors, for a simulated participant.
     pub known: Option<Codes>,
@@ -147,9 +147,9 @@ pub struct CodedRecordingSummary {
 /// Consensus of two raters about a recording's errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SettledSummary {
-    /// Code of the first rater.
+    /// Identifier of the first rater.
     pub of: String,
-    /// Code of the second rater.
+    /// Identifier of the second rater.
     pub with: String,
     /// Number of errors that both raters code alike.
     pub agreed: u64,
@@ -180,9 +180,9 @@ pub struct Disagreement {
     /// The error that is coded differently.
     #[serde(flatten)]
     pub error: ListedError,
-    /// Code of the first rater.
+    /// Identifier of the first rater.
     pub of: String,
-    /// Code of the second rater.
+    /// Identifier of the second rater.
     pub with: String,
     /// Cause according to the first rater.
     pub of_cause: String,
@@ -204,12 +204,12 @@ pub struct Disagreement {
     pub settled_words: Option<String>,
 }
 
-/// Agreement of two raters.
+/// Agreement between two raters, or between a rater and the simulation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RaterPairSummary {
-    /// Code of the first rater.
+    /// Identifier of the first rater.
     pub of: String,
-    /// Code of the second rater, or "simulation" for the true causes of a simulated participant.
+    /// Identifier of the second rater, or "simulation" for the true causes of a simulated participant.
     pub with: String,
     /// Agreement of the two, over all recordings together.
     #[serde(flatten)]
@@ -258,7 +258,7 @@ impl CodesSummary {
     }
 }
 
-/// The summary as text.
+/// The summary of raters' codes as text for the terminal.
 pub fn describe(figures: &CodesSummary) -> String {
     let mut text = String::new();
     for one in &figures.recordings {

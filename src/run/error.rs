@@ -42,7 +42,7 @@ pub enum LiveError {
     #[error(transparent)]
     #[diagnostic(help("run it in a terminal, not through a pipe"))]
     Terminal(#[from] TerminalError),
-    /// A key cannot be bound.
+    /// A key of the console cannot be bound.
     #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy))]
     Keys(#[from] KeyError),
@@ -56,7 +56,7 @@ pub enum LiveError {
     Gaze {
         /// Address and port that cannot be opened.
         at: SocketAddr,
-        /// Error of the operating system.
+        /// Why the operating system could not open the port.
         reason: io::Error,
     },
     /// The Lab Streaming Layer cannot be used.
@@ -71,7 +71,7 @@ pub enum LiveError {
         address: IpAddr,
         /// Port of the display's server.
         port: u16,
-        /// Error of the operating system.
+        /// Why the operating system could not open the address.
         reason: io::Error,
     },
     /// The tags do not fit on the display, so that the eye tracker could not find it.
@@ -121,7 +121,7 @@ pub enum ReviewError {
     Training {
         /// Path of the training record.
         path: PathBuf,
-        /// Error of the operating system.
+        /// Why the operating system could not write the file.
         reason: io::Error,
     },
     /// A key of the recording's key file cannot be bound.

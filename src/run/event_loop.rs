@@ -22,9 +22,9 @@ use crate::session::Session;
 pub(super) const FRAME: Duration = Duration::from_millis(33);
 /// Sampling period of the mouse pointer when it stands for gaze (60 Hz).
 const POINTER: Duration = Duration::from_nanos(16_666_667);
-/// The period of [`LoopEvent::FileTick`].
+/// Period of [`LoopEvent::FileTick`], the reading and flushing of files.
 const FILES: Duration = Duration::from_millis(50);
-/// The period of [`LoopEvent::WatchTick`].
+/// Period of [`LoopEvent::WatchTick`], the check of recording and devices.
 const WATCH: Duration = Duration::from_millis(250);
 
 /// An event of the loop. Several pending events are handled in the order of the variants.
@@ -76,7 +76,7 @@ impl Default for ShellDeadlines {
 /// Content that a console's shell shows.
 pub(super) enum ShellView<'a> {
     Console(&'a Session, &'a ConsoleModel),
-    /// A question before a recording.
+    /// A question to the wizard before a recording.
     Question(&'a QuestionPage, Theme),
     /// A list of recordings to choose from.
     Recordings(&'a RecordingPicker, Theme),
@@ -144,7 +144,7 @@ pub(super) async fn run<S: ConsoleShell>(
     Ok(None)
 }
 
-/// Periodic deadlines of the loop.
+/// Deadlines of the event loop's periodic events.
 struct LoopTicks {
     pointer: Interval,
     files: Interval,
@@ -164,7 +164,7 @@ impl LoopTicks {
     }
 }
 
-/// Waits for the next event.
+/// Waits for the next event of the loop.
 async fn next_event<S: ConsoleShell>(shell: &mut S, desk: &mut OperatorDesk, ticks: &mut LoopTicks) -> LoopEvent {
     let (due, with_pointer) = (shell.deadlines(), shell.samples_pointer());
     let frame = ticks.frame.map_or_else(Instant::now, |last| last + due.frame_after);

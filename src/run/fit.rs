@@ -57,7 +57,7 @@ impl FitTrials {
         Ok(FitTrials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations })
     }
 
-    /// The same trials without answers to freeze probes.
+    /// These trials without answers to freeze probes.
     fn without_answers(&self) -> FitTrials {
         let mut trials = self.clone();
         trials.observations.iter_mut().for_each(|one| one.answers.clear());

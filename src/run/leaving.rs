@@ -34,7 +34,7 @@ pub struct LiveOutcome {
 }
 
 impl LiveOutcome {
-    /// The result as text.
+    /// The result of the live session as text.
     pub fn describe(&self) -> String {
         let folder = self.folder.display();
         let presses = count(self.figures.human_actions + self.figures.robot_actions, "press", "presses");

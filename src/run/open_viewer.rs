@@ -47,7 +47,7 @@ pub enum RerunError {
     Unwritable {
         /// Path of the stream file.
         path: PathBuf,
-        /// Error of the operating system.
+        /// Why the operating system could not write the file.
         reason: io::Error,
     },
     /// The viewer cannot be served on this machine.
@@ -70,7 +70,7 @@ pub enum RerunError {
     Viewer {
         /// Path of the viewer's program.
         path: PathBuf,
-        /// Error of the operating system.
+        /// Why the operating system could not start the program.
         reason: io::Error,
     },
 }

@@ -66,13 +66,13 @@ pub struct SettingOverrides {
     pub gaze_file: Option<PathBuf>,
     /// Time in the gaze file at which the trial starts, in seconds.
     pub gaze_start_s: Option<f64>,
-    /// Who may send signals.
+    /// Condition: who may send signals.
     pub condition: Option<Condition>,
     /// The assistant's communication concept.
     pub concept: Option<ConceptName>,
     /// Seed of all random numbers.
     pub seed: Option<u64>,
-    /// The participant's code.
+    /// The participant's pseudonymous code.
     pub code: Option<String>,
     /// Address at which Rerun viewers connect, as "ADDRESS:PORT".
     pub rerun_listen: Option<String>,

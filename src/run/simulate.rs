@@ -266,7 +266,7 @@ fn simulate_trial(
     Ok(SimulatedTrial { folder, arm, figures, found, moved })
 }
 
-/// The summary as text.
+/// The summary of a simulation as text for the terminal.
 pub fn describe(figures: &SimulationSummary) -> String {
     let each = match (figures.presses_per_order, figures.optimal_presses_per_order) {
         (Some(presses), Some(best)) => format!(", {presses:.1} presses each in the median (at best {best:.1})"),

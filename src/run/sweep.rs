@@ -35,7 +35,7 @@ enum Knob {
     Cost,
     /// Threshold of the concept ToM.
     Threshold,
-    /// Horizon and number of rollouts.
+    /// Horizon of the planner's rollouts, and their number.
     Horizon,
     Rollouts,
     /// Rationality tau and reading radius of the human model.
@@ -49,7 +49,7 @@ enum Knob {
     Waiting,
 }
 
-/// Names of the settings.
+/// The settings that can be swept, by name.
 const KNOBS: [(&str, Knob); 9] = [
     ("cost", Knob::Cost),
     ("threshold", Knob::Threshold),

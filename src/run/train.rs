@@ -25,7 +25,7 @@ use crate::session::settings::{Condition, Visibility};
 pub struct TrainingRequest {
     /// Recordings of simulated participants without signals.
     pub recordings: Vec<PathBuf>,
-    /// The wizard's code.
+    /// The wizard's pseudonymous code.
     pub wizard: String,
     /// Folder for the training record.
     pub out: PathBuf,

@@ -10,7 +10,7 @@ use crate::console::question::{QuestionPage, QuestionReply};
 use crate::console::view::theme::Theme;
 use crate::session::wall_display::Answering;
 
-/// Period of redrawing a question.
+/// Period of redrawing a question on the screen.
 const REDRAW: Duration = Duration::from_millis(100);
 
 /// Asks a question; returns the index of the answer, or `None` to quit the program.

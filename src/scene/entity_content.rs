@@ -122,11 +122,11 @@ pub struct SceneSeries {
 /// Shape of the marks of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkShape {
-    /// Marks are crosses.
+    /// Crosses as marks.
     Cross,
-    /// Marks are filled circles.
+    /// Filled circles as marks.
     Circle,
-    /// Marks are diamonds.
+    /// Diamonds as marks.
     Diamond,
 }
 

@@ -22,7 +22,7 @@ pub struct Acceptance {
     pub low: u64,
     /// Participants without answers to such items.
     pub not_reported: u64,
-    /// Mean acceptance over participants.
+    /// Mean acceptance over all participants, from 0 to 1.
     pub mean: Option<f64>,
 }
 
@@ -49,9 +49,9 @@ pub struct ItemSummary {
     pub counts: Vec<u64>,
     /// The texts of the options, in their order.
     pub options: Vec<String>,
-    /// Number of answers.
+    /// Number of answers to the item.
     pub answers: u64,
-    /// How often the item was left without an answer.
+    /// Number of participants' questionnaires in which the item was left without an answer.
     pub left_out: u64,
     /// Mean of the answers that are numbers, not reversed.
     pub mean: Option<f64>,
@@ -66,9 +66,9 @@ pub struct ScoreSummary {
     pub condition: Option<StudyArm>,
     /// Scores of the occasions on which a participant answered every item.
     pub scores: Vec<f64>,
-    /// Mean of the scores.
+    /// Mean of the questionnaire's scores.
     pub mean: Option<f64>,
-    /// Standard deviation of the scores.
+    /// Standard deviation of the questionnaire's scores.
     pub sd: Option<f64>,
 }
 

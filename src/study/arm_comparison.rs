@@ -21,7 +21,7 @@ use crate::session::study_arm::StudyArm;
 /// Comparison of the arms of a study by the primary outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmComparison {
-    /// Event whose rate is compared.
+    /// Primary outcome: the event whose rate is compared between arms.
     pub outcome: PrimaryOutcome,
     /// Number of participants in the comparison.
     pub participants: usize,
@@ -49,7 +49,7 @@ pub struct ArmComparison {
 pub struct ArmOutcome {
     /// The study arm.
     pub arm: StudyArm,
-    /// Number of trials.
+    /// Number of trials of the arm.
     pub trials: usize,
     /// Number of events of the primary outcome.
     pub events: u64,
@@ -67,9 +67,9 @@ impl ArmOutcome {
 /// Comparison of one arm with another in the primary model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ArmContrast {
-    /// Arm that is compared.
+    /// Study arm that is compared.
     pub arm: StudyArm,
-    /// Arm that it is compared with.
+    /// Study arm that it is compared with.
     pub against: StudyArm,
     /// Ratio of the rate in `arm` to the rate in `against`.
     pub ratio: f64,
@@ -97,9 +97,9 @@ pub struct CountComparison {
 /// Comparison of one arm with another in the negative binomial model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CountContrast {
-    /// Arm that is compared.
+    /// Study arm that is compared.
     pub arm: StudyArm,
-    /// Arm that it is compared with.
+    /// Study arm that it is compared with.
     pub against: StudyArm,
     /// Ratio of the rate in `arm` to the rate in `against`.
     pub ratio: f64,
@@ -113,9 +113,9 @@ pub struct CountContrast {
 /// Test whether an arm of the assistant is not worse than the wizard (non-inferiority).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NonInferiority {
-    /// The assistant's arm.
+    /// Study arm of the assistant.
     pub arm: StudyArm,
-    /// The wizard's arm.
+    /// Study arm of the wizard.
     pub against: StudyArm,
     /// Largest ratio of rates that is acceptable (non-inferiority margin).
     pub margin: f64,

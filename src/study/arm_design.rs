@@ -59,7 +59,7 @@ impl ArmDesign {
         ArmDesign { trials, arms, periods }
     }
 
-    /// The trials.
+    /// The trials of the comparison, ordered by participant and period.
     pub fn trials(&self) -> &[ArmTrial] {
         &self.trials
     }

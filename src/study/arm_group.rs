@@ -9,7 +9,7 @@ use crate::session::settings::ArmKind;
 /// Sums of robot statistics over the trials with one kind of arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmGroup {
-    /// The kind of arm.
+    /// Kind of the robot's arm: timed or physical.
     pub kind: ArmKind,
     /// Number of trials.
     pub trials: u64,

@@ -18,9 +18,9 @@ pub enum TraceEvent {
     },
     /// Somebody other than the participant changes the kitchen: the robot, a new order, or the wizard's correction.
     Changed {
-        /// The state before the change.
+        /// State of the kitchen before the change.
         before: State,
-        /// The state after the change.
+        /// State of the kitchen after the change.
         after: State,
     },
     /// The gaze has rested on a location long enough to read its present content; noted once for each look and content.

@@ -19,7 +19,7 @@ pub enum Table {
     Tutorial,
     /// A row for each unassisted trial, concept and value of its parameter.
     Concepts,
-    /// A row for each press.
+    /// A row for each press of the human or the robot.
     Actions,
     /// A row for each signal that was sent, or would have been.
     Communications,
@@ -122,13 +122,13 @@ impl<Row> Column<Row> {
 pub enum TableCell<'a> {
     /// Unknown or missing value, written as an empty field.
     Unknown,
-    /// True or false.
+    /// A truth value.
     Flag(bool),
-    /// A count.
+    /// A count of events or items.
     Count(u64),
     /// A signed integer.
     Whole(i64),
-    /// A real number.
+    /// A number with decimals.
     Number(f64),
     /// Text.
     Text(Cow<'a, str>),

@@ -48,11 +48,11 @@ pub enum TestMethod {
 /// A statistical test of one study arm against another, whose power is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PowerTest {
-    /// Statistical method of the test.
+    /// Statistical method by which the test is computed.
     pub method: TestMethod,
-    /// Arm that is tested.
+    /// Study arm that is tested.
     pub arm: StudyArm,
-    /// Arm that it is tested against.
+    /// Study arm that it is tested against.
     pub against: StudyArm,
 }
 
@@ -200,7 +200,7 @@ impl<'a> StudySource<'a> {
     }
 }
 
-/// Draws one of these participants.
+/// Draws one of these simulated participants.
 fn drawn(persons: &[usize], random: &mut Stream) -> usize {
     persons[random.random_range(0..persons.len())]
 }

@@ -13,7 +13,7 @@ use super::statistics::{
 use super::trial_statistics::Trial;
 use crate::session::study_arm::StudyArm;
 
-/// Confidence level of intervals.
+/// Confidence level of the report's intervals.
 pub const LEVEL: f64 = 0.95;
 
 /// The two trials of a participant, one assisted and one unassisted.
@@ -46,7 +46,7 @@ pub struct StudyMeasure {
     /// Column name in the table of trials, and key in the summary; the table of participants adds the suffixes `_1` and
     /// `_2`.
     pub name: &'static str,
-    /// Unit of the columns.
+    /// Unit of the measure's columns.
     pub unit: &'static str,
     /// Definition for the dictionary; empty if the unit suffices.
     pub meaning: &'static str,
@@ -76,7 +76,7 @@ impl Serialize for StudyMeasure {
 /// Estimates and tests of the effect of assistance on one measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AssistanceEffect {
-    /// Measure that is compared.
+    /// Measure that is compared between assisted and unassisted trials.
     pub measure: StudyMeasure,
     /// Number of participants whose second trial was assisted, and number of those whose first trial was.
     pub groups: [usize; 2],

@@ -133,7 +133,7 @@ pub struct StudyConditionSummary {
     /// Sums and means over the trials.
     #[serde(flatten)]
     pub totals: TrialTotals,
-    /// Mean errors per trial.
+    /// Mean number of errors per trial.
     pub mean_errors: Option<f64>,
     /// Mean over trials of the median time from an order's appearance to its serving, in seconds.
     pub mean_order_s: Option<f64>,

@@ -37,9 +37,9 @@ const METHODS: [&str; 5] = [
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenDefinition {
-    /// The term that is defined.
+    /// The term that the report defines.
     pub term: String,
-    /// Definition of the term.
+    /// Definition of the term, as the report prints it.
     pub meaning: String,
 }
 
@@ -55,7 +55,7 @@ pub struct FrozenAnalysis {
     pub contrasts: Vec<[StudyArm; 2]>,
     /// Margin of non-inferiority, as a ratio of rates.
     pub margin: f64,
-    /// Confidence level of intervals.
+    /// Confidence level of the analysis's intervals.
     pub level: f64,
     /// Statistical methods that compare the conditions.
     pub methods: Vec<String>,
@@ -75,7 +75,7 @@ pub struct FrozenPlan {
     pub plan_digest: String,
     /// Seed from which starting groups and trials follow.
     pub seed: u64,
-    /// Codes of the participants.
+    /// Pseudonymous codes of the participants.
     pub participants: Vec<String>,
     /// Starting group of each participant, in the order of `participants`.
     pub groups: Vec<String>,

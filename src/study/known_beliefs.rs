@@ -92,7 +92,7 @@ impl SharedBeliefs {
         shared
     }
 
-    /// Sum of two such counts.
+    /// Sum of two counts of agreement about false beliefs.
     pub fn plus(self, other: SharedBeliefs) -> SharedBeliefs {
         SharedBeliefs {
             same: self.same + other.same,

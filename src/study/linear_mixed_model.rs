@@ -32,13 +32,13 @@ pub struct Measurement {
 /// A fitted linear mixed model with a random intercept per participant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearMixedModel {
-    /// Estimates of the fixed effects.
+    /// Estimates of the model's fixed effects.
     pub estimates: DVector<f64>,
     /// Covariance of the estimates of the fixed effects.
     pub covariance: DMatrix<f64>,
-    /// Variance between participants.
+    /// Variance of the random intercept between participants.
     pub between: f64,
-    /// Residual variance.
+    /// Variance of the residuals within participants.
     pub within: f64,
     /// V^-1 X, with one row per measurement.
     weighted: DMatrix<f64>,
@@ -59,7 +59,7 @@ pub struct Contrast {
     pub df: f64,
     /// Estimate divided by its standard error.
     pub t: f64,
-    /// Two-sided p value.
+    /// Two-sided p value of the t test.
     pub p: f64,
 }
 
@@ -94,7 +94,7 @@ struct Solution {
     estimates: DVector<f64>,
     /// (X' W^-1 X)^-1, W = V / v.
     inverse: DMatrix<f64>,
-    /// Residual variance.
+    /// Variance of the residuals.
     within: f64,
     /// REML criterion, up to a constant.
     deviance: f64,

@@ -46,7 +46,7 @@ pub struct NegativeBinomialModel {
     /// Size parameter: the variance of a count is mu + mu^2 / size; infinite where counts follow a Poisson
     /// distribution.
     pub size: f64,
-    /// The log likelihood, in nats.
+    /// Log likelihood of the fitted model, in nats.
     pub log_likelihood: f64,
 }
 
@@ -59,7 +59,7 @@ pub struct WaldContrast {
     pub standard_error: f64,
     /// Estimate divided by its standard error.
     pub z: f64,
-    /// Two-sided p value.
+    /// Two-sided p value of Wald's test.
     pub p: f64,
 }
 

@@ -15,11 +15,11 @@ use super::drawn_study::{DrawnEffect, PowerTest, StudySource, TestMethod, TestRe
 use super::effect::LEVEL;
 use super::statistics::wilson;
 
-/// Significance level of the tests.
+/// Significance level of the tests in a power analysis.
 pub const ALPHA: f64 = 0.05;
 /// Power that the answer aims at.
 pub const WANTED: f64 = 0.8;
-/// Number of resampled pools.
+/// Number of bootstrap resamples of the pool.
 pub const POOLS: u64 = 40;
 /// Number of studies that are drawn from each resampled pool.
 pub const STUDIES_OF_POOL: u64 = 25;
@@ -57,7 +57,7 @@ impl RejectionCount {
         self.uncorrected += u64::from(result.p_uncorrected < ALPHA);
     }
 
-    /// Sum of two such counts.
+    /// Sum of two counts of rejections.
     pub fn plus(self, other: RejectionCount) -> RejectionCount {
         RejectionCount {
             studies: self.studies + other.studies,

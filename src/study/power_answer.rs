@@ -64,7 +64,7 @@ pub struct SizePower {
 /// Power of a test for one number of participants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TestPower {
-    /// The statistical test.
+    /// Statistical test whose power is given.
     #[serde(flatten)]
     pub test: PowerTest,
     /// Share of studies in which the test finds an effect.
@@ -78,7 +78,7 @@ pub struct TestPower {
 /// Number of participants that a test needs for a power of 0.8.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NeededParticipants {
-    /// The statistical test.
+    /// Statistical test for which the number is given.
     #[serde(flatten)]
     pub test: PowerTest,
     /// Least of the tried numbers from which on the power is at least 0.8; null if it is not reached.

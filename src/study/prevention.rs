@@ -24,7 +24,7 @@ const NANOS_PER_MS: u64 = 1_000_000;
 /// Errors and false beliefs of a trial, as known from recorded beliefs or raters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialTruth {
-    /// The human's presses, in order.
+    /// Presses of the human in the trial, in order.
     pub presses: Vec<PressTruth>,
     /// Periods in which the participant held a false belief about an aspect.
     pub spells: Vec<FalseBeliefTruth>,
@@ -127,7 +127,7 @@ pub struct PreventionRates {
 }
 
 impl PreventionCounts {
-    /// Sum of two such counts.
+    /// Sum of two prevention counts.
     pub fn plus(self, other: &PreventionCounts) -> PreventionCounts {
         PreventionCounts {
             presses: self.presses + other.presses,

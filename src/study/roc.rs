@@ -41,7 +41,7 @@ pub fn parameters(concept: ConceptName) -> Vec<f64> {
     }
 }
 
-/// Communication concepts that are compared.
+/// Communication concepts that the analysis compares with each other.
 pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev];
 
 /// Prevention counts of a concept with one parameter value in one unassisted trial.

@@ -36,7 +36,7 @@ pub struct PoolHeader {
     pub shard: u64,
     /// Number of shards of the pool.
     pub shards: u64,
-    /// The conditions of the plan.
+    /// Conditions of the study plan.
     pub conditions: Vec<StudyArm>,
     /// Primary outcome and margin that the plan sets.
     pub aims: StudyAims,
@@ -80,7 +80,7 @@ pub struct TrialCounts {
     pub lengths: Vec<u32>,
     /// Number of orders served.
     pub orders: u64,
-    /// Number of signals shown.
+    /// Number of signals shown to the participant.
     pub signals: u64,
     /// Time with a signal on the display, in seconds.
     pub signal_s: f64,
@@ -135,7 +135,7 @@ pub struct SimulationPool {
 pub struct PoolMismatch {
     /// Index of the line among the trials, or of the shard.
     pub index: usize,
-    /// Description of the mismatch.
+    /// Description of what was found.
     pub found: String,
     /// Advice on how to remedy the mismatch.
     pub remedy: String,

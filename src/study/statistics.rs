@@ -12,7 +12,7 @@ use crate::base::rng::stream;
 /// Result of an F test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FTest {
-    /// F statistic.
+    /// Value of the F statistic.
     pub f: f64,
     /// Degrees of freedom of the effect and of the residuals.
     pub df: [f64; 2],
@@ -76,11 +76,11 @@ pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
 /// A correlation coefficient with its two-sided p value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Correlation {
-    /// Pearson's r.
+    /// Pearson's correlation coefficient r.
     pub r: f64,
-    /// Two-sided p value.
+    /// Two-sided p value of the correlation.
     pub p: f64,
-    /// Number of pairs.
+    /// Number of pairs of values.
     pub n: usize,
 }
 
@@ -162,7 +162,7 @@ fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
 /// An estimate with its confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
-    /// Point estimate.
+    /// Point estimate, such as a mean or a share.
     pub estimate: f64,
     /// The lower end of the interval.
     pub low: f64,

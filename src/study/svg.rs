@@ -129,7 +129,7 @@ impl SvgChart {
         self.add(html! { circle class=(class) cx=(x) cy=(y) r="4" { title { (title) } } });
     }
 
-    /// Adds a line through points.
+    /// Adds a line through points to the chart.
     pub fn line(&mut self, class: &str, points: &[(f64, f64)]) {
         let path = self.path(points);
         self.add(html! { path class={ "line " (class) } d=(path) {} });

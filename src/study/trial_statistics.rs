@@ -79,7 +79,7 @@ pub struct Trial {
     pub additional_presses_per_order: Option<f64>,
     /// Median time between successive presses of the human, in seconds.
     pub press_s: Option<f64>,
-    /// Number of signals shown.
+    /// Number of signals shown to the participant.
     pub signals: u64,
     /// Number of contents of the signals: 1 for a signal, k for a proposal of k presses.
     pub signal_contents: u64,

@@ -13,11 +13,11 @@ use crate::measures::cause_kinds::CauseKindCounts;
 pub struct TrialTotals {
     /// Number of presses of both agents.
     pub actions: u64,
-    /// Presses of the human.
+    /// Number of presses of the human.
     pub human_actions: u64,
-    /// Presses of the robot.
+    /// Number of presses of the robot.
     pub robot_actions: u64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
     /// Presses of the human that the robot may have overtaken; they are not counted as errors.
     pub races: u64,
@@ -51,7 +51,7 @@ pub struct TrialTotals {
     pub mean_recovery_s: Option<f64>,
     /// Number of false belief episodes that caused at least one error.
     pub false_belief_episodes: Option<u64>,
-    /// Number of signals shown.
+    /// Number of signals shown to participants.
     pub signals: u64,
     /// Number of orders served.
     pub orders_served: u64,

@@ -9,9 +9,9 @@ use super::tables::tutorial_answers::TutorialAnswer;
 pub struct TutorialSummary {
     /// Number of participants who answered a question.
     pub participants: u64,
-    /// Number of answered questions.
+    /// Number of tutorial questions that were answered.
     pub questions: u64,
-    /// Number of questions whose first answer was right.
+    /// Number of tutorial questions whose first answer was right.
     pub right_at_once: u64,
 }
 

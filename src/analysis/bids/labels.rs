@@ -30,7 +30,7 @@ impl Labels {
         Labels(labels)
     }
 
-    /// The label of a name.
+    /// The BIDS label that a name got.
     pub fn label(&self, name: &str) -> Option<&str> {
         self.0.get(name).map(String::as_str)
     }

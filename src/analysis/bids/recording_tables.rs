@@ -29,15 +29,15 @@ pub struct PressOutcome {
 /// Number of rows in each BIDS table of a recording; together as many as the log has events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct TableCounts {
-    /// Rows of events.
+    /// Number of rows in the table of events.
     pub events: u64,
-    /// Rows of gaze samples.
+    /// Number of rows in the table of gaze samples.
     pub gaze: u64,
-    /// Rows of fixations and blinks, in the table beside the gaze samples.
+    /// Number of rows of fixations and blinks, in the table beside the gaze samples.
     pub eye_events: u64,
-    /// Rows of samples of the robot arm's motion.
+    /// Number of rows in the table of the robot arm's motion.
     pub arm: u64,
-    /// Rows about the belief about one state aspect; one logged event has many.
+    /// Number of rows in the table of beliefs, of which one logged event has one per state aspect.
     pub beliefs: u64,
     /// Events that were left out because they contain words that somebody typed.
     pub words_left_out: u64,

@@ -94,7 +94,7 @@ pub(super) fn described(columns: &[BidsColumn]) -> Map<String, Value> {
     columns.iter().map(|column| (column.name.to_string(), column.described())).collect()
 }
 
-/// The names of columns.
+/// The names of a BIDS table's columns.
 pub(super) fn names(columns: &[BidsColumn]) -> Vec<&'static str> {
     columns.iter().map(|column| column.name).collect()
 }

@@ -8,7 +8,7 @@ use crate::mind::fitting::{Likelihood, Parameter};
 /// Effect of the answers to freeze probes on a fit of the human model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedAnswers {
-    /// Number of answers.
+    /// Number of answers to freeze probes.
     pub answers: u64,
     /// Log likelihood per answer with the parameters before the fit, in nats.
     pub log_likelihood_before: f64,

@@ -27,7 +27,7 @@ const HALF_WIDTH: f64 = 1.96;
 /// Facts about the recordings of a fit, apart from their observations.
 #[derive(Clone, Copy, Debug)]
 pub struct FittedRecordings<'a> {
-    /// Number of recordings.
+    /// Number of recordings in the fit.
     pub number: u64,
     /// Human model in the header of the first recording.
     pub model: &'a HumanModel,
@@ -38,7 +38,7 @@ pub struct FittedRecordings<'a> {
 /// Which parameters to fit, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitPlan {
-    /// The parameters to fit.
+    /// The parameters of the human model to fit.
     pub parameters: Vec<Parameter>,
     /// Start of the search, and value of parameters that are not fitted. `None` for the parameters in the recordings.
     pub start: Option<HumanModel>,
@@ -49,9 +49,9 @@ pub struct FitPlan {
 /// The output of `tomcom fit`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FitSummary {
-    /// Number of recordings.
+    /// Number of recordings in the fit.
     pub recordings: u64,
-    /// Presses of the human.
+    /// Number of presses of the human in these recordings.
     pub human_actions: u64,
     /// Log likelihood per press with the parameters before the fit, in nats.
     pub log_likelihood_before: f64,
@@ -67,12 +67,12 @@ pub struct FitSummary {
     pub recordings_differ: bool,
     /// Whether the search converged within the allowed evaluations.
     pub converged: bool,
-    /// The parameters that were fitted.
+    /// Results for the parameters that were fitted.
     pub parameters: Vec<FittedParameter>,
     /// The human model with the fitted values.
     #[serde(skip)]
     pub model: HumanModel,
-    /// What answers to freeze probes added, if they were used.
+    /// Effect of the answers to freeze probes on the fit, if they were used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub answers: Option<FittedAnswers>,
 }

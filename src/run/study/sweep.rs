@@ -117,7 +117,7 @@ impl ConceptSweep {
         }
     }
 
-    /// What each concept would have prevented with each parameter value, given the trial's true errors and false
+    /// Errors that each concept would have prevented with each parameter value, given the trial's true errors and false
     /// beliefs; to be called after the last event.
     pub fn swept(&self, truth: &TrialTruth) -> Vec<SweptTrial> {
         let signalled = self.swept_concepts.iter().map(|swept| SweptTrial {

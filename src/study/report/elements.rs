@@ -78,12 +78,12 @@ impl Captions {
 /// Column of a table on the report's page: its heading, and the function that makes its cells.
 pub(super) type PageColumn<Row> = (&'static str, fn(&Row) -> Markup);
 
-/// Empty markup.
+/// Empty HTML markup.
 pub(super) fn nothing() -> Markup {
     PreEscaped(String::new())
 }
 
-/// Cells of a table row.
+/// Cells of one row of an HTML table.
 pub(super) fn cells<const N: usize>(cells: [&dyn Render; N]) -> Vec<Markup> {
     cells.into_iter().map(Render::render).collect()
 }

@@ -33,7 +33,7 @@ pub struct PressAnalysis<'a> {
     pub sequence: Option<usize>,
     /// Cause of a person's error by the assistant's estimate.
     pub by_estimate: Option<Cause>,
-    /// Codes of two raters.
+    /// Codes that two raters gave to the error.
     pub codes: [Option<&'a Code>; 2],
     /// Consensus code of the two raters, where it determines the cause of the error.
     pub shared: Option<&'a Code>,

@@ -36,7 +36,7 @@ pub struct GazeRow<'a> {
     pub kitchen: &'a Kitchen,
     /// Start of the run on the trial clock, in seconds.
     pub time_s: f64,
-    /// The run.
+    /// The gaze run of the row.
     pub run: GazeRun,
 }
 

@@ -16,7 +16,7 @@ pub struct TutorialAnswer {
     pub participant: String,
     /// The tutorial's name.
     pub tutorial: String,
-    /// Identifier of the step.
+    /// Identifier of the tutorial's step.
     pub step: String,
     /// The question, as the participant read it.
     pub question: String,
@@ -79,7 +79,7 @@ impl<'a> TutorialAnswers<'a> {
         Some(TutorialAnswers { first, open: open.collect(), has_begun: false })
     }
 
-    /// Takes note of an event.
+    /// Takes note of an event of the recording.
     pub fn note(&mut self, stamped: &Stamped) {
         let Event::Protocol(event) = &stamped.event else { return };
         match event {

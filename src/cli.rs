@@ -202,7 +202,7 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
     let recording = list::chosen(&args.recording)?;
     let ruling = log::rule(&recording, !args.back, args.reason.as_deref().unwrap_or_default())?;
-    // Including a recording again reports other reasons in its log that still exclude it.
+    // A recording that is included again can still be left out because its trial was aborted; that is reported.
     let aborted = if ruling.excluded { None } else { standing::aborted(&recording)? };
     let words = match (ruling.excluded, aborted) {
         (true, _) => "is left out of the analysis".to_string(),

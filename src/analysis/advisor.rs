@@ -33,7 +33,7 @@ pub struct AdviceRequest {
 }
 
 impl AdviceRequest {
-    /// The request after the event with this sequence number and time.
+    /// A request for advice after the event with this sequence number and time.
     pub fn from_follower(follower: &mut Follower, seq: u64, time: SessionTime) -> AdviceRequest {
         let belief = follower.belief_for_advice(time);
         let session = &follower.session;
@@ -77,7 +77,7 @@ impl AdviceRequest {
     }
 }
 
-/// Answers requests for advice in one session.
+/// The session's assistant, which answers requests for advice by its communication concept.
 #[derive(Debug)]
 pub struct Advisor {
     concept: Box<dyn Concept>,
@@ -85,12 +85,12 @@ pub struct Advisor {
 }
 
 impl Advisor {
-    /// The advisor with the concept that the session's settings name.
+    /// The assistant with the communication concept that the session's settings name.
     pub fn new(session: &Session, cost: CostToGo) -> Advisor {
         Advisor::by(session.spec.assistant.concept, session, cost)
     }
 
-    /// The advisor with a given concept.
+    /// The assistant with the given communication concept.
     pub fn by(name: ConceptName, session: &Session, cost: CostToGo) -> Advisor {
         let Session { kitchen, spec, .. } = session;
         Advisor { concept: concept(name, kitchen.clone(), &spec.human, &spec.assistant, session.seed()), cost }

@@ -1,5 +1,5 @@
-//! Checks the belief estimate before each press against the participant's recorded beliefs and against the press
-//! itself.
+//! Checks the belief estimate before each press: how well it agrees with the participant's recorded beliefs, and how
+//! well it predicts the press.
 
 use std::sync::Arc;
 
@@ -26,12 +26,12 @@ use crate::session::{Event, Session, Stamped};
 /// Seed of the bootstrap's random numbers: the same recordings give the same interval.
 const SEED: u64 = 1;
 
-/// The output of `tomcom replay --check-beliefs`.
+/// How well the belief estimate agrees with beliefs and presses: the output of `tomcom replay --check-beliefs`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BeliefCheck {
     /// Number of recordings that were checked.
     pub recordings: u64,
-    /// Presses of the human in the trials.
+    /// Number of the human's presses in the trials.
     pub human_actions: u64,
     /// Source of what participants believed: recorded beliefs, or answers to probes; null if there is neither.
     pub beliefs_from: Option<BeliefBasis>,
@@ -75,7 +75,7 @@ impl BeliefCheck {
 /// Collects, for each counted press of the human, the estimate before it and how it was judged, event by event.
 #[derive(Default)]
 pub struct PressViews {
-    /// Presses of the trial so far.
+    /// Presses of the trial so far, each with the estimate before it.
     pub trial: TrialView,
     /// Recorded belief of the participant before its next press: probability of the true value, by aspect.
     held: Option<Vec<f64>>,
@@ -115,7 +115,7 @@ struct Before {
 }
 
 impl Before {
-    /// Notes the changes and the gaze of an event that has just been applied.
+    /// Notes changes of the kitchen and gaze in an event that has just been applied.
     fn notice(&mut self, session: &Session, event: &Event, change: &Change) {
         self.seen.note(session, event, change);
         let is_own = change.human_press().is_some();

@@ -53,7 +53,7 @@ pub struct CohortRow {
     /// How well the estimate finds false beliefs of the participants in the unassisted trials.
     #[serde(flatten)]
     pub detection: Detection,
-    /// Log likelihood of the presses in the unassisted trials.
+    /// Log likelihood of the human's presses in the unassisted trials, under the model and two baselines.
     pub log_likelihood: LogLikelihood,
     /// Rates in the trials without signals.
     pub unassisted: CohortRates,
@@ -67,7 +67,7 @@ pub struct CohortRow {
     pub saved_interval: Option<[f64; 2]>,
 }
 
-/// The output of `tomcom robustness`.
+/// Robustness of estimate and assistant for each cohort: the output of `tomcom robustness`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RobustnessTable {
     /// Seed of the judged trials.

@@ -57,7 +57,7 @@ pub struct ComparedRecording {
     pub follower: ComparisonFollower,
     /// Whether the trial was aborted or excluded from the analysis.
     pub standing: ExclusionStatus,
-    /// Wizard and assistants side by side.
+    /// Comparison of the communications of wizard and assistants.
     pub comparison: LaneComparison,
     /// Summary of the wizard's signals; `None` where nobody could send signals.
     pub wizard: Option<WizardSummary>,

@@ -21,7 +21,7 @@ use crate::session::wizard_screen::VisibleScreen;
 /// Largest number of differences of each kind that are listed as text.
 const LISTED: usize = 20;
 
-/// The output of `tomcom compare`.
+/// Agreement of wizard and assistants in recordings: the output of `tomcom compare`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparisonSummary {
     /// Agreement between the signals sent and each assistant, over all recordings that count in the analysis.
@@ -55,7 +55,7 @@ pub struct RecordingComparison {
     /// Whether the trial was aborted or excluded from the analysis.
     #[serde(flatten)]
     pub standing: ExclusionStatus,
-    /// Presses of the human in the trial.
+    /// Number of the human's presses in the trial.
     pub human_actions: u64,
     /// Communications of the wizard and of each assistant.
     pub lanes: Vec<LaneSummary>,

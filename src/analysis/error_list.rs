@@ -25,14 +25,14 @@ pub struct ListedError {
 }
 
 impl ListedError {
-    /// The errors of a recording that was followed to its end, in order.
+    /// The errors of the human in a recording that was read to its end, in order.
     pub fn all(follower: &Follower) -> Vec<ListedError> {
         let session = &follower.session;
         let presses = session.timeline.iter().filter_map(|entry| match entry.what {
             TimelineEvent::Press { agent: Agent::Human, button, no_effect } => Some((button, no_effect.is_none())),
             _ => None,
         });
-        // The nth judged press is the nth press of the human on the timeline.
+        // Judged presses and the human's presses on the timeline are the same presses in the same order.
         let errors = follower.judged.iter().zip(presses).filter(|(judged, _)| judged.verdict.error);
         let listed =
             |(index, (judged, (button, effective))): (usize, (&crate::measures::JudgedPress, _))| ListedError {

@@ -27,7 +27,7 @@ use crate::session::{Applied, Event, Session, Stamped, apply};
 /// A session with its judged presses, false belief episodes and belief estimate.
 #[derive(Clone, Debug)]
 pub struct Follower {
-    /// The session up to the last event.
+    /// The session after the last event.
     pub session: Session,
     /// Every press of the human so far, with its judgement.
     pub judged: Vec<JudgedPress>,
@@ -50,9 +50,9 @@ pub struct Follower {
     belief: Option<Belief>,
     /// Cause that a simulated participant recorded in advance for its next press, in case the press is an error.
     told_cause: Option<Cause>,
-    /// Whether errors are attributed to causes.
+    /// Whether the follower attributes errors to their causes.
     finds_causes: bool,
-    /// The estimate before the last counted press of the human.
+    /// The belief estimate before the last counted press of the human.
     pub estimated: Option<PressEstimate>,
     /// The belief estimate at the beginning of the last freeze probe.
     pub probed: Option<ProbedEstimate>,
@@ -83,7 +83,7 @@ pub struct PressEstimate {
 }
 
 impl PressEstimate {
-    /// The estimate in the form that the log records.
+    /// The belief estimate in the form that the log records.
     pub fn witness(&self, kitchen: &Kitchen) -> EstimateWitness {
         EstimateWitness::new(kitchen, self.press, &self.belief, self.state, self.evidence)
     }
@@ -108,7 +108,7 @@ impl InferenceTiming {
 }
 
 impl Follower {
-    /// The follower of a session from before its first event.
+    /// The follower of a session, before the session's first event.
     pub fn new(session: Session, cost: CostToGo) -> Follower {
         let (kitchen, spec, seed) = (session.kitchen.clone(), &session.spec, session.seed());
         let judge = PressJudge::new(kitchen.clone());
@@ -142,8 +142,8 @@ impl Follower {
         self.filter.at(now, &mut self.cost)
     }
 
-    /// The estimate from which a request for advice at `now` starts. Most requests follow an event that has just
-    /// updated it.
+    /// The belief estimate from which a request for advice at `now` starts; it includes unknown gaze unless an event
+    /// has just updated it.
     pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
         match self.updated_at {
             Some(updated) if updated >= now => self.filter.belief().clone(),
@@ -220,7 +220,7 @@ impl Follower {
         }
     }
 
-    /// Updates the estimate by an event that has just been applied.
+    /// Updates the belief estimate by an event that has just been applied.
     fn estimate(&mut self, stamped: &Stamped, change: &Change) {
         let Some(what) = self.observed(stamped, change) else { return };
         let observation = Observation { time: stamped.time, what };

@@ -1,4 +1,4 @@
-//! Gaze quality of a recording: numbers of samples, faults, losses, and the accuracy check.
+//! Gaze quality of a recording: numbers of samples, faults and losses, and results of the accuracy check.
 
 use serde::Serialize;
 
@@ -17,7 +17,7 @@ pub struct GazeSummary {
     /// Number of recorded gaze samples that the belief filter does not use, by fault.
     #[serde(flatten)]
     pub faults: FaultCounts,
-    /// Input that was not recorded, by kind.
+    /// Gaze input that was not recorded, by kind.
     #[serde(flatten)]
     pub dropped: DropCounts,
     /// Number of times that the tracker's clock was matched anew to the session's clock.
@@ -55,7 +55,7 @@ impl GazeSummary {
     }
 }
 
-/// One line about faults of the gaze; `None` if there were none.
+/// One line of text about faults of the gaze; `None` without faults.
 pub fn describe(session: &Session) -> Option<String> {
     let kinds: Vec<String> = faults(session).iter().map(|(number, kind)| format!("{number} {kind}")).collect();
     let samples = count(session.gaze.samples, "sample", "samples");

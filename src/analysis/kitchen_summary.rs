@@ -14,13 +14,14 @@ use crate::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, 
 pub struct KitchenSummary {
     /// The kitchen's identifier.
     pub name: String,
-    /// The number of joint values of all aspects, in decimal: it exceeds what JSON readers take as a number.
+    /// Number of combinations of all aspects' values, as a decimal text, since the number is too large for JSON
+    /// readers.
     pub states: String,
     /// The state aspects with the number of their values.
     pub aspects: Vec<AspectSummary>,
     /// A shortest plan for each dish.
     pub plans: Vec<ShortestPlanSummary>,
-    /// The tags in the corners of the wall display; null where there is no room for them.
+    /// Tags in the corners of the wall display; null if there is no room for them.
     pub tags: Option<TagsSummary>,
 }
 
@@ -33,7 +34,7 @@ pub struct TagsSummary {
     pub edge_m: f64,
     /// The tags, one in each corner of the display.
     pub tags: Vec<TagSummary>,
-    /// The corners of the surface that they span: top left, top right, bottom right, bottom left, in fractions of the
+    /// Corners of the surface that the tags span: top left, top right, bottom right, bottom left, in fractions of the
     /// display.
     pub surface: [[f64; 2]; 4],
 }
@@ -78,7 +79,7 @@ pub struct AspectSummary {
 pub struct ShortestPlanSummary {
     /// The dish's name.
     pub recipe: String,
-    /// Number of presses, of both agents together.
+    /// Length of the plan, as the number of presses of both agents together.
     pub actions: u32,
     /// The presses of one shortest plan, in order: "human: take rice".
     pub presses: Vec<String>,

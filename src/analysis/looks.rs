@@ -5,7 +5,7 @@ use crate::kitchen::LocationId;
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::session::Session;
 
-/// Length of a look after which a location counts as seen, in seconds.
+/// Least duration of a look after which a location counts as seen, in seconds.
 pub const LOOK_S: f64 = 0.1;
 
 /// For each location, the time since which the gaze has been in its area without a change there.

@@ -38,7 +38,7 @@ pub struct HandSummary {
     pub nothing: u64,
 }
 
-/// The output of `tomcom replay RECORDING... --offers`.
+/// Steadiness of offers: the output of `tomcom replay RECORDING... --offers`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SteadinessSummary {
     /// Number of recordings.
@@ -56,7 +56,7 @@ pub struct SteadinessSummary {
     pub reopened: u64,
     /// Share of closed offers that reopened; null without such offers.
     pub reopened_share: Option<f64>,
-    /// Time with an open offer, in seconds.
+    /// Time during which an offer was open, in seconds.
     pub open_s: f64,
     /// Share of the time with an open offer in which the latest recommendation gave its signal a net benefit of 0 or
     /// below; null without offers.
@@ -88,7 +88,7 @@ pub struct SteadinessTally {
 }
 
 impl SteadinessTally {
-    /// The tally of a recording; the hand's random stream is seeded by the session's seed and trial.
+    /// The measurement for a recording; the scripted hand's random stream is seeded by the session's seed and trial.
     pub fn new(session: &Session) -> SteadinessTally {
         SteadinessTally {
             random: stream(session.spec.seed, "reading hand", session.trial),
@@ -102,7 +102,7 @@ impl SteadinessTally {
         }
     }
 
-    /// Accounts for the time from the last event until the next one, at `now`.
+    /// Counts the time from the last event to the next one, which is at `now`.
     pub fn before(&mut self, session: &Session, now: SessionTime) {
         if !session.is_running() {
             // After a pause the scripted hand reads anew.
@@ -184,7 +184,7 @@ pub struct SteadinessSums {
 }
 
 impl SteadinessSums {
-    /// Adds a recording that was followed to its end.
+    /// Adds the measurement of a recording that was read to its end.
     pub fn add(&mut self, tally: SteadinessTally, session: &Session) {
         let sums = &mut self.summary;
         sums.recordings += 1;

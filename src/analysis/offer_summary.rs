@@ -56,7 +56,7 @@ impl TimedOffer {
     }
 }
 
-/// Number and duration of offers, in seconds.
+/// Statistics of the time for which offers stood: number, median and shortest, in seconds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OfferDurations {
     /// Number of offers.

@@ -47,7 +47,7 @@ pub struct ProbeAccuracy {
 /// Effect of assistance on situation awareness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AwarenessEffect {
-    /// Number of participants with answers in assisted and in unassisted trials.
+    /// Number of participants with answers in assisted and in unassisted trials, who are compared.
     pub participants: u64,
     /// Mean over these participants of accuracy with assistance minus accuracy without.
     pub difference: f64,

@@ -13,7 +13,7 @@ use crate::mind::BeliefWitness;
 use crate::session::probes::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use crate::session::{Event, Session, Stamped};
 
-/// Collects the questions of a recording's probes.
+/// Collects the freeze probe questions of a recording, event by event.
 #[derive(Debug, Default)]
 pub struct ProbeCollector {
     seen: SeenContents,
@@ -92,7 +92,7 @@ impl ProbeCollector {
         }
     }
 
-    /// The question with this number in the open probe, and when it appeared.
+    /// The question with this number in the open freeze probe, and when it appeared.
     fn question(&mut self, number: u32) -> Option<(&mut Option<SessionTime>, &mut ProbedQuestion)> {
         let open = self.open.as_mut()?;
         let index = (number as usize).checked_sub(1)?;

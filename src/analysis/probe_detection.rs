@@ -26,13 +26,13 @@ impl<'a> WeighedBelief<'a> {
         Some(WeighedBelief { question, is_wrong: question.is_wrong()?, weight: question.weight() })
     }
 
-    /// The same question, with the belief judged by what the simulated participant believed.
+    /// This question, with the belief judged by what the simulated participant believed.
     pub fn by_true_belief(self) -> Option<WeighedBelief<'a>> {
         let believed = self.question.frozen.as_ref()?.believed.as_ref()?;
         Some(WeighedBelief { is_wrong: believed.is_wrong(), ..self })
     }
 
-    /// The same question with weight 1.
+    /// This question with weight 1.
     pub fn unweighted(self) -> WeighedBelief<'a> {
         WeighedBelief { weight: 1.0, ..self }
     }
@@ -53,7 +53,7 @@ pub struct ProbeDetection {
     /// Area under the ROC curve of a baseline on locations, which knows only whether somebody else changed the location
     /// since the participant last looked at it.
     pub auc_baseline: Option<f64>,
-    /// Expected calibration error of the predicted probabilities of a false belief within [`CALIBRATED`].
+    /// Expected calibration error of the predicted probabilities of a false belief, within the range [`CALIBRATED`].
     pub ece: Option<f64>,
     /// Predicted probabilities of a false belief in bins, beside the share of false beliefs in each bin.
     pub calibration: Calibration,

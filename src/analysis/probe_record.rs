@@ -34,7 +34,7 @@ impl ProbedKind {
         }
     }
 
-    /// The kind in words, in the plural.
+    /// The kind of question in words, in the plural.
     pub fn words(self) -> &'static str {
         match self {
             ProbedKind::Order => "orders",
@@ -45,7 +45,7 @@ impl ProbedKind {
         }
     }
 
-    /// Whether the question is about what comes next (level 2 of situation awareness and above), not about what is.
+    /// Whether the question asks what comes next (level 2 of situation awareness and above), not what is the case now.
     pub fn is_level_2(self) -> bool {
         matches!(self, ProbedKind::NextOrder | ProbedKind::NextPress)
     }
@@ -67,9 +67,9 @@ pub enum ProbeResponse {
 /// State aspect of a probe question at the time the trial froze: estimate, belief and history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrozenAspect {
-    /// Number of values that the aspect can have.
+    /// Number of values that the state aspect can have.
     pub values: usize,
-    /// Name of the most probable value in the estimate.
+    /// Name of the value that the participant most probably believes, in the estimate.
     pub estimate: String,
     /// Expected probability that the participant gives to each value, in the estimate, by the value's name.
     pub estimate_p: BTreeMap<String, f64>,
@@ -114,7 +114,7 @@ pub struct ProbedQuestion {
     pub probe: u32,
     /// Number of the question in the probe, from 1.
     pub question: u32,
-    /// Time of the freeze on the trial's clock, in seconds.
+    /// Time at which the trial froze, on the trial's clock in seconds.
     pub time_s: f64,
     /// Who started the probe: the schedule or the wizard.
     pub origin: ProbeOrigin,
@@ -124,7 +124,7 @@ pub struct ProbedQuestion {
     pub kind: ProbedKind,
     /// Name of the state aspect; for questions of level 2, name of the kind.
     pub aspect: String,
-    /// Probability with which the question was drawn.
+    /// Probability with which the question was drawn (inclusion probability).
     pub inclusion: f64,
     /// Name of the right answer; `None` for questions of level 2 if the trial ended before the answer was known.
     pub truth: Option<String>,
@@ -182,7 +182,7 @@ pub struct ProbedTrial {
     pub dropped: u64,
     /// Number of probes of which the wizard skipped the rest.
     pub skipped: u64,
-    /// The questions that were shown, in order.
+    /// The questions that participants were shown, in order.
     pub questions: Vec<ProbedQuestion>,
 }
 

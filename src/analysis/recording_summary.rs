@@ -20,13 +20,13 @@ pub struct RecordingSummary {
     /// Whether the trial was aborted or excluded from the analysis.
     #[serde(flatten)]
     pub standing: ExclusionStatus,
-    /// Presses of the human in the trial.
+    /// Number of the human's presses in the trial.
     pub human_actions: u64,
-    /// Presses of the robot in the trial.
+    /// Number of the robot's presses in the trial.
     pub robot_actions: u64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// The human's presses that were races with the robot and so do not count as errors.
+    /// Number of the human's presses that were races with the robot and so do not count as errors.
     pub races: u64,
     /// Errors that follow from false beliefs.
     #[serde(flatten)]

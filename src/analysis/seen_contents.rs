@@ -19,7 +19,7 @@ struct SeenLocation {
     has_changed: bool,
     /// Duration, on the trial's clock, for which each content (by its code) was at the location until the last change.
     lay: Vec<(u8, SessionTime)>,
-    /// Time of the last change, or of the trial's start, on the trial's clock.
+    /// Time of the location's last change, or of the trial's start, on the trial's clock.
     since: SessionTime,
 }
 

@@ -11,7 +11,7 @@ pub struct SignalTimes {
 }
 
 impl SignalTimes {
-    /// Takes the next event of a session.
+    /// Takes note of the next event of a session.
     pub fn note(&mut self, stamped: &Stamped) {
         match stamped.event {
             Event::SignalShown { .. } => self.changes.push((stamped.time, true)),

@@ -7,7 +7,7 @@ use super::trial_summary::SimulationSummary;
 /// Numbers of errors and of presses of the human in a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrialErrors {
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
     /// Errors that follow from false beliefs; `None` where the participant's beliefs are not known.
     pub related: Option<u64>,

@@ -37,7 +37,7 @@ pub struct JudgedRecording {
     pub complete: bool,
     /// Presses of the human in the part that was watched.
     pub presses: u32,
-    /// The signals that the wizard sent.
+    /// Signals that the wizard sent while watching, with their judgements.
     pub signals: Vec<JudgedSignal>,
     /// The false beliefs that led to errors, if they began in the part that was watched.
     #[serde(default)]

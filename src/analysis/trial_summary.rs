@@ -21,9 +21,9 @@ pub struct TrialSummary {
     pub human_actions: u64,
     /// Number of presses of the robot.
     pub robot_actions: u64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Presses of the human that the robot may have overtaken; they are not counted as errors.
+    /// Number of the human's presses that the robot may have overtaken (races); they do not count as errors.
     pub races: u64,
     /// Number of signals shown to the participant.
     pub signals: u64,
@@ -130,7 +130,7 @@ impl BeliefErrorSummary {
         sums.figures()
     }
 
-    /// The summary as text; `errors` is the number of all errors.
+    /// The errors from false beliefs as text; `errors` is the number of all errors.
     pub fn describe(&self, errors: u64) -> String {
         let (Some(related), Some(sequences)) = (self.belief_related_errors, self.sequences) else {
             return "belief related errors: not known, since nobody knows what the participant believed".to_string();
@@ -278,7 +278,7 @@ impl Mean {
 pub struct SimulationSums {
     figures: SimulationSummary,
     beliefs: BeliefSums,
-    /// Histograms of the presses per served order, and of the least presses for its dish.
+    /// Histogram of the presses per served order, and histogram of the least number of presses for its dish.
     presses_per_order: BTreeMap<u32, u64>,
     optimal_presses_per_order: BTreeMap<u32, u64>,
     /// Histogram of the times for which offers stood, in milliseconds.

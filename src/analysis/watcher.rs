@@ -33,10 +33,10 @@ use crate::session::settings::Condition;
 use crate::session::wizard_screen::VisibleScreen;
 use crate::session::{Applied, Event, Session, SessionSpec, Stamped};
 
-/// Which concepts to compare, and the window.
+/// Communication concepts to compare with the wizard, and the window within which communications match.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompareRequest {
-    /// Concepts in addition to the session's own.
+    /// Communication concepts to compare in addition to the session's own.
     pub with: Vec<ConceptName>,
     /// Number of the human's presses within which communications match; the estimate leaves out signals sent within
     /// this window.
@@ -60,7 +60,7 @@ impl CompareRequest {
     }
 }
 
-/// A concept with its lane of hypothetical signals.
+/// A communication concept, with the hypothetical signals that it has sent so far.
 #[derive(Debug)]
 struct Voice {
     name: ConceptName,
@@ -85,7 +85,7 @@ struct CounterfactualFilter {
     filter: BeliefFilter,
 }
 
-/// Follows a session event by event and asks the concepts.
+/// Follows a session event by event, and asks each communication concept for its hypothetical signals.
 #[derive(Debug)]
 pub struct ComparisonFollower {
     /// The session with its belief estimate.
@@ -188,7 +188,7 @@ impl ComparisonFollower {
         (self.asked, self.sent.len())
     }
 
-    /// Presses of the human so far.
+    /// Number of the human's presses so far.
     pub fn presses(&self) -> u32 {
         self.follower.session.presses[Agent::Human.index()]
     }
@@ -241,7 +241,7 @@ impl ComparisonFollower {
         Communication { said, time, what, known: self.known.clone() }
     }
 
-    /// Asks every concept for its recommendation.
+    /// Asks every communication concept for its recommendation.
     fn ask(&mut self) {
         let Some((seq, time)) = self.to_ask.take().filter(|_| self.follower.session.is_running()) else { return };
         self.asked += 1;

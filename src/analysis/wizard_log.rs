@@ -22,7 +22,7 @@ pub struct WizardLog {
     seen: Vec<SignalsPerScreen>,
 }
 
-/// Number of signals sent while the wizard's screen showed a given amount of information.
+/// Number of signals sent while the wizard's screen showed a certain amount of information.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalsPerScreen {
     /// Content of the wizard's screen; null before it was first drawn, and without a console.

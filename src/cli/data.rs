@@ -56,7 +56,7 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     print(args.format, &figures, || codes::describe(&figures))
 }
 
-/// Codes the errors of a recording at the console.
+/// Runs `tomcom replay --rater`: lets a rater code the errors of a recording at the console.
 pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
     check_rater(rater)?;
     check_terminal()?;
@@ -70,7 +70,7 @@ pub(super) fn settle(recording: &Path, raters: &[String]) -> Result<(), Failure>
     Ok(review_console::settle(recording, [&one, &other])?)
 }
 
-/// Two different raters, as the values of an option.
+/// Parses two different raters from the values of an option.
 pub(super) fn two_raters(raters: &[String], option: &str) -> Result<[String; 2], Failure> {
     raters.iter().try_for_each(|rater| check_rater(rater))?;
     let wrong = |found: String| {

@@ -85,7 +85,7 @@ pub(super) fn operate(args: &OperateArgs) -> Result<(), Failure> {
     Ok(put(&series::describe(&done))?)
 }
 
-/// Runs a session of a file, optionally with a comparison of wizard and assistants.
+/// Runs the session of a session file at the console, optionally with a comparison of wizard and assistants.
 pub(super) fn new_session(
     session: Option<&Path>,
     flags: &OperateFlags,

@@ -34,7 +34,7 @@ pub struct DisplayedProbe {
     pub parts: Vec<Vec<String>>,
     /// Whether the participant is asked for the confidence in the answer.
     pub confidence: bool,
-    /// Longest duration of a probe, in seconds.
+    /// Longest duration of the freeze probe, in seconds.
     pub limit_s: f64,
     /// Whether all questions are done and the count-down to the trial runs.
     pub closed: bool,
@@ -110,7 +110,7 @@ fn shown_probe(session: &Session) -> Option<&OpenProbe> {
     session.probes.open.as_ref().filter(|open| session.phase == Phase::Paused && !open.is_paused())
 }
 
-/// The question that is shown now, with its index.
+/// The freeze probe question that is shown now, with its index.
 fn asked(open: &OpenProbe) -> Option<(usize, &ProbeQuestion)> {
     let index = open.shown.filter(|_| open.closed.is_none())?;
     Some((index, open.questions.get(index)?))

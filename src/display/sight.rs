@@ -44,7 +44,7 @@ pub struct DisplayUpdate {
     pub checks: bool,
 }
 
-/// Stage of the session as the participant's display tells stages apart.
+/// Stage of the session, which decides which page the participant's display shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayStage {
@@ -64,7 +64,7 @@ pub enum DisplayStage {
     Probe,
     /// The trial is over.
     Over,
-    /// An item of a questionnaire is asked.
+    /// The participant is asked an item of a questionnaire.
     Questionnaire,
     /// All items are answered, and the participant confirms the answers.
     Answered,

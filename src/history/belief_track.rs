@@ -13,10 +13,10 @@ const JUMP: f64 = 0.1;
 const NEWS_S: f64 = 2.0;
 const NEWS: f64 = 0.2;
 
-/// Longest period that a panel shows (the chart of one aspect), in seconds.
+/// Longest period that the console's chart of one state aspect shows, in seconds.
 pub const SHOWN_S: f64 = 60.0;
 
-/// Estimate of one aspect at one time.
+/// Estimate of the participant's belief about one state aspect at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AspectSnapshot {
     /// Index of the value that the participant most probably believes.
@@ -28,7 +28,7 @@ pub struct AspectSnapshot {
 }
 
 impl AspectSnapshot {
-    /// Whether the most probable value is false.
+    /// Whether the value that the participant most probably believes is false.
     pub fn is_false(self) -> bool {
         f64::from(self.p_truth) < FALSE_BELOW
     }
@@ -39,7 +39,7 @@ impl AspectSnapshot {
 pub struct BeliefSnapshot {
     /// Session time of the estimate.
     pub time: SessionTime,
-    /// Whether only gaze samples came since the previous snapshot.
+    /// Whether only gaze samples, and no other events, came since the previous snapshot.
     by_gaze: bool,
     /// Estimated belief about each state aspect.
     pub held: Vec<AspectSnapshot>,
@@ -48,7 +48,7 @@ pub struct BeliefSnapshot {
 }
 
 impl BeliefSnapshot {
-    /// Snapshot of the estimate at a time, for the kitchen in `state`.
+    /// Snapshot of the belief estimate at a time, when the kitchen's true state is `state`.
     pub fn new(
         kitchen: &Kitchen,
         state: State,
@@ -71,14 +71,14 @@ impl BeliefSnapshot {
     }
 }
 
-/// Snapshots of the estimate in order of time.
+/// Snapshots of the belief estimate in the order of time.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefHistory {
     moments: Vec<BeliefSnapshot>,
 }
 
 impl BeliefHistory {
-    /// Times at which a false belief begins.
+    /// Session times at which a false belief begins in the estimate.
     pub fn newly_false(&self) -> impl Iterator<Item = SessionTime> {
         let begins = |moment: &&BeliefSnapshot| moment.wrong_since.contains(&Some(moment.time));
         self.moments.iter().filter(begins).map(|moment| moment.time)
@@ -115,13 +115,13 @@ impl BeliefHistory {
         let known = self.moments.len().min(other.moments.len());
         self.moments.extend_from_slice(&other.moments[known..]);
     }
-    /// Snapshots up to and including a time.
+    /// Snapshots of the belief estimate up to and including a time.
     pub fn until(&self, time: SessionTime) -> &[BeliefSnapshot] {
         &self.moments[..self.moments.partition_point(|moment| moment.time <= time)]
     }
 }
 
-/// Start of the present false belief about an aspect; `None` if the belief is right.
+/// Start of the present false belief about a state aspect; `None` if the belief is right.
 pub fn wrong_since(moments: &[BeliefSnapshot], aspect: usize) -> Option<SessionTime> {
     moments.last()?.wrong_since[aspect]
 }

@@ -38,7 +38,7 @@ pub struct CommunicationContext {
 /// What one communication says: a signal, or proposed presses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CommunicationContent {
-    /// A signal of the wizard or of an assistant.
+    /// A signal that the wizard or an assistant sends.
     Signal(Signal),
     /// Proposed presses, as the names of their buttons.
     Proposal(Vec<String>),
@@ -99,7 +99,7 @@ pub struct Communication {
 pub struct CommunicationLane {
     /// Name of the sender: "wizard", "tom-com".
     pub name: String,
-    /// Concept of an assistant's lane; `None` for the lane of the signals that the participant saw.
+    /// Communication concept of the assistant; `None` for the signals that the participant saw.
     pub concept: Option<ConceptName>,
     /// Communications of this sender, in the order of time.
     pub spoken: Vec<Communication>,
@@ -139,14 +139,15 @@ pub struct LaneComparison {
     pub window: u32,
     /// The lanes, one for each sender; the first holds the signals that the participant saw.
     pub lanes: Vec<CommunicationLane>,
-    /// The first lane compared with each other lane.
+    /// Comparisons of the first lane with each assistant's lane.
     pub pairs: Vec<LanePair>,
     /// Communications without a match, in order of time; those that later ones can still match are left out.
     pub differences: Vec<UnmatchedCommunication>,
 }
 
 impl LaneComparison {
-    /// Compares the lanes of a trial after `presses` presses of the human; `over` says that the trial has ended.
+    /// Compares the communications of all senders in a trial after `presses` presses of the human; `over`: the trial
+    /// has ended.
     pub fn new(lanes: Vec<CommunicationLane>, window: u32, presses: u32, over: bool) -> LaneComparison {
         let said: Vec<Vec<CommunicationEvent>> = lanes.iter().map(CommunicationLane::said).collect();
         let pair = |with: &Vec<CommunicationEvent>| {

@@ -1,4 +1,4 @@
-//! Words for freeze probes: their questions, answers and events.
+//! Wording of freeze probes: questions, answers and events as texts.
 
 use crate::base::words::count;
 use crate::session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};

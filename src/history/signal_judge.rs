@@ -39,7 +39,7 @@ struct Standing {
     corrected: Option<u32>,
 }
 
-/// Judges signals by the beliefs before each of them.
+/// Judges each signal by the participant's beliefs at the time it is sent.
 #[derive(Clone, Debug, Default)]
 pub struct SignalJudge {
     beliefs: Vec<Standing>,
@@ -50,7 +50,7 @@ pub struct SignalJudge {
 }
 
 impl SignalJudge {
-    /// Judges an event that has been applied to the session, by the beliefs that were noted before it.
+    /// Judges the signal in an event that has been applied to the session, by the beliefs noted before the event.
     pub fn judge(&mut self, stamped: &Stamped, session: &Session) {
         match &stamped.event {
             Event::TrialStarted => *self = SignalJudge::default(),

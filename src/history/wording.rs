@@ -1,4 +1,4 @@
-//! Words for buttons, locations, signals, phases and events.
+//! Wording of buttons, locations, signals, phases and events as texts for screens and reports.
 
 use super::probe_wording;
 use crate::base::words::count;
@@ -41,8 +41,9 @@ pub fn code(code: &Code) -> String {
     }
 }
 
-/// Why the human's press of this button would have no effect now: "no effect: the cooking pot is empty"; `None` if it
-/// would have one. Short, since it stands beside the keys at 80 columns.
+/// Why a press of this button by the human would have no effect now, as text: "no effect: the cooking pot is empty";
+/// `None` if the press would have one. The text is short, since it stands beside the keys on a terminal with 80
+/// columns.
 pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String> {
     let (why, about) = kitchen.no_effect(state, Agent::Human, id)?;
     Some(format!("no effect: {}", because(kitchen, why, about, kitchen.content_label(state, about))))
@@ -65,7 +66,7 @@ fn because(kitchen: &Kitchen, why: NoEffect, about: LocationId, content: &str) -
     }
 }
 
-/// Location of a button: its own location, or the agent's hand.
+/// Location at which a button acts: its own location, or the agent's hand.
 pub fn place(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> LocationId {
     let hand = kitchen.hands[agent.index()];
     match kitchen.button(agent, id).action {
@@ -241,7 +242,7 @@ pub fn arm_phase(phase: ArmPhase) -> &'static str {
     }
 }
 
-/// The state of the trial in a few words: "over: time is up".
+/// State of the trial in a few words: "over: time is up".
 pub fn trial(phase: Phase) -> &'static str {
     match phase {
         Phase::Ready => "ready",
@@ -256,7 +257,7 @@ pub fn trial(phase: Phase) -> &'static str {
     }
 }
 
-/// A tracker event in words; `None` for fixations and blinks, which are too frequent.
+/// An event of the eye tracker in words; `None` for fixations and blinks, which are too frequent.
 pub fn tracker(event: &TrackerEvent) -> Option<String> {
     Some(match event {
         TrackerEvent::Connected { device } => format!("eye tracker connected: {device}"),

@@ -9,7 +9,7 @@ use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::communication::recommendation::Recommendation;
 
 impl Advisor {
-    /// Starts the advisor's thread, which ends when the desk is dropped.
+    /// Starts the assistant's thread, which ends when the returned desk is dropped.
     pub fn on_thread(mut self) -> AdvisorDesk {
         let (ask, questions) = channel::<AdviceRequest>();
         let (answer, answers) = unbounded_channel();
@@ -26,7 +26,7 @@ impl Advisor {
     }
 }
 
-/// The session's connection to the advisor's thread.
+/// A live session's connection to the assistant's thread.
 #[derive(Debug)]
 pub struct AdvisorDesk {
     ask: Sender<AdviceRequest>,
@@ -35,14 +35,14 @@ pub struct AdvisorDesk {
 }
 
 impl AdvisorDesk {
-    /// Sends a request; a newer request replaces one that has not been answered.
+    /// Sends a request for advice, which replaces an earlier one that has not been answered.
     pub fn ask(&self, question: AdviceRequest) {
-        // If the thread has ended, the session continues without recommendations.
+        // If the assistant's thread has ended, the session continues without recommendations.
         let _ = self.ask.send(question);
     }
 }
 
-/// Waits for the next recommendation; forever if there is no advisor.
+/// Waits for the assistant's next recommendation; forever if the session has no assistant.
 pub async fn next_advice(advisor: &mut Option<AdvisorDesk>) -> Option<Recommendation> {
     match advisor {
         Some(desk) => desk.answers.recv().await,

@@ -1,4 +1,4 @@
-//! Exports recordings as a BIDS data set.
+//! Exports recordings as a data set in the Brain Imaging Data Structure (BIDS).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Header, apply};
 
-/// Summary of an export as a BIDS data set.
+/// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsSummary {
     /// Folder of the data set.

@@ -43,7 +43,7 @@ pub type ProbedParticipant = (String, ProbedTrial);
 /// Trials of one kitchen whose estimates are checked.
 #[derive(Clone, Debug)]
 pub struct BeliefCheckTrials {
-    /// The kitchen of all these trials.
+    /// The kitchen that all trials share.
     pub kitchen: Arc<Kitchen>,
     /// Trials in the order of the recordings.
     pub trials: Vec<TrialView>,

@@ -118,7 +118,7 @@ impl CodedRecording {
     }
 }
 
-/// Output of `tomcom codes`.
+/// Raters' codes, agreement and disagreements: the output of `tomcom codes`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CodesSummary {
     /// Recordings, with the number of errors that each rater has coded.

@@ -87,7 +87,7 @@ pub(super) fn greeting(session: &RaterSession) -> String {
     }
 }
 
-/// Saves the codes beside the log.
+/// Saves the raters' codes beside the log.
 ///
 /// # Errors
 /// The folder cannot be written to.

@@ -122,7 +122,8 @@ impl OperatorDesk {
 }
 
 impl OperatorInput {
-    /// The next input; `None` if the program has to end, because of a signal or because the terminal was closed.
+    /// Waits for the next input of the wizard; `None` if the program has to end, because of a signal or because the
+    /// terminal was closed.
     pub async fn next(&mut self) -> Option<ConsoleMessage> {
         tokio::select! {
             biased;
@@ -179,7 +180,8 @@ impl GazeTracker {
     pub async fn next(&mut self) -> Option<Vec<GazeNews>> {
         let Some(news) = &mut self.news else { return std::future::pending().await };
         let mut packet = Vec::new();
-        // All messages are received at once, so none is lost if another branch is selected.
+        // All pending messages are received in one call, so that none is lost if another branch of the event loop is
+        // selected.
         news.recv_many(&mut packet, PACKET).await;
         packet.iter().for_each(|news| self.know(news));
         (!packet.is_empty()).then_some(packet)

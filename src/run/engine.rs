@@ -57,17 +57,17 @@ pub struct Engine {
     participant: Option<SimulatedParticipant>,
     /// Gaps in the simulated eye tracker's data, if the session has any.
     gaps: Option<GazeGaps>,
-    /// The scripted wizard, if there is one.
+    /// The scripted wizard of the session, if there is one.
     wizard: Option<ScriptedWizard>,
     next_seq: u64,
-    /// Stamped events that have not been returned yet.
+    /// Stamped events that the engine has not returned to the caller yet.
     out: Vec<Stamped>,
     /// The latest event after which advice is requested; the request is made once the event's immediate consequences
     /// have been applied.
     to_ask: Option<(u64, SessionTime)>,
     /// The latest request for advice, until it is answered.
     asked: Option<AdviceRequest>,
-    /// Requests for advice that have not been returned yet.
+    /// Requests for advice that the engine has not returned to the caller yet.
     questions: Vec<AdviceRequest>,
 }
 
@@ -129,7 +129,7 @@ impl Engine {
         Advisor::new(self.session(), self.follower.cost.clone())
     }
 
-    /// New requests for advice since the last call, the oldest first.
+    /// Requests for advice since the last call, the oldest first.
     pub fn take_questions(&mut self) -> Vec<AdviceRequest> {
         std::mem::take(&mut self.questions)
     }
@@ -164,7 +164,7 @@ impl Engine {
         &self.follower.judged
     }
 
-    /// Time of the next internal event; `None` while the trial is not running.
+    /// Session time of the next internal event; `None` while the trial is not running.
     pub fn next_due(&self) -> Option<SessionTime> {
         self.next_source().map(|(time, _)| time)
     }
@@ -309,7 +309,7 @@ impl Engine {
         self.record_own(now, event);
     }
 
-    /// Applies immediate consequences, then opens or closes offers and requests advice.
+    /// Applies the immediate consequences of an event, then opens or closes offers and requests advice.
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
         self.note_unawareness(now);
@@ -322,7 +322,7 @@ impl Engine {
         self.review_probe(now);
     }
 
-    /// Applies due timers, then the robot's reaction to the state.
+    /// Applies the timers that are due, then lets the robot react to the state.
     fn let_follow(&mut self, now: SessionTime) {
         while self.session().is_running() {
             if self.timers.next_due().is_some_and(|due| due <= now) {

@@ -115,7 +115,7 @@ pub enum ReviewError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
-    /// The record of a training cannot be written.
+    /// The record of a wizard's training cannot be written.
     #[error("{}: the training cannot be recorded: {reason}", path.display())]
     #[diagnostic(help("a folder that can be written to, with --out"))]
     Training {

@@ -27,7 +27,7 @@ const FILES: Duration = Duration::from_millis(50);
 /// Period of [`LoopEvent::WatchTick`], the check of recording and devices.
 const WATCH: Duration = Duration::from_millis(250);
 
-/// An event of the loop. Several pending events are handled in the order of the variants.
+/// An event of the console's event loop. If several are pending, they are handled in the order of the variants.
 pub(super) enum LoopEvent {
     /// The program has to end: a termination signal arrived, or the terminal was closed.
     EndRequest,
@@ -35,7 +35,7 @@ pub(super) enum LoopEvent {
     Terminal(ConsoleMessage),
     /// An internal event of the session is due.
     EngineDue,
-    /// A step of a gaze accuracy check is due.
+    /// A step of a check of gaze accuracy is due.
     TargetDue,
     /// An input from the participant's page.
     Page(PageInput),
@@ -103,7 +103,7 @@ pub(super) trait ConsoleShell {
         std::future::pending().await
     }
 
-    /// Handles an event; returns the result if the shell is left.
+    /// Handles an event of the loop; returns the shell's result if the shell is left.
     fn take(&mut self, event: LoopEvent) -> Result<Option<Self::Outcome>, Self::Error>;
 
     /// Advances the shell to the present time before a frame; returns whether a frame is needed.

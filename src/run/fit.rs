@@ -21,7 +21,7 @@ use crate::session::probes::{ProbeEvent, ProbeQuestion};
 /// Recorded trials to which the human model is fitted, all of one kitchen.
 #[derive(Clone, Debug)]
 pub struct FitTrials {
-    /// The kitchen of all these trials.
+    /// The kitchen that all trials share.
     pub kitchen: Arc<Kitchen>,
     /// Human model in the header of the first recording.
     pub model: HumanModel,

@@ -1,4 +1,4 @@
-//! Runs a session in virtual time, from one due event to the next, as fast as possible.
+//! Runs a session in virtual time as fast as possible, by jumping from one due event to the next.
 
 use super::engine::Engine;
 use crate::base::time::SessionTime;

@@ -24,7 +24,7 @@ use crate::scene::entity_content::slug;
 use crate::scene::{DerivedData, SessionScene};
 use crate::session::Stamped;
 
-/// First ports of the server and of the web viewer.
+/// First ports that are tried for the stream's server and for the web viewer.
 const SERVER_PORT: u16 = 9878;
 const WEB_PORT: u16 = 9090;
 /// Period of polling a stream file that another program is writing.
@@ -201,7 +201,7 @@ pub fn save(recording: &Path) -> Result<PathBuf, RerunError> {
 #[derive(Clone, Copy)]
 enum StreamPlace<'a> {
     File(&'a Path),
-    /// Beside the log of a single recording that no program is writing.
+    /// Only beside the log, for a single recording that no program is writing.
     BesideLog,
     /// Beside the log or, if that is not possible, in the system's folder for temporary files.
     Anywhere,
@@ -370,7 +370,7 @@ impl Playing {
         header.started.clone().unwrap_or_else(|| format!("seed {} trial {}", header.session.seed, header.trial))
     }
 
-    /// Writes the whole recording; returns the number of rows.
+    /// Writes the whole recording to the stream; returns the number of rows.
     fn write(mut self, writer: &mut RerunWriter) -> FileResult<u64> {
         writer.fixed(&self.lane, &self.scene.fixed());
         let mut rows = writer.moment(&self.lane, &self.scene.opening());

@@ -47,7 +47,7 @@ pub struct RemainingTrials {
     pub participant: usize,
     /// Folder of the participant's recordings.
     pub out: PathBuf,
-    /// Comparison of wizard and assistants, if it is shown.
+    /// Comparison of wizard and assistants, if the console shows it.
     pub compare: Option<CompareRequest>,
 }
 

@@ -14,7 +14,7 @@ use crate::edge::{frozen_file, recordings};
 use crate::session::plan::{Progress, RecordingOutcome, Study};
 use crate::study::frozen_plan::FrozenPlan;
 
-/// Output of `tomcom plan SESSION`.
+/// Progress of a study: the output of `tomcom plan SESSION`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyPlanSummary {
     /// Name of the study plan.
@@ -56,7 +56,7 @@ impl StudyPlanSummary {
     }
 }
 
-/// Output of `tomcom plan SESSION --freeze FILE`.
+/// Result of freezing a study plan: the output of `tomcom plan SESSION --freeze FILE`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrozenSummary {
     /// Name of the study plan.

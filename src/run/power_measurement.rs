@@ -11,7 +11,7 @@ use crate::study::power::{POOLS, RejectionCount, STUDIES_OF_POOL, STUDIES_OF_RAT
 use crate::study::power_answer::{PowerSummary, SizeCounts};
 use crate::study::simulation_pool::SimulationPool;
 
-/// Number of studies that a thread draws at a time.
+/// Number of studies that a thread draws in one block.
 const BLOCK: u64 = 25;
 
 /// Request of a power analysis: study sizes, number of drawn studies, and effect.

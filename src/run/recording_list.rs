@@ -44,7 +44,7 @@ pub fn list(
     Ok((list, paths))
 }
 
-/// The last part of a recording's path.
+/// Name of a recording's folder: the last part of its path.
 fn name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
@@ -63,7 +63,7 @@ fn read_or_tell(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, 
     })
 }
 
-/// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen.
+/// Applies all events of a recording; `cost` is reused for the next recording of the same kitchen.
 fn read(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, CostToGo)>) -> FileResult<ListedRecording> {
     let mut log = LogReader::open(path)?;
     let mut session = log.session();

@@ -50,7 +50,7 @@ impl From<FileError> for ResumeError {
 /// A session that continues a recording after its cut.
 #[derive(Debug)]
 pub struct ResumedSession {
-    /// The engine, in the state at the cut.
+    /// The engine, in the session's state at the cut.
     pub engine: Engine,
     /// First events of the new part: events lost by the cut, and the pause of a running trial.
     pub first: Vec<Stamped>,
@@ -99,7 +99,7 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     let mut header = Header::new(old.session, old.trial, old.layout, old.recipes);
     header.continues = Some(continues);
     header.keys = old.keys;
-    // All parts of a recording have one format.
+    // All parts of a recording have the same version of the format.
     header.version = old.version;
     Ok(ResumedSession { engine: again.engine, first, header, time, folder, lock })
 }

@@ -86,7 +86,7 @@ struct Review {
     /// Session time that is shown, and the instant at which that time was reached.
     now: SessionTime,
     at: Instant,
-    /// Instant at which the latest event of a growing recording was read.
+    /// Instant at which the newest event of a recording in progress was read.
     read_at: Instant,
     grows: bool,
     dirty: bool,

@@ -155,7 +155,7 @@ impl SeekableReplay {
         while self.position < position && self.forward().is_some() {}
     }
 
-    /// Number of events up to and including a time.
+    /// Number of the recording's events up to and including a time.
     pub fn until(&self, time: SessionTime) -> usize {
         self.events.partition_point(|stamped| stamped.time <= time)
     }

@@ -63,7 +63,7 @@ fn in_runtime(work: impl Future<Output = Result<SeriesOutcome, LiveError>>) -> R
     runtime.block_on(work)
 }
 
-/// The results of the sessions as text.
+/// The results of a participant's sessions as text.
 pub fn describe(sitting: &SeriesOutcome) -> String {
     let ends: String = sitting.done.iter().map(|end| format!("{}\n", end.describe())).collect();
     let remark = sitting.remark.as_ref().map_or(String::new(), |remark| format!("{remark}\n"));

@@ -59,7 +59,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The shard that contains all trials.
+    /// The only shard of an undivided simulation, with all trials.
     pub const WHOLE: Shard = Shard { number: 1, of: 1 };
 }
 
@@ -211,7 +211,7 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
     Ok(figures.recordings.iter().map(PathBuf::from).collect())
 }
 
-/// Folder of a trial's recording; its name does not depend on the number of trials.
+/// Folder of a trial's recording; the folder's name does not depend on the number of trials.
 fn folder_of_trial(out: &Path, spec: &SessionSpec) -> PathBuf {
     let period = spec.step.as_ref().and_then(|step| step.period);
     let period = period.map_or(String::new(), |period| format!("-{period}"));

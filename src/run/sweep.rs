@@ -41,7 +41,7 @@ enum Knob {
     /// Rationality tau and reading radius of the human model.
     Tau,
     Radius,
-    /// Whether the assistant uses the gaze.
+    /// Whether the assistant uses gaze to estimate beliefs.
     Gaze,
     /// When the assistant is asked for advice, besides after presses and changes of the task.
     Asks,

@@ -1,6 +1,6 @@
-//! `tomcom train`: a wizard watches recordings with known false beliefs, sends signals with the usual keys, and gets
-//! feedback on each signal and a score that is compared with a criterion. The recorded participant does not see the
-//! signals.
+//! Command `tomcom train`: a wizard watches recordings with known false beliefs, sends signals with the usual keys, and
+//! gets feedback on each signal and a score that is compared with a criterion. The recorded participant does not see
+//! the signals.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -146,13 +146,14 @@ impl TrainingShell {
         self.model.notice = None;
     }
 
-    /// Shows a signal on the timeline and as the participant would see it. Signals that are not possible are ignored.
+    /// Shows a signal of the wizard on the timeline and as the participant would see it. Impossible signals are
+    /// ignored.
     fn show(&mut self, event: Event) {
         let shown = Stamped { seq: self.film.position as u64, time: self.now.max(self.film.session.time), event };
         let _ = apply(&mut self.film.session, &shown);
     }
 
-    /// Judges a signal and gives feedback.
+    /// Judges a signal of the wizard and gives feedback.
     fn signal(&mut self, shown: Event) {
         let Event::SignalShown { signal, .. } = &shown else { return };
         if !self.model.playback.as_ref().is_some_and(|playback| playback.playing) {
@@ -256,7 +257,7 @@ impl TrainingShell {
         worths(&self.sent, &self.spells).into_iter().filter_map(hit).collect()
     }
 
-    /// The wizard's performance on the periods that have begun.
+    /// The wizard's performance on the periods of false belief that have begun.
     fn measures(&self) -> WizardMeasures {
         let clock = self.film.session.trial_clock(self.now);
         let begun: Vec<FalseBeliefPeriod> = self.spells.iter().filter(|spell| spell.began <= clock).cloned().collect();

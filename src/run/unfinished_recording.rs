@@ -25,7 +25,7 @@ pub(super) struct PreparedSession {
     pub consent: Option<ProtocolEvent>,
     /// Session time at which the session begins.
     pub time: SessionTime,
-    /// Comparison of wizard and assistants, if it is shown.
+    /// Comparison of wizard and assistants, if the console shows it.
     pub compare: Option<CompareRequest>,
     pub place: RecordingPlace,
 }

@@ -18,7 +18,7 @@ use crate::session::admit::is_external;
 use crate::session::header::PEOPLE_SINCE;
 use crate::session::{Event, Stamped};
 
-/// Result of `tomcom replay RECORDING --verify`.
+/// Whether a recording verifies: the result of `tomcom replay RECORDING --verify`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verification {
     /// Whether running the session again gave the same events and states.
@@ -47,7 +47,7 @@ pub struct VerificationDifference {
     pub log: PathBuf,
     /// Line number in the log, from 1.
     pub line: usize,
-    /// The recorded event, as in the log.
+    /// The recorded event, as a line of the log.
     pub recorded: String,
     /// Line from running the session again; null if it gives none.
     pub again: Option<String>,

@@ -8,7 +8,7 @@ use crate::history::comparison::LaneComparison;
 use crate::session::{Event, Stamped};
 
 impl ComparisonFollower {
-    /// Starts the comparison's thread, which ends when the desk is dropped.
+    /// Starts the comparison's thread, which ends when the returned desk is dropped.
     pub fn on_thread(mut self) -> ComparisonDesk {
         let (tell, events) = channel::<Stamped>();
         let (show, views) = channel();
@@ -31,7 +31,7 @@ impl ComparisonFollower {
     }
 }
 
-/// The console's connection to the comparison's thread.
+/// The console's connection to the thread that compares wizard and assistants.
 #[derive(Debug)]
 pub struct ComparisonDesk {
     tell: Sender<Stamped>,
@@ -41,7 +41,7 @@ pub struct ComparisonDesk {
 impl ComparisonDesk {
     /// Passes an event of the session to the comparison.
     pub fn tell(&self, stamped: &Stamped) {
-        // If the thread has ended, the session continues without a comparison.
+        // If the comparison's thread has ended, the session continues without a comparison.
         let _ = self.tell.send(stamped.clone());
     }
 

@@ -56,9 +56,9 @@ const JOINTS: [(&str, Colour); 6] = [
 #[derive(Clone, Debug)]
 pub struct ArmScene {
     arm: Arm,
-    /// Motion of the timed arm; `None` for the simulated arm, whose samples are in the session.
+    /// Motion of the timed arm; `None` for the physical arm, whose samples are part of the session.
     motion: Option<JointMotion>,
-    /// Time and joint angles of the last update.
+    /// Session time and joint angles of the last update.
     until: SessionTime,
     joints: JointAngles,
     /// Whether a force is shown at the arm's tip at present.
@@ -76,7 +76,7 @@ impl ArmScene {
         ArmScene { arm, motion, until: session.time, joints, feels: false }
     }
 
-    /// Table, buttons, and the shapes of the links.
+    /// Entities that do not change: table, buttons, and the shapes of the arm's links.
     pub fn fixed(&self, kitchen: &Kitchen) -> Vec<EntityUpdate> {
         let mut rows = vec![EntityUpdate::new("robot/table", table(kitchen))];
         for (alone, name) in [(None, "shared"), (Some(Agent::Human), "human"), (Some(Agent::Robot), "robot")] {
@@ -112,11 +112,11 @@ impl ArmScene {
         rows
     }
 
-    /// Updates of the arm's motion up to a time.
+    /// Entity updates of the arm's motion up to a time.
     pub fn until(&mut self, time: SessionTime) -> Vec<(SessionTime, Vec<EntityUpdate>)> {
         let mut moments = Vec::new();
         let Some(motion) = &self.motion else { return moments };
-        // A resting arm needs no update.
+        // The arm at rest needs no updates.
         let end = time.min(motion.rests_at() + SessionTime(EVERY_NS));
         let mut at = SessionTime((self.until.0 / EVERY_NS + 1) * EVERY_NS);
         while at <= end {
@@ -131,7 +131,7 @@ impl ArmScene {
         moments
     }
 
-    /// Updates by an event that has just been applied.
+    /// Entity updates of arm and hand from an event that has just been applied.
     pub fn follow(&mut self, session: &Session, stamped: &Stamped, change: &Change) -> Vec<EntityUpdate> {
         let now = stamped.time;
         let kitchen = &session.kitchen;

@@ -9,7 +9,7 @@ use crate::arm::link::CollisionSolid;
 /// New content of one entity in Rerun's scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EntityUpdate {
-    /// The path of the entity, such as `kitchen/plate`.
+    /// Path of the entity in Rerun, such as `kitchen/plate`.
     pub entity: String,
     /// Content that the entity shows from now on.
     pub shown: EntityData,
@@ -25,9 +25,9 @@ impl EntityUpdate {
 /// Content of an entity in Rerun's scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EntityData {
-    /// Outlines in the kitchen; an empty list clears the entity.
+    /// Outlines of rectangles in the kitchen; an empty list clears the entity.
     Areas(Vec<SceneArea>),
-    /// Discs and words in the kitchen.
+    /// Discs with labels in the kitchen.
     Discs(Vec<SceneDisc>),
     /// A point with a circle around it in the kitchen, for gaze.
     Sight {
@@ -61,7 +61,7 @@ pub enum EntityData {
         /// Colour of the line.
         colour: Colour,
     },
-    /// A page in Markdown, which replaces the previous one.
+    /// A page of text in Markdown, which replaces the previous page.
     Page(String),
     /// Text of a lane that shows a state over time; an empty text clears the lane.
     State(String),
@@ -119,7 +119,7 @@ pub struct SceneSeries {
     pub colour: Colour,
 }
 
-/// Shape of the marks of a series.
+/// Shape of the marks of a time series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkShape {
     /// Crosses as marks.

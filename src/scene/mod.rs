@@ -1,7 +1,8 @@
 //! A session as Rerun shows it, as plain data: updates of entities with their times. Entities are the kitchen, the arm,
 //! beliefs, net benefits of signals, probes, and a text log.
 //!
-//! A [`SessionScene`] follows a session event by event, live and from a recording. It does not depend on the viewer.
+//! A [`SessionScene`] follows a session event by event, live and from a recording. The scene does not depend on the
+//! viewer.
 
 mod arm;
 mod belief_entities;
@@ -31,7 +32,7 @@ pub struct SceneUpdate {
     pub time: SessionTime,
     /// Time on the trial's clock, which starts with the trial and stops in pauses, as on the console.
     pub trial: SessionTime,
-    /// Sequence number of the newest event.
+    /// Sequence number of the newest event at that time.
     pub step: u64,
     /// The entities that change, with their new content.
     pub rows: Vec<EntityUpdate>,
@@ -92,7 +93,7 @@ impl SessionScene {
         SceneUpdate { time, trial: self.session.trial_clock(time), step: self.step(), rows }
     }
 
-    /// Sequence number of the newest event.
+    /// Sequence number of the newest event that the scene has shown.
     fn step(&self) -> u64 {
         self.next.saturating_sub(1)
     }
@@ -119,7 +120,7 @@ impl SessionScene {
         moments
     }
 
-    /// Updates between events, up to a time (the arm's motion).
+    /// Entity updates between events, up to a time, which show the arm's motion.
     pub fn until(&mut self, time: SessionTime) -> Vec<SceneUpdate> {
         let step = self.step();
         let session = &self.session;

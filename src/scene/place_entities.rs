@@ -10,7 +10,7 @@ use crate::kitchen::{
 };
 use crate::session::{Session, proposals};
 
-/// Half widths of lines, in millimetres.
+/// Half widths of outlines, in millimetres.
 const THIN: f64 = 2.0;
 const THICK: f64 = 6.0;
 /// Distance of a label's anchor above the edge of its location, in millimetres; Rerun draws text below its anchor.

@@ -12,15 +12,15 @@ use crate::session::study_arm::StudyArm;
 /// from 0 (none) to 1 (full). Answers to items in which agreement means rejection are reversed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Acceptance {
-    /// Number of participants whose mean answer is above 2/3.
+    /// Number of participants with high acceptance: a mean answer above 2/3.
     pub high: u64,
-    /// Number of participants whose mean answer is above 7/12, up to 2/3.
+    /// Number of participants with medium acceptance: a mean answer above 7/12, up to 2/3.
     pub medium: u64,
-    /// Number of participants whose mean answer is within 1/12 of the middle (one point of a seven-point scale).
+    /// Number of undecided participants: a mean answer within 1/12 of the middle (one point of a seven-point scale).
     pub undecided: u64,
-    /// Number of participants whose mean answer is below 5/12.
+    /// Number of participants with low acceptance: a mean answer below 5/12.
     pub low: u64,
-    /// Participants without answers to such items.
+    /// Number of participants without answers to items about acceptance.
     pub not_reported: u64,
     /// Mean acceptance over all participants, from 0 to 1.
     pub mean: Option<f64>,
@@ -47,7 +47,7 @@ pub struct ItemSummary {
     pub points: Option<u8>,
     /// Number of answers at each scale point, from 1, or with each option, in the order of the options.
     pub counts: Vec<u64>,
-    /// The texts of the options, in their order.
+    /// Texts of the item's options, in their order.
     pub options: Vec<String>,
     /// Number of answers to the item.
     pub answers: u64,
@@ -72,12 +72,12 @@ pub struct ScoreSummary {
     pub sd: Option<f64>,
 }
 
-/// The condition after which an answer was given; `None` before the trials.
+/// Condition of the trial after which an answer was given; `None` for answers before the trials.
 fn asked_after(trial: &Trial, answered: &QuestionnaireAnswer) -> Option<StudyArm> {
     (!answered.before).then_some(trial.study_arm)
 }
 
-/// Scores of all questionnaires by condition, in order of occurrence.
+/// Scores of all questionnaires by condition, in the order in which they occur.
 pub(super) fn scores(trials: &[&Trial]) -> Vec<ScoreSummary> {
     let mut found: Vec<ScoreSummary> = Vec::new();
     for trial in trials {
@@ -116,7 +116,7 @@ fn sample_sd(values: &[f64]) -> Option<f64> {
     Some((sum / (values.len() - 1) as f64).sqrt())
 }
 
-/// Items of all questionnaires by condition, in order of occurrence.
+/// Answers to all questionnaires' items by condition, in the order in which they occur.
 pub(super) fn items(trials: &[&Trial]) -> Vec<ItemSummary> {
     let mut items: Vec<(ItemSummary, Vec<f64>)> = Vec::new();
     for trial in trials {

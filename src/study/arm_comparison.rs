@@ -36,7 +36,7 @@ pub struct ArmComparison {
     /// Contrasts of the model that includes the effect of the previous arm (carry-over); empty with fewer than three
     /// arms, or where the model cannot be estimated.
     pub with_carry_over: Vec<ArmContrast>,
-    /// The mixed negative binomial model; null where it cannot be estimated.
+    /// Comparison by the mixed negative binomial model; null where the model cannot be estimated.
     pub negative_binomial: Option<CountComparison>,
     /// Non-inferiority of the assistant's arms to the wizard's.
     pub non_inferiority: Vec<NonInferiority>,

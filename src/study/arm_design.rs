@@ -49,7 +49,7 @@ pub fn pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
 }
 
 impl ArmDesign {
-    /// The design of these trials, which must be ordered by participant and period.
+    /// The design for these trials, which must be ordered by participant and period.
     pub fn new(trials: Vec<ArmTrial>) -> ArmDesign {
         let has = |arm: &StudyArm| trials.iter().any(|trial| trial.arm == *arm);
         let arms = StudyArm::ALL.into_iter().filter(has).collect();
@@ -74,7 +74,7 @@ impl ArmDesign {
         self.arms.len() > 1 && self.trials.windows(2).any(|pair| pair[0].participant == pair[1].participant)
     }
 
-    /// The arm of the participant's trial before the one with this index.
+    /// The study arm of the participant's trial before the one with this index.
     fn before(&self, index: usize) -> Option<StudyArm> {
         let before = self.trials.get(index.checked_sub(1)?)?;
         (before.participant == self.trials[index].participant).then_some(before.arm)

@@ -6,7 +6,7 @@ use super::robot_tally::RobotSummary;
 use super::trial_statistics::Trial;
 use crate::session::settings::ArmKind;
 
-/// Sums of robot statistics over the trials with one kind of arm.
+/// Robot statistics summed over the trials with one kind of robot arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmGroup {
     /// Kind of the robot's arm: timed or physical.

@@ -43,7 +43,7 @@ pub struct ArmRow {
     pub signal_time: ArmFigure,
 }
 
-/// The output of `tomcom arms`.
+/// Comparison of all study arms in simulated trials: the output of `tomcom arms`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmTable {
     /// Name of the study plan.

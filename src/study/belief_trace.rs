@@ -45,7 +45,7 @@ pub enum TraceEvent {
 /// The belief-related events of a trial, collected event by event.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefTrace {
-    /// The events with their session times, in order.
+    /// The trial's events with their session times, in order.
     pub events: Vec<(SessionTime, TraceEvent)>,
     looks: Looks,
     /// For each location, whether the present look at its present content is already in `events`.
@@ -56,7 +56,7 @@ impl BeliefTrace {
     /// Adds an event that has just been applied to the session.
     pub fn note(&mut self, stamped: &Stamped, change: &Change, session: &Session) {
         if !session.is_running() && change.states().is_none() {
-            // The display is not read in a pause.
+            // Participants do not read the display in a pause.
             self.looks.interrupted();
             return;
         }

@@ -41,7 +41,7 @@ impl TableRow for DictionaryRow {
     }
 }
 
-/// Dictionary entries of a table, in the order of its columns.
+/// Data dictionary entries of a table, in the order of its columns.
 pub fn columns(table: Table) -> Vec<DictionaryRow> {
     match table {
         Table::Participants => declared::<ParticipantRow>(),
@@ -69,7 +69,7 @@ fn declared<Row: TableRow>() -> Vec<DictionaryRow> {
     Row::columns().into_iter().map(row).collect()
 }
 
-/// Dictionary entries of all tables, by table and column.
+/// Data dictionary entries of all tables, by table and column.
 pub fn dictionary() -> impl Iterator<Item = DictionaryRow> {
     Table::ALL.into_iter().flat_map(columns)
 }

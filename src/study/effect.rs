@@ -23,7 +23,7 @@ pub struct TrialPair {
     pub participant: String,
     /// Whether the second trial is the assisted one.
     pub assisted_second: bool,
-    /// Value of the measure in the first and in the second trial; lower is better.
+    /// Values of the measure in the first and in the second trial; lower is better.
     pub values: [f64; 2],
 }
 
@@ -48,7 +48,7 @@ pub struct StudyMeasure {
     pub name: &'static str,
     /// Unit of the measure's columns.
     pub unit: &'static str,
-    /// Definition for the dictionary; empty if the unit suffices.
+    /// Definition of the measure for the data dictionary; empty if the unit suffices.
     pub meaning: &'static str,
     /// Meaning of the columns `_1` and `_2` in the table of participants; `{}` stands for "first" or "second".
     pub meaning_in: &'static str,
@@ -138,7 +138,7 @@ fn pair(code: &str, trials: &[Trial], measure: StudyMeasure) -> Option<TrialPair
     Some(TrialPair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
 }
 
-/// Computes the effect of assistance on a measure; `seed` seeds sampled permutations.
+/// Computes the effect of assistance on a measure; `seed` seeds the sampled permutations.
 pub fn effect(measure: StudyMeasure, pairs: &[TrialPair], seed: u64) -> AssistanceEffect {
     let group = |pair: &TrialPair| usize::from(pair.assisted_second);
     let improvements = |assisted_second: bool| -> Vec<f64> {

@@ -50,7 +50,7 @@ pub struct StudySummary {
     pub totals: TrialTotals,
     /// Number of trials by the reason why they ended.
     pub ended: BTreeMap<EndReason, u64>,
-    /// Robot statistics by kind of arm.
+    /// Counts of robot events by kind of robot arm.
     pub robot: Vec<ArmGroup>,
     /// Agreement of the study with its frozen plan; absent if none was given.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -156,7 +156,7 @@ pub struct TrialSimilarity {
     pub of_n: u64,
     /// Number of the assistant's hypothetical communications.
     pub with_n: u64,
-    /// Number of pairs with the same signal and target.
+    /// Number of communications of both with the same signal and target (matches).
     pub matched: u64,
     /// The share of the wizard's signals that have a match.
     pub recall: Option<f64>,
@@ -171,7 +171,7 @@ pub struct StaleConsensus {
     pub reason: String,
 }
 
-/// A trial that is excluded from the analysis.
+/// A trial that is excluded from the analysis, with the reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExcludedTrial {
     /// The recording's folder.
@@ -183,7 +183,7 @@ pub struct ExcludedTrial {
 }
 
 impl StudySummary {
-    /// Summarizes trials, which must be ordered by participant.
+    /// Summarises the trials of a study, which must be ordered by participant.
     pub fn from_trials(trials: &[Trial], facts: &Facts, practice: u64) -> StudySummary {
         let counting: Vec<&Trial> = trials.iter().filter(|trial| trial.counts()).collect();
         let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);

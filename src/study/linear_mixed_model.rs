@@ -92,7 +92,7 @@ struct Sums {
 /// Solution of the generalised least squares problem for one ratio of variances.
 struct Solution {
     estimates: DVector<f64>,
-    /// (X' W^-1 X)^-1, W = V / v.
+    /// Unscaled covariance of the fixed effects: (X' W^-1 X)^-1, with W = V / v.
     inverse: DMatrix<f64>,
     /// Variance of the residuals.
     within: f64,

@@ -26,7 +26,7 @@ pub struct LiveArm {
     pub belief_related_per_100: Option<f64>,
     /// Sequences of such errors per 100 presses of the human.
     pub sequences_per_100: Option<f64>,
-    /// Mean number of errors in a sequence.
+    /// Mean number of errors in a sequence of errors from the same false belief.
     pub mean_sequence_length: Option<f64>,
     /// Number of orders served.
     pub orders: u64,

@@ -50,7 +50,7 @@ pub struct NegativeBinomialModel {
     pub log_likelihood: f64,
 }
 
-/// A linear combination of fixed effects, with Wald's test against zero.
+/// A linear combination of fixed effects, with Wald's z test against zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WaldContrast {
     /// Estimate of the linear combination, on the log scale.

@@ -25,7 +25,7 @@ pub struct SizeCounts {
     pub of_ratios: Vec<Vec<RejectionCount>>,
 }
 
-/// The output of `tomcom power`.
+/// Power of a study for several numbers of participants: the output of `tomcom power`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PowerSummary {
     /// Name of the study plan.
@@ -36,7 +36,7 @@ pub struct PowerSummary {
     pub program: String,
     /// Seed of pool and drawn studies.
     pub seed: u64,
-    /// Number of participants in the pool.
+    /// Number of simulated participants in the pool.
     pub pool: u32,
     /// Primary outcome whose rates are compared.
     pub outcome: PrimaryOutcome,
@@ -61,7 +61,7 @@ pub struct SizePower {
     pub any: Option<RejectionShare>,
 }
 
-/// Power of a test for one number of participants.
+/// Power of one statistical test for one number of participants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TestPower {
     /// Statistical test whose power is given.

@@ -12,7 +12,7 @@ use crate::base::words::count;
 pub struct RecordedPlan {
     /// The participant's code.
     pub participant: String,
-    /// Name and digest of the plan; `None` without a plan.
+    /// Name and digest of the study plan; `None` for a recording without a plan.
     pub plan: Option<(String, String)>,
 }
 

@@ -63,7 +63,7 @@ impl RobotSummary {
         (self.arm.is_some() || !reason.is_of_physics()).then(|| count.unwrap_or(0))
     }
 
-    /// Adds the statistics of another trial.
+    /// Adds the robot statistics of another trial.
     pub fn add(&mut self, other: &RobotSummary) {
         self.emergency_stops += other.emergency_stops;
         for (&reason, count) in &other.given_up {
@@ -116,7 +116,7 @@ impl RobotTally {
         }
     }
 
-    /// Adds the time since the last event to the current safety mode.
+    /// Adds the time since the last event to the duration of the present safety mode.
     fn pass_time(&mut self, clock: SessionTime) {
         let seconds = clock.secs_since(self.clock);
         self.clock = clock;

@@ -17,9 +17,9 @@ pub const LEAST_COST: f64 = 0.5;
 
 /// Signals per 100 human presses at which concepts are compared.
 pub const EQUAL_SIGNALS: [f64; 4] = [2.0, 4.0, 6.0, 8.0];
-/// Number of bootstrap resamples over participants.
+/// Number of bootstrap resamples over participants, for confidence intervals.
 const RESAMPLES: u32 = 1000;
-/// Number of points of a confidence band over the common range.
+/// Number of points of a confidence band over the range of false positive rates that all concepts reach.
 const BAND_STEPS: usize = 40;
 /// Confidence level of bootstrap intervals and bands.
 const COVERED: f64 = 0.95;
@@ -177,12 +177,12 @@ impl Curves {
     }
 }
 
-/// Height of a curve at `x` by linear interpolation; `None` outside of its range.
+/// Height of a curve at `x` by linear interpolation; `None` outside of the curve's range.
 fn height(curve: &[(f64, f64)], x: f64) -> Option<f64> {
     let after = curve.iter().position(|point| point.0 >= x)?;
     let (x1, y1) = curve[after];
     if x1 == x {
-        // Of several points with the same x, the highest counts.
+        // If several points have the same x, the highest is taken.
         return curve[after..].iter().take_while(|point| point.0 == x).last().map(|point| point.1);
     }
     let (x0, y0) = *curve.get(after.checked_sub(1)?)?;

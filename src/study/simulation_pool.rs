@@ -40,7 +40,7 @@ pub struct PoolHeader {
     pub conditions: Vec<StudyArm>,
     /// Primary outcome and margin that the plan sets.
     pub aims: StudyAims,
-    /// Whether trials were simulated in the arms of the plan.
+    /// Whether trials were simulated in the study arms of the plan.
     pub arms: bool,
     /// Whether the unassisted twins of these trials were simulated.
     pub unassisted: bool,
@@ -54,7 +54,7 @@ pub struct PoolTrial {
     pub participant: u32,
     /// Starting group of the participant, such as "AB".
     pub group: String,
-    /// Number of the trial, from 1.
+    /// Number of the trial in the participant's series, from 1.
     pub period: u32,
     /// Study arm that the plan gives to the trial.
     pub planned: StudyArm,
@@ -82,7 +82,7 @@ pub struct TrialCounts {
     pub orders: u64,
     /// Number of signals shown to the participant.
     pub signals: u64,
-    /// Time with a signal on the display, in seconds.
+    /// Time during which a signal was on the display, in seconds.
     pub signal_s: f64,
     /// Length of the trial on its own clock, in seconds.
     pub seconds: f64,
@@ -124,7 +124,7 @@ pub struct PersonTrial {
 /// A pool of simulated participants, or a shard of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationPool {
-    /// What the participants have in common.
+    /// Plan, settings and seed that the participants have in common.
     pub header: PoolHeader,
     /// The participants, in the order of the plan.
     pub persons: Vec<PoolPerson>,

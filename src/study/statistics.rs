@@ -159,7 +159,7 @@ fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
     }
 }
 
-/// An estimate with its confidence interval.
+/// An estimate with its confidence interval and level.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
     /// Point estimate, such as a mean or a share.

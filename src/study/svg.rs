@@ -74,7 +74,7 @@ pub struct SvgChart {
 }
 
 impl SvgChart {
-    /// Creates a chart of this size in pixels, with axes and grid.
+    /// Creates a chart of this size in pixels, with axes and grid lines.
     pub fn new(width: f64, height: f64, x: PlotAxis, y: PlotAxis) -> SvgChart {
         let mut chart = SvgChart { width, height, x, y, body: String::new() };
         chart.frame();

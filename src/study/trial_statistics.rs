@@ -51,7 +51,7 @@ pub struct Trial {
     pub wizard_sees: Visibility,
     /// Sender of the signals in a trial without a person as wizard.
     pub acting: ActingArm,
-    /// Reason for excluding the trial; `None` if it counts.
+    /// Reason for excluding the trial from the analysis; `None` if the trial is included.
     pub left_out: Option<String>,
     /// Reason why the trial ended; `None` if the recording is incomplete.
     pub ended: Option<EndReason>,
@@ -63,7 +63,7 @@ pub struct Trial {
     pub human_presses: u64,
     /// Number of the robot's presses.
     pub robot_presses: u64,
-    /// Number of human errors, without races.
+    /// Number of the human's errors; races with the robot do not count.
     pub errors: u64,
     /// Number of human presses that the robot may have overtaken (races).
     pub races: u64,
@@ -73,7 +73,7 @@ pub struct Trial {
     pub orders: u64,
     /// Median time from the appearance of an order to its serving, in seconds.
     pub order_s: Option<f64>,
-    /// Median presses of both agents per order.
+    /// Median number of presses of both agents per order.
     pub presses_per_order: Option<f64>,
     /// Summed regret of both agents' presses per served order; `None` if no order was served.
     pub additional_presses_per_order: Option<f64>,
@@ -94,7 +94,7 @@ pub struct Trial {
     pub seconds: f64,
     /// Answers to the questionnaires after the trial.
     pub answers: Vec<QuestionnaireAnswer>,
-    /// Measures of the wizard; `None` in other conditions.
+    /// Measures of the wizard's performance; `None` in trials without a wizard.
     pub wizard: Option<WizardMeasures>,
     /// Whether the wizard saw the assistant's recommendations, by the settings or from some time on.
     pub wizard_saw_advice: bool,
@@ -171,7 +171,7 @@ impl Trial {
         self.offers.as_ref().map(OfferSummary::from_offers)
     }
 
-    /// Whether the trial counts in the analysis.
+    /// Whether the analysis includes the trial.
     pub fn counts(&self) -> bool {
         self.left_out.is_none()
     }
@@ -185,7 +185,7 @@ impl Trial {
         }
     }
 
-    /// Number of presses of both agents.
+    /// Number of presses of both agents together.
     pub fn presses(&self) -> u64 {
         self.human_presses + self.robot_presses
     }
@@ -200,12 +200,12 @@ impl Trial {
         (self.presses() > 0).then(|| self.errors as f64 / self.presses() as f64)
     }
 
-    /// Mean number of errors per sequence of related errors.
+    /// Mean number of errors in a sequence of errors from the same false belief.
     pub fn sequence_length(&self) -> Option<f64> {
         mean_length(&self.beliefs.as_ref()?.lengths)
     }
 
-    /// Mean seconds to recover from an error sequence.
+    /// Mean time to recover from an error sequence, in seconds.
     pub fn recovery_s(&self) -> Option<f64> {
         mean(self.beliefs.as_ref()?.recovery_s.iter().copied())
     }

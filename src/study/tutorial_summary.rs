@@ -7,7 +7,7 @@ use super::tables::tutorial_answers::TutorialAnswer;
 /// Summary of the answers to the tutorials' comprehension questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct TutorialSummary {
-    /// Number of participants who answered a question.
+    /// Number of participants who answered a tutorial question.
     pub participants: u64,
     /// Number of tutorial questions that were answered.
     pub questions: u64,

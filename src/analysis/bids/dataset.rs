@@ -12,7 +12,7 @@ pub const PARTICIPANTS_NAME: &str = "participants.tsv";
 pub const CODE_COLUMN: &str = "code";
 /// Program that the data set's description names as its generator.
 pub const PROGRAM_NAME: &str = "tomcom";
-/// The version of BIDS that the tree follows: the first with eye-tracking is 1.10.
+/// Version of BIDS that the data set follows; eye-tracking exists in BIDS since 1.10.
 const BIDS_VERSION: &str = "1.10.1";
 
 const KINDS: &[(&str, &str)] = &[

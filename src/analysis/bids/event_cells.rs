@@ -75,7 +75,7 @@ impl EventCells {
         }
     }
 
-    /// The cells from `location` on, in the order of the columns.
+    /// The cells of the row from the column `location` on, in the order of the columns.
     pub(super) fn rest(&self) -> [String; 11] {
         [
             self.location.clone(),

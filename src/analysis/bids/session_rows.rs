@@ -94,7 +94,7 @@ impl SessionRow {
     }
 }
 
-/// The table of the sessions of the participant with this label, and its sidecar.
+/// The table of sessions of the participant with this label, with its sidecar file.
 pub fn sessions_files(participant: &str, rows: &[SessionRow]) -> [BidsFile; 2] {
     let path = format!("sub-{participant}/sub-{participant}_sessions");
     let text: String = rows.iter().map(|row| row.0.as_str()).collect();

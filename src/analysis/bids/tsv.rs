@@ -125,7 +125,7 @@ pub(super) fn or_nothing<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(|| NOTHING.to_string(), |value| value.to_string())
 }
 
-/// 1 for yes, 0 for no.
+/// Cell of a truth value: 1 for yes, 0 for no.
 pub(super) fn yes(is: bool) -> String {
     u8::from(is).to_string()
 }

@@ -7,7 +7,7 @@
 
 use super::response_surface::{QuadraticSurface, REACH, points, surface};
 
-/// Step size of the first surface.
+/// Step size of the first response surface.
 const FIRST_STEP: f64 = 0.4;
 /// Steps are chosen so that one step lowers the log likelihood by this much: least and most in nats, and in standard
 /// deviations of the noise.
@@ -36,7 +36,7 @@ pub enum BoundReached {
     High,
 }
 
-/// Estimate of one variable with its uncertainty.
+/// Estimate of one variable of a likelihood, with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedVariable {
     /// Best value of the variable.
@@ -52,7 +52,7 @@ pub struct FittedVariable {
 /// Result of a search for the maximum of a log likelihood.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Maximum {
-    /// The variables, in the order in which they were given.
+    /// Estimates of the variables, in the order in which they were passed.
     pub variables: Vec<FittedVariable>,
     /// Number of evaluations of the log likelihood.
     pub evaluations: usize,
@@ -200,7 +200,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         free.iter().enumerate().map(wanted).collect()
     }
 
-    /// The bound at which a variable is, if any.
+    /// The bound at which a variable lies, if any.
     fn end(&self, index: usize) -> Option<BoundReached> {
         let [low, high] = self.bounds[index];
         match self.at[index] {

@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 
-/// Reflection, expansion, contraction and shrinking, as in the original.
+/// Coefficients of reflection, expansion, contraction and shrinking, as in the original paper.
 const REFLECT: f64 = 1.0;
 const EXPAND: f64 = 2.0;
 const CONTRACT: f64 = 0.5;
@@ -12,7 +12,7 @@ const SHRINK: f64 = 0.5;
 /// A corner of the simplex: the function's value there, and the point.
 type Corner = (f64, Vec<f64>);
 
-/// The smallest value that was found, and where.
+/// The smallest value of a function that a search found, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {
     /// The point of the minimum, one value per argument of the function.

@@ -24,7 +24,7 @@ use crate::session::ranges;
 /// Half width of a 95 % interval, in standard errors.
 const HALF_WIDTH: f64 = 1.96;
 
-/// Facts about the recordings of a fit, apart from their observations.
+/// Number, human model and homogeneity of the recordings in a fit.
 #[derive(Clone, Copy, Debug)]
 pub struct FittedRecordings<'a> {
     /// Number of recordings in the fit.
@@ -35,7 +35,7 @@ pub struct FittedRecordings<'a> {
     pub differ: bool,
 }
 
-/// Which parameters to fit, and how.
+/// Which parameters of the human model to fit, from which start, and with how many evaluations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitPlan {
     /// The parameters of the human model to fit.
@@ -46,7 +46,7 @@ pub struct FitPlan {
     pub most_tries: usize,
 }
 
-/// The output of `tomcom fit`.
+/// Result of fitting the human model: the output of `tomcom fit`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FitSummary {
     /// Number of recordings in the fit.

@@ -8,7 +8,7 @@ use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
 
-/// Fields of an event whose values are parts of its code, in this order.
+/// Names of the fields whose values are parts of an event's code, in this order.
 const PARTS: [&str; 14] = [
     "what", "did", "phase", "agent", "by", "button", "location", "order", "dish", "signal", "best", "mode", "item",
     "reason",
@@ -24,8 +24,8 @@ pub fn code(stamped: &Stamped) -> String {
     std::iter::once(stamped.event.kind().to_string()).chain(parts).collect::<Vec<_>>().join("/")
 }
 
-/// The event as the log has it, without what people typed or answered and without names of devices; `left_out` lists
-/// the fields that are missing.
+/// The event as in the log, without text that people typed or answered and without names of devices; `left_out` lists
+/// the missing fields.
 pub fn event_text(stamped: &Stamped) -> String {
     let mut text = json!({ "seq": stamped.seq, "t_ns": stamped.time });
     if let Value::Object(text) = &mut text {
@@ -48,8 +48,8 @@ fn fields(event: &Event) -> Map<String, Value> {
     fields
 }
 
-/// A value as a part of a code: a word, several of them, or the name and content of a variant
-/// (`highlight/cooking_pot`); `None` for anything else.
+/// A value as part of an event's code: a word, several words, or name and content of a variant
+/// (`highlight/cooking_pot`); `None` for any other value.
 fn part_text(value: &Value) -> Option<String> {
     match value {
         Value::String(word) => Some(word.clone()),

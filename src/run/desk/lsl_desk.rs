@@ -24,7 +24,7 @@ impl LslDesk {
         Ok(LslDesk { library, streams: None })
     }
 
-    /// The library, if the session uses it.
+    /// The LSL library, if the session uses it.
     pub fn library(&self) -> Option<LslLibrary> {
         self.library
     }

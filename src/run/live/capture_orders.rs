@@ -46,7 +46,7 @@ impl CaptureOrders {
         capture
     }
 
-    /// Reports an event of the trial, which happened at `at`.
+    /// Reports an event of the trial, which happened at the instant `at`, to Pupil Capture.
     pub fn tell(&mut self, event: &Event, at: Instant) {
         if self.orders.is_none() {
             return;
@@ -120,7 +120,7 @@ impl CaptureOrders {
         self.order(CaptureRequest::Annotate { label, at, state });
     }
 
-    /// Sends a request if Pupil Capture is connected; the health line shows a lost connection.
+    /// Sends a request if Pupil Capture is connected; a lost connection is shown in the console's line about devices.
     fn order(&self, order: CaptureRequest) {
         if let Some(orders) = &self.orders {
             let _ = orders.try_send(order);

@@ -199,7 +199,7 @@ fn answer(event: ProtocolEvent, session: &Session) -> Option<Event> {
     (session.spec.display.questionnaire == Answering::Display).then_some(Event::Protocol(event))
 }
 
-/// Session time of an instant shortly before now.
+/// Session time of an instant shortly before the present one.
 fn session_time(at: Instant, now: SessionTime) -> SessionTime {
     let age_ns = Instant::now().saturating_duration_since(at).as_nanos() as u64;
     SessionTime(now.0.saturating_sub(age_ns))

@@ -43,7 +43,7 @@ pub(super) struct Live {
     pub(super) engine: Engine,
     /// The assistant's thread, if the session requests advice.
     pub(super) advisor: Option<AdvisorDesk>,
-    /// The comparison of wizard and assistants, if it is shown.
+    /// The comparison of wizard and assistants, if the console shows it.
     pub(super) comparison: Option<ComparisonDesk>,
     /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,

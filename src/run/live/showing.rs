@@ -8,7 +8,7 @@ use crate::session::wall_display::DisplayEvent;
 use crate::session::{Event, Phase};
 
 impl Live {
-    /// Updates the time of the console model.
+    /// Updates the time that the console shows.
     pub(super) fn tick(&mut self) {
         self.model.now = self.clock.now();
         self.model.clock = self.model.now;

@@ -25,7 +25,7 @@ impl Live {
         self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next).map(|(time, _)| time)
     }
 
-    /// Shows the next target, or hides the last one.
+    /// Shows the next target of the gaze check, or hides the last one.
     pub(super) fn show_target(&mut self) {
         if let Some((_, event)) = self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next) {
             self.input(Event::Calibration(event));

@@ -59,7 +59,7 @@ impl StreamedSession {
         Ok(Some(StreamedSession { scene, stream, is_whole }))
     }
 
-    /// Streams events that have just been recorded.
+    /// Streams events that have just been recorded to the viewers.
     pub fn view(&mut self, events: &[Stamped], engine: &Engine) {
         let judged = engine.judged();
         for (index, stamped) in events.iter().enumerate() {

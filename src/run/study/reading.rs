@@ -51,7 +51,7 @@ pub struct RecordingAnalysis {
     pub trial: Trial,
     /// Settings and circumstances of the recording, for the report.
     pub facts: Facts,
-    /// CSV rows of the tables of events.
+    /// Rows of the CSV tables of events.
     pub rows: [Vec<u8>; 5],
 }
 
@@ -60,7 +60,7 @@ pub struct RecordingAnalysis {
 pub struct AnalysisScope {
     /// Whether hypothetical signals of communication concepts are computed.
     pub concepts: bool,
-    /// Whether the tables of events are written.
+    /// Whether rows of the CSV tables of events are written.
     pub events: bool,
 }
 
@@ -131,7 +131,7 @@ impl ByEstimate {
     }
 }
 
-/// Belief state with the expected probabilities of an estimate.
+/// A belief state whose probabilities are those that the estimate expects.
 fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &DirichletBelief) -> Belief {
     let mut belief = Belief::of_truth(kitchen, state);
     for index in 0..kitchen.aspects.len() {

@@ -88,7 +88,7 @@ impl<'a> PressFacts<'a> {
 }
 
 impl RowCollector {
-    /// A collector without rows for this recording.
+    /// A collector for the recording with this name, without rows yet.
     pub fn new(recording: &str) -> RowCollector {
         RowCollector {
             recording: recording.to_string(),

@@ -29,7 +29,7 @@ struct SweptConcept {
     sent: Vec<ConceptSignal>,
 }
 
-/// Replays a session and evaluates all concepts when the assistant is asked.
+/// Replays a session, and evaluates all communication concepts whenever the assistant is asked for advice.
 #[derive(Debug)]
 pub struct ConceptSweep {
     /// The session with the belief estimate.
@@ -67,7 +67,7 @@ impl ConceptSweep {
         }
     }
 
-    /// Applies one event.
+    /// Applies one event of the session.
     ///
     /// # Errors
     /// Errors of [`Follower::apply`].
@@ -92,7 +92,7 @@ impl ConceptSweep {
         Ok(change)
     }
 
-    /// Evaluates every concept in the present state.
+    /// Evaluates every communication concept in the session's present state.
     fn evaluate(&mut self) {
         let Some((seq, time)) = self.pending.take().filter(|_| self.follower.session.is_running()) else { return };
         let question = AdviceRequest::from_follower(&mut self.follower, seq, time);

@@ -110,7 +110,8 @@ fn run_to(again: &mut Engine, recorded: &Stamped, twins: &mut Vec<TwinResult>) -
     events
 }
 
-/// Runs a twin without further signals until the false beliefs that a signal at `time` is about have ended.
+/// Runs a twin (the trial continued without further signals) until the false beliefs that a signal at `time` is about
+/// have ended.
 fn twin(mut engine: Engine, time: SessionTime, signal: &Signal) -> TwinResult {
     let scope = SignalScope::of_signal(engine.session(), signal);
     let presses = engine.judged().len();

@@ -1,4 +1,4 @@
-//! Elements of the report page: sections, charts, tables, and formatted numbers.
+//! Elements of the study report's page: sections, charts, tables, and formatted numbers.
 
 use maud::{Markup, PreEscaped, Render, html};
 
@@ -78,7 +78,7 @@ impl Captions {
 /// Column of a table on the report's page: its heading, and the function that makes its cells.
 pub(super) type PageColumn<Row> = (&'static str, fn(&Row) -> Markup);
 
-/// Empty HTML markup.
+/// HTML markup without content.
 pub(super) fn nothing() -> Markup {
     PreEscaped(String::new())
 }

@@ -53,7 +53,7 @@ pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[T
     page.into_string()
 }
 
-/// The HTML head of the page.
+/// HTML head of the report's page.
 fn head(figures: &StudySummary, trials: &[Trial]) -> Markup {
     html! {
         head {
@@ -66,7 +66,7 @@ fn head(figures: &StudySummary, trials: &[Trial]) -> Markup {
     }
 }
 
-/// Metadata of the page as (name, content).
+/// Metadata of the report's page as (name, content).
 fn metadata(trials: &[Trial]) -> [(&'static str, String); 3] {
     let [generator, participants] = page_head::about(trials.iter().map(|trial| trial.participant.as_str()));
     [generator, participants, ("viewport", "width=device-width, initial-scale=1".to_string())]

@@ -97,7 +97,7 @@ fn card(value: &str, what: &str) -> Markup {
     html! { div class="card" { b { (value) } span { (what) } } "\n" }
 }
 
-/// Largest number of trials in the printed list.
+/// Largest number of trials that the report lists.
 const MOST_TRIALS: usize = 60;
 
 /// Section with all trials, and with the reasons for excluded ones.

@@ -13,7 +13,7 @@ pub struct ConceptRow<'a> {
     swept: &'a SweptTrial,
 }
 
-/// Rows for all concepts that were evaluated on a trial.
+/// Rows for all communication concepts that were evaluated on a trial.
 pub fn concepts(trial: &Trial) -> impl Iterator<Item = ConceptRow<'_>> {
     trial.swept.iter().map(move |swept| ConceptRow { trial, swept })
 }

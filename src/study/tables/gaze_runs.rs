@@ -5,7 +5,7 @@ use crate::kitchen::{Kitchen, LocationId};
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{Column, Table, TableRow};
 
-/// A run of gaze samples on one location, or on none.
+/// Successive gaze samples on one location, or on none.
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRun {
     /// Location of the gaze; `None` if it was on no location, or not usable.
@@ -34,7 +34,7 @@ pub struct GazeRow<'a> {
     pub recording: &'a str,
     /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
-    /// Start of the run on the trial clock, in seconds.
+    /// Time at which the run begins, on the trial's clock in seconds.
     pub time_s: f64,
     /// The gaze run of the row.
     pub run: GazeRun,

@@ -71,7 +71,7 @@ impl TableRow for Trial {
     }
 }
 
-/// All columns in file order; new columns are appended.
+/// All columns of the table of trials, in file order; new columns are appended.
 fn declared() -> impl Iterator<Item = TrialColumn> {
     kind_of_trial()
         .into_iter()

@@ -52,7 +52,7 @@ pub struct ListedRecording {
     pub trial_s: Option<f64>,
     /// The human's presses that were errors; null where errors are not counted.
     pub errors: Option<u64>,
-    /// State of the recording.
+    /// State of the recording: complete, cut, excluded, running or unreadable.
     pub state: RecordingState,
     /// Reason for the exclusion, or why the recording cannot be read.
     pub reason: Option<String>,

@@ -201,7 +201,7 @@ pub struct SimulationSummary {
     /// New paths of logs that end before the end of their header, as after a power failure; their trials were simulated
     /// anew.
     pub moved: Vec<String>,
-    /// Totals by study arm.
+    /// Totals of presses, errors and signals, by study arm.
     pub arms: Vec<ArmTotals>,
     /// Folders of the recordings.
     pub recordings: Vec<String>,

@@ -77,7 +77,7 @@ pub struct DisplayLocation {
 /// A storage on the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayStorage {
-    /// The agent who can take from it.
+    /// Agent who can take the item from the storage.
     pub agent: Agent,
     /// Item that the storage holds, by its name in [`DisplayScene::items`].
     pub item: String,

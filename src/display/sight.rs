@@ -16,7 +16,7 @@ use crate::session::{Phase, Session, TimelineEvent, proposals};
 /// Everything that changes on the participant's display; each update is complete.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayUpdate {
-    /// Stage of the session, which decides which page is shown.
+    /// Stage of the session, which decides which page the display shows.
     pub stage: DisplayStage,
     /// Whether the trial is for practice.
     pub practice: bool,
@@ -44,7 +44,8 @@ pub struct DisplayUpdate {
     pub checks: bool,
 }
 
-/// Stage of the session, which decides which page the participant's display shows.
+/// Stage of the session, such as instruction, trial or questionnaire, which decides which page the participant's
+/// display shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayStage {
@@ -78,7 +79,7 @@ pub enum DisplayStage {
 pub enum ShownContent {
     /// The location is empty.
     Empty,
-    /// A single item, by name.
+    /// A single item, by its name.
     Item(String),
     /// A stack of items, by name; a stack that is a dish of the menu is shown as that dish.
     Stack(Vec<String>),

@@ -84,7 +84,7 @@ pub struct DisplayedQuestion {
     pub right: Option<u8>,
 }
 
-/// The recipe card of a dish.
+/// Makes the recipe card of a dish for the tutorial.
 pub(super) fn card(kitchen: &Kitchen, dish: DishId) -> RecipeCard {
     let dish = kitchen.dish(dish);
     let items = kitchen.content(dish.stack()).items.iter();

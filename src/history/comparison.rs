@@ -45,7 +45,7 @@ pub enum CommunicationContent {
 }
 
 impl CommunicationContent {
-    /// The content of a communication that consists of this signal.
+    /// Content of a communication that consists of this signal.
     pub fn from_signal(signal: &Signal) -> CommunicationContent {
         match signal {
             Signal::Propose(presses) => CommunicationContent::Proposal(presses.clone()),
@@ -84,7 +84,7 @@ impl CommunicationContent {
 /// One communication of the wizard or of an assistant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Communication {
-    /// The communication as the matching takes it: number of presses, trial clock and content.
+    /// The communication in the form that the matching compares: number of presses, trial clock and content.
     pub said: CommunicationEvent,
     /// Session time of the communication.
     pub time: SessionTime,

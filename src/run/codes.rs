@@ -136,7 +136,7 @@ pub struct CodesSummary {
 pub struct CodedRecordingSummary {
     /// The name of the recording's folder.
     pub recording: String,
-    /// Number of errors.
+    /// Number of errors of the human in the recording.
     pub errors: u64,
     /// Number of errors coded by each rater.
     pub coded: BTreeMap<String, u64>,

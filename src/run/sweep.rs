@@ -45,7 +45,7 @@ enum Knob {
     Gaze,
     /// When the assistant is asked for advice, besides after presses and changes of the task.
     Asks,
-    /// Whether waiting is evidence about the human's belief.
+    /// Whether waiting without a press counts as evidence about the human's belief.
     Waiting,
 }
 

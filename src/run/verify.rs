@@ -123,7 +123,7 @@ impl RerunSession {
                 let outcome = self.engine.input(recorded.time, event);
                 self.produced.extend(outcome.events);
             } else {
-                // An action of a participant does not always cause an event.
+                // The participant can act without an event, so the next due action is tried until an event occurs.
                 while self.produced.is_empty() && self.engine.next_due().is_some_and(|due| due <= recorded.time) {
                     self.produced.extend(self.engine.fire());
                 }

@@ -1,4 +1,4 @@
-//! A question to the wizard before a recording begins.
+//! Asks the wizard a question before a recording begins.
 
 use std::time::Duration;
 

@@ -78,7 +78,7 @@ pub struct SceneArea {
     pub width: f64,
     /// Height of the rectangle, in millimetres.
     pub height: f64,
-    /// The colour of the outline.
+    /// Colour of the outline.
     pub colour: Colour,
     /// Half the width of the outline, in millimetres.
     pub line: f64,
@@ -93,7 +93,7 @@ pub struct SceneDisc {
     pub radius: f64,
     /// Label below the disc's centre; empty for none.
     pub words: String,
-    /// The colour of the disc.
+    /// Colour of the disc.
     pub colour: Colour,
 }
 

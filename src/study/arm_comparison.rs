@@ -47,7 +47,7 @@ pub struct ArmComparison {
 /// Counts over the trials of one study arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ArmOutcome {
-    /// The study arm.
+    /// Study arm of the counts.
     pub arm: StudyArm,
     /// Number of trials of the arm.
     pub trials: usize,

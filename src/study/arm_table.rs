@@ -25,9 +25,9 @@ pub struct ArmFigure {
 /// Row of the table of arms: rates of one study arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmRow {
-    /// The study arm.
+    /// Study arm of the row.
     pub arm: StudyArm,
-    /// Number of trials.
+    /// Number of trials of the arm.
     pub trials: u64,
     /// Errors per 100 presses of the human.
     pub errors_per_100: ArmFigure,

@@ -122,15 +122,15 @@ impl<Row> Column<Row> {
 pub enum TableCell<'a> {
     /// Unknown or missing value, written as an empty field.
     Unknown,
-    /// A truth value.
+    /// A truth value in a table's cell.
     Flag(bool),
-    /// A count of events or items.
+    /// A count of events or items in a table's cell.
     Count(u64),
-    /// A signed integer.
+    /// A signed integer in a table's cell.
     Whole(i64),
-    /// A number with decimals.
+    /// A number with decimals in a table's cell.
     Number(f64),
-    /// Text.
+    /// Text in a table's cell.
     Text(Cow<'a, str>),
 }
 

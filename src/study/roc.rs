@@ -47,9 +47,9 @@ pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, C
 /// Prevention counts of a concept with one parameter value in one unassisted trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweptTrial {
-    /// The communication concept.
+    /// Communication concept that would have sent the signals.
     pub concept: ConceptName,
-    /// Value of the concept's parameter.
+    /// Value of the concept's parameter, such as the cost of communication.
     pub parameter: f64,
     /// Errors that the concept would have prevented, and signals that it would have sent.
     pub count: PreventionCounts,
@@ -89,7 +89,7 @@ pub struct BootstrapInterval {
 /// The receiver operating characteristic of a concept.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Roc {
-    /// The communication concept.
+    /// Communication concept whose curve this is.
     pub concept: ConceptName,
     /// Mean true positive rate over the false positive rates that all concepts reach: partial area divided by the
     /// range's width.

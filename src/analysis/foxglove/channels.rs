@@ -24,7 +24,7 @@ pub enum MessageChannel {
 }
 
 impl MessageChannel {
-    /// All channels, in their order.
+    /// All channels of an MCAP file, in their order.
     pub const ALL: [MessageChannel; 7] = [
         MessageChannel::Joints,
         MessageChannel::Frames,

@@ -22,7 +22,7 @@ const WARNING: u8 = 3;
 /// A message on a channel of an MCAP file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelMessage {
-    /// The channel of the message.
+    /// The channel on which the message is sent.
     pub channel: MessageChannel,
     /// Session time at which the event was recorded.
     pub logged: SessionTime,

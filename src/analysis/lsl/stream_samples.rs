@@ -41,7 +41,7 @@ pub enum SampleValues {
 #[derive(Clone, Debug)]
 pub struct SampleMaker {
     outlets: Vec<LslOutlet>,
-    /// Name of the recording.
+    /// Name of the recording to which the samples belong.
     recording: String,
     /// The signals, in the order of their channels.
     signals: Vec<Signal>,

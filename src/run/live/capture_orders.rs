@@ -17,7 +17,7 @@ const PAUSED: &str = "trial paused";
 pub(super) struct CaptureOrders {
     /// Channel to Pupil Capture, if that is the tracker.
     orders: Option<Sender<CaptureRequest>>,
-    /// Name of the recording.
+    /// Name of the recording, as Pupil Capture gets it.
     name: String,
     /// Whether the trial has begun and not ended.
     is_on: bool,

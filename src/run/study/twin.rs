@@ -94,7 +94,7 @@ fn run_to(again: &mut Engine, recorded: &Stamped, twins: &mut Vec<TwinResult>) -
     if is_external(again.session(), &recorded.event) {
         events = again.input(recorded.time, recorded.event.clone()).events;
     } else {
-        // An action of a participant does not always cause an event.
+        // The participant can act without an event, so the next due action is tried until an event occurs.
         while events.is_empty() && again.next_due().is_some_and(|due| due <= recorded.time) {
             events = again.fire();
         }

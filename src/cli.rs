@@ -53,15 +53,15 @@ use crate::run::replay::Replay;
 use crate::run::review_console as console_over;
 use crate::run::{options, standing, timing, verify};
 
-/// Exit code: something failed.
+/// Exit code of a command that failed.
 const FAILED: u8 = 1;
-/// Exit code: wrong arguments or files.
+/// Exit code of a command with wrong arguments or files.
 const WRONG: u8 = 2;
 
 /// Period of polling a running session for new events.
 const FOLLOW_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Runs the command of the arguments. Exit codes: 0 done, 1 failed, 2 wrong arguments or files.
+/// Runs the command that the program's arguments name. Exit codes: 0 done, 1 failed, 2 wrong arguments or files.
 pub fn main() -> ExitCode {
     // Messages are not wrapped, so that file and line can be searched for; an existing hook is kept.
     let _ = miette::set_hook(Box::new(|_| Box::new(MietteHandlerOpts::new().wrap_lines(false).build())));
@@ -120,7 +120,7 @@ fn show_plan(args: &PlanArgs) -> Result<(), Failure> {
     print(args.format, &frozen, || frozen.describe())
 }
 
-/// Warns of recordings with settings outside of the ranges for settings files.
+/// Warns of recordings whose settings are outside the ranges that settings files allow.
 fn warn_of(recordings: &[PathBuf]) -> Result<(), Failure> {
     for recording in recordings {
         if let Some(OutOfRange { found, remedy, .. }) = LogReader::open(recording)?.unusual() {
@@ -202,7 +202,7 @@ fn kitchen(args: &KitchenArgs) -> Result<(), Failure> {
 fn exclude(args: &ExcludeArgs) -> Result<(), Failure> {
     let recording = list::chosen(&args.recording)?;
     let ruling = log::rule(&recording, !args.back, args.reason.as_deref().unwrap_or_default())?;
-    // Including a recording again reports other reasons in its log that still exclude it.
+    // A recording that is included again can still be left out because its trial was aborted; that is reported.
     let aborted = if ruling.excluded { None } else { standing::aborted(&recording)? };
     let words = match (ruling.excluded, aborted) {
         (true, _) => "is left out of the analysis".to_string(),

@@ -1,4 +1,4 @@
-//! The program: everything is in the library, see `tomcom::cli`.
+//! The binary `tomcom`; everything is in the library, see `tomcom::cli`.
 
 use std::process::ExitCode;
 

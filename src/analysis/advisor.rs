@@ -1,5 +1,5 @@
-//! The assistant of a session: answers a request for advice after every press and every order change, and at other moments where
-//! the session's settings say so.
+//! The assistant of a session: answers a request for advice after every press and every order change, and at the other
+//! moments that the session's settings name.
 
 use super::follower::Follower;
 use crate::base::time::SessionTime;
@@ -16,9 +16,9 @@ use crate::session::Session;
 /// A request for advice: the session after an event and all its immediate consequences.
 #[derive(Clone, Debug)]
 pub struct AdviceRequest {
-    /// Sequence number of the event.
+    /// Sequence number of the event after which advice is requested.
     pub seq: u64,
-    /// The session time of the event.
+    /// Session time of that event.
     pub time: SessionTime,
     presses: u32,
     state: State,
@@ -26,14 +26,14 @@ pub struct AdviceRequest {
     changed: Vec<AspectId>,
     robot: RobotIntent,
     robot_press_s: f64,
-    /// The signals that can be sent.
+    /// The signals that can be sent at that time.
     signals: Vec<Signal>,
     /// Sequence number of the human's last press, if that press was an error.
     error: Option<u64>,
 }
 
 impl AdviceRequest {
-    /// The request after the event with this sequence number and time.
+    /// A request for advice after the event with this sequence number and time.
     pub fn from_follower(follower: &mut Follower, seq: u64, time: SessionTime) -> AdviceRequest {
         let belief = follower.belief_for_advice(time);
         let session = &follower.session;
@@ -53,7 +53,7 @@ impl AdviceRequest {
         AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, signals, error }
     }
 
-    /// The request as a concept receives it.
+    /// The request in the form in which a communication concept receives it.
     pub fn moment(&self) -> DecisionPoint<'_> {
         let AdviceRequest {
             seq,
@@ -71,13 +71,13 @@ impl AdviceRequest {
         DecisionPoint { seq, time, presses, situation, signals, error }
     }
 
-    /// The same request with another estimate and other available signals.
+    /// This request for advice with another estimate and other available signals.
     pub fn about(&self, belief: &DirichletBelief, signals: Vec<Signal>) -> AdviceRequest {
         AdviceRequest { belief: belief.clone(), signals, ..self.clone() }
     }
 }
 
-/// Answers requests for advice in one session.
+/// The session's assistant, which answers requests for advice by its communication concept.
 #[derive(Debug)]
 pub struct Advisor {
     concept: Box<dyn Concept>,
@@ -85,18 +85,18 @@ pub struct Advisor {
 }
 
 impl Advisor {
-    /// The advisor with the concept that the session's settings name.
+    /// The assistant with the communication concept that the session's settings name.
     pub fn new(session: &Session, cost: CostToGo) -> Advisor {
         Advisor::by(session.spec.assistant.concept, session, cost)
     }
 
-    /// The advisor with a given concept.
+    /// The assistant with the given communication concept.
     pub fn by(name: ConceptName, session: &Session, cost: CostToGo) -> Advisor {
         let Session { kitchen, spec, .. } = session;
         Advisor { concept: concept(name, kitchen.clone(), &spec.human, &spec.assistant, session.seed()), cost }
     }
 
-    /// The recommendation for a request.
+    /// The assistant's recommendation for a request for advice.
     pub fn answer(&mut self, question: &AdviceRequest) -> Recommendation {
         self.concept.advise(&mut self.cost, &question.moment())
     }

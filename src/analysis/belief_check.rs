@@ -1,4 +1,5 @@
-//! Checks the belief estimate before each press against the participant's recorded beliefs and against the press itself.
+//! Checks the belief estimate before each press: how well it agrees with the participant's recorded beliefs, and how
+//! well it predicts the press.
 
 use std::sync::Arc;
 
@@ -22,31 +23,31 @@ use crate::mind::belief::Belief;
 use crate::mind::choice_parameters::DecisionModel;
 use crate::session::{Event, Session, Stamped};
 
-/// The seed of the bootstrap: the same recordings give the same interval.
+/// Seed of the bootstrap's random numbers: the same recordings give the same interval.
 const SEED: u64 = 1;
 
-/// The output of `tomcom replay --check-beliefs`.
+/// How well the belief estimate agrees with beliefs and presses: the output of `tomcom replay --check-beliefs`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BeliefCheck {
-    /// Number of recordings.
+    /// Number of recordings that were checked.
     pub recordings: u64,
-    /// Presses of the human in the trials.
+    /// Number of the human's presses in the trials.
     pub human_actions: u64,
-    /// How it is known what participants believed: recorded, or by their answers to probes; null if it is not.
+    /// Source of what participants believed: recorded beliefs, or answers to probes; null if there is neither.
     pub beliefs_from: Option<BeliefBasis>,
-    /// How well the estimate finds false beliefs.
+    /// How well the estimate of the participant's beliefs finds false ones.
     #[serde(flatten)]
     pub detection: Detection,
-    /// Log likelihood per press, in nats.
+    /// Log likelihood of the human's presses under the model, per press, in nats.
     pub log_likelihood: LogLikelihood,
-    /// Answers to probes, and the estimate against them; absent without answers.
+    /// Answers to freeze probes, and how the estimate agrees with them; absent without answers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probes: Option<ProbeFigures>,
 }
 
 impl BeliefCheck {
-    /// Pools the presses of several trials in one kitchen and checks them. Where no beliefs are recorded, the probes of these trials
-    /// take their place.
+    /// Checks the estimate against the presses of several trials in one kitchen. Where no beliefs are recorded, the
+    /// answers to freeze probes in these trials take their place.
     pub fn from_trials(
         kitchen: &Arc<Kitchen>,
         trials: &[TrialView],
@@ -71,10 +72,10 @@ impl BeliefCheck {
     }
 }
 
-/// Collects a view of each counted press of the human, event by event.
+/// Collects, for each counted press of the human, the estimate before it and how it was judged, event by event.
 #[derive(Default)]
 pub struct PressViews {
-    /// The views so far.
+    /// Presses of the trial so far, each with the estimate before it.
     pub trial: TrialView,
     /// Recorded belief of the participant before its next press: probability of the true value, by aspect.
     held: Option<Vec<f64>>,
@@ -82,8 +83,8 @@ pub struct PressViews {
 }
 
 impl PressViews {
-    /// Adds an event that has just been applied to the session. If it is a counted press of the human: how it was judged, and the
-    /// estimate before it.
+    /// Adds an event that has just been applied to the session. A counted press of the human is added with its
+    /// judgement and with the estimate before it.
     pub fn add(
         &mut self,
         session: &Session,
@@ -105,7 +106,7 @@ impl PressViews {
     }
 }
 
-/// What the baseline knows of a session before its next event.
+/// What the gaze baseline, which needs no filter, knows of a session before the next event.
 #[derive(Default)]
 struct Before {
     seen: SeenContents,
@@ -114,7 +115,7 @@ struct Before {
 }
 
 impl Before {
-    /// Notes the changes and the gaze of an event that has just been applied.
+    /// Notes changes of the kitchen and gaze in an event that has just been applied.
     fn notice(&mut self, session: &Session, event: &Event, change: &Change) {
         self.seen.note(session, event, change);
         let is_own = change.human_press().is_some();
@@ -126,7 +127,7 @@ impl Before {
         }
     }
 
-    /// The view of the next press.
+    /// The next press of the human with its judgement, the estimate and the baseline before it.
     fn press(
         &self,
         kitchen: &Kitchen,
@@ -156,7 +157,7 @@ impl Before {
     }
 }
 
-/// The check as text.
+/// The check of the estimate as text for the terminal.
 pub fn describe(check: &BeliefCheck) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.3}"));
     let (found, flags, likely) = (&check.detection, &check.detection.flags, &check.log_likelihood);
@@ -171,7 +172,7 @@ pub fn describe(check: &BeliefCheck) -> String {
         };
         format!("\n  thresholds {from}: {locations} for locations, {recipes} for recipes")
     });
-    // A single recording has no spread over recordings.
+    // A single recording has no spread between recordings.
     let interval = likely.gain_interval.filter(|_| check.recordings > 1);
     let interval = interval.map_or(String::new(), |[from, to]| format!(" ({from:.3} to {to:.3})"));
     let informed = match (likely.informed_tau, likely.informed_lapse) {
@@ -217,7 +218,7 @@ pub fn describe(check: &BeliefCheck) -> String {
 /// Least number of recordings for which statistics of single aspects are printed.
 const TELLING: u64 = 20;
 
-/// Explains the printed statistics.
+/// Explanation of the statistics that the check prints, as text.
 fn legend(check: &BeliefCheck) -> String {
     let few = match check.recordings {
         TELLING.. => String::new(),

@@ -1,6 +1,7 @@
-//! The robustness table: what estimate and assistant are worth with cohorts of simulated people whom the assistant's model of the human
-//! was not fitted to. The estimate is judged on unassisted trials, with thresholds of flags from trials of another seed; the
-//! assistant by the same trials without it and with it acting by itself.
+//! The robustness table: how well estimate and assistant do with cohorts of simulated people to whom the assistant's
+//! human model was not fitted. The estimate is judged on unassisted trials; the thresholds of its flags are chosen on
+//! trials with another seed. The assistant is judged by comparing the same trials without signals and with signals that
+//! the assistant sends by itself.
 
 use std::sync::Arc;
 
@@ -15,68 +16,70 @@ use crate::measures::belief_detection::{Detection, TrialView, aspect_groups};
 use crate::measures::flags::{MOST_FALSE_FLAGS, chosen_thresholds};
 use crate::mind::choice_parameters::DecisionModel;
 
-/// The seed of the bootstrap: the same trials give the same interval.
+/// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;
 
-/// The trials of a cohort.
+/// Simulated trials of one cohort.
 #[derive(Clone, Debug, Default)]
 pub struct CohortTrials {
-    /// Unassisted trials of another seed, on which the thresholds of flags are chosen.
+    /// Unassisted trials with another seed, on which the thresholds for flagging false beliefs are chosen.
     pub chosen_on: Vec<TrialView>,
-    /// The trials that are judged, without signals: their presses and their summaries.
+    /// The judged trials without signals: their presses, and their summaries.
     pub unassisted: Vec<(TrialView, TrialSummary)>,
-    /// The same trials with the assistant acting by itself, in the same order.
+    /// Summaries of the same trials, in the same order, with signals that the assistant sends by itself.
     pub assisted: Vec<TrialSummary>,
 }
 
-/// What a cohort did without signals, and with the assistant.
+/// Rates of errors, signals and served orders of one cohort, without signals or with the assistant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CohortRates {
     /// Errors per 100 presses of the human.
     pub errors_per_100: f64,
-    /// Belief related errors per 100 presses of the human.
+    /// Errors that follow from false beliefs, per 100 presses of the human.
     pub related_per_100: f64,
     /// Signals per 100 presses of the human.
     pub signals_per_100: f64,
-    /// Orders served per minute.
+    /// Orders served per minute of the trials.
     pub orders_per_minute: f64,
 }
 
-/// A row of the table: one cohort. What cannot be computed is null.
+/// Row of the robustness table: one cohort. Values that cannot be computed are null.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CohortRow {
     /// The cohort's name.
     pub cohort: String,
-    /// Number of judged trials.
+    /// Number of trials on which the estimate and the assistant are judged.
     pub trials: u64,
-    /// How well the estimate finds false beliefs in the unassisted trials.
+    /// How well the estimate finds false beliefs of the participants in the unassisted trials.
     #[serde(flatten)]
     pub detection: Detection,
-    /// Log likelihood of the presses in the unassisted trials.
+    /// Log likelihood of the human's presses in the unassisted trials, under the model and two baselines.
     pub log_likelihood: LogLikelihood,
-    /// The trials without signals.
+    /// Rates in the trials without signals.
     pub unassisted: CohortRates,
-    /// The same trials with the assistant acting by itself.
+    /// Rates in the same trials with signals that the assistant sends by itself.
     pub assisted: CohortRates,
-    /// Share of the belief related errors per press of the human that the assistant saves; below 0: there are more with it.
+    /// Share by which the assistant lowers the rate of errors from false beliefs per press of the human; below 0 if it
+    /// raises the rate.
     pub saved: Option<f64>,
-    /// 95 % interval of that share, by a bootstrap over pairs of trials; null also where some samples of trials have no such error.
+    /// 95 % interval of `saved`, by a bootstrap over pairs of trials; null also where a bootstrap sample has no such
+    /// error.
     pub saved_interval: Option<[f64; 2]>,
 }
 
-/// The output of `tomcom robustness`.
+/// Robustness of estimate and assistant for each cohort: the output of `tomcom robustness`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RobustnessTable {
     /// Seed of the judged trials.
     pub seed: u64,
-    /// Seed of the trials on which thresholds were chosen.
+    /// Seed of the trials on which the flags' thresholds were chosen.
     pub choose_seed: u64,
-    /// The cohorts, in the order of the battery.
+    /// One row per cohort, in the order of the battery file.
     pub cohorts: Vec<CohortRow>,
 }
 
 impl CohortRow {
-    /// Judges the trials of a cohort.
+    /// Computes the row of one cohort from its trials.
     pub fn from_trials(kitchen: &Arc<Kitchen>, name: &str, trials: &CohortTrials) -> CohortRow {
         let thresholds = chosen_thresholds(&trials.chosen_on, &aspect_groups(kitchen));
         let (views, unassisted): (Vec<TrialView>, Vec<TrialSummary>) = trials.unassisted.iter().cloned().unzip();
@@ -95,7 +98,8 @@ impl CohortRow {
             unassisted: CohortRates::from_trials(&unassisted),
             assisted: CohortRates::from_trials(&trials.assisted),
             saved,
-            // Resampled trials without an error leave nothing to save: such a table has too few trials for an interval.
+            // A bootstrap sample without errors leaves nothing to save; a table in which that happens has too few
+            // trials for an interval.
             saved_interval: saved
                 .map(|_| interval(&pairs, SEED, saved_share))
                 .filter(|interval| interval.iter().all(|end| end.is_finite())),
@@ -103,7 +107,7 @@ impl CohortRow {
     }
 }
 
-/// Belief related errors and presses of the human in one trial.
+/// Counts of errors from false beliefs, and of presses of the human, in one trial.
 #[derive(Clone, Copy, Debug, Default)]
 struct RelatedErrors {
     errors: u64,
@@ -117,7 +121,7 @@ impl RelatedErrors {
     }
 }
 
-/// By which share the rate of belief related errors is lower in the second trials of pairs than in the first.
+/// Share by which the rate of errors from false beliefs is lower in the second trials of the pairs than in the first.
 fn saved_share(pairs: &[[RelatedErrors; 2]]) -> f64 {
     let rate = |which: usize| {
         let sum = |count: fn(&RelatedErrors) -> u64| pairs.iter().map(|pair| count(&pair[which])).sum::<u64>() as f64;
@@ -140,7 +144,7 @@ impl CohortRates {
     }
 }
 
-/// The heading of the table as text, with the cohorts' names in so many columns.
+/// Heading of the robustness table as text; the column of cohort names is `width` characters wide.
 pub fn heading(width: usize) -> String {
     let columns = |first: &str, names: [&str; 11]| {
         let [places, recipes, ece, flagged, false_flags, gain, without, with, saved, signals, orders] = names;
@@ -156,7 +160,7 @@ pub fn heading(width: usize) -> String {
     format!("{}\n{}\n", columns("", above), columns("cohort", below))
 }
 
-/// One row of the table as text, with the cohort's name in so many columns.
+/// One row of the robustness table as text; the column of cohort names is `width` characters wide.
 pub fn describe_row(row: &CohortRow, width: usize) -> String {
     let number = |value: Option<f64>, digits: usize| value.map_or("-".to_string(), |value| format!("{value:.digits$}"));
     let (found, flags) = (&row.detection, &row.detection.flags);
@@ -187,12 +191,12 @@ pub fn describe_row(row: &CohortRow, width: usize) -> String {
     )
 }
 
-/// Number of columns for the longest of these names.
+/// Width, in characters, of a column that fits the longest of these names.
 pub fn name_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
     names.map(|name| name.chars().count()).max().unwrap_or_default().max("cohort".len()) + 1
 }
 
-/// What the columns of the table mean, as text.
+/// Explanation of the robustness table's columns, as text.
 pub fn legend(table: &RobustnessTable) -> String {
     format!(
         "\n{} trials of seed {} for each cohort without signals, and the same with the assistant acting by itself; thresholds of \

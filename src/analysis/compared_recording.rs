@@ -1,4 +1,4 @@
-//! A recording in which wizard and assistants were compared from its first event to its last.
+//! Comparison of wizard and assistants over one recording, from its first event to its last.
 
 use super::exclusion_status::ExclusionStatus;
 use super::offer_summary::{OfferSummary, TimedOffer};
@@ -10,34 +10,34 @@ use crate::session::apply::ApplyError;
 use crate::session::settings::Condition;
 use crate::session::{Session, Stamped};
 
-/// Follows a recording, event by event.
+/// Compares wizard and assistants while a recording is read, event by event.
 pub struct RecordingComparer {
     follower: ComparisonFollower,
     wizard: WizardLog,
 }
 
 impl RecordingComparer {
-    /// Of a session from before its first event on.
+    /// The comparer of a session before its first event.
     pub fn new(session: Session, request: &CompareRequest) -> RecordingComparer {
         RecordingComparer { follower: ComparisonFollower::new(session, request), wizard: WizardLog::default() }
     }
 
-    /// Applies the next event.
+    /// Applies the next event of the recording.
     ///
     /// # Errors
-    /// The event cannot be at this point.
+    /// The event is not possible in the session's present state.
     pub fn add(&mut self, stamped: &Stamped) -> Result<(), ApplyError> {
         self.follower.apply(stamped)?;
         self.wizard.note(stamped, &self.follower.follower.session);
         Ok(())
     }
 
-    /// The session as it is now.
+    /// The session after the last event that was added.
     pub fn session(&self) -> &Session {
         &self.follower.follower.session
     }
 
-    /// Nothing more comes of the recording, which goes by this name.
+    /// The result, once the last event was added. `recording`: name of the recording.
     pub fn finish(mut self, recording: String, standing: ExclusionStatus) -> ComparedRecording {
         self.follower.finish();
         let comparison = self.follower.comparison(true);
@@ -49,19 +49,19 @@ impl RecordingComparer {
     }
 }
 
-/// A recording that was followed to its end.
+/// Result of comparing wizard and assistants over one recording.
 pub struct ComparedRecording {
-    /// Its path, as it was named.
+    /// Path of the recording, as the user gave it.
     pub recording: String,
-    /// The session at its end, with what assistants advised.
+    /// The session at its end, with the assistants' recommendations.
     pub follower: ComparisonFollower,
-    /// Whether the trial counts in the analysis.
+    /// Whether the trial was aborted or excluded from the analysis.
     pub standing: ExclusionStatus,
-    /// Wizard and assistants side by side.
+    /// Comparison of the communications of wizard and assistants.
     pub comparison: LaneComparison,
-    /// None where nobody could send signals.
+    /// Summary of the wizard's signals; `None` where nobody could send signals.
     pub wizard: Option<WizardSummary>,
-    /// Offers that a wizard could see; `None` in recordings without offers.
+    /// Statistics of the offers that a wizard could see; `None` in recordings without offers.
     pub offers: Option<OfferSummary>,
 }
 

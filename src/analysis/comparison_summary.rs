@@ -1,4 +1,4 @@
-//! How alike wizard and assistants are over recordings, and where they differ.
+//! Summary over recordings of how far wizard and assistants agree, and where they differ.
 
 use serde::Serialize;
 
@@ -18,123 +18,124 @@ use crate::kitchen::AspectId;
 use crate::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
 use crate::session::wizard_screen::VisibleScreen;
 
-/// So many differences of a kind are listed for people.
+/// Largest number of differences of each kind that are listed as text.
 const LISTED: usize = 20;
 
-/// What `tomcom compare` prints.
+/// Agreement of wizard and assistants in recordings: the output of `tomcom compare`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparisonSummary {
-    /// Over all recordings that count.
+    /// Agreement between the signals sent and each assistant, over all recordings that count in the analysis.
     pub pairs: Vec<LanePairSummary>,
-    /// The recordings, one by one.
+    /// Comparison in each recording.
     pub recordings: Vec<RecordingComparison>,
-    /// Of the wizard who was named.
+    /// Training of the wizard who was named on the command line.
     pub training: Option<TrainingSummary>,
 }
 
-/// Two lanes against each other.
+/// Agreement between two senders' communications over recordings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LanePairSummary {
-    /// The name of the first lane.
+    /// Name of the first lane, "wizard".
     pub of: String,
-    /// The name of the second lane.
+    /// Name of the second lane: an assistant's concept.
     pub with: String,
-    /// Presses of the human within which communications match, and for which the estimate leaves out what was sent.
+    /// Number of the human's presses within which communications can match; the estimate leaves out signals sent within
+    /// this window.
     pub window_actions: u32,
-    /// How far the two lanes agree.
+    /// Similarity of the two lanes' communications: how many of them match.
     #[serde(flatten)]
     pub similarity: Similarity,
 }
 
-/// One recording.
+/// Comparison of wizard and assistants in one recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingComparison {
     /// The recording's folder.
     pub recording: String,
-    /// Whether the trial counts in the analysis.
+    /// Whether the trial was aborted or excluded from the analysis.
     #[serde(flatten)]
     pub standing: ExclusionStatus,
-    /// Presses of the human in the trial.
+    /// Number of the human's presses in the trial.
     pub human_actions: u64,
-    /// What each side said.
+    /// Communications of the wizard and of each assistant.
     pub lanes: Vec<LaneSummary>,
-    /// Of the wizard; null where nobody could send signals.
+    /// Summary of the wizard's signals; null where nobody could send signals.
     pub wizard: Option<WizardSummary>,
-    /// Offers that a wizard could see; null in recordings without offers.
+    /// Statistics of the offers that a wizard could see; null in recordings without offers.
     pub offers: Option<OfferSummary>,
-    /// Communications without a match in another lane.
+    /// Communications of one sender that the other did not match.
     pub differences: Vec<UnmatchedSummary>,
 }
 
-/// What one side said.
+/// Communications of one sender in a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LaneSummary {
-    /// "wizard", or the assistant's name: "tom-com".
+    /// Name of the sender: "wizard", or an assistant's concept as "tom-com".
     pub name: String,
-    /// Its communications, in the order of time.
+    /// The sender's communications, in the order of time.
     pub communications: Vec<CommunicationSummary>,
 }
 
-/// A communication.
+/// One communication, as printed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CommunicationSummary {
-    /// Presses of the human before it.
+    /// Number of the human's presses before the communication.
     pub press: u32,
-    /// On the trial's clock.
+    /// Time of the communication on the trial's clock, in seconds.
     pub clock_s: f64,
-    /// The signal or proposal, in words.
+    /// What the communication says, in words.
     pub says: String,
 }
 
-/// A communication without a match, and what was known then.
+/// A communication without a match, with its context.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnmatchedSummary {
-    /// As `--open` takes it, from 1.
+    /// Number of the difference, from 1, as the option `--open` takes it.
     pub number: usize,
-    /// In words.
+    /// The difference in one line of text.
     pub headline: String,
-    /// The lane that said it.
+    /// Name of the lane with the communication.
     pub by: String,
-    /// The lane that did not.
+    /// Name of the lane without a matching communication.
     pub not_by: String,
-    /// The assistant that it is about, by its lane, and whether who sent the signals said it.
+    /// Index of the assistant's lane that is compared, and whether the communication is one that the participant saw.
     #[serde(skip)]
     pair: usize,
     #[serde(skip)]
     by_sender: bool,
-    /// The communication.
+    /// The communication that has no match.
     #[serde(flatten)]
     pub spoken: CommunicationSummary,
-    /// What was known then; null: the assistants had not been asked yet.
+    /// Context of the communication; null if the assistants had not been asked for advice before.
     pub knew: Option<ContextSummary>,
 }
 
-/// What was known.
+/// Context of a communication: beliefs, recommendation and the wizard's screen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContextSummary {
-    /// Of every aspect, by the estimate that leaves out what was sent within the window.
+    /// Estimated belief about every state aspect, without the effect of signals sent within the window.
     pub beliefs: Vec<AspectContext>,
-    /// What the assistant thought.
+    /// The assistant's recommendation at that time.
     pub advice: Option<Recommendation>,
-    /// What was on the wizard's screen; null before the first frame, and without a wizard.
+    /// Content of the wizard's screen; null before the screen was first drawn, and without a wizard.
     pub screen: Option<VisibleScreen>,
 }
 
-/// An aspect of the belief.
+/// Estimated belief about one state aspect, beside the truth.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AspectContext {
-    /// The aspect's name.
+    /// Name of the state aspect.
     pub aspect: String,
-    /// Its true value.
+    /// True value of the aspect.
     pub truth: String,
-    /// The value that is expected to be believed most.
+    /// The value that the participant most probably believes.
     pub believes: String,
-    /// The expected probability of the truth.
+    /// Expected probability that the participant gives to the true value.
     pub p_truth: f64,
 }
 
 impl ComparisonSummary {
-    /// Sums recordings up. Of several, those that are excluded are left out of the pairs.
+    /// Summarises recordings. If there are several, the agreement leaves out excluded ones.
     pub fn from_recordings(watched: &[ComparedRecording]) -> ComparisonSummary {
         let counting: Vec<&ComparedRecording> =
             watched.iter().filter(|one| watched.len() == 1 || one.standing.counts()).collect();
@@ -165,7 +166,7 @@ impl ComparisonSummary {
         }
     }
 
-    /// The same without what is about other concepts than these. Differences keep their numbers.
+    /// The summary without communications of other concepts than these. Differences keep their numbers.
     pub fn only(mut self, concepts: &[ConceptName]) -> ComparisonSummary {
         let hidden = ConceptName::ALL.into_iter().filter(|concept| !concepts.contains(concept));
         let hidden: Vec<&str> = hidden.map(ConceptName::name).collect();
@@ -209,7 +210,8 @@ impl CommunicationSummary {
 }
 
 impl UnmatchedSummary {
-    /// What matters most has the lowest: what concerns the first assistant, and what the sender said alone.
+    /// Order of importance of a difference, most important lowest: differences with the first assistant come first,
+    /// then those about signals that the participant saw.
     fn rank(&self) -> (usize, bool, usize) {
         (self.pair, !self.by_sender, self.number)
     }
@@ -251,7 +253,7 @@ impl UnmatchedSummary {
     }
 }
 
-/// The figures for people, of what was compared by this request.
+/// The comparison as text for the terminal, with the request that led to it.
 pub fn describe(figures: &ComparisonSummary, request: &CompareRequest) -> String {
     let mut text = format!(
         "{:<24}{:>7}{:>8}{:>8}{:>11}{:>6}{:>7}{:>8}\n",
@@ -268,7 +270,7 @@ pub fn describe(figures: &ComparisonSummary, request: &CompareRequest) -> String
         text += &one.wizard.as_ref().map_or(String::new(), wizard_log::describe);
         text += &one.offers.as_ref().map_or(String::new(), OfferSummary::describe);
         text += &describe_differences(&one.differences);
-        // That of the session's own concept, if there is one.
+        // The context of the session's own concept is shown, if the session has one.
         if let Some(first) = one.differences.iter().min_by_key(|one| one.rank()) {
             text += &format!(
                 "what each knew: tomcom compare {}{} --open {}\nthe moment itself: tomcom review {} --at {}\n",
@@ -283,7 +285,7 @@ pub fn describe(figures: &ComparisonSummary, request: &CompareRequest) -> String
     text
 }
 
-/// The options that ask for the same comparison again.
+/// The command-line options that ask for the same comparison again.
 fn flags(request: &CompareRequest) -> String {
     let mut flags = String::new();
     if !request.with.is_empty() {
@@ -296,7 +298,7 @@ fn flags(request: &CompareRequest) -> String {
     flags
 }
 
-/// Differences by who said what the other did not: the session's own concept first. Their numbers go by time.
+/// The differences as text, by sender, the session's own concept first. They are numbered by time.
 fn describe_differences(differences: &[UnmatchedSummary]) -> String {
     let mut groups: Vec<(String, Vec<&UnmatchedSummary>)> = Vec::new();
     let mut sorted: Vec<&UnmatchedSummary> = differences.iter().collect();

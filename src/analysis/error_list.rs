@@ -1,4 +1,4 @@
-//! The errors of a recording as raters see them: number, time, press.
+//! The errors of a recording as raters see them: number, time and press.
 
 use serde::Serialize;
 
@@ -9,30 +9,30 @@ use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::session::TimelineEvent;
 
-/// An error of the human.
+/// One error of the human in a list of errors for raters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ListedError {
-    /// Number among the errors of the recording, from 1.
+    /// Number of the error in the recording, from 1.
     pub error: u64,
     /// Sequence number of the press in the log.
     pub press: u64,
-    /// Time on the trial's clock in seconds.
+    /// Time of the press on the trial's clock, in seconds.
     pub time_s: f64,
-    /// The button in words.
+    /// The pressed button in words.
     pub button: String,
     /// Whether the press changed the kitchen.
     pub effective: bool,
 }
 
 impl ListedError {
-    /// The errors of a recording that was followed to its end, in order.
+    /// The errors of the human in a recording that was read to its end, in order.
     pub fn all(follower: &Follower) -> Vec<ListedError> {
         let session = &follower.session;
         let presses = session.timeline.iter().filter_map(|entry| match entry.what {
             TimelineEvent::Press { agent: Agent::Human, button, no_effect } => Some((button, no_effect.is_none())),
             _ => None,
         });
-        // The nth judged press is the nth press of the human on the timeline.
+        // Judged presses and the human's presses on the timeline are the same presses in the same order.
         let errors = follower.judged.iter().zip(presses).filter(|(judged, _)| judged.verdict.error);
         let listed =
             |(index, (judged, (button, effective))): (usize, (&crate::measures::JudgedPress, _))| ListedError {
@@ -45,7 +45,7 @@ impl ListedError {
         errors.enumerate().map(listed).collect()
     }
 
-    /// Its time as the console shows it: "1:34".
+    /// Time of the error as the console shows it: "1:34".
     pub fn clock(&self) -> String {
         SessionTime::from_secs_f64(self.time_s).to_string()
     }

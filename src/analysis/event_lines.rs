@@ -1,4 +1,4 @@
-//! A recording in words: one line for each thing that happened, for pipes and plain terminals.
+//! A recording as text, with one line for each event, for pipes and plain terminals.
 
 use super::follower::Follower;
 use crate::base::printable::printable;
@@ -20,15 +20,16 @@ use crate::session::wall_display::DisplayEvent;
 use crate::session::wizard_screen::VisibleScreen;
 use crate::session::{Event, Phase, Stamped};
 
-/// What stands above the lines.
+/// Heading above the lines of events.
 pub const HEADING: &str = " trial time  what happened";
 
-/// The line for an event that was just applied, at the time of the trial's clock; none for gaze samples and the arm's motion.
+/// The line for an event that was just applied, with the time on the trial's clock; `None` for gaze samples and arm
+/// motion.
 pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
     let kitchen = &follower.session.kitchen;
     let words = match &stamped.event {
         Event::Gaze(_) | Event::SignalDrawn { .. } | Event::RobotMoves(_) => return None,
-        // An estimate is worth a line where it says that something is believed wrong.
+        // An estimate gets a line only if it contains a probable false belief.
         Event::BeliefEstimated(estimate) => estimated(kitchen, estimate)?,
         Event::TrialStarted => "trial started".to_string(),
         Event::TrialPaused => "trial paused".to_string(),
@@ -64,7 +65,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::RobotIdles { reason: IdleReason::NoOrder } => "robot idles: no order".to_string(),
         Event::RobotIdles { reason: IdleReason::HumanTurn } => "robot idles: only the human can go on".to_string(),
         Event::RobotIdles { reason: IdleReason::Skipped } => "robot idles: its only press was skipped".to_string(),
-        // That it slows near a hand and speeds up again is no news.
+        // The arm slows near the hand and speeds up again too often for a line each.
         Event::RobotSafety { mode: SafetyMode::Normal | SafetyMode::Reduced, .. } => return None,
         Event::RobotSafety { mode, force_n, joint } => {
             format!("robot's arm: {}", wording::arm_stopped(*mode, *force_n, *joint))
@@ -79,7 +80,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         }
         Event::RobotStopped => "robot stopped by the wizard".to_string(),
         Event::RobotResumed => "robot goes on".to_string(),
-        // Advice is worth a line where something should be said.
+        // A recommendation gets a line only if it advises a signal.
         Event::Advised(advice) => advised(kitchen, advice, follower.session.spec.assistant.concept)?,
         Event::OfferOpened(offer) => offered(offer),
         Event::OfferClosed { reason, .. } => format!("offer closes: {}", reason.words()),
@@ -99,7 +100,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::ParticipantBelieves(belief) => believes(kitchen, belief),
         Event::SessionEnded => "session over".to_string(),
     };
-    // Notes and names of devices may hold anything.
+    // Notes and names of devices can contain control characters, which would disturb the terminal.
     let (words, session) = (printable(&words), &follower.session);
     Some(match session.phase {
         Phase::Ready => format!("{:>11}  {words}", "before"),
@@ -132,7 +133,7 @@ fn on_screen(screen: &VisibleScreen) -> String {
     format!("the wizard sees {} ({}{dialog})", screen.panels.join(", "), screen.room)
 }
 
-/// What the press of the human was worth, if it was just judged.
+/// Judgement of the human's press that was just applied, in words; empty for other events.
 fn verdict(stamped: &Stamped, follower: &Follower) -> String {
     let judged = follower.judged.last().filter(|press| press.seq == stamped.seq);
     match (&stamped.event, judged) {
@@ -149,7 +150,8 @@ fn believes(kitchen: &Kitchen, belief: &BeliefWitness) -> String {
     let wrong = belief.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
     let told = |aspect: &AspectBelief| format!("{} = {}", said(&aspect.aspect), kitchen.worded(&aspect.believes));
     let wrong: Vec<String> = wrong.map(told).collect();
-    // Why it presses what it presses is worth a word where something wrong is the reason.
+    // The cause that a simulated participant recorded for its press is shown unless the press follows from the true
+    // state ("as it is").
     let cause = match belief.cause.as_str() {
         "as it is" => String::new(),
         cause => format!(" ({})", said(&worded_cause(kitchen, cause))),
@@ -160,7 +162,7 @@ fn believes(kitchen: &Kitchen, belief: &BeliefWitness) -> String {
     }
 }
 
-/// A recorded cause with its contents worded: "believes cooking_pot: cooked rice".
+/// A recorded cause of a press in words: "believes cooking_pot: cooked rice".
 fn worded_cause(kitchen: &Kitchen, cause: &str) -> String {
     let worded = |part: &str| match part.split_once(": ") {
         Some((about, content)) => format!("{about}: {}", kitchen.worded(content)),

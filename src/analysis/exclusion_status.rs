@@ -1,30 +1,30 @@
-//! Whether a trial counts: aborted or excluded, or neither.
+//! Whether analyses count a trial, or leave it out because it was aborted or excluded.
 
 use serde::Serialize;
 
 use crate::session::Session;
 
-/// What was said about a trial. An analysis leaves out what does not count.
+/// Whether a trial was aborted or excluded; an analysis leaves such trials out.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ExclusionStatus {
-    /// Why it was aborted; null: it was not.
+    /// Reason for aborting the trial; null if it was not aborted.
     pub aborted: Option<String>,
-    /// Why it is excluded; null: it is not.
+    /// Reason for excluding the trial; null if it is not excluded.
     pub excluded: Option<String>,
 }
 
 impl ExclusionStatus {
-    /// As it was said at the console.
+    /// The status that the wizard set at the console during the session.
     pub fn at_console(session: &Session) -> ExclusionStatus {
         ExclusionStatus { aborted: session.aborted.clone(), excluded: session.excluded.clone() }
     }
 
-    /// Whether the analysis takes it.
+    /// Whether analyses include the trial: it was neither aborted nor excluded.
     pub fn counts(&self) -> bool {
         self.aborted.is_none() && self.excluded.is_none()
     }
 
-    /// For people; empty for what counts.
+    /// The status as text; empty for a trial that counts.
     pub fn describe(&self) -> String {
         let said = |word: &str, reason: &Option<String>| reason.as_ref().map(|reason| format!("{word}: {reason}"));
         let both = [said("aborted", &self.aborted), said("excluded", &self.excluded)];

@@ -1,5 +1,5 @@
-//! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate. Live sessions
-//! and replays use the same code.
+//! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate.
+//! Live sessions and replays use the same code.
 
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::aspects_told;
@@ -27,88 +27,88 @@ use crate::session::{Applied, Event, Session, Stamped, apply};
 /// A session with its judged presses, false belief episodes and belief estimate.
 #[derive(Clone, Debug)]
 pub struct Follower {
-    /// The session up to the last event.
+    /// The session after the last event.
     pub session: Session,
-    /// Every press of the human so far.
+    /// Every press of the human so far, with its judgement.
     pub judged: Vec<JudgedPress>,
     /// False belief episodes, as far as the participant's beliefs are known.
     pub episodes: Episodes,
     /// The estimator of the human's belief.
     pub filter: BeliefFilter,
-    /// Signals that are not to be repeated yet.
+    /// Signals that the assistant is not to repeat yet.
     pub repeats: Repeats,
-    /// Computing times of the estimate, if they are measured.
+    /// Computing times of updates of the estimate, if they are measured.
     pub timing: Option<InferenceTiming>,
     pub(crate) cost: CostToGo,
     judge: PressJudge,
     attributor: Attributor,
-    /// What the human seems unaware of by its gaze.
+    /// The change of the kitchen that the human seems unaware of, judged by gaze.
     awareness: GazeAwareness,
     /// Session time of the last update of the estimate.
     updated_at: Option<SessionTime>,
     /// Recorded belief of the participant before its next press.
     belief: Option<Belief>,
-    /// Cause that the participant recorded for its next press, should it be an error.
+    /// Cause that a simulated participant recorded in advance for its next press, in case the press is an error.
     told_cause: Option<Cause>,
-    /// Whether errors are attributed to causes.
+    /// Whether the follower attributes errors to their causes.
     finds_causes: bool,
-    /// The estimate before the last counted press of the human.
+    /// The belief estimate before the last counted press of the human.
     pub estimated: Option<PressEstimate>,
-    /// The estimate at the beginning of the last freeze probe.
+    /// The belief estimate at the beginning of the last freeze probe.
     pub probed: Option<ProbedEstimate>,
 }
 
-/// The estimate when the task came to a stand for a probe.
+/// The belief estimate when the task stopped for a freeze probe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbedEstimate {
-    /// Number of the probe.
+    /// Number of the freeze probe in the trial.
     pub probe: u32,
-    /// True state at that moment.
+    /// True state of the kitchen when the task stopped.
     pub state: State,
-    /// The estimate.
+    /// The estimate of the human's belief when the task stopped.
     pub belief: DirichletBelief,
 }
 
-/// The estimate before a press of the human.
+/// The belief estimate before a press of the human.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressEstimate {
     /// Sequence number of the press.
     pub press: u64,
-    /// State before the press.
+    /// True state of the kitchen before the press.
     pub state: State,
-    /// The estimate before the press.
+    /// The estimate of the human's belief before the press.
     pub belief: DirichletBelief,
-    /// What the filter had to go by.
+    /// The evidence that the filter had received up to the press.
     pub evidence: Evidence,
 }
 
 impl PressEstimate {
-    /// The estimate as it is recorded in the log.
+    /// The belief estimate in the form that the log records.
     pub fn witness(&self, kitchen: &Kitchen) -> EstimateWitness {
         EstimateWitness::new(kitchen, self.press, &self.belief, self.state, self.evidence)
     }
 }
 
-/// Computing times of single updates, in nanoseconds.
+/// Computing times of single updates of the belief estimate, in nanoseconds.
 #[derive(Clone, Debug)]
 pub struct InferenceTiming {
     /// The caller's monotonic clock, in nanoseconds.
     now_ns: fn() -> u64,
-    /// For each gaze sample.
+    /// Computing times of updates by a gaze sample, in nanoseconds.
     pub gaze_ns: Vec<u64>,
-    /// Updates by presses of the human and of the robot.
+    /// Computing times of updates by a press of the human or the robot, in nanoseconds.
     pub action_ns: Vec<u64>,
 }
 
 impl InferenceTiming {
-    /// Starts measuring with a monotonic clock, in nanoseconds.
+    /// Starts measuring with the caller's monotonic clock, in nanoseconds.
     pub fn with_clock(now_ns: fn() -> u64) -> InferenceTiming {
         InferenceTiming { now_ns, gaze_ns: Vec::new(), action_ns: Vec::new() }
     }
 }
 
 impl Follower {
-    /// The follower of a session from before its first event.
+    /// The follower of a session, before the session's first event.
     pub fn new(session: Session, cost: CostToGo) -> Follower {
         let (kitchen, spec, seed) = (session.kitchen.clone(), &session.spec, session.seed());
         let judge = PressJudge::new(kitchen.clone());
@@ -137,12 +137,13 @@ impl Follower {
         }
     }
 
-    /// The estimate at `now`, with the unknown gaze since the last event.
+    /// The belief estimate at `now`, which includes the time of unknown gaze since the last event.
     pub fn belief_at(&mut self, now: SessionTime) -> DirichletBelief {
         self.filter.at(now, &mut self.cost)
     }
 
-    /// The estimate from which a request for advice at `now` starts. Most requests follow an event that has just updated it.
+    /// The belief estimate from which a request for advice at `now` starts; it includes unknown gaze unless an event
+    /// has just updated it.
     pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
         match self.updated_at {
             Some(updated) if updated >= now => self.filter.belief().clone(),
@@ -150,7 +151,8 @@ impl Follower {
         }
     }
 
-    /// The aspect of which the human seems unaware since the last gaze sample, if the assistant has not been asked since.
+    /// The state aspect of which the human seems unaware since the last gaze sample, if the assistant was not asked
+    /// about that yet.
     pub fn unaware(&self) -> Option<AspectId> {
         self.awareness.unaware()
     }
@@ -194,7 +196,8 @@ impl Follower {
         Ok(applied)
     }
 
-    /// Updates what the human seems unaware of, where the assistant is asked by gaze.
+    /// Updates which change the human seems unaware of, in sessions that ask the assistant when gaze passes over a
+    /// change.
     fn watch_gaze(&mut self, event: &Event) {
         let session = &self.session;
         if !session.spec.notes_unawareness() || !session.is_running() {
@@ -217,7 +220,7 @@ impl Follower {
         }
     }
 
-    /// Updates the estimate by an event that has just been applied.
+    /// Updates the belief estimate by an event that has just been applied.
     fn estimate(&mut self, stamped: &Stamped, change: &Change) {
         let Some(what) = self.observed(stamped, change) else { return };
         let observation = Observation { time: stamped.time, what };
@@ -243,7 +246,7 @@ impl Follower {
         }
     }
 
-    /// Updates the memory of sent signals. Gaze samples are skipped, since no advice is requested after them.
+    /// Updates which signals were sent lately. Gaze samples are skipped, since no advice is requested after them.
     fn remember(&mut self, stamped: &Stamped) {
         let (kitchen, state) = (&self.session.kitchen, self.session.state);
         match &stamped.event {
@@ -265,13 +268,14 @@ impl Follower {
             }
             Change::None | Change::UncountedPress { .. } => {}
         }
-        // While a probe is held the kitchen is off the display, and a pause of the probe is none of the task.
+        // During a freeze probe the kitchen is not on the display, and the probe's pause says nothing about the human's
+        // silence.
         let is_frozen = self.session.is_frozen();
         match &stamped.event {
             Event::TrialPaused | Event::TrialResumed | Event::Gaze(_) if is_frozen => None,
             Event::TrialPaused => Some(Observed::Paused),
             Event::TrialResumed => Some(Observed::Resumed),
-            // A faulty sample is recorded and not used.
+            // The filter does not use gaze samples that are late, duplicate or out of order; they are recorded only.
             Event::Gaze(_) if self.session.gaze.fault.is_some() => None,
             Event::Gaze(sample) => {
                 let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
@@ -302,7 +306,7 @@ impl Follower {
         }
     }
 
-    /// Bit set of the locations about which a probe asked.
+    /// The locations about which a freeze probe asked, as a bit set.
     fn asked_about(&self, probe: &OpenProbe) -> u32 {
         let asked = probe.questions.iter().take(probe.shown.map_or(0, |shown| shown + 1));
         let locations = asked.filter_map(|question| match &question.about {
@@ -312,7 +316,7 @@ impl Follower {
         locations.fold(0, |bits, location| bits | 1 << location.index())
     }
 
-    /// The same without attribution of errors, which takes too long for a running session.
+    /// This follower without attribution of errors to causes, which takes too long in a running session.
     pub fn without_causes(self) -> Follower {
         Follower { finds_causes: false, ..self }
     }

@@ -1,4 +1,4 @@
-//! Gaze quality of a recording: numbers of samples, faults, losses, and the accuracy check.
+//! Gaze quality of a recording: numbers of samples, faults and losses, and results of the accuracy check.
 
 use serde::Serialize;
 
@@ -7,20 +7,20 @@ use crate::gaze::quality::{DropCounts, FaultCounts};
 use crate::session::Session;
 use crate::session::gaze_samples::faults;
 
-/// Gaze quality of a recording.
+/// Gaze quality of a recording: numbers of samples, faults and losses, and measured accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GazeSummary {
-    /// Recorded samples.
+    /// Number of recorded gaze samples.
     pub samples: u64,
-    /// Recorded samples outside the display or below the least confidence.
+    /// Number of recorded gaze samples outside the display or with a confidence below the threshold.
     pub unusable: u64,
-    /// Recorded samples that the filter does not use, by fault.
+    /// Number of recorded gaze samples that the belief filter does not use, by fault.
     #[serde(flatten)]
     pub faults: FaultCounts,
-    /// Input that was not recorded, by kind.
+    /// Gaze input that was not recorded, by kind.
     #[serde(flatten)]
     pub dropped: DropCounts,
-    /// How often the clock of the tracker's time stamps was set.
+    /// Number of times that the tracker's clock was matched anew to the session's clock.
     pub clock_steps: u64,
     /// Number of fixations that the tracker found.
     pub fixations: u64,
@@ -28,14 +28,15 @@ pub struct GazeSummary {
     pub blinks: u64,
     /// Number of times that the connection to the tracker was lost.
     pub losses: u64,
-    /// Accuracy in the last accepted gaze check, in degrees, after correction if the correction is in use; null without a check.
+    /// Accuracy in the last accepted gaze check, in degrees, after correction if the correction is in use; null without
+    /// a check.
     pub accuracy_deg: Option<f64>,
     /// Precision of the gaze in that check, in degrees.
     pub precision_deg: Option<f64>,
 }
 
 impl GazeSummary {
-    /// The gaze of a session up to its last event.
+    /// Gaze quality of a session up to its last event.
     pub fn from_session(session: &Session) -> GazeSummary {
         let (gaze, tracker) = (&session.gaze, &session.tracker);
         let calibrated = session.calibrated.as_ref();
@@ -54,7 +55,7 @@ impl GazeSummary {
     }
 }
 
-/// One line about faults of the gaze; `None` if there were none.
+/// One line of text about faults of the gaze; `None` without faults.
 pub fn describe(session: &Session) -> Option<String> {
     let kinds: Vec<String> = faults(session).iter().map(|(number, kind)| format!("{number} {kind}")).collect();
     let samples = count(session.gaze.samples, "sample", "samples");

@@ -1,4 +1,4 @@
-//! What is to be known about a kitchen: its size, its shortest plans, its tags.
+//! Summary of a kitchen: its size, its shortest plans, and the tags by which eye trackers find its display.
 
 use std::fmt::Write;
 use std::sync::Arc;
@@ -9,31 +9,32 @@ use crate::gaze::tags::{CELLS, DisplayTag, DisplayTags};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, OrderContent, State};
 
-/// What is to be known about a kitchen.
+/// Summary of a kitchen: size, shortest plans and display tags.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KitchenSummary {
     /// The kitchen's identifier.
     pub name: String,
-    /// The number of joint values of all aspects, in decimal: it exceeds what JSON readers take as a number.
+    /// Number of combinations of all aspects' values, as a decimal text, since the number is too large for JSON
+    /// readers.
     pub states: String,
     /// The state aspects with the number of their values.
     pub aspects: Vec<AspectSummary>,
-    /// The shortest plan for each dish.
+    /// A shortest plan for each dish.
     pub plans: Vec<ShortestPlanSummary>,
-    /// The tags in the corners of the wall display; null where there is no room for them.
+    /// Tags in the corners of the wall display; null if there is no room for them.
     pub tags: Option<TagsSummary>,
 }
 
 /// The tags by which an eye tracker finds the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TagsSummary {
-    /// The family of the tags.
+    /// Name of the family of the tags.
     pub family: &'static str,
-    /// The length of the black edges, in metres.
+    /// Length of the edges of the tags' black squares, in metres.
     pub edge_m: f64,
-    /// The tags, one in each corner.
+    /// The tags, one in each corner of the display.
     pub tags: Vec<TagSummary>,
-    /// The corners of the surface that they span: top left, top right, bottom right, bottom left, in fractions of the
+    /// Corners of the surface that the tags span: top left, top right, bottom right, bottom left, in fractions of the
     /// display.
     pub surface: [[f64; 2]; 4],
 }
@@ -41,14 +42,14 @@ pub struct TagsSummary {
 /// A tag in a corner of the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TagSummary {
-    /// Its number in the family.
+    /// Number of the tag in its family.
     pub id: u16,
-    /// x, y, w and h with its white border, in fractions of the display.
+    /// Position and size (x, y, w, h) of the tag with its white border, in fractions of the display.
     pub area: [f64; 4],
-    /// Corners of its black square, which trackers ask for: top left, top right, bottom right, bottom left, in fractions of the
-    /// display. They are at 1 and 9 of the tag's 10 cells.
+    /// Corners of the tag's black square, which trackers ask for: top left, top right, bottom right, bottom left, in
+    /// fractions of the display. They lie at cells 1 and 9 of the tag's 10 cells.
     pub corners: [[f64; 2]; 4],
-    /// Rows of cells, from the top: `#` for black, another sign for white.
+    /// Rows of the tag's cells, from the top: `#` for black, another character for white.
     pub cells: Vec<String>,
 }
 
@@ -64,28 +65,28 @@ impl TagsSummary {
     }
 }
 
-/// The size of a state aspect.
+/// Number of values of one state aspect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AspectSummary {
-    /// The aspect's name.
+    /// Name of the state aspect.
     pub name: String,
-    /// Number of its possible values.
+    /// Number of the aspect's possible values.
     pub values: usize,
 }
 
-/// The shortest way to a dish from an empty kitchen.
+/// A shortest plan for a dish from an empty kitchen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ShortestPlanSummary {
     /// The dish's name.
     pub recipe: String,
-    /// Number of presses, of both agents together.
+    /// Length of the plan, as the number of presses of both agents together.
     pub actions: u32,
-    /// The presses of one such way: "human: take rice".
+    /// The presses of one shortest plan, in order: "human: take rice".
     pub presses: Vec<String>,
 }
 
 impl KitchenSummary {
-    /// Computes the figures of a kitchen.
+    /// Computes the summary of a kitchen.
     pub fn from_kitchen(kitchen: &Arc<Kitchen>) -> KitchenSummary {
         let mut cost = CostToGo::new(kitchen.clone());
         let aspects = kitchen.aspects.iter();
@@ -101,21 +102,22 @@ impl KitchenSummary {
     }
 }
 
-/// A state with nothing but an order of this dish.
+/// The state of a kitchen that is empty except for one order of this dish.
 fn ordered(kitchen: &Kitchen, dish: DishId) -> State {
     let mut state = kitchen.empty_state();
     state.set_order(kitchen.orders[0], OrderContent::Dish(dish));
     state
 }
 
-/// The least presses for each dish from an empty kitchen.
+/// Length of the shortest plan for each dish from an empty kitchen, in presses.
 pub fn plan_lengths(kitchen: &Kitchen, cost: &mut CostToGo) -> Vec<u32> {
     let recipes = kitchen.true_recipes();
     let length = |index| cost.all_orders(ordered(kitchen, DishId(index as u8)), &recipes);
     (0..kitchen.dishes.len()).map(length).collect()
 }
 
-/// Follows the best presses from an empty kitchen until the dish is served; the agent changes only where it must.
+/// A shortest plan for a dish: follows best presses from an empty kitchen until the dish is served, and changes the
+/// agent only where it has to.
 fn plan(kitchen: &Kitchen, cost: &mut CostToGo, dish: DishId) -> ShortestPlanSummary {
     let recipes = kitchen.true_recipes();
     let mut state = ordered(kitchen, dish);
@@ -137,7 +139,7 @@ fn plan(kitchen: &Kitchen, cost: &mut CostToGo, dish: DishId) -> ShortestPlanSum
     ShortestPlanSummary { recipe: kitchen.dish(dish).name.clone(), actions, presses }
 }
 
-/// Describes a kitchen for people.
+/// The summary of a kitchen as text for the terminal.
 pub fn describe(kitchen: &Kitchen, figures: &KitchenSummary) -> String {
     let mut text = format!("{} ({})\n", kitchen.title, kitchen.name);
     let written = write_locations(&mut text, kitchen)

@@ -1,5 +1,5 @@
-//! What is asked in a wizard's training, and what came of it: every false belief that led to errors, what would have been right
-//! about it, and the score, for people.
+//! Report of a wizard's training, as text: the criterion, every false belief that led to errors with the signal that
+//! would have corrected it, and the score.
 
 use std::path::Path;
 
@@ -16,42 +16,43 @@ use crate::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, 
 use crate::mind::BeliefWitness;
 use crate::session::Session;
 
-/// With fewer false beliefs that led to errors the shares say little: at 10 a share of 60 % is known to within 30 %.
+/// Below this number of false beliefs that led to errors, a share of hits is too uncertain: at 10, a share of 60 % is
+/// known to within 30 %.
 const TELLING: u64 = 10;
 
-/// What a wizard was trained.
+/// Summary of a wizard's training so far.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrainingSummary {
     /// The wizard's code.
     pub wizard: String,
-    /// Where its records are looked for.
+    /// Folder in which the training records were looked for.
     pub folder: String,
-    /// Number of recorded trainings.
+    /// Number of recorded training sessions.
     pub times: u64,
-    /// Their duration together, in minutes.
+    /// Duration of all training sessions together, in minutes.
     pub minutes: f64,
-    /// The criterion of the last training; null: never trained.
+    /// Criterion of the last training session; null if there was none.
     pub criterion: Option<TrainingCriterion>,
-    /// Whether it was met then; null: never trained.
+    /// Whether the wizard met the criterion in the last session; null if there was none.
     pub met: Option<bool>,
 }
 
 impl TrainingSummary {
-    /// Of a wizard's training, whose records were found in this folder.
+    /// Summary of a wizard's training from the records found in this folder.
     pub fn from_records(folder: &Path, wizard: &str, records: &[TrainingRecord]) -> TrainingSummary {
         let last = records.last();
         TrainingSummary {
             wizard: wizard.to_string(),
             folder: folder.display().to_string(),
             times: records.len() as u64,
-            // The sum of nothing would be -0.
+            // The sum of an empty list of floats would be -0.
             minutes: records.iter().fold(0.0, |sum, record| sum + record.minutes),
             criterion: last.map(|record| record.criterion),
             met: last.map(|record| record.met),
         }
     }
 
-    /// In words, for people.
+    /// The training so far, as text.
     pub fn describe(&self) -> String {
         let Some(met) = self.met else {
             return format!("\nno training of {} in {}; see --training\n", self.wizard, self.folder);
@@ -62,7 +63,7 @@ impl TrainingSummary {
     }
 }
 
-/// What a spell was about, as it is known before anything was said of it.
+/// A false belief episode before any signal about it was judged.
 pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedBelief {
     JudgedBelief {
         aspect: session.kitchen.aspects[spell.aspect.index()].name.clone(),
@@ -77,7 +78,7 @@ pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedBelief {
     }
 }
 
-/// Takes over what the participant believes now, and which signal would tell the truth.
+/// Fills in what the participant believes now, and which signal would correct it.
 pub fn hear(belief: &mut JudgedBelief, session: &Session, aspect: AspectId, witness: &BeliefWitness) {
     let kitchen = &session.kitchen;
     let Some(told) = witness.aspects.get(aspect.index()) else { return };
@@ -99,20 +100,20 @@ pub fn hear(belief: &mut JudgedBelief, session: &Session, aspect: AspectId, witn
     belief.signal = right.or(belief.signal.take());
 }
 
-/// "recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri".
+/// A false belief in words: "recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri".
 pub fn about(belief: &JudgedBelief) -> String {
     let what = belief.aspect.replace('_', " ");
     if belief.words.is_empty() { what } else { format!("{what}: {}", belief.words) }
 }
 
-/// What would have been right.
+/// The signal that would have corrected a false belief, in words.
 pub fn right(belief: &JudgedBelief) -> String {
     belief.signal.as_ref().map_or("no signal could tell it".to_string(), |signal| {
         format!("right would have been: {}", wording::signal(signal))
     })
 }
 
-/// What is asked of the wizard, and what counts.
+/// The task of the wizard in the training, and which signals count, as lines of text.
 pub fn task(criterion: &TrainingCriterion) -> Vec<String> {
     vec![
         "Press . to start.".to_string(),
@@ -127,7 +128,8 @@ pub fn task(criterion: &TrainingCriterion) -> Vec<String> {
     ]
 }
 
-/// How it ended, in lines: how it is held against the criterion, and each false belief that led to errors.
+/// Result of a training session as lines of text: the score beside the criterion, and each false belief that led to
+/// errors.
 pub fn lines(recordings: &[&JudgedRecording], criterion: &TrainingCriterion) -> Vec<String> {
     let sum = WizardMeasures::sum(recordings.iter().map(|one| &one.measures));
     let mut lines = vec![held_against(&sum, criterion)];
@@ -144,7 +146,8 @@ pub fn lines(recordings: &[&JudgedRecording], criterion: &TrainingCriterion) -> 
     lines
 }
 
-/// "1 of 2 hit (50 %, asked: at least 60 %); 3 of 9 signals wrong (33 %, asked: at most 40 %)".
+/// The score beside the criterion: "1 of 2 hit (50 %, asked: at least 60 %); 3 of 9 signals wrong (33 %, asked: at most
+/// 40 %)".
 fn held_against(sum: &WizardMeasures, criterion: &TrainingCriterion) -> String {
     let wrong = sum.wrong_targets.unwrap_or(0) + sum.needless.unwrap_or(0);
     let share = |part: u64, all: u64| match all {
@@ -162,7 +165,8 @@ fn held_against(sum: &WizardMeasures, criterion: &TrainingCriterion) -> String {
     )
 }
 
-/// A false belief: when, what was believed, what would have been right, what was sent meanwhile.
+/// A false belief as two lines of text: when it was held, what was believed, which signal would have corrected it, and
+/// what was sent meanwhile.
 fn told(belief: &JudgedBelief, signals: &[JudgedSignal]) -> [String; 2] {
     let end = belief.corrected_ns.map_or("the end".to_string(), |end| end.to_string());
     let errors = count(belief.errors, "error", "errors");
@@ -181,7 +185,7 @@ fn told(belief: &JudgedBelief, signals: &[JudgedSignal]) -> [String; 2] {
     [head, format!("    missed; {}; sent meanwhile: {sent}", right(belief))]
 }
 
-/// What came of a training, for people.
+/// Result of a training session as text.
 pub fn describe(record: &TrainingRecord, path: &Path) -> String {
     let mut text = String::new();
     for one in &record.recordings {
@@ -205,7 +209,7 @@ pub fn describe(record: &TrainingRecord, path: &Path) -> String {
     text
 }
 
-/// Kappa of two times that the same recording was watched.
+/// Cohen's kappa between a wizard's signals in two passes through the same recording.
 pub fn with_oneself(kitchen: &Kitchen, one: &JudgedRecording, other: &JudgedRecording) -> Option<f64> {
     let said = |signal: &JudgedSignal| {
         let kind = match signal.signal {

@@ -1,6 +1,6 @@
-//! Predictive accuracy of the human model: mean log probability per press, compared with two baselines that need no inference:
-//! an informed human, who knows the true world, with softmax temperature and lapse rate fitted to these presses, and a human who
-//! presses random buttons.
+//! Predictive accuracy of the human model: mean log probability per press, compared with two baselines that need no
+//! inference. The informed human knows the true world, with softmax temperature and lapse rate fitted to these presses;
+//! the other baseline presses random buttons.
 
 use serde::Serialize;
 
@@ -12,25 +12,25 @@ use crate::measures::belief_detection::{PressView, TrialView};
 use crate::mind::ChoiceModel;
 use crate::mind::choice_parameters::DecisionModel;
 
-/// Tolerance of the informed human's fit, in nats per press.
+/// Tolerance of the baseline's fit (informed human), in nats per press.
 const TOLERANCE_NATS: f64 = 1e-6;
-/// Largest number of iterations of the informed human's fit.
+/// Largest number of iterations of the baseline's fit (informed human).
 const MOST_ITERATIONS: usize = 200;
 
-/// Mean log probability of a press, in nats.
+/// Mean log probability of the human's presses under the model and two baselines, in nats per press.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct LogLikelihood {
-    /// Under the estimated belief before the press; null without an estimate.
+    /// Under the human model with the estimated belief before the press; null without an estimate.
     pub model: Option<f64>,
-    /// Under an informed human, who knows the true world, fitted to these presses.
+    /// Under a human who knows the true world (informed human, a baseline), fitted to these presses.
     pub informed: Option<f64>,
-    /// Under a human who presses random buttons.
+    /// Under a human who presses random buttons, a baseline.
     pub uniform: Option<f64>,
-    /// By how much the mean log probability under the model exceeds that under the informed human, in nats per press.
+    /// Difference of mean log probability between the human model and the informed human, in nats per press.
     pub gain: Option<f64>,
-    /// 95 % interval of the gain, by a bootstrap over trials.
+    /// 95 % interval of `gain`, by a bootstrap over trials.
     pub gain_interval: Option<[f64; 2]>,
-    /// The choice model's tau that fits the informed human best, per press.
+    /// Value of the choice model's parameter tau, per press, that fits the informed human best.
     pub informed_tau: Option<f64>,
     /// The lapse probability that fits the informed human best.
     pub informed_lapse: Option<f64>,

@@ -1,11 +1,11 @@
-//! Looks at locations: gaze that has rested in a location's area since its last change for long enough to read it.
+//! Looks at locations: time for which gaze has rested in a location's area since the content there last changed.
 
 use crate::base::time::SessionTime;
 use crate::kitchen::LocationId;
 use crate::kitchen::state::MAX_LOCATIONS;
 use crate::session::Session;
 
-/// Length of a look after which a location counts as seen, in seconds.
+/// Least duration of a look after which a location counts as seen, in seconds.
 pub const LOOK_S: f64 = 0.1;
 
 /// For each location, the time since which the gaze has been in its area without a change there.
@@ -15,18 +15,18 @@ pub struct Looks {
 }
 
 impl Looks {
-    /// Notes a change of a location: what was read there before no longer holds.
+    /// Notes a change of a location's content: a look at the earlier content does not count for the new one.
     pub fn changed(&mut self, location: LocationId) {
         self.since[location.index()] = None;
     }
 
-    /// Ends all looks, as a pause does.
+    /// Ends all looks, which a pause of the trial interrupts.
     pub fn interrupted(&mut self) {
         self.since = Default::default();
     }
 
-    /// Notes a usable gaze sample that has just been applied to the session. Returns whether the participant has seen the location's
-    /// present content by now.
+    /// Notes a usable gaze sample that has just been applied to the session. Returns whether the participant has seen
+    /// the location's present content by now.
     pub fn sampled(&mut self, session: &Session, location: LocationId) -> bool {
         let since = &mut self.since[location.index()];
         let is_there = session.gaze.looked_at[location.index()] == Some(session.time);

@@ -1,7 +1,9 @@
-//! How steady offers are: how long they stand, and whether a hand that reads an offer and then presses `enter` sends what it read.
+//! Steadiness of offers: how long they stand, and whether a wizard who reads an offer and then presses `enter` sends
+//! what they read.
 //!
-//! The scripted hand reads the screen at random moments of the trial's running time and presses 0.6 to 1.2 s later. Its key is
-//! resolved by [`offers::meant`]; it sends nothing, so recordings in which nobody could send are measured too.
+//! A scripted hand reads the screen at random moments of the trial's running time and presses `enter` 0.6 to 1.2 s
+//! later. [`offers::meant`] tells which signal the key would send; nothing is sent, so recordings in which nobody could
+//! send signals are measured, too.
 
 use rand::RngExt;
 use serde::Serialize;
@@ -23,52 +25,55 @@ const HAND_S: [f64; 2] = [0.6, 1.2];
 /// An offer reopens if the same signal is offered within this time after its close, in seconds.
 const REOPENS_S: f64 = 5.0;
 
-/// What came of a reading.
+/// Results of the scripted hand: how often its key meant the offer that it had read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct HandSummary {
-    /// Readings with an offer on the screen, followed by a key while the trial ran.
+    /// Readings of an offer on the screen that were followed by the key while the trial ran.
     pub readings: u64,
-    /// The key meant the offer that was read.
+    /// The key meant the offer that the hand had read.
     pub as_read: u64,
-    /// The key meant something else.
+    /// The key meant another signal than the offer that the hand had read.
     pub something_else: u64,
-    /// The key meant nothing.
+    /// The key meant no signal.
     pub nothing: u64,
 }
 
-/// The output of `tomcom replay RECORDING... --offers`.
+/// Steadiness of offers: the output of `tomcom replay RECORDING... --offers`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SteadinessSummary {
     /// Number of recordings.
     pub recordings: u64,
-    /// Number, durations and uses of offers.
+    /// Statistics of offers: number, durations, and how many were used.
     pub offers: OfferSummary,
-    /// Median time for which the raw recommendation stayed the same, in seconds; null without recommendations.
+    /// Median time for which the assistant's recommendation, before it becomes an offer, stayed the same, in seconds;
+    /// null without recommendations.
     pub raw_median_s: Option<f64>,
-    /// The scripted hand.
+    /// How often the scripted hand's key meant the offer that the hand had read.
     pub hand: HandSummary,
     /// Closed offers, without those that the wizard used and those at the end of a trial.
     pub could_reopen: u64,
-    /// Number of these whose signal was offered again within 5 s.
+    /// Number of closed offers whose signal was offered again within 5 s.
     pub reopened: u64,
-    /// Share of them; null without such offers.
+    /// Share of closed offers that reopened; null without such offers.
     pub reopened_share: Option<f64>,
-    /// Time with an open offer, in seconds.
+    /// Time during which an offer was open, in seconds.
     pub open_s: f64,
-    /// Share of this time in which the raw net benefit was at or below 0; null without offers.
+    /// Share of the time with an open offer in which the latest recommendation gave its signal a net benefit of 0 or
+    /// below; null without offers.
     pub share_at_or_below_0: Option<f64>,
 }
 
 /// An offer that the scripted hand has read.
 #[derive(Clone, Debug)]
 struct Reading {
-    /// When it presses the key.
+    /// Session time at which the hand presses the key.
     key_at: SessionTime,
-    /// Sequence number of the offer.
+    /// Sequence number of the offer that the hand has read.
     read: Option<u64>,
 }
 
-/// Follows one recording. [`Self::before`] is called before each event, [`Self::after`] after it.
+/// Measures the steadiness of offers in one recording. [`Self::before`] is called before each event, [`Self::after`]
+/// after it.
 #[derive(Clone, Debug)]
 pub struct SteadinessTally {
     random: Stream,
@@ -77,13 +82,13 @@ pub struct SteadinessTally {
     hand: HandSummary,
     open_s: f64,
     at_or_below_0_s: f64,
-    /// The raw recommendation with the time since which it has been the same.
+    /// The signal that the assistant recommends at present, and the time since which it has been the same.
     raw: Option<(Signal, SessionTime)>,
     raw_s: Vec<f64>,
 }
 
 impl SteadinessTally {
-    /// The tally of a recording; the hand's random stream is seeded by the session's seed and trial.
+    /// The measurement for a recording; the scripted hand's random stream is seeded by the session's seed and trial.
     pub fn new(session: &Session) -> SteadinessTally {
         SteadinessTally {
             random: stream(session.spec.seed, "reading hand", session.trial),
@@ -97,10 +102,10 @@ impl SteadinessTally {
         }
     }
 
-    /// Accounts for the time from the last event until the next one, at `now`.
+    /// Counts the time from the last event to the next one, which is at `now`.
     pub fn before(&mut self, session: &Session, now: SessionTime) {
         if !session.is_running() {
-            // A pause gives the hand time to look again.
+            // After a pause the scripted hand reads anew.
             (self.next_reading, self.readings) = (None, Vec::new());
             return;
         }
@@ -114,7 +119,7 @@ impl SteadinessTally {
         self.read_until(session, now);
     }
 
-    /// Lets the hand read and press as it is due before `now`.
+    /// Lets the scripted hand read the screen and press its key as far as that is due before `now`.
     fn read_until(&mut self, session: &Session, now: SessionTime) {
         let mut next = self.next_reading.unwrap_or(session.time);
         while next < now {
@@ -148,7 +153,7 @@ impl SteadinessTally {
         } += 1;
     }
 
-    /// Notes the raw recommendation after an event.
+    /// Notes the assistant's recommendation after an event.
     pub fn after(&mut self, session: &Session) {
         let best = session.advice.as_ref().and_then(|advice| advice.best.as_ref());
         if self.raw.as_ref().map(|(signal, _)| signal) == best {
@@ -161,7 +166,7 @@ impl SteadinessTally {
     }
 }
 
-/// Whether the recommendation gives what is offered no positive net benefit.
+/// Whether the recommendation gives the offered signal a net benefit of 0 or below.
 fn is_at_or_below_0(advice: &Recommendation, offer: &Offer) -> bool {
     match offer.signal() {
         Some(signal) => advice.options.iter().any(|option| option.signal == *signal && option.net <= 0.0),
@@ -169,7 +174,7 @@ fn is_at_or_below_0(advice: &Recommendation, offer: &Offer) -> bool {
     }
 }
 
-/// Sums over recordings.
+/// Statistics of offers summed over recordings.
 #[derive(Clone, Debug, Default)]
 pub struct SteadinessSums {
     summary: SteadinessSummary,
@@ -179,7 +184,7 @@ pub struct SteadinessSums {
 }
 
 impl SteadinessSums {
-    /// Adds a recording that was followed to its end.
+    /// Adds the measurement of a recording that was read to its end.
     pub fn add(&mut self, tally: SteadinessTally, session: &Session) {
         let sums = &mut self.summary;
         sums.recordings += 1;
@@ -218,7 +223,7 @@ impl SteadinessSums {
     }
 }
 
-/// The summary as text.
+/// The steadiness of offers as text for the terminal.
 pub fn describe(found: &SteadinessSummary) -> String {
     let seconds = |value: Option<f64>| value.map_or("-".to_string(), |s| format!("{s:.1} s"));
     let percent = |value: Option<f64>| value.map_or("-".to_string(), |share| format!("{:.1} %", 100.0 * share));

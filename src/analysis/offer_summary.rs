@@ -1,4 +1,5 @@
-//! Offers of a trial: how long they stood, why they closed, and whether the wizard sent what was offered.
+//! Statistics of the offers of a trial: how long they stood, why they closed, and whether the wizard sent the offered
+//! signal.
 
 use std::collections::BTreeMap;
 
@@ -13,17 +14,17 @@ use crate::session::Session;
 /// An offer with its times on the trial's clock, in seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedOffer {
-    /// The offer.
+    /// The offer of a signal to the wizard.
     pub offer: Offer,
-    /// When it opened.
+    /// Time at which the offer opened, on the trial's clock in seconds.
     pub opened_s: f64,
-    /// How long it stood; `None` if the recording was cut while it was open.
+    /// Duration for which the offer stood, in seconds; `None` if the recording was cut while the offer was open.
     pub stood_s: Option<f64>,
-    /// Why it closed.
+    /// Why the offer to the wizard closed.
     pub reason: Option<OfferEnd>,
-    /// When its signal was sent, in time of the trial's clock.
+    /// Time at which the wizard sent the offered signal, on the trial's clock.
     pub sent: Option<SessionTime>,
-    /// Time from its opening to the key that sent its signal.
+    /// Reaction time from the opening of the offer to the key that sent its signal, in seconds.
     pub reaction_s: Option<f64>,
 }
 
@@ -55,14 +56,14 @@ impl TimedOffer {
     }
 }
 
-/// Number and duration of offers, in seconds.
+/// Statistics of the time for which offers stood: number, median and shortest, in seconds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OfferDurations {
     /// Number of offers.
     pub n: u64,
-    /// Median time for which they stood; null without offers.
+    /// Median duration for which offers stood, in seconds; null without offers.
     pub median_s: Option<f64>,
-    /// Shortest of these times.
+    /// Shortest duration of an offer, in seconds.
     pub shortest_s: Option<f64>,
 }
 
@@ -72,33 +73,35 @@ impl OfferDurations {
         OfferDurations { n: times.len() as u64, median_s: median(times), shortest_s }
     }
 
-    /// The durations as text: one line; empty without offers.
+    /// The durations as one line of text; empty without offers.
     pub fn describe(&self) -> String {
         let (Some(median_s), Some(shortest_s)) = (self.median_s, self.shortest_s) else { return String::new() };
         format!("offers: {}, {median_s:.1} s in the median, {shortest_s:.1} s at least\n", self.n)
     }
 }
 
-/// Summary of offers.
+/// Summary of offers: their number and durations, and how many the wizard used.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OfferSummary {
-    /// All closed offers.
+    /// Durations of all closed offers.
     #[serde(flatten)]
     pub all: OfferDurations,
-    /// The same by the reason of closing.
+    /// Durations of closed offers, by the reason of closing.
     pub by_reason: BTreeMap<OfferEnd, OfferDurations>,
-    /// Offers whose signal was sent by the key that takes the offer.
+    /// Offers whose signal was sent by the key that accepts the offer.
     pub taken: u64,
     /// Offers whose signal was sent by the signal's own key.
     pub by_own_key: u64,
     /// Closed offers whose signal was not sent.
     pub not_taken: u64,
-    /// Median time from the opening to either key, in seconds; null without such offers.
+    /// Median reaction time from the opening of an offer to the key that sent its signal, in seconds; null without such
+    /// offers.
     pub reaction_s: Option<f64>,
 }
 
 impl OfferSummary {
-    /// The summary of offers of one or several trials. An offer that was still open where a recording was cut is not counted.
+    /// The summary of offers of one or several trials. An offer that was still open where a recording was cut is not
+    /// counted.
     pub fn from_offers<'a>(offers: impl IntoIterator<Item = &'a TimedOffer>) -> OfferSummary {
         let mut summary = OfferSummary::default();
         let (mut stood, mut reactions) = (Vec::new(), Vec::new());
@@ -121,7 +124,7 @@ impl OfferSummary {
         summary
     }
 
-    /// The summary as text; empty without offers.
+    /// The summary of offers as text; empty without offers.
     pub fn describe(&self) -> String {
         if self.all.n == 0 {
             return String::new();

@@ -1,4 +1,4 @@
-//! What the orders of a trial took: time from appearance to serving, and presses beyond the least number.
+//! Effort for the orders of a trial: time from appearance to serving, and presses beyond the least possible number.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ pub fn order_times(session: &Session) -> Vec<f64> {
     times
 }
 
-/// Running sum of the regret of both agents' presses: the presses that were lost.
+/// Running sum of the regret of both agents' presses, which is the number of presses lost.
 #[derive(Clone, Debug)]
 pub struct RegretSum {
     cost: CostToGo,
@@ -35,12 +35,12 @@ pub struct RegretSum {
 }
 
 impl RegretSum {
-    /// A sum before the first press.
+    /// The sum before the first press.
     pub fn new(cost: CostToGo) -> RegretSum {
         RegretSum { cost, lost: 0 }
     }
 
-    /// Adds the press of a change that was just applied; other changes have no regret.
+    /// Adds the regret of the press that caused this change; other changes have no regret.
     pub fn note(&mut self, kitchen: &Kitchen, change: &Change) {
         let Change::Press { press, .. } = change else { return };
         let recipes = kitchen.true_recipes();
@@ -53,7 +53,7 @@ impl RegretSum {
         };
     }
 
-    /// The sum per served order; `None` if no order was served.
+    /// Regret per served order; `None` if no order was served.
     pub fn per_order(&self, served: u64) -> Option<f64> {
         (served > 0).then(|| self.lost as f64 / served as f64)
     }

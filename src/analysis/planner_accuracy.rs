@@ -1,9 +1,9 @@
-//! How far the planner's answers are from what it would answer with time enough, and how much longer its plain reference
-//! takes.
+//! Accuracy of the planner with its limited budget of rollouts, and its speed compared with the plain reference
+//! planner.
 //!
-//! The planner answers after every press, as in a session; on steps spread evenly over the recordings it answers once more,
-//! with 64 times the rollouts and no early end: the converged answer. The plain reference answers on a few of these steps,
-//! at default fidelity.
+//! The planner answers after every press, as in a session. At steps spread evenly over the recordings, it answers once
+//! more with 64 times the rollouts and no early end: the converged answer. The plain reference planner answers at a few
+//! of these steps, at default fidelity.
 
 use std::sync::Arc;
 
@@ -18,58 +18,58 @@ use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::Session;
 
-/// How many times the rollouts of the converged answer.
+/// Factor by which the converged answer has more rollouts than the planner in a session.
 const CONVERGED: usize = 64;
-/// Settings know no more rollouts than this.
+/// Largest number of rollouts that settings allow.
 const MOST_ROLLOUTS: usize = 65_536;
-/// The decision is clear where the best option leads by more than this, in presses.
+/// The best option counts as clear if its net benefit leads by more than this, in presses.
 const LEAD: f64 = 0.2;
-/// Benefits that matter: those beyond this, in presses.
+/// Only benefits beyond this, in presses, enter the error of the benefit.
 const MATTERS: f64 = 0.3;
 
-/// What `--accuracy` prints. Null is what there were no steps for.
+/// The output of `tomcom replay --accuracy`. A value is null where no step contributes to it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct AccuracySummary {
-    /// Steps at which the planner was held against the converged one.
+    /// Number of steps at which the planner was compared with its converged answer.
     pub steps: u64,
-    /// Those at which the best option, silence included, leads by more than 0.2 presses.
+    /// Number of steps at which the best option, silence included, leads by more than 0.2 presses.
     pub clear_steps: u64,
-    /// The share of the clear steps with the same decision.
+    /// Share of the clear steps with the same decision by the planner and by its converged answer.
     pub same_decision: Option<f64>,
-    /// Root mean square error of the benefit, in presses, over the pairs of step and signal whose converged benefit is
-    /// beyond 0.3.
+    /// Root mean square error of the benefit, in presses, over pairs of a step and a signal whose converged benefit
+    /// exceeds 0.3.
     pub benefit_rmse: Option<f64>,
-    /// Number of pairs of step and signal in `benefit_rmse`.
+    /// Number of pairs of a step and a signal that `benefit_rmse` is computed from.
     pub benefit_pairs: u64,
-    /// Time of the plain reference divided by the planner's time, for planning the same steps.
+    /// Computing time of the plain reference planner divided by the planner's time, for the same steps.
     pub reference_ratio: Option<f64>,
-    /// Number of these steps.
+    /// Number of steps at which the plain reference planner answered.
     pub reference_steps: u64,
     /// Root mean square difference of the benefit between the plain reference and the converged planner, in presses,
-    /// over the pairs of the reference's steps.
+    /// over the signals of the steps that the reference answered.
     pub reference_rmse: Option<f64>,
-    /// How much of that difference the reference's own standard errors explain, in presses.
+    /// Part of `reference_rmse` that the reference's own standard errors explain, in presses.
     pub reference_error: Option<f64>,
-    /// Number of the pairs of the reference's steps.
+    /// Number of pairs of a step and a signal that `reference_rmse` is computed from.
     pub reference_pairs: u64,
-    /// The share of the reference's steps with the same decision.
+    /// Share of the reference's steps at which it made the same decision as the converged planner.
     pub reference_same_decision: Option<f64>,
-    /// The planner's time for a step, in milliseconds, in the mean over the reference's steps.
+    /// Mean computing time of the planner over the reference's steps, in milliseconds.
     pub plan_ms: Option<f64>,
-    /// The reference's time for a step, in milliseconds, in the mean over the same steps.
+    /// Mean computing time of the plain reference planner over the same steps, in milliseconds.
     pub reference_ms: Option<f64>,
 }
 
-/// What the assistant is asked after presses in a recording.
+/// Requests for advice that the assistant gets in a recording, one after each press.
 #[derive(Debug)]
 pub struct RecordedQuestions {
     /// The session before its first event.
     pub session: Session,
-    /// The questions, one after each press.
+    /// The requests for advice, one after each press.
     pub questions: Vec<AdviceRequest>,
 }
 
-/// A question of a recording, with the benefits that each planner answered.
+/// A step of a recording: one request for advice, with the benefits that each planner computed for it.
 #[derive(Clone, Debug, Default)]
 pub struct ComparedQuestion {
     recording: usize,
@@ -80,22 +80,22 @@ pub struct ComparedQuestion {
     plain: Option<(f64, Vec<ReferenceBenefit>)>,
 }
 
-/// What planners are compared on: the questions of recordings of one kitchen.
+/// Compares planners on the requests for advice in recordings of one kitchen.
 #[derive(Debug)]
 pub struct PlannerBench {
     kitchen: Arc<Kitchen>,
     asked: Vec<RecordedQuestions>,
-    /// Nanoseconds on a clock of the caller's that only goes forward.
+    /// The caller's monotonic clock, in nanoseconds.
     clock_ns: fn() -> u64,
 }
 
 impl PlannerBench {
-    /// Of these recordings, with times by this clock, in nanoseconds.
+    /// A comparison on the requests of these recordings; `clock_ns` is a monotonic clock in nanoseconds.
     pub fn new(kitchen: Arc<Kitchen>, asked: Vec<RecordedQuestions>, clock_ns: fn() -> u64) -> PlannerBench {
         PlannerBench { kitchen, asked, clock_ns }
     }
 
-    /// This many steps at most, spread evenly over all questions; nothing is answered yet.
+    /// At most `most` steps, spread evenly over all requests and not answered yet.
     pub fn spread(&self, most: usize) -> Vec<ComparedQuestion> {
         let all = self.asked.iter().enumerate().flat_map(|(recording, asked)| {
             let step = move |question| ComparedQuestion { recording, question, ..ComparedQuestion::default() };
@@ -106,10 +106,11 @@ impl PlannerBench {
         (0..chosen).map(|index| all[index * all.len() / chosen].clone()).collect()
     }
 
-    /// Lets the planner answer all steps, and the plain reference some of them. `done` is called after each answer.
+    /// Lets the planner answer all steps, and the plain reference planner some of them. `done` is called after each
+    /// answer.
     ///
-    /// As in a session: after every press, on one thread, what is remembered helps the next answer. The plain reference
-    /// follows at once, so that the machine is as fast for both.
+    /// The planner answers after every press on one thread, as in a session, where its cache helps the next answer. The
+    /// plain reference answers directly after it, so that the machine is equally fast for both.
     pub fn answer(&self, steps: &mut [ComparedQuestion], reference_steps: usize, done: impl Fn()) {
         let every = (reference_steps > 0).then(|| steps.len().div_ceil(reference_steps));
         let mut planner = BenchPlanner::default();
@@ -130,13 +131,13 @@ impl PlannerBench {
         }
     }
 
-    /// The step with the converged answer. Steps may be answered in any order, by several planners at once.
+    /// The step with the converged answer added. Steps can be converged in any order, by several planners in parallel.
     pub fn converge(&self, planner: &mut BenchPlanner, step: &ComparedQuestion) -> ComparedQuestion {
         let (advisor, _) = planner.advisor(self, step.recording, CONVERGED);
         ComparedQuestion { converged: benefits(advisor, self.question(step)), ..step.clone() }
     }
 
-    /// The figures of steps that were answered and converged.
+    /// The accuracy over steps that were answered and converged.
     pub fn summary(&self, steps: &[ComparedQuestion]) -> AccuracySummary {
         let price = self.asked.first().map_or(0.0, |asked| asked.session.spec.assistant.cost_of_communication);
         figures(steps, price)
@@ -146,7 +147,7 @@ impl PlannerBench {
         &self.asked[step.recording].questions[step.question]
     }
 
-    /// How long the plain reference takes for a step, in seconds, and what it answers.
+    /// Computing time of the plain reference planner for a step, in seconds, and its answer.
     fn plain(&self, step: &ComparedQuestion) -> (f64, Vec<ReferenceBenefit>) {
         let session = &self.asked[step.recording].session;
         let (human, assistant) = (session.spec.human.clone(), session.spec.assistant.clone());
@@ -167,15 +168,16 @@ fn benefits(advisor: &mut Advisor, question: &AdviceRequest) -> Vec<(Signal, f64
     options.into_iter().map(|option| (option.signal, option.benefit)).collect()
 }
 
-/// The planner of the recording that a thread is at.
+/// A thread's planner for the recording of the step that it answers.
 #[derive(Debug, Default)]
 pub struct BenchPlanner {
-    /// The recording, its planner, and how many of its questions were answered.
+    /// Index of the recording, its planner, and the number of its requests that the planner has answered.
     advisor: Option<(usize, Advisor, usize)>,
 }
 
 impl BenchPlanner {
-    /// The planner of a recording's session, with so many times the rollouts, and how many questions it has answered.
+    /// The planner for a recording's session, with `times` as many rollouts, and the number of requests that it has
+    /// answered.
     fn advisor(&mut self, bench: &PlannerBench, recording: usize, times: usize) -> (&mut Advisor, &mut usize) {
         let made = || {
             let mut session = bench.asked[recording].session.clone();
@@ -193,7 +195,8 @@ impl BenchPlanner {
     }
 }
 
-/// What is best to do, silence (`None`) included, and by how much it leads.
+/// The best option (`None` for silence) given the benefits and the price of a signal, and its lead over the second
+/// best.
 fn decision(benefits: &[(Signal, f64)], price: f64) -> (Option<&Signal>, f64) {
     let mut net: Vec<(Option<&Signal>, f64)> = benefits.iter().map(|(signal, of)| (Some(signal), of - price)).collect();
     net.push((None, 0.0));
@@ -201,7 +204,7 @@ fn decision(benefits: &[(Signal, f64)], price: f64) -> (Option<&Signal>, f64) {
     (net[0].0, net[0].1 - net.get(1).map_or(f64::NEG_INFINITY, |second| second.1))
 }
 
-/// Sums that figures are made of: pairs of benefits, and decisions.
+/// Sums from which accuracies are computed: differences of benefits, and agreement of decisions.
 #[derive(Default)]
 struct DecisionAgreement {
     clear: u64,
@@ -266,7 +269,7 @@ fn figures(steps: &[ComparedQuestion], price: f64) -> AccuracySummary {
     }
 }
 
-/// The figures for people.
+/// The accuracy of the planner as text for the terminal.
 pub fn describe(figures: &AccuracySummary) -> String {
     if figures.benefit_pairs == 0 {
         return format!(

@@ -1,4 +1,5 @@
-//! How often participants know what is asked in probes: by aspect, by what happened there, by condition, and the effect of assistance.
+//! Share of right answers in freeze probes: by state aspect, by what happened at its location, by condition; and the
+//! effect of assistance.
 
 use serde::Serialize;
 
@@ -6,55 +7,55 @@ use super::probe_record::{ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial
 use super::trial_bootstrap::interval_where_known;
 use crate::session::study_arm::StudyArm;
 
-/// What the rows of a table of accuracies are formed by.
+/// The property of a question by which a table of accuracies is grouped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AccuracyGrouping {
-    /// Orders, recipes, other places.
+    /// Kind of question: orders, recipes, other locations.
     Kind,
-    /// Each aspect by itself.
+    /// The state aspect that a question is about.
     Aspect,
-    /// Time since the location's last change.
+    /// Time since the last change of the location.
     Age,
-    /// Whether the location changed since the participant's last look at it.
+    /// Whether the location changed since the participant last looked at it.
     Seen,
-    /// Who could send signals.
+    /// Condition of the trial: who could send signals.
     Condition,
-    /// Whether the estimate had a part in the choice of questions.
+    /// Whether the belief estimate took part in the choice of the questions.
     Choice,
-    /// The participant's confidence.
+    /// The participant's confidence in the answer.
     Confidence,
 }
 
-/// Share of right answers in one group of questions.
+/// Share of right answers in one group of probe questions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeAccuracy {
-    /// What the group is formed by.
+    /// Property by which questions were grouped.
     pub by: AccuracyGrouping,
-    /// The group.
+    /// Name of the group of questions.
     pub group: String,
-    /// Number of questions that were answered in time.
+    /// Number of questions in the group that were answered in time.
     pub n: u64,
-    /// Of these, answered with "I don't know", which counts as wrong.
+    /// Number of these answered with "I don't know", which counts as wrong.
     pub unsure: u64,
-    /// Weighted share of right answers.
+    /// Share of right answers, weighted by the inverse of the questions' inclusion probability.
     pub accuracy: Option<f64>,
-    /// Its 95 % interval by bootstrap over participants; null with fewer than five.
+    /// 95 % interval of the accuracy, by bootstrap over participants; null with fewer than five participants.
     pub interval: Option<[f64; 2]>,
 }
 
 /// Effect of assistance on situation awareness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AwarenessEffect {
-    /// Number of participants with answers in assisted and in unassisted trials.
+    /// Number of participants with answers in assisted and in unassisted trials, who are compared.
     pub participants: u64,
     /// Mean over these participants of accuracy with assistance minus accuracy without.
     pub difference: f64,
-    /// Its 95 % interval by bootstrap over participants; null with fewer than five.
+    /// 95 % interval of the difference, by bootstrap over participants; null with fewer than five participants.
     pub interval: Option<[f64; 2]>,
 }
 
-/// Upper ends of the groups by time since the last change, in seconds, and their names.
+/// Upper ends, in seconds, and names of the groups by time since the location's last change.
 const AGES: [(f64, &str); 4] = [
     (5.0, "changed less than 5 s ago"),
     (15.0, "changed 5 to 15 s ago"),
@@ -62,7 +63,7 @@ const AGES: [(f64, &str); 4] = [
     (f64::INFINITY, "changed more than 60 s ago"),
 ];
 
-/// The groups of a question, in the order of the table.
+/// The groups to which a question belongs, in the order of the table.
 fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(AccuracyGrouping, usize, String)> {
     let kind = match question.kind {
         ProbedKind::Order => 0,
@@ -97,7 +98,8 @@ fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(AccuracyGroupi
     groups
 }
 
-/// Accuracies over the questions of the main results, in all groupings; `participants` holds the trials of each participant.
+/// Accuracy in each group of each grouping, over the questions of the main results; `participants` holds the trials of
+/// each participant.
 pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAccuracy> {
     let mut all: Vec<(AccuracyGrouping, usize, String)> = participants
         .iter()
@@ -116,7 +118,7 @@ pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAcc
         .collect()
 }
 
-/// Accuracy over the questions of a group.
+/// Accuracy over the questions of one group.
 pub fn accuracy(
     participants: &[Vec<&ProbedTrial>],
     (by, group): (AccuracyGrouping, &str),
@@ -153,7 +155,8 @@ pub fn accuracy(
     }
 }
 
-/// The effect of assistance on accuracy, within participants; `None` without a participant who has answers in both.
+/// The effect of assistance on accuracy, within participants; `None` if no participant has answers in both assisted and
+/// unassisted trials.
 pub fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<AwarenessEffect> {
     let share = |trials: &[&ProbedTrial], assisted: bool| {
         let of = trials.iter().filter(|trial| (trial.study_arm != StudyArm::None) == assisted);

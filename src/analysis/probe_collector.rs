@@ -1,4 +1,4 @@
-//! Reads probes from a recording, event by event, with what was true and estimated when the trial froze.
+//! Collects the freeze probes of a recording, event by event, with the true state and the estimate at each freeze.
 
 use std::collections::BTreeMap;
 
@@ -13,11 +13,11 @@ use crate::mind::BeliefWitness;
 use crate::session::probes::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use crate::session::{Event, Session, Stamped};
 
-/// Collects the questions of a recording's probes.
+/// Collects the freeze probe questions of a recording, event by event.
 #[derive(Debug, Default)]
 pub struct ProbeCollector {
     seen: SeenContents,
-    /// Time and belief of the last record of a simulated participant's belief.
+    /// Last recorded belief of a simulated participant, with its time.
     belief: Option<(SessionTime, BeliefWitness)>,
     open: Option<OpenQuestions>,
     questions: Vec<ProbedQuestion>,
@@ -26,11 +26,11 @@ pub struct ProbeCollector {
     skipped: u64,
 }
 
-/// The questions of the probe that is open.
+/// The questions of the freeze probe that is open.
 #[derive(Debug)]
 struct OpenQuestions {
     drawn: Vec<ProbedQuestion>,
-    /// When each question appeared.
+    /// Time at which each question appeared; `None` for questions not shown yet.
     asked: Vec<Option<SessionTime>>,
 }
 
@@ -92,21 +92,21 @@ impl ProbeCollector {
         }
     }
 
-    /// The question with this number in the open probe, and when it appeared.
+    /// The question with this number in the open freeze probe, and when it appeared.
     fn question(&mut self, number: u32) -> Option<(&mut Option<SessionTime>, &mut ProbedQuestion)> {
         let open = self.open.as_mut()?;
         let index = (number as usize).checked_sub(1)?;
         Some((open.asked.get_mut(index)?, open.drawn.get_mut(index)?))
     }
 
-    /// Keeps the questions of the open probe that were shown.
+    /// Ends the open probe and keeps those of its questions that were shown.
     fn close(&mut self) {
         let Some(open) = self.open.take() else { return };
         let shown = open.drawn.into_iter().zip(open.asked).filter(|(_, asked)| asked.is_some());
         self.questions.extend(shown.map(|(question, _)| question));
     }
 
-    /// A question as it stands when the trial freezes.
+    /// A question with what was true and estimated when the trial froze.
     fn frozen(&self, now: SessionTime, question: &ProbeQuestion, follower: &Follower) -> ProbedQuestion {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
         let (kind, aspect) = subject(kitchen, &question.about);
@@ -128,11 +128,11 @@ impl ProbeCollector {
         }
     }
 
-    /// What is known of an aspect now.
+    /// Truth, estimate and history of a state aspect at the freeze.
     fn aspect(&self, now: SessionTime, aspect: AspectId, follower: &Follower) -> FrozenAspect {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
         let labels = &kitchen.aspects[aspect.index()].labels;
-        // The estimate as it stood at the freeze, with what passed since the last event.
+        // The estimate at the freeze includes the time since the last event.
         let estimate =
             follower.probed.as_ref().map_or(follower.filter.belief(), |probed| &probed.belief).aspect(aspect);
         let truth = kitchen.true_value(session.state, aspect);
@@ -144,7 +144,7 @@ impl ProbeCollector {
             AspectKind::Location(location) => Some(location),
             AspectKind::Recipe(_) => None,
         };
-        // Recipes do not change: what is usual, and what was seen, is true.
+        // Recipes do not change, so the usual value and the value last seen are the true one.
         let of_code =
             |code: u8| label(kitchen, aspect, kitchen.aspects[aspect.index()].index_of(code).unwrap_or(truth));
         let of_location = |code: Option<u8>| code.map_or_else(|| label(kitchen, aspect, truth), of_code);
@@ -162,7 +162,7 @@ impl ProbeCollector {
         }
     }
 
-    /// Answers open questions about what comes next by a press that has just happened.
+    /// Fills in the truth of questions about the next press or order, from a press that has just happened.
     fn next(&mut self, kitchen: &Kitchen, press: &Press) {
         let button = kitchen.button(press.agent, press.button);
         let served = match button.action {
@@ -180,7 +180,7 @@ impl ProbeCollector {
         }
     }
 
-    /// The probes of the recording, whose last event has been noted.
+    /// The probes of the recording, after its last event has been noted.
     pub fn finish(mut self, session: &Session) -> ProbedTrial {
         self.close();
         let ProbeCollector { begun, dropped, skipped, questions, .. } = self;
@@ -188,7 +188,7 @@ impl ProbeCollector {
     }
 }
 
-/// Kind and aspect of a question.
+/// Kind of a question, and the state aspect that it is about.
 fn subject(kitchen: &Kitchen, about: &ProbeSubject) -> (ProbedKind, Option<AspectId>) {
     match about {
         ProbeSubject::Location { location } => {
@@ -206,7 +206,7 @@ fn subject(kitchen: &Kitchen, about: &ProbeSubject) -> (ProbedKind, Option<Aspec
     }
 }
 
-/// Name of an aspect's value.
+/// Name of a state aspect's value, as tables show it.
 fn label(kitchen: &Kitchen, aspect: AspectId, value: usize) -> String {
     kitchen.aspects[aspect.index()].labels[value].clone()
 }

@@ -1,5 +1,6 @@
-//! The estimate of beliefs against answers to probes, over all aspects at all probes: each question weighs the inverse of the
-//! probability with which it was drawn, so that the choice of questions by the estimate does not flatter the estimate.
+//! Accuracy of the belief estimate measured by answers to freeze probes, for all state aspects at all probes. Each
+//! question is weighted by the inverse of the probability with which it was drawn, so that drawing questions by means
+//! of the estimate does not flatter the estimate.
 
 use serde::Serialize;
 
@@ -7,58 +8,59 @@ use super::probe_record::{ProbedKind, ProbedQuestion, weighted_share};
 use crate::measures::belief_detection::{CALIBRATED, CALIBRATION_BINS, Detection};
 use crate::measures::detection::{Calibration, weighted_auc};
 
-/// A question with a verdict on the belief, and what weighs it.
+/// A probe question with its weight, and whether the belief that it asks about is false.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeighedBelief<'a> {
-    /// The question.
+    /// The probe question.
     pub question: &'a ProbedQuestion,
-    /// Whether the belief is false.
+    /// Whether the participant's belief is false.
     pub is_wrong: bool,
-    /// Its weight.
+    /// Weight of the question: the inverse of its inclusion probability, or 1.
     pub weight: f64,
 }
 
 impl<'a> WeighedBelief<'a> {
-    /// A question of the main results, judged by its answer.
+    /// A question of the main results, with the belief judged by the participant's answer.
     pub fn by_answer(question: &'a ProbedQuestion) -> Option<WeighedBelief<'a>> {
         question.is_counted().then_some(())?;
         Some(WeighedBelief { question, is_wrong: question.is_wrong()?, weight: question.weight() })
     }
 
-    /// The same question, judged by what a simulated participant really believed.
+    /// This question, with the belief judged by what the simulated participant believed.
     pub fn by_true_belief(self) -> Option<WeighedBelief<'a>> {
         let believed = self.question.frozen.as_ref()?.believed.as_ref()?;
         Some(WeighedBelief { is_wrong: believed.is_wrong(), ..self })
     }
 
-    /// The same question with weight 1.
+    /// This question with weight 1.
     pub fn unweighted(self) -> WeighedBelief<'a> {
         WeighedBelief { weight: 1.0, ..self }
     }
 }
 
-/// How well the estimate finds false beliefs, weighted. Null where all beliefs, or none, are false.
+/// How well the estimate finds false beliefs, over weighted questions. Values are null where all beliefs, or none, are
+/// false.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeDetection {
-    /// Weighted share of false beliefs.
+    /// Weighted share of the beliefs that are false.
     pub wrong: Option<f64>,
-    /// Mean of the areas under the ROC of locations and recipes.
+    /// Mean of the areas under the ROC curves of locations and of recipes.
     pub auc: Option<f64>,
-    /// Area over the locations.
+    /// Area under the ROC curve over questions about locations.
     pub auc_locations: Option<f64>,
-    /// Area over the recipes.
+    /// Area under the ROC curve over questions about recipes.
     pub auc_recipes: Option<f64>,
-    /// Area of the baseline on locations, which knows only whether somebody else changed a location since the participant last looked
-    /// at it.
+    /// Area under the ROC curve of a baseline on locations, which knows only whether somebody else changed the location
+    /// since the participant last looked at it.
     pub auc_baseline: Option<f64>,
-    /// Expected calibration error of the predicted probabilities of a false belief within [`CALIBRATED`].
+    /// Expected calibration error of the predicted probabilities of a false belief, within the range [`CALIBRATED`].
     pub ece: Option<f64>,
-    /// The predictions in bins, against the share of false beliefs.
+    /// Predicted probabilities of a false belief in bins, beside the share of false beliefs in each bin.
     pub calibration: Calibration,
 }
 
 impl ProbeDetection {
-    /// A detection without known beliefs, with what probes tell in place of what is not known.
+    /// Fills a detection for which beliefs are unknown with the results from probes.
     pub fn in_place_of(&self, unknown: Detection) -> Detection {
         Detection {
             auc: self.auc,
@@ -71,7 +73,7 @@ impl ProbeDetection {
         }
     }
 
-    /// Compares the estimate with judged questions.
+    /// Compares the estimate with questions whose beliefs are judged.
     pub fn from_beliefs(beliefs: &[WeighedBelief]) -> ProbeDetection {
         let p_wrong = |one: &WeighedBelief| Some(1.0 - one.question.frozen.as_ref()?.estimate_p_truth);
         let changed = |one: &WeighedBelief| {

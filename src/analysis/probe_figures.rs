@@ -1,4 +1,4 @@
-//! What participants knew, by their answers to probes, and how well the estimate told it.
+//! Results of freeze probes: what participants knew, and how well the estimate predicted their beliefs.
 
 use serde::Serialize;
 
@@ -10,85 +10,89 @@ use super::trial_bootstrap::interval_where_known;
 use crate::measures::belief_basis::BeliefBasis;
 use crate::session::probes::ProbeOrigin;
 
-/// Seed of the bootstrap: the same answers give the same intervals.
+/// Seed of the bootstrap's random numbers: the same answers give the same intervals.
 const SEED: u64 = 1;
 
-/// Figures of the probes of a study. Main results are over questions of the schedule about what is (level 1) that were answered in
-/// time; what is left out is counted.
+/// Results of the freeze probes of a study. Main results are over scheduled questions about the present state (level 1)
+/// that were answered in time; questions that are left out are counted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeFigures {
-    /// How beliefs are known.
+    /// Source of what participants believed: recorded beliefs or answers.
     pub beliefs_from: BeliefBasis,
     /// Number of participants with a question in the main results.
     pub participants: u64,
-    /// What was asked, and what of it counts.
+    /// Numbers of probes and questions, and how many of them the main results include.
     pub counts: ProbeCounts,
-    /// The estimate against answers.
+    /// Accuracy of the belief estimate, measured by the answers.
     #[serde(flatten)]
     pub detection: ProbeDetection,
-    /// 95 % interval of `auc` by bootstrap over participants; null with fewer than five.
+    /// 95 % interval of `detection.auc` by bootstrap over participants; null with fewer than five participants.
     pub auc_interval: Option<[f64; 2]>,
-    /// 95 % interval of `ece`, likewise.
+    /// 95 % interval of `detection.ece` by bootstrap over participants; null with fewer than five participants.
     pub ece_interval: Option<[f64; 2]>,
-    /// `auc` without weights: biased, since the estimate chose questions.
+    /// Area under the ROC curve without weights, which is biased, since the estimate took part in the choice of
+    /// questions.
     pub auc_unweighted: Option<f64>,
-    /// How well answers are predicted.
+    /// How well the answers are predicted by the estimate and by baselines.
     pub log_scores: ProbeLogScores,
-    /// Right answers over all, by group.
+    /// Share of right answers over all questions of the main results.
     pub accuracy: ProbeAccuracy,
-    /// Right answers by aspect, change and condition.
+    /// Share of right answers by aspect, change of the location and condition.
     pub accuracies: Vec<ProbeAccuracy>,
-    /// The effect of assistance on situation awareness; null without participants who have answers with and without it.
+    /// Effect of assistance on situation awareness; null if no participant has answers with and without assistance.
     pub assistance: Option<AwarenessEffect>,
-    /// Answers about what comes next (level 2), which are no part of the main results.
+    /// Share of right answers to questions about what comes next (level 2 of situation awareness), which are not in the
+    /// main results.
     pub level_2: Vec<ProbeAccuracy>,
-    /// The same of simulated participants by what they really believed at the same questions; null for people.
+    /// For simulated participants, the accuracy of the estimate measured by what they believed, at the same questions;
+    /// null for people.
     pub by_true_beliefs: Option<TrueBeliefs>,
 }
 
 /// Numbers of probes and questions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ProbeCounts {
-    /// Probes that began.
+    /// Number of freeze probes that began.
     pub probes: u64,
-    /// Probes that waited in vain and were dropped.
+    /// Probes that did not begin in time and were dropped.
     pub dropped: u64,
-    /// Probes that the wizard cut short.
+    /// Probes of which the wizard skipped the rest.
     pub skipped: u64,
-    /// Questions that were shown.
+    /// Number of questions that were shown to participants.
     pub questions: u64,
-    /// Questions in the main results.
+    /// Number of questions in the main results.
     pub counted: u64,
-    /// Of these, answered with "I don't know".
+    /// Number of questions in the main results that were answered with "I don't know".
     pub unsure: u64,
-    /// Left out: no answer in time.
+    /// Number of questions left out because they were not answered in time.
     pub unanswered: u64,
-    /// Left out: shown when the wizard skipped the rest of the probe.
+    /// Number of questions left out because the wizard skipped the rest of the probe while they were shown.
     pub questions_skipped: u64,
-    /// Left out: answered, in a probe that the wizard asked for.
+    /// Number of answered questions left out because the wizard, not the schedule, started the probe.
     pub by_wizard: u64,
-    /// Left out: answered, about what comes next.
+    /// Number of answered questions left out because they ask what comes next.
     pub level_2: u64,
-    /// Number of questions of equal weight that tell as much as those of the main results (Kish 1965).
+    /// Effective sample size of the main results: the number of questions of equal weight that would be as informative
+    /// (Kish 1965).
     pub effective: f64,
 }
 
-/// What simulated participants really believed at the questions of the main results.
+/// Comparison of answers with what simulated participants believed, at the questions of the main results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrueBeliefs {
-    /// Number of questions at which the belief is recorded.
+    /// Number of questions for which the participant's belief is recorded.
     pub n: u64,
-    /// Share of them whose answer is right where the belief is, and wrong where it is wrong.
+    /// Share of these questions where answer and belief are both right or both wrong.
     pub agreement: f64,
-    /// The estimate against these beliefs.
+    /// Accuracy of the estimate, measured by recorded beliefs.
     #[serde(flatten)]
     pub detection: ProbeDetection,
-    /// The estimate against the answers to the same questions.
+    /// Accuracy of the estimate at the same questions, measured by answers.
     pub by_answers: ProbeDetection,
 }
 
 impl ProbeFigures {
-    /// Figures of the probes of trials, each with its participant; `None` without a question that was shown.
+    /// Results of the probes of these trials, each with its participant's code; `None` if no question was shown.
     pub fn from_trials<'a>(trials: impl IntoIterator<Item = (&'a str, &'a ProbedTrial)>) -> Option<ProbeFigures> {
         let participants = by_participant(trials);
         let counts = ProbeCounts::from_trials(participants.iter().flatten().copied());
@@ -128,7 +132,7 @@ impl ProbeFigures {
     }
 }
 
-/// The trials of each participant, in the order of their first trials.
+/// The trials of each participant, with participants in the order of their first trial.
 fn by_participant<'a>(trials: impl IntoIterator<Item = (&'a str, &'a ProbedTrial)>) -> Vec<Vec<&'a ProbedTrial>> {
     let mut participants: Vec<(&str, Vec<&ProbedTrial>)> = Vec::new();
     for (code, trial) in trials {

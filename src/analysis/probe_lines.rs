@@ -1,10 +1,10 @@
-//! Figures of probes as lines of text.
+//! Results of freeze probes as lines of text.
 
 use super::probe_accuracy::AccuracyGrouping;
 use super::probe_figures::ProbeFigures;
 use crate::base::words::count;
 
-/// The figures of probes for the terminal.
+/// The results of freeze probes as text for the terminal.
 pub fn describe(found: &ProbeFigures) -> String {
     let (counts, detection, scores) = (&found.counts, &found.detection, &found.log_scores);
     let text = format!(
@@ -42,10 +42,11 @@ pub fn describe(found: &ProbeFigures) -> String {
     text + &accuracies(found)
 }
 
-/// Right answers by group, the effect of assistance, questions about what comes next, and what true beliefs would say.
+/// Text about right answers by group, the effect of assistance, questions about what comes next, and accuracy by
+/// recorded beliefs.
 fn accuracies(found: &ProbeFigures) -> String {
     let mut text = String::new();
-    // Single aspects and the way of drawing stand in the figures.
+    // Groups by single aspect and by the way of drawing are in the JSON output only.
     let told = [AccuracyGrouping::Kind, AccuracyGrouping::Age, AccuracyGrouping::Seen, AccuracyGrouping::Condition];
     for one in found.accuracies.iter().filter(|one| told.contains(&one.by)) {
         let share = percent(one.accuracy);
@@ -85,7 +86,7 @@ fn percent(value: Option<f64>) -> String {
     value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value))
 }
 
-/// An interval in brackets; nothing where it is not known.
+/// An interval in brackets; empty if the interval is not known.
 fn within(interval: Option<[f64; 2]>, scale: f64, digits: usize) -> String {
     interval.map_or(String::new(), |[from, to]| format!(" ({:.digits$} to {:.digits$})", scale * from, scale * to))
 }

@@ -1,4 +1,5 @@
-//! A question of a probe as the analysis sees it: what was true, known and estimated when the trial froze, and what was answered.
+//! A question of a freeze probe as the analysis needs it: the truth, the estimate and, in simulations, the belief when
+//! the trial froze; and the answer.
 
 use std::collections::BTreeMap;
 
@@ -6,23 +7,23 @@ use crate::measures::sequences::FALSE_BELOW;
 use crate::session::probes::ProbeOrigin;
 use crate::session::study_arm::StudyArm;
 
-/// What a question was about.
+/// Kind of a probe question, by what it asks about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ProbedKind {
-    /// What an order location shows.
+    /// The content of an order location.
     Order,
     /// The recipe of a dish.
     Recipe,
-    /// What is at another location.
+    /// The content of a location other than an order.
     Place,
-    /// Which order will be ready next (level 2).
+    /// Which order will be ready next (level 2 of situation awareness).
     NextOrder,
-    /// What the robot will do next (level 2).
+    /// What the robot will press next (level 2 of situation awareness).
     NextPress,
 }
 
 impl ProbedKind {
-    /// Name in tables.
+    /// Name of the kind in tables.
     pub fn name(self) -> &'static str {
         match self {
             ProbedKind::Order => "order",
@@ -33,7 +34,7 @@ impl ProbedKind {
         }
     }
 
-    /// The kind in words, in the plural.
+    /// The kind of question in words, in the plural.
     pub fn words(self) -> &'static str {
         match self {
             ProbedKind::Order => "orders",
@@ -44,104 +45,108 @@ impl ProbedKind {
         }
     }
 
-    /// Whether the question is about what comes next (level 2 of situation awareness and above), not about what is.
+    /// Whether the question asks what comes next (level 2 of situation awareness and above), not what is the case now.
     pub fn is_level_2(self) -> bool {
         matches!(self, ProbedKind::NextOrder | ProbedKind::NextPress)
     }
 }
 
-/// What came back to a question.
+/// Response of a participant to a probe question.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ProbeResponse {
-    /// The name of a value.
+    /// The answered value, by its name.
     Value(String),
-    /// "I don't know".
+    /// The answer "I don't know".
     Unsure,
-    /// Nothing until the wizard skipped the rest of the probe.
+    /// No answer, because the wizard skipped the rest of the probe.
     Skipped,
-    /// Nothing in time.
+    /// No answer within the time of the probe.
     Missing,
 }
 
-/// What was known of a question's aspect when the trial froze.
+/// State aspect of a probe question at the time the trial froze: estimate, belief and history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrozenAspect {
-    /// Number of values that the aspect can have.
+    /// Number of values that the state aspect can have.
     pub values: usize,
-    /// Name of the most probable value in the estimate.
+    /// Name of the value that the participant most probably believes, in the estimate.
     pub estimate: String,
-    /// Expected probability of every value in the estimate, by name.
+    /// Expected probability that the participant gives to each value, in the estimate, by the value's name.
     pub estimate_p: BTreeMap<String, f64>,
-    /// Expected probability of the true value in the estimate.
+    /// Expected probability that the participant gives to the true value, in the estimate.
     pub estimate_p_truth: f64,
-    /// Probability by the estimate that the belief is false, as in [`crate::measures::belief_detection`].
+    /// Estimated probability that the participant's belief is false, as in [`crate::measures::belief_detection`].
     pub estimate_p_false: f64,
-    /// A simulated participant's belief; `None` for people.
+    /// Belief of a simulated participant; `None` for people.
     pub believed: Option<FrozenBelief>,
-    /// Time since the last change of a location, without pauses, in seconds; `None` for recipes, and if it has not changed in the trial.
+    /// Time since the last change of the location, without pauses, in seconds; `None` for recipes, and for locations
+    /// that have not changed in the trial.
     pub changed_s: Option<f64>,
-    /// Whether somebody else changed a location since the participant last looked at it or changed it; `None` for recipes.
+    /// Whether somebody else changed the location since the participant last looked at it or changed it; `None` for
+    /// recipes.
     pub changed_unseen: Option<bool>,
-    /// Name of the value that lay there longest until then; of a recipe the true one.
+    /// Name of the value that the location had for the longest time so far; for a recipe, the true one.
     pub usual: String,
-    /// Name of the value that the participant last saw there, or made; of a recipe the true one.
+    /// Name of the value that the participant last saw at the location, or made there; for a recipe, the true one.
     pub last_seen: String,
 }
 
-/// What a simulated participant believed about an aspect when the trial froze.
+/// Belief of a simulated participant about a state aspect when the trial froze.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrozenBelief {
-    /// Name of the most probable value.
+    /// Name of the value that the participant believed most probable.
     pub believes: String,
-    /// Probability of the true value.
+    /// Probability that the participant gave to the true value.
     pub p_truth: f64,
 }
 
 impl FrozenBelief {
-    /// Whether the belief is false.
+    /// Whether the participant's belief is false.
     pub fn is_wrong(&self) -> bool {
         self.p_truth < FALSE_BELOW
     }
 }
 
-/// A question that a participant was shown.
+/// A probe question that a participant was shown, with truth, estimate and response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbedQuestion {
-    /// Number of the probe in the trial, from 1.
+    /// Number of the freeze probe in the trial, from 1.
     pub probe: u32,
     /// Number of the question in the probe, from 1.
     pub question: u32,
-    /// Time of the freeze on the trial's clock, in seconds.
+    /// Time at which the trial froze, on the trial's clock in seconds.
     pub time_s: f64,
-    /// Who asked for the probe.
+    /// Who started the probe: the schedule or the wizard.
     pub origin: ProbeOrigin,
-    /// Whether the estimate had a part in the choice of questions.
+    /// Whether the belief estimate took part in the choice of questions.
     pub uses_estimate: bool,
-    /// What it is about.
+    /// Kind of the probe question.
     pub kind: ProbedKind,
-    /// Name of the aspect; for questions of level 2 the kind's name.
+    /// Name of the state aspect; for questions of level 2, name of the kind.
     pub aspect: String,
-    /// Probability with which the question was drawn.
+    /// Probability with which the question was drawn (inclusion probability).
     pub inclusion: f64,
-    /// Name of the right answer; `None` for questions of level 2 if the trial ended before.
+    /// Name of the right answer; `None` for questions of level 2 if the trial ended before the answer was known.
     pub truth: Option<String>,
-    /// What came back.
+    /// The participant's response to the question.
     pub response: ProbeResponse,
-    /// Confidence from 1 to 3, if it was asked.
+    /// Confidence of the participant from 1 to 3, if it was asked.
     pub confidence: Option<u8>,
-    /// Time from the question's appearance to the answer, in seconds.
+    /// Response time from the question's appearance to the answer, in seconds.
     pub took_s: Option<f64>,
-    /// What was known of the aspect; `None` for questions of level 2.
+    /// The state aspect at the freeze; `None` for questions of level 2.
     pub frozen: Option<FrozenAspect>,
 }
 
 impl ProbedQuestion {
-    /// Weight in estimates over all aspects at all probes (Horvitz and Thompson 1952).
+    /// Weight of the question, the inverse of its inclusion probability, in estimates over all aspects at all probes
+    /// (Horvitz and Thompson 1952).
     pub fn weight(&self) -> f64 {
         1.0 / self.inclusion
     }
 
-    /// Whether the answer is wrong; "I don't know" is. `None` without an answer in time, or without a truth.
+    /// Whether the answer is wrong; "I don't know" counts as wrong. `None` without an answer in time, or if the truth
+    /// is unknown.
     pub fn is_wrong(&self) -> Option<bool> {
         let truth = self.truth.as_ref()?;
         match &self.response {
@@ -151,12 +156,13 @@ impl ProbedQuestion {
         }
     }
 
-    /// Whether the question is part of the main results: drawn by the schedule, about what is, and answered in time.
+    /// Whether the question is part of the main results: drawn by the schedule, about the present state, and answered
+    /// in time.
     pub fn is_counted(&self) -> bool {
         self.origin == ProbeOrigin::Schedule && !self.kind.is_level_2() && self.is_wrong().is_some()
     }
 
-    /// Name of the answered value, if one was named.
+    /// Name of the answered value; `None` for "I don't know" and without an answer.
     pub fn answer(&self) -> Option<&str> {
         match &self.response {
             ProbeResponse::Value(answer) => Some(answer),
@@ -165,23 +171,23 @@ impl ProbedQuestion {
     }
 }
 
-/// The probes of one trial.
+/// The freeze probes of one trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbedTrial {
-    /// The arm of the trial.
+    /// Study arm of the trial.
     pub study_arm: StudyArm,
-    /// Number of probes that began.
+    /// Number of freeze probes that began in the trial.
     pub begun: u64,
-    /// Number of probes that waited in vain and were dropped.
+    /// Number of probes that did not begin in time and were dropped.
     pub dropped: u64,
-    /// Number of probes that the wizard skipped.
+    /// Number of probes of which the wizard skipped the rest.
     pub skipped: u64,
-    /// The questions that were shown, in order.
+    /// The questions that participants were shown, in order.
     pub questions: Vec<ProbedQuestion>,
 }
 
 impl ProbedTrial {
-    /// Whether there was any probe, or should have been.
+    /// Whether the trial had, or should have had, a freeze probe.
     pub fn is_any(&self) -> bool {
         self.begun + self.dropped > 0
     }
@@ -197,7 +203,7 @@ impl ProbedTrial {
     }
 }
 
-/// Share of the weight of true ones; `None` without elements.
+/// Weighted share of elements that are true; each element is a weight and whether it is true. `None` without elements.
 pub fn weighted_share(of: impl IntoIterator<Item = (f64, bool)>) -> Option<f64> {
     let (mut all, mut part) = (0.0, 0.0);
     for (weight, is_it) in of {

@@ -1,33 +1,33 @@
-//! How well answers to probes are predicted: by the estimate, and by three base rates that know no gaze model, no memory and no
-//! presses: what usually lies there, what was last seen there, and what is true.
+//! How well answers to freeze probes are predicted: by the estimate, and by three baselines that use no gaze model, no
+//! memory and no presses: the usual content, the content last seen, and the true content.
 
 use serde::Serialize;
 
 use super::probe_record::{FrozenAspect, ProbedKind, ProbedQuestion};
 use crate::mind::dirichlet::LEAST_MEAN;
 
-/// Mean log of the probability of the answered value, weighted, in nats; higher is better. "I don't know" names no value and is left
-/// out.
+/// Weighted mean log probability of the answered values, in nats, for several predictors; higher is better. "I don't
+/// know" names no value and is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ProbeLogScores {
-    /// Number of answers.
+    /// Number of answers that name a value.
     pub n: u64,
-    /// By the estimate, which predicts beliefs and knows of no wrong answers.
+    /// Score of the estimate, which predicts beliefs and expects no wrong answers.
     pub estimate: Option<f64>,
-    /// By the estimate with a share of answers at random, which is chosen on the other participants.
+    /// Score of the estimate mixed with a share of random answers; the share is fitted to the other participants.
     pub estimate_with_slips: Option<f64>,
-    /// By what lay there longest until then.
+    /// Score of predicting the content that a location had for the longest time so far.
     pub usual: Option<f64>,
-    /// By what the participant last saw there: it is wrong if that changed since the last look.
+    /// Score of predicting the content that the participant last saw, which is wrong if it changed since.
     pub last_seen: Option<f64>,
-    /// By what is true.
+    /// Score of predicting the true content.
     pub truth: Option<f64>,
 }
 
-/// An answer that names a value, with what predicts it.
+/// An answer that names a value, with its predictions.
 #[derive(Clone, Copy, Debug)]
 struct NamedAnswer<'a> {
-    /// Number of the participant.
+    /// Index of the participant.
     participant: usize,
     is_recipe: bool,
     weight: f64,
@@ -36,7 +36,7 @@ struct NamedAnswer<'a> {
     frozen: &'a FrozenAspect,
 }
 
-/// Shares of answers at random that are tried.
+/// Candidate values for the share of random answers.
 const SLIPS: [f64; 9] = [0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
 
 impl NamedAnswer<'_> {
@@ -50,8 +50,8 @@ impl NamedAnswer<'_> {
 }
 
 impl ProbeLogScores {
-    /// Scores the questions of the main results, given with the number of their participant. What base rates have to learn, how
-    /// often they are right, they learn on the other participants.
+    /// Scores the questions of the main results, each given with the index of its participant. The baselines' rates of
+    /// being right are learnt from the other participants.
     pub fn from_questions(questions: &[(usize, &ProbedQuestion)]) -> ProbeLogScores {
         let named: Vec<NamedAnswer> = questions.iter().filter_map(|&(of, question)| named(of, question)).collect();
         let mean = |log_p: &dyn Fn(&NamedAnswer) -> f64| {
@@ -94,14 +94,14 @@ fn named(participant: usize, question: &ProbedQuestion) -> Option<NamedAnswer<'_
     })
 }
 
-/// How often a prediction of one value is right for the other participants, by Laplace's rule of succession.
+/// How often predicting one value is right for the other participants, by Laplace's rule of succession.
 fn rate<'a>(named: &[NamedAnswer<'a>], without: usize, is_recipe: bool, of: fn(&NamedAnswer<'a>) -> &'a str) -> f64 {
     let others = named.iter().filter(|one| one.participant != without && one.is_recipe == is_recipe);
     let (n, right) = others.fold((0u32, 0u32), |(n, right), one| (n + 1, right + u32::from(of(one) == one.answer)));
     f64::from(right + 1) / f64::from(n + 2)
 }
 
-/// The likeliest share of answers at random for the other participants.
+/// Share of random answers with the highest likelihood for the other participants.
 fn share_of_slips(named: &[NamedAnswer], without: usize) -> f64 {
     let others = || named.iter().filter(|one| one.participant != without);
     let score = |share: f64| others().map(|one| one.with_slips(share).ln()).sum::<f64>();

@@ -1,4 +1,4 @@
-//! The figures of one recording.
+//! Summary of one recording: presses, errors, beliefs, signals, gaze.
 
 use serde::Serialize;
 
@@ -8,46 +8,46 @@ use super::gaze_summary::{self, GazeSummary};
 use super::trial_summary::{BeliefErrorSummary, TrialSummary};
 use crate::base::words::count;
 
-/// What `tomcom replay RECORDING` prints as figures.
+/// Summary of one recording, as `tomcom replay RECORDING` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingSummary {
-    /// Number of events.
+    /// Number of events in the recording.
     pub events: u64,
-    /// The recording ends without its end event, and nobody writes on.
+    /// The recording lacks its end event, and no session is writing to it.
     pub cut: bool,
-    /// Its session still runs: these are the figures up to now.
+    /// The recording's session still runs, so the summary is of the events so far.
     pub running: bool,
-    /// Whether the trial counts in the analysis.
+    /// Whether the trial was aborted or excluded from the analysis.
     #[serde(flatten)]
     pub standing: ExclusionStatus,
-    /// Presses of the human in the trial.
+    /// Number of the human's presses in the trial.
     pub human_actions: u64,
-    /// Presses of the robot in the trial.
+    /// Number of the robot's presses in the trial.
     pub robot_actions: u64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// The human's presses that were races with the robot and so do not count as errors.
+    /// Number of the human's presses that were races with the robot and so do not count as errors.
     pub races: u64,
-    /// What is known of the beliefs behind the errors.
+    /// Errors that follow from false beliefs.
     #[serde(flatten)]
     pub beliefs: BeliefErrorSummary,
-    /// Signals that were shown.
+    /// Number of signals that were shown to the participant.
     pub signals: u64,
-    /// The wizard saw what assistants would say, beside what was sent.
+    /// The wizard saw the assistants' recommendations beside the signals sent.
     pub unblinded: bool,
-    /// Orders served.
+    /// Number of orders served.
     pub orders_served: u64,
-    /// The trial's length by its own clock, in seconds.
+    /// Duration of the trial by its own clock, in seconds.
     pub trial_s: f64,
-    /// How good the gaze was.
+    /// Gaze quality of the recording.
     pub gaze: GazeSummary,
-    /// What was wrong with the gaze, in words.
+    /// Faults of the gaze in words.
     #[serde(skip)]
     gaze_faults: Option<String>,
 }
 
 impl RecordingSummary {
-    /// Of a session that was brought to its end, with this many events.
+    /// The summary of a session that was followed to its end, with `events` events.
     pub fn from_follower(follower: &Follower, events: u64, standing: ExclusionStatus) -> RecordingSummary {
         let trial = TrialSummary::from_follower(follower);
         RecordingSummary {
@@ -69,7 +69,7 @@ impl RecordingSummary {
         }
     }
 
-    /// The figures for people.
+    /// The summary as text for the terminal.
     pub fn describe(&self) -> String {
         let cut = match (self.running, self.cut) {
             (true, _) => "; it is still running: --follow",

@@ -1,4 +1,4 @@
-//! A folder of recordings as a list: who, when, how long, how many errors, and whether the recording is whole.
+//! List of the recordings in a folder: participant, date, length, number of errors, and state.
 
 use serde::Serialize;
 
@@ -6,15 +6,15 @@ use crate::base::words::count;
 use crate::session::settings::Condition;
 use crate::session::study_arm::StudyArm;
 
-/// State of a recording.
+/// Whether a recording is complete, cut, excluded, running or unreadable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RecordingState {
-    /// The session was closed.
+    /// The session was closed properly.
     Whole,
-    /// The session's end is missing, and nobody writes on.
+    /// The recording lacks its end event, and no session is writing to it.
     Cut,
-    /// The trial was aborted or excluded: the analysis leaves it out.
+    /// The trial was aborted or excluded, and the analysis leaves it out.
     Excluded,
     /// The session still runs.
     Running,
@@ -23,7 +23,7 @@ pub enum RecordingState {
 }
 
 impl RecordingState {
-    /// The state in a word.
+    /// The state of the recording in a word.
     pub fn name(self) -> &'static str {
         match self {
             RecordingState::Whole => "whole",
@@ -35,50 +35,50 @@ impl RecordingState {
     }
 }
 
-/// A recording of a list.
+/// A recording in the list of a folder.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ListedRecording {
-    /// Name of its folder.
+    /// Name of the recording's folder.
     pub recording: String,
-    /// The participant's code; null for what cannot be read.
+    /// The participant's code; null if the recording cannot be read.
     pub code: Option<String>,
-    /// Who sent signals; null for what cannot be read.
+    /// Condition of the trial: who could send signals; null if the recording cannot be read.
     pub condition: Option<Condition>,
-    /// The arm by what was done; null for what cannot be read.
+    /// Study arm of the trial by what was done in it; null if the recording cannot be read.
     pub arm: Option<StudyArm>,
-    /// When the recording began (UTC, RFC 3339); null for a simulated one.
+    /// Time at which the recording began (UTC, RFC 3339); null for a simulated trial.
     pub date: Option<String>,
-    /// The trial's length by its own clock, in seconds.
+    /// Duration of the trial by its own clock, in seconds.
     pub trial_s: Option<f64>,
-    /// The human's presses that were errors; null where they are not counted.
+    /// The human's presses that were errors; null where errors are not counted.
     pub errors: Option<u64>,
-    /// Whether it is whole.
+    /// State of the recording: complete, cut, excluded, running or unreadable.
     pub state: RecordingState,
-    /// Why it is excluded, or cannot be read.
+    /// Reason for the exclusion, or why the recording cannot be read.
     pub reason: Option<String>,
 }
 
-/// The recordings in a folder.
+/// List of the recordings in a folder.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingList {
-    /// The folder.
+    /// Path of the folder.
     pub folder: String,
-    /// Sorted by code, then by date, then by name.
+    /// The recordings, sorted by the participant's code, then by date, then by name.
     pub recordings: Vec<ListedRecording>,
 }
 
 impl RecordingList {
-    /// The headings of [`ListedRecording::cells`].
+    /// Column headings of [`ListedRecording::cells`].
     pub const HEADINGS: [&'static str; 7] = ["code", "condition", "date", "length", "errors", "state", "recording"];
 
-    /// A sorted list.
+    /// The list of recordings, sorted by the participant's code, then by date, then by name.
     pub fn new(folder: String, mut recordings: Vec<ListedRecording>) -> RecordingList {
         let key = |one: &ListedRecording| (one.code.clone(), one.date.clone(), one.recording.clone());
         recordings.sort_by_key(key);
         RecordingList { folder, recordings }
     }
 
-    /// The list as a table, for people.
+    /// The list of recordings as a table of text.
     pub fn describe(&self) -> String {
         let mut rows: Vec<[String; 7]> = vec![RecordingList::HEADINGS.map(str::to_string)];
         rows.extend(self.recordings.iter().map(ListedRecording::cells));
@@ -99,7 +99,7 @@ fn widest(rows: &[[String; 7]], column: usize) -> usize {
 }
 
 impl ListedRecording {
-    /// One cell for each of [`RecordingList::HEADINGS`]; "-" for what is not known.
+    /// One cell for each column of [`RecordingList::HEADINGS`]; "-" for unknown values.
     pub fn cells(&self) -> [String; 7] {
         let or_dash = |cell: Option<String>| cell.unwrap_or_else(|| "-".to_string());
         let minutes = |seconds: f64| format!("{}:{:02}", seconds as u64 / 60, seconds as u64 % 60);

@@ -1,5 +1,5 @@
-//! What the participant has last seen at each location, and what has lain there: by gaze, changes and own presses alone, without any
-//! estimate.
+//! What the participant has last seen at each location, and which content was there for how long; follows from gaze,
+//! changes and own presses, without any belief estimate.
 
 use super::looks::Looks;
 use crate::base::time::SessionTime;
@@ -8,22 +8,22 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::kitchen::{Change, LocationId, State};
 use crate::session::{Event, Session};
 
-/// One location's history.
+/// What was seen and what was present at one location so far.
 #[derive(Clone, Debug, Default)]
 struct SeenLocation {
-    /// Code of the content that was last seen there.
+    /// Code of the content that the participant last saw at the location.
     seen: u8,
-    /// Somebody else changed it since.
+    /// Whether somebody else changed the location since then.
     is_changed_unseen: bool,
-    /// Whether it has changed in the trial.
+    /// Whether the location has changed in the trial.
     has_changed: bool,
-    /// For each code, how long it lay there until the last change, on the trial's clock.
+    /// Duration, on the trial's clock, for which each content (by its code) was at the location until the last change.
     lay: Vec<(u8, SessionTime)>,
-    /// Time of the last change, or of the trial's start, on the trial's clock.
+    /// Time of the location's last change, or of the trial's start, on the trial's clock.
     since: SessionTime,
 }
 
-/// History of all locations of a session.
+/// What the participant has last seen at each location of the kitchen, and what was there for how long.
 #[derive(Clone, Debug, Default)]
 pub struct SeenContents {
     locations: [SeenLocation; MAX_LOCATIONS],
@@ -31,7 +31,7 @@ pub struct SeenContents {
 }
 
 impl SeenContents {
-    /// Takes note of an event that has just been applied.
+    /// Takes note of an event that has just been applied to the session.
     pub fn note(&mut self, session: &Session, event: &Event, change: &Change) {
         if let Change::TrialStarted { after, .. } = change {
             *self = SeenContents::default();
@@ -67,7 +67,7 @@ impl SeenContents {
         }
     }
 
-    /// Ends all looks, as a pause does.
+    /// Ends all looks at locations, which a pause of the trial interrupts.
     pub fn interrupted(&mut self) {
         self.looks.interrupted();
     }
@@ -77,18 +77,19 @@ impl SeenContents {
         self.locations[place.index()].is_changed_unseen
     }
 
-    /// Code of the content that the participant last saw at a location, or made.
+    /// Code of the content that the participant last saw at a location, or made there.
     pub fn last_seen(&self, place: LocationId) -> u8 {
         self.locations[place.index()].seen
     }
 
-    /// Seconds since a location's last change, without pauses; `None` if it has not changed in the trial.
+    /// Time since a location's last change, without pauses, in seconds; `None` if the location has not changed in the
+    /// trial.
     pub fn changed_s(&self, session: &Session, place: LocationId) -> Option<f64> {
         let location = &self.locations[place.index()];
         location.has_changed.then(|| session.trial_clock(session.time).secs_since(location.since))
     }
 
-    /// Code of the content that has lain at a location longest in the trial; the present one where several are equal.
+    /// Code of the content that was at a location for the longest time in the trial; with ties, the present content.
     pub fn usual(&self, session: &Session, place: LocationId) -> u8 {
         let location = &self.locations[place.index()];
         let present = session.state.code(place);

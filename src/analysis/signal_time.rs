@@ -1,17 +1,17 @@
-//! How long signals stood on the participant's display.
+//! Time for which signals were shown on the participant's display.
 
 use super::wizard_log::clock_at;
 use crate::base::time::SessionTime;
 use crate::session::{Event, Session, Stamped};
 
-/// When signals appeared on the display (true) and vanished (false), in session time.
+/// Session times at which signals appeared on the display (true) and vanished (false).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignalTimes {
     changes: Vec<(SessionTime, bool)>,
 }
 
 impl SignalTimes {
-    /// Takes the next event of a session.
+    /// Takes note of the next event of a session.
     pub fn note(&mut self, stamped: &Stamped) {
         match stamped.event {
             Event::SignalShown { .. } => self.changes.push((stamped.time, true)),
@@ -20,8 +20,8 @@ impl SignalTimes {
         }
     }
 
-    /// Seconds of the trial's clock with a signal on the display, after the last event of the session. At most one is there at a time: a
-    /// new one takes the place of the last, and the end of the trial takes it off.
+    /// Time with a signal on the display, in seconds of the trial's clock, after the session's last event. At most one
+    /// signal is shown at a time: a new one replaces the last, and the end of the trial removes it.
     pub fn seconds(&self, session: &Session) -> f64 {
         let end = session.trial_clock(session.time);
         let (mut shown, mut seconds): (Option<SessionTime>, f64) = (None, 0.0);

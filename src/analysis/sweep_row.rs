@@ -1,57 +1,60 @@
-//! A row of the table in which values of a setting are compared.
+//! Row of a table that compares values of a setting, as a parameter sweep prints it.
 
 use serde::Serialize;
 
 use super::trial_summary::SimulationSummary;
 
-/// Errors and presses of the human in a trial.
+/// Numbers of errors and of presses of the human in a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TrialErrors {
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Those that are belief related; `None` where the participant's beliefs are not known.
+    /// Errors that follow from false beliefs; `None` where the participant's beliefs are not known.
     pub related: Option<u64>,
     /// Presses of the human.
     pub human_actions: u64,
 }
 
-/// A row: the trials of one combination of values.
+/// Row of a parameter sweep: the trials with one combination of values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepRow {
-    /// What was set, by name; nothing in the row without signals.
+    /// Values of the varied settings, by name; empty in the row without signals.
     pub settings: serde_json::Map<String, serde_json::Value>,
-    /// Number of trials.
+    /// Number of trials with this combination of values.
     pub trials: u64,
     /// Errors per 100 presses of the human.
     pub errors_per_100: f64,
     /// Signals per 100 presses of the human.
     pub signals_per_100: f64,
-    /// Errors per 100 presses of the human fewer than without signals: mean over the same trials.
+    /// Reduction of the errors per 100 presses of the human compared with no signals: mean over the same trials.
     pub spared_per_100: Option<f64>,
-    /// Standard error of that mean.
+    /// Standard error of `spared_per_100`.
     pub spared_error: Option<f64>,
-    /// Mean number of errors in an error sequence; null: there were none.
+    /// Mean number of errors in an error sequence; null without sequences.
     pub mean_sequence_length: Option<f64>,
-    /// Presses of both agents per served order; null: none was served.
+    /// Presses of both agents per served order; null if no order was served.
     pub presses_per_order: Option<f64>,
-    /// Belief related errors per 100 presses of the human; null: the participants' beliefs are not known.
+    /// Errors that follow from false beliefs, per 100 presses of the human; null if the participants' beliefs are not
+    /// known.
     pub related_per_100: Option<f64>,
-    /// Errors per 100 presses of the human fewer than in the first row with signals: mean over the same trials.
+    /// Reduction of the errors per 100 presses of the human compared with the first row with signals: mean over the
+    /// same trials.
     pub fewer_than_first: Option<f64>,
-    /// Standard error of that mean.
+    /// Standard error of `fewer_than_first`.
     pub fewer_error: Option<f64>,
-    /// Belief related errors per 100 presses of the human fewer than in the first row with signals: mean over the same trials.
+    /// Reduction of the errors from false beliefs per 100 presses of the human compared with the first row with
+    /// signals: mean over the same trials.
     pub related_fewer_than_first: Option<f64>,
-    /// Standard error of that mean.
+    /// Standard error of `related_fewer_than_first`.
     pub related_fewer_error: Option<f64>,
 }
 
-/// The same trials under two settings, in the same order.
+/// The same trials under two combinations of values, in the same order.
 type PairedTrials<'a> = [&'a [TrialErrors]; 2];
 
 impl SweepRow {
-    /// The row of these settings. `paired`: the same trials without signals, and with them. `with_first`: the same trials of the first row
-    /// with signals, and of this row.
+    /// The row for these settings. `paired`: the same trials without and with signals. `with_first`: the same trials in
+    /// the first row with signals, and in this row.
     pub fn new(
         settings: &[(&str, String)],
         figures: &SimulationSummary,
@@ -85,7 +88,7 @@ fn per_100(number: u64, presses: u64) -> f64 {
     100.0 * number as f64 / presses.max(1) as f64
 }
 
-/// By how much there are fewer per 100 presses of the human in the second of two paired trials: mean, and its standard error.
+/// Mean reduction per 100 presses of the human from the first to the second of paired trials, and its standard error.
 fn fewer(paired: Option<PairedTrials>, number: impl Fn(&TrialErrors) -> Option<u64>) -> (Option<f64>, Option<f64>) {
     let rate = |trial: &TrialErrors| number(trial).map(|number| per_100(number, trial.human_actions));
     let Some([before, after]) = paired else { return (None, None) };

@@ -1,39 +1,41 @@
-//! How long inference and planning took in a replay, from times that the caller took.
+//! Computing times of inference and planning in a replay; the caller measures them.
 
 use serde::Serialize;
 
-/// What `--timing` prints, in microseconds. Null is what the recording does not have.
+/// The output of `tomcom replay --timing`, in microseconds. Values are null for computations that the recording does
+/// not need.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimingSummary {
-    /// Time to process a gaze sample.
+    /// Computing time of the belief filter for a gaze sample.
     pub gaze_us: Option<DurationPercentiles>,
-    /// Time to process a press of the human or of the robot.
+    /// Computing time of the belief filter for a press of the human or of the robot.
     pub action_us: Option<DurationPercentiles>,
-    /// Time to plan.
+    /// Computing time of the planner for one request for advice.
     pub plan_us: Option<DurationPercentiles>,
-    /// Time for inference and planning together.
+    /// Computing time of filter and planner together for one step.
     pub step_us: Option<DurationPercentiles>,
-    /// The length of the recording by session time, in seconds.
+    /// Duration of the recording in session time, in seconds.
     pub session_s: f64,
-    /// How long its replay took by the computer's clock, in seconds.
+    /// Duration of the replay by the computer's clock, in seconds.
     pub wall_s: f64,
 }
 
-/// Times of one kind.
+/// Percentiles of measured computing times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DurationPercentiles {
-    /// Number of times measured.
+    /// Number of computing times measured.
     pub n: u64,
-    /// Their median.
+    /// Median of the computing times.
     pub p50: f64,
-    /// Their 99th percentile.
+    /// 99th percentile of the computing times.
     pub p99: f64,
-    /// The longest.
+    /// Longest computing time.
     pub max: f64,
 }
 
 impl DurationPercentiles {
-    /// Of times in nanoseconds, in microseconds; none of nothing. The percentiles are times that occurred (nearest rank).
+    /// Percentiles, in microseconds, of computing times in nanoseconds; `None` without times. The percentiles are times
+    /// that occurred (nearest rank).
     pub fn from_nanoseconds(mut times_ns: Vec<u64>) -> Option<DurationPercentiles> {
         times_ns.sort_unstable();
         let (&max, n) = (times_ns.last()?, times_ns.len());
@@ -43,7 +45,7 @@ impl DurationPercentiles {
     }
 }
 
-/// The figures for people.
+/// The computing times as text for the terminal.
 pub fn describe(figures: &TimingSummary) -> String {
     let line = |what: &str, spread: Option<DurationPercentiles>| match spread {
         Some(DurationPercentiles { n, p50, p99, max }) => {

@@ -1,4 +1,4 @@
-//! What came of a wizard's training, as it is kept.
+//! Record of a wizard's training session, as it is saved to a file.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,85 +6,86 @@ use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::measures::wizard_performance::{TrainingCriterion, WizardMeasures};
 
-/// A wizard's training at one time.
+/// Record of one training session of a wizard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainingRecord {
     /// The wizard's code, never a name.
     pub wizard: String,
-    /// When it began (UTC, RFC 3339).
+    /// Time at which the training began (UTC, RFC 3339).
     pub at: String,
-    /// How long it took, in minutes.
+    /// Duration of the training, in minutes.
     pub minutes: f64,
-    /// How many times as fast as it was it was played; null in records from before that was written down.
+    /// Playback speed as a multiple of real time; null in older records, which lack it.
     #[serde(default)]
     pub speed: Option<f64>,
-    /// When the training is passed.
+    /// Criterion for passing the training.
     pub criterion: TrainingCriterion,
-    /// Over all recordings, each watched to its end.
+    /// Whether the wizard met the criterion over all recordings that were watched to their end.
     pub met: bool,
-    /// The recordings that were watched, in turn.
+    /// Recordings that the wizard watched, in order.
     pub recordings: Vec<JudgedRecording>,
 }
 
-/// A recording that was watched.
+/// A recording that a wizard watched in training, with the judgement of the signals.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JudgedRecording {
-    /// The name of its folder; of one that was simulated for the training, with its length before it.
+    /// Name of the recording's folder; for one that was simulated for the training, preceded by its length.
     pub recording: String,
-    /// It was watched to its end.
+    /// Whether the wizard watched the recording to its end.
     pub complete: bool,
-    /// Presses of the human in what was watched.
+    /// Presses of the human in the part that was watched.
     pub presses: u32,
-    /// The signals that the wizard sent.
+    /// Signals that the wizard sent while watching, with their judgements.
     pub signals: Vec<JudgedSignal>,
-    /// The false beliefs that led to errors, as far as they had begun.
+    /// The false beliefs that led to errors, if they began in the part that was watched.
     #[serde(default)]
     pub beliefs: Vec<JudgedBelief>,
-    /// How well the wizard did.
+    /// Measures of the wizard's performance: hits and wrong signals.
     pub measures: WizardMeasures,
-    /// Kappa with what the same wizard signalled in the same recording the time before; null: there was none.
+    /// Cohen's kappa between the wizard's signals now and in the previous pass through the same recording; null without
+    /// a previous pass.
     pub kappa_with_oneself: Option<f64>,
 }
 
-/// A signal that was sent in training.
+/// A signal that the wizard sent in training, with its judgement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JudgedSignal {
-    /// Presses of the human before it.
+    /// Number of the human's presses before the signal.
     pub press: u32,
-    /// On the trial's clock.
+    /// Time of the signal on the trial's clock.
     pub clock_ns: SessionTime,
     /// The signal.
     pub signal: Signal,
-    /// What it was: "hit", "again", "harmless", "late", "wrong" or "needless"; empty in records from before that was written
-    /// down.
+    /// Judgement of the signal: "hit", "again", "harmless", "late", "wrong" or "needless"; empty in older records,
+    /// which lack it.
     #[serde(default)]
     pub worth: String,
 }
 
-/// A false belief that led to errors.
+/// A false belief that led to errors, and whether the wizard corrected it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct JudgedBelief {
     /// The state aspect about which the belief was false.
     pub aspect: String,
-    /// On the trial's clock.
+    /// Time at which the false belief began, on the trial's clock.
     pub began_ns: SessionTime,
-    /// Null: it was held until the end.
+    /// Time at which the belief was corrected, on the trial's clock; null if the participant held it until the end.
     pub corrected_ns: Option<SessionTime>,
-    /// Errors that are put down to it.
+    /// Number of errors that are attributed to the false belief.
     pub errors: u32,
-    /// What was believed most, when the participant last told it while the belief was held.
+    /// The value that the participant believed most probable, by the last record of the belief while it was false.
     pub believed: String,
-    /// What was true then.
+    /// The true value at that time.
     pub truth: String,
-    /// Both as screens word them; only in the program that judges, records have the names.
+    /// False and true value in words for screens; filled in only while judging, not in records on disk.
     #[serde(skip)]
     pub words: String,
-    /// The signal that would have been right; null: none tells it.
+    /// The signal that would have corrected the belief; null if no signal can.
     pub signal: Option<Signal>,
-    /// Which of the signals hit it, 0 the first; null: it was missed.
+    /// Index among the signals, from 0, of the one that hit the false belief; null if it was missed.
     pub hit_by: Option<usize>,
 }

@@ -1,4 +1,5 @@
-//! Intervals of statistics over trials, by a percentile bootstrap: trials are drawn with replacement (Efron and Tibshirani 1993).
+//! Confidence intervals of statistics over trials, by a percentile bootstrap that draws trials with replacement (Efron
+//! and Tibshirani 1993).
 
 use rand::RngExt;
 
@@ -9,10 +10,10 @@ const RESAMPLES: usize = 2000;
 /// Quantiles of the bootstrap distribution that bound the interval.
 const INTERVAL: [f64; 2] = [0.025, 0.975];
 
-/// Least number of units of which an interval says something: the draws from fewer are nearly all alike.
+/// Least number of units for an interval: resamples of fewer units are nearly all alike.
 const FEWEST: usize = 5;
 
-/// The 95 % interval of a statistic of these trials. The random stream is seeded by `seed`.
+/// The 95 % interval of a statistic over these trials. The random stream is seeded by `seed`.
 ///
 /// # Panics
 /// There are no trials.
@@ -28,8 +29,8 @@ pub fn interval<T: Copy>(trials: &[T], seed: u64, statistic: impl Fn(&[T]) -> f6
     INTERVAL.map(|share| resampled[((RESAMPLES - 1) as f64 * share).round() as usize])
 }
 
-/// The same of a statistic that some draws do not have: those are left out. `None` with fewer than five units, or if fewer than half of
-/// the draws have it.
+/// 95 % interval of a statistic that is undefined for some resamples, which are left out. `None` with fewer than five
+/// units, or if the statistic is undefined for more than half of the resamples.
 pub fn interval_where_known<T: Copy>(
     units: &[T],
     seed: u64,

@@ -1,4 +1,4 @@
-//! Summaries that the commands print. A number that cannot be computed is null.
+//! Summaries of trials and simulations that commands print. A number that cannot be computed is null.
 
 use std::collections::BTreeMap;
 
@@ -14,31 +14,31 @@ use crate::session::TimelineEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::study_arm::StudyArm;
 
-/// Summary of one trial.
+/// Summary of one trial: presses, errors, signals, served orders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialSummary {
-    /// Presses of the human.
+    /// Number of presses of the human.
     pub human_actions: u64,
-    /// Presses of the robot.
+    /// Number of presses of the robot.
     pub robot_actions: u64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Presses of the human that the robot may have overtaken; they are not counted as errors.
+    /// Number of the human's presses that the robot may have overtaken (races); they do not count as errors.
     pub races: u64,
-    /// Signals that were shown.
+    /// Number of signals shown to the participant.
     pub signals: u64,
-    /// Belief related errors; `None` where the participant's beliefs are not known.
+    /// Errors that follow from false beliefs; `None` where the participant's beliefs are not known.
     pub beliefs: Option<TrialBeliefErrors>,
     /// For each served order, its dish and the number of presses of both agents since the previously served order.
     pub served: Vec<(DishId, u32)>,
-    /// Length of the trial on its own clock, in seconds.
+    /// Duration of the trial on its own clock, in seconds.
     pub seconds: f64,
     /// For each closed offer, the time for which it stood, in milliseconds.
     pub offers_ms: Vec<u32>,
 }
 
 impl TrialSummary {
-    /// Summary of a session so far.
+    /// Summary of a trial up to the session's last event.
     pub fn from_follower(follower: &Follower) -> TrialSummary {
         let session = &follower.session;
         let mut before = 0;
@@ -66,23 +66,23 @@ impl TrialSummary {
     }
 }
 
-/// Belief related errors of one trial.
+/// Errors of one trial that follow from false beliefs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialBeliefErrors {
-    /// Number of belief related errors.
+    /// Number of errors that follow from false beliefs.
     pub related: u64,
-    /// Belief related errors that no single target explains.
+    /// Errors that only a pair of false beliefs explains.
     pub related_to_pairs: u64,
-    /// Sequences of related errors.
+    /// Sequences of errors that follow from the same false belief.
     pub sequences: Vec<Sequence>,
-    /// Error sequences whatever the aspect.
+    /// Sequences of errors, whichever false beliefs they follow from.
     pub any_aspect: Vec<Sequence>,
     /// Number of false belief episodes that caused at least one error.
     pub episodes: u64,
 }
 
 impl TrialBeliefErrors {
-    /// Belief related errors of a session so far; `None` unless the beliefs are known before every press.
+    /// Errors from false beliefs in a session so far; `None` unless the beliefs before every press are known.
     fn from_follower(follower: &Follower) -> Option<TrialBeliefErrors> {
         let judged = &follower.judged;
         let is_simulated = follower.session.spec.participant.kind == ParticipantKind::Simulated;
@@ -100,36 +100,37 @@ impl TrialBeliefErrors {
     }
 }
 
-/// Belief related errors of one or several trials. Null where the participants' beliefs are not known.
+/// Errors that follow from false beliefs, in one or several trials. Values are null where the participants' beliefs are
+/// not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BeliefErrorSummary {
-    /// Errors that are put down to a false belief.
+    /// Errors that are attributed to a false belief.
     pub belief_related_errors: Option<u64>,
-    /// Belief related errors that only a pair of false beliefs explains.
+    /// Errors that only a pair of false beliefs explains.
     pub errors_of_two_beliefs: Option<u64>,
-    /// Number of sequences of related errors.
+    /// Number of sequences of errors that follow from the same false belief.
     pub sequences: Option<u64>,
-    /// Mean number of errors in a sequence; null also where there is none.
+    /// Mean number of errors in a sequence; null also without sequences.
     pub mean_sequence_length: Option<f64>,
-    /// Seconds from the first error of a sequence to the first correct press after its last.
+    /// Mean time from the first error of a sequence to the first correct press after its last error, in seconds.
     pub mean_recovery_s: Option<f64>,
-    /// Number of error sequences whatever the aspect.
+    /// Number of error sequences, whichever false beliefs they follow from.
     pub sequences_any_aspect: Option<u64>,
-    /// Mean number of errors in these; null also where there is none.
+    /// Mean number of errors in the sequences of `sequences_any_aspect`; null also without sequences.
     pub mean_sequence_length_any_aspect: Option<f64>,
     /// Number of false belief episodes that caused at least one error.
     pub false_belief_episodes: Option<u64>,
 }
 
 impl BeliefErrorSummary {
-    /// Summary of several trials.
+    /// Sums over several trials.
     pub fn from_trials<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> BeliefErrorSummary {
         let mut sums = BeliefSums::default();
         trials.into_iter().for_each(|trial| sums.add(trial.beliefs.as_ref()));
         sums.figures()
     }
 
-    /// The summary as text; `errors` is the number of all errors.
+    /// The errors from false beliefs as text; `errors` is the number of all errors.
     pub fn describe(&self, errors: u64) -> String {
         let (Some(related), Some(sequences)) = (self.belief_related_errors, self.sequences) else {
             return "belief related errors: not known, since nobody knows what the participant believed".to_string();
@@ -147,68 +148,69 @@ impl BeliefErrorSummary {
     }
 }
 
-/// Totals of the trials of one arm.
+/// Totals of the trials of one study arm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ArmTotals {
-    /// The arm by what was done.
+    /// Study arm of the trials, by what was done in them.
     pub arm: StudyArm,
     /// Number of trials.
     pub trials: u64,
-    /// Presses of the human.
+    /// Number of presses of the human.
     pub human_actions: u64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Signals that were shown.
+    /// Number of signals shown to the participant.
     pub signals: u64,
 }
 
-/// The output of `tomcom simulate`.
+/// Summary of simulated trials: the output of `tomcom simulate`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SimulationSummary {
     /// Number of trials.
     pub trials: u64,
-    /// Presses of the human.
+    /// Number of presses of the human.
     pub human_actions: u64,
-    /// Presses of the robot.
+    /// Number of presses of the robot.
     pub robot_actions: u64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Presses of the human shortly after a change by the robot at the same place (races); they do not count as errors.
+    /// Presses of the human shortly after a change by the robot at the same location (races); they do not count as
+    /// errors.
     pub races: u64,
-    /// What is known of the beliefs behind the errors.
+    /// Errors that follow from false beliefs.
     #[serde(flatten)]
     pub beliefs: BeliefErrorSummary,
-    /// Signals that were shown.
+    /// Number of signals shown to the participants.
     pub signals: u64,
-    /// Offers, whether a wizard could see them or not.
+    /// Durations of offers, whether a wizard could see them or not.
     pub offers: OfferDurations,
-    /// Orders served.
+    /// Number of orders served.
     pub orders_served: u64,
     /// Median over served orders of the number of presses of both agents since the previously served order.
     pub presses_per_order: Option<f64>,
     /// Median over served orders of the least number of presses for the dish from an empty kitchen.
     pub optimal_presses_per_order: Option<f64>,
-    /// The trials' length together, by their own clocks, in seconds.
+    /// Duration of all trials together, by their own clocks, in seconds.
     pub simulated_s: f64,
-    /// How long the simulation took by the computer's clock, in seconds.
+    /// Duration of the simulation by the computer's clock, in seconds.
     pub wall_s: f64,
     /// Number of excluded recordings, which the summary leaves out.
     pub excluded: u64,
-    /// Number of complete recordings that existed already and were read instead of simulated.
+    /// Number of complete recordings that existed before and were read instead of simulated anew.
     pub found: u64,
-    /// New paths of logs that ended before the end of their header, as after a power failure; their trials were simulated
-    /// again.
+    /// New paths of logs that end before the end of their header, as after a power failure; their trials were simulated
+    /// anew.
     pub moved: Vec<String>,
-    /// Totals by arm.
+    /// Totals of presses, errors and signals, by study arm.
     pub arms: Vec<ArmTotals>,
-    /// The folders of the recordings.
+    /// Folders of the recordings.
     pub recordings: Vec<String>,
 }
 
-/// Running sums of belief related errors over trials.
+/// Running sums over trials of errors that follow from false beliefs.
 #[derive(Clone, Debug, Default)]
 struct BeliefSums {
-    /// Whether the beliefs are unknown in at least one trial.
+    /// Whether the participant's beliefs are unknown in at least one trial.
     unknown: bool,
     related: u64,
     related_to_pairs: u64,
@@ -253,7 +255,7 @@ impl BeliefSums {
     }
 }
 
-/// Running mean; `None` without values.
+/// Running mean of values; `None` without values.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     count: u64,
@@ -276,7 +278,7 @@ impl Mean {
 pub struct SimulationSums {
     figures: SimulationSummary,
     beliefs: BeliefSums,
-    /// Histograms of the presses per served order, and of the least presses for its dish.
+    /// Histogram of the presses per served order, and histogram of the least number of presses for its dish.
     presses_per_order: BTreeMap<u32, u64>,
     optimal_presses_per_order: BTreeMap<u32, u64>,
     /// Histogram of the times for which offers stood, in milliseconds.
@@ -284,7 +286,7 @@ pub struct SimulationSums {
 }
 
 impl SimulationSums {
-    /// Adds a trial. `plan_lengths` is the least number of presses for each dish from an empty kitchen.
+    /// Adds a trial. `plan_lengths`: the least number of presses for each dish from an empty kitchen.
     pub fn add(&mut self, arm: StudyArm, trial: &TrialSummary, plan_lengths: &[u32]) {
         let sums = &mut self.figures;
         sums.trials += 1;
@@ -328,7 +330,7 @@ impl SimulationSums {
     }
 }
 
-/// Median of a histogram; the mean of the middle two for an even count; `None` if it is empty.
+/// Median of a histogram, which is the mean of the middle two values for an even count; `None` for an empty histogram.
 fn median_of(counts: &BTreeMap<u32, u64>) -> Option<f64> {
     let all: u64 = counts.values().sum();
     let nth = |wanted: u64| {

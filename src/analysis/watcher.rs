@@ -1,11 +1,11 @@
-//! Compares assistants with the signals that were sent: asks each concept at the moments at which the assistant of a session is asked, as
-//! the engine does, and collects its hypothetical signals.
+//! Compares assistants with the signals that were sent: asks each communication concept for advice whenever a session's
+//! assistant is asked, as the engine does, and collects the concept's hypothetical signals.
 //!
-//! A concept is asked with a counterfactual estimate that leaves out every signal sent within the window. Otherwise a wizard who
-//! sends the right signal early would remove the concept's reason to send it, and would count as unmatched. A concept does not
-//! repeat a hypothetical signal within the window, as if it had been shown. After the window it may repeat the signal, because
-//! the participant has not seen it and still holds the false belief. Signals that were sent before the window are subject to the
-//! repeat rule of a session.
+//! A concept receives a counterfactual estimate that leaves out every signal sent within the window. Otherwise a wizard
+//! who sends the right signal early would remove the concept's reason to send it, and the signal would count as
+//! unmatched. A concept does not repeat a hypothetical signal within the window, as if the participant had seen it.
+//! After the window it may repeat the signal, because the participant has not seen it and still holds the false belief.
+//! Signals that were sent before the window are subject to a session's rule against repeats.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -33,17 +33,18 @@ use crate::session::settings::Condition;
 use crate::session::wizard_screen::VisibleScreen;
 use crate::session::{Applied, Event, Session, SessionSpec, Stamped};
 
-/// Which concepts to compare, and the window.
+/// Communication concepts to compare with the wizard, and the window within which communications match.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompareRequest {
-    /// Concepts in addition to the session's own.
+    /// Communication concepts to compare in addition to the session's own.
     pub with: Vec<ConceptName>,
-    /// Presses of the human within which communications match, and for which the estimate leaves out what was sent.
+    /// Number of the human's presses within which communications match; the estimate leaves out signals sent within
+    /// this window.
     pub window: u32,
 }
 
 impl CompareRequest {
-    /// All concepts of the comparison: the session's own (ToM-Com where it has none) and those in `with`.
+    /// All concepts to compare: the session's own (ToM-Com if it has none) and those in `with`.
     pub fn concepts(&self, spec: &SessionSpec) -> Vec<ConceptName> {
         let own = match spec.assistant.concept {
             ConceptName::None => ConceptName::TomCom,
@@ -59,34 +60,35 @@ impl CompareRequest {
     }
 }
 
-/// A concept with its lane of hypothetical signals.
+/// A communication concept, with the hypothetical signals that it has sent so far.
 #[derive(Debug)]
 struct Voice {
     name: ConceptName,
     advisor: Advisor,
-    /// Its signals within the window: the number of human presses before each, and the location.
+    /// The concept's hypothetical signals within the window: number of human presses before each, and the signal's
+    /// location.
     said: Vec<(u32, LocationId)>,
     repeats: Repeats,
-    /// Sequence number of the error for which it has proposed presses.
+    /// Sequence number of the error after which the concept last proposed presses.
     proposed: Option<u64>,
     spoken: Vec<Communication>,
 }
 
-/// The estimate without one signal and without all later signals.
+/// A belief filter that leaves out one signal and all later signals.
 #[derive(Debug)]
 struct CounterfactualFilter {
-    /// Number of human presses before the signal.
+    /// Number of human presses before the signal that is left out.
     press: u32,
     signal: Signal,
-    /// State of the kitchen at the signal.
+    /// State of the kitchen when the signal was sent.
     state: State,
     filter: BeliefFilter,
 }
 
-/// Follows a session event by event and asks the concepts.
+/// Follows a session event by event, and asks each communication concept for its hypothetical signals.
 #[derive(Debug)]
 pub struct ComparisonFollower {
-    /// The session with its estimate.
+    /// The session with its belief estimate.
     pub follower: Follower,
     window: u32,
     voices: Vec<Voice>,
@@ -95,16 +97,17 @@ pub struct ComparisonFollower {
     /// Signals sent before the window.
     shown: Repeats,
     sent: Vec<Communication>,
-    /// The newest event after which the concepts are asked, once all events that follow from it have been applied.
+    /// The newest event after which concepts are asked for advice; they are asked once all its immediate consequences
+    /// are applied.
     to_ask: Option<(u64, SessionTime)>,
     known: Option<Arc<CommunicationContext>>,
     screen: Option<VisibleScreen>,
-    /// Number of times that the concepts were asked.
+    /// Number of times that the concepts were asked for advice.
     asked: u64,
 }
 
 impl ComparisonFollower {
-    /// A comparison from before the first event of a session.
+    /// The comparison before the first event of a session.
     pub fn new(session: Session, request: &CompareRequest) -> ComparisonFollower {
         let cost = CostToGo::new(session.kitchen.clone());
         let voice = |name: ConceptName| Voice {
@@ -130,7 +133,7 @@ impl ComparisonFollower {
         }
     }
 
-    /// The same without attribution of errors, which takes too long for a running session.
+    /// This comparison without attribution of errors to causes, which takes too long in a running session.
     pub fn without_causes(self) -> ComparisonFollower {
         ComparisonFollower { follower: self.follower.without_causes(), ..self }
     }
@@ -169,27 +172,28 @@ impl ComparisonFollower {
         Ok(change)
     }
 
-    /// Asks the concepts about the last event, after the end of the session.
+    /// Asks the concepts for advice about the last event, after the end of the session.
     pub fn finish(&mut self) {
         self.ask();
     }
 
-    /// The context of the last question.
+    /// The context of the last request for advice.
     pub fn known(&self) -> Option<&Arc<CommunicationContext>> {
         self.known.as_ref()
     }
 
-    /// Number of questions and number of signals sent: the comparison of a running trial changes only when one of them grows.
+    /// Number of requests for advice and number of signals sent: the comparison of a running trial changes only when
+    /// one of them grows.
     pub fn progress(&self) -> (u64, usize) {
         (self.asked, self.sent.len())
     }
 
-    /// Presses of the human so far.
+    /// Number of the human's presses so far.
     pub fn presses(&self) -> u32 {
         self.follower.session.presses[Agent::Human.index()]
     }
 
-    /// Updates the counterfactual filters by an event, unless it is a signal.
+    /// Updates the counterfactual filters by an event, unless the event is a signal.
     fn update_counterfactuals(&mut self, stamped: &Stamped, change: &Change) {
         let (press, window) = (self.presses(), self.window);
         while let Some(oldest) = self.counterfactuals.pop_front_if(|oldest| press > oldest.press + window) {
@@ -214,7 +218,7 @@ impl ComparisonFollower {
         let belief = estimate(&self.follower, &self.counterfactuals);
         self.shown.update(&session.kitchen, session.state, belief);
         for voice in &mut self.voices {
-            // A signal that was also sent needs no second entry.
+            // A hypothetical signal that was also sent is in the list already.
             let is_sent = |location: &LocationId| {
                 let is_it = |one: &CounterfactualFilter| one.signal.location(&session.kitchen) == Some(*location);
                 self.counterfactuals.iter().any(is_it)
@@ -237,7 +241,7 @@ impl ComparisonFollower {
         Communication { said, time, what, known: self.known.clone() }
     }
 
-    /// Asks every concept for its recommendation.
+    /// Asks every communication concept for its recommendation.
     fn ask(&mut self) {
         let Some((seq, time)) = self.to_ask.take().filter(|_| self.follower.session.is_running()) else { return };
         self.asked += 1;
@@ -264,25 +268,26 @@ impl ComparisonFollower {
         }
     }
 
-    /// The hypothetical signal of a recommendation, added to the concept's memory.
+    /// The hypothetical signal that a recommendation leads to; added to the concept's memory of repeats.
     fn says(&mut self, index: usize, advice: &Recommendation) -> Option<CommunicationContent> {
         let session = &self.follower.session;
         let voice = &mut self.voices[index];
         if let Some(signal) = &advice.best {
             voice.repeats.shown(&session.kitchen, session.state, signal);
             let location = signal.location(&session.kitchen);
-            // An earlier signal about this place must not end the memory of this one when it leaves the window.
+            // An older signal about the same location is removed, so that the location stays remembered when the older
+            // one leaves the window.
             voice.said.retain(|(_, earlier)| Some(*earlier) != location);
             voice.said.extend(location.map(|location| (session.presses[Agent::Human.index()], location)));
             return Some(CommunicationContent::Signal(signal.clone()));
         }
-        // An error gets one proposal, even while the error remains the last one.
+        // The concept DEV proposes presses once per error, even while no later error follows.
         let proposal = advice.proposal.as_ref().filter(|proposal| voice.proposed != Some(proposal.error))?;
         voice.proposed = Some(proposal.error);
         Some(CommunicationContent::Proposal(proposal.presses.clone()))
     }
 
-    /// The lanes so far and their similarity; `over` says that the session has ended.
+    /// The lanes of wizard and assistants so far, compared; `over` says that the session has ended.
     pub fn comparison(&self, over: bool) -> LaneComparison {
         let sender = match self.follower.session.spec.trial.condition {
             Condition::Assistant => "assistant",
@@ -299,7 +304,7 @@ impl ComparisonFollower {
     }
 }
 
-/// The estimate without the signals sent within the window.
+/// The belief estimate without the signals sent within the window.
 fn estimate<'a>(follower: &'a Follower, counterfactuals: &'a VecDeque<CounterfactualFilter>) -> &'a DirichletBelief {
     counterfactuals.front().map_or(follower.filter.belief(), |oldest| oldest.filter.belief())
 }

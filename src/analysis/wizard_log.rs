@@ -14,7 +14,7 @@ use crate::session::settings::ParticipantKind;
 use crate::session::wizard_screen::VisibleScreen;
 use crate::session::{Event, Session, Stamped};
 
-/// The wizard's signals, each with what was on the wizard's screen.
+/// The wizard's signals, each with the content of the wizard's screen.
 #[derive(Clone, Debug, Default)]
 pub struct WizardLog {
     sent: Vec<(u64, SessionTime, WizardSignal)>,
@@ -22,29 +22,29 @@ pub struct WizardLog {
     seen: Vec<SignalsPerScreen>,
 }
 
-/// Number of signals sent while the wizard's screen showed a given amount of information.
+/// Number of signals sent while the wizard's screen showed a certain amount of information.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalsPerScreen {
-    /// Null before the first frame, and without a console.
+    /// Content of the wizard's screen; null before it was first drawn, and without a console.
     pub screen: Option<VisibleScreen>,
-    /// Number of signals.
+    /// Number of signals sent with this content on the screen.
     pub signals: u64,
 }
 
 /// Performance of a wizard in one session.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WizardSummary {
-    /// How well the wizard did.
+    /// Measures of the wizard's performance.
     #[serde(flatten)]
     pub measures: WizardMeasures,
-    /// Signals by what the screen showed.
+    /// Numbers of signals by the content of the wizard's screen.
     pub screens: Vec<SignalsPerScreen>,
     /// Whether the wizard saw the assistants' recommendations.
     pub unblinded: bool,
 }
 
 impl WizardLog {
-    /// Adds an event that has just been applied.
+    /// Adds an event that has just been applied to the session.
     pub fn note(&mut self, stamped: &Stamped, session: &Session) {
         match &stamped.event {
             Event::Screen(screen) => self.screen = Some(screen.clone()),
@@ -76,8 +76,9 @@ impl WizardLog {
         }
     }
 
-    /// The wizard's performance by the false belief episodes that raters' codes give. Whether further beliefs were false is not known, so
-    /// signals about harmless ones, wrong targets and needless signals are not told apart.
+    /// The wizard's performance measured by false belief episodes from raters' codes. Raters code errors only, so it is
+    /// unknown whether other beliefs were false; signals about harmless false beliefs, wrong targets and needless
+    /// signals are therefore not told apart.
     pub fn measures_by_raters(&self, follower: &Follower, episodes: &[Episode]) -> WizardMeasures {
         let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
         let periods = periods(follower, episodes.iter());
@@ -85,7 +86,7 @@ impl WizardLog {
         WizardMeasures { wrong_targets: None, needless: None, harmless: None, ..measures }
     }
 
-    /// Summary of a session that has been followed to its end.
+    /// Summary of the wizard's performance in a session that has been followed to its end.
     pub fn figures(&self, follower: &Follower) -> WizardSummary {
         let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
         let measures = WizardMeasures::from_signals(&sent, spells(follower).as_deref());
@@ -100,7 +101,7 @@ pub fn spells(follower: &Follower) -> Option<Vec<FalseBeliefPeriod>> {
     known.then(|| periods(follower, follower.episodes.all()))
 }
 
-/// Episodes as periods on the trial's clock.
+/// False belief episodes as periods on the trial's clock.
 fn periods<'a>(follower: &Follower, episodes: impl Iterator<Item = &'a Episode>) -> Vec<FalseBeliefPeriod> {
     let session = &follower.session;
     let period = |episode: &Episode| {
@@ -115,13 +116,13 @@ fn periods<'a>(follower: &Follower, episodes: impl Iterator<Item = &'a Episode>)
     episodes.map(period).collect()
 }
 
-/// The trial's clock at an earlier time of a session.
+/// Converts an earlier session time to the trial's clock.
 pub fn clock_at(session: &Session, time: SessionTime) -> SessionTime {
     let paused = session.pauses.iter().map(|&(from, until)| until.min(time) - from);
     paused.fold(time - session.trial_start, |clock, pause| clock - pause)
 }
 
-/// The summary as lines of text.
+/// The wizard's performance as lines of text.
 pub fn describe(figures: &WizardSummary) -> String {
     let measures = &figures.measures;
     let number = |value: Option<u64>| value.map_or("-".to_string(), |value| value.to_string());

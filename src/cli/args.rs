@@ -1,4 +1,4 @@
-//! Commands and their arguments.
+//! The commands of the program `tomcom` and their arguments.
 
 use std::path::PathBuf;
 
@@ -66,45 +66,49 @@ pub(super) enum CliCommand {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Example: tomcom replay sessions/2026-03-14-P07-1 --verify\nMore: docs/recordings.md")]
 pub(super) struct ReplayArgs {
-    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs, --accuracy and --offers. Of a folder of
-    /// recordings, one is chosen from a list.
+    /// The folder of a recording, or its events.jsonl; several only with --check-beliefs, --accuracy and --offers. Of a
+    /// folder of recordings, one is chosen from a list.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
     /// Run the session again from the recording's header and inputs; every line must be identical.
     #[arg(long, conflicts_with = "follow")]
     pub(super) verify: bool,
-    /// Compare the estimates before each press with the recorded beliefs of simulated participants, and with the presses.
+    /// Compare the estimates before each press with the recorded beliefs of simulated participants, and with the
+    /// presses.
     #[arg(long, conflicts_with_all = ["verify", "follow"])]
     pub(super) check_beliefs: bool,
-    /// With --check-beliefs: choose the thresholds of flags on this recording, of another seed (several: repeat it). Without it
-    /// each half of the recordings is judged with the thresholds of the other half.
+    /// With --check-beliefs: choose the thresholds for flagging false beliefs on this recording, which has another seed
+    /// (several: repeat the option). Without it, each half of the recordings is judged with the thresholds of the other
+    /// half.
     #[arg(long, value_name = "RECORDING", requires = "check_beliefs")]
     pub(super) choose_on: Vec<PathBuf>,
     /// Measure computing times of inference and planning.
     #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs"])]
     pub(super) timing: bool,
-    /// Compare the planner's answers with those from 64 times as many rollouts, and with the plain reference. Takes long.
+    /// Compare the planner's answers with those from 64 times as many rollouts, and with the plain reference planner.
+    /// Takes long.
     #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing"])]
     pub(super) accuracy: bool,
     /// With --accuracy: largest number of steps, spread evenly over the recordings.
     #[arg(long, default_value_t = 500, requires = "accuracy", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(super) steps: u64,
-    /// With --accuracy: largest number of steps for the plain reference; 0 for none.
+    /// With --accuracy: largest number of steps for the plain reference planner; 0 for none.
     #[arg(long, default_value_t = 30, requires = "accuracy", value_parser = clap::value_parser!(u64).range(0..=100_000))]
     pub(super) reference_steps: u64,
-    /// Measure how steady offers are: how long they stand, and whether a scripted hand sends what it has read.
+    /// Measure how steady offers are: how long they stand, and whether a simulated hand that reads an offer sends what
+    /// it has read.
     #[arg(long, conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy"])]
     pub(super) offers: bool,
     /// Watch a session that is still running, until it ends.
     #[arg(long)]
     pub(super) follow: bool,
-    /// Code the errors of the recording as this rater (a code, never a name), without estimate, signals or condition in view: letters
-    /// code false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Begins at the first error without a code. Codes
-    /// are saved beside the log at once.
+    /// Code the errors of the recording as this rater (a code, never a name), without estimate, signals or condition in
+    /// view: letters code false beliefs, 1 a slip, 2 a race, 3 another cause, 4 mixed up buttons. Begins at the first
+    /// error without a code. Codes are saved beside the log at once.
     #[arg(long, value_name = "CODE", conflicts_with_all = ["verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
     pub(super) rater: Option<String>,
-    /// Settle as two raters together what they coded differently: goes through these errors with both codes in view, and saves the
-    /// consensus beside the log.
+    /// Settle as two raters together what they coded differently: goes through these errors with both codes in view,
+    /// and saves the consensus beside the log.
     #[arg(long, value_names = ["A", "B"], num_args = 2, conflicts_with_all = ["rater", "verify", "follow", "check_beliefs", "timing", "accuracy", "offers", "format"])]
     pub(super) settle: Option<Vec<String>>,
     /// Output format.
@@ -123,8 +127,8 @@ pub(super) struct PlanArgs {
     /// Folder of the recordings.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
-    /// Freeze the plan before the study (preregistration): write plan, definitions and analysis with a digest to this new file, which
-    /// tomcom study --frozen checks.
+    /// Freeze the plan before the study (preregistration): write plan, definitions and analysis with a digest to this
+    /// new file, which tomcom study --frozen checks.
     #[arg(long, value_name = "FILE")]
     pub(super) freeze: Option<PathBuf>,
     /// Output format.
@@ -141,10 +145,10 @@ pub(super) struct PlanArgs {
                   tomcom simulate sessions/default.toml --trials 100 --sweep cost=0.5,1.5,2.4 --sweep gaze=on,off --out grid\nMore: docs/study.md"
 )]
 pub(super) struct SimulateArgs {
-    /// The session file.
+    /// The session file to simulate.
     pub(super) session: PathBuf,
-    /// Number of trials; each has its own orders and participant and does not depend on their number. With a plan: the first
-    /// trials of the plan, participant by participant. Default: 1, or the whole plan.
+    /// Number of trials; each has its own orders and participant and does not depend on their number. With a plan: the
+    /// first trials of the plan, participant by participant. Default: 1, or the whole plan.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(super) trials: Option<u64>,
     /// Simulate one shard of the trials, such as "2/8", the second of eight disjoint shards, for job arrays.
@@ -162,14 +166,14 @@ pub(super) struct SimulateArgs {
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
     #[arg(long, value_enum)]
     pub(super) arm: Option<ArmArg>,
-    /// Simulate the trials for every value of a setting and without signals, and print the effects: cost=0.5,1.5, threshold
-    /// (of tom), horizon, rollouts, tau, radius, gaze=on,off, asks=presses,silence,gaze,silence+gaze, waiting=on,off. Several settings
-    /// make a grid. The assistant sends the signals
-    /// unless --condition says otherwise. With a plan, its settings apply, and every trial has another participant.
+    /// Simulate the trials for every value of a setting and without signals, and print the effects: cost=0.5,1.5,
+    /// threshold (of tom), horizon, rollouts, tau, radius, gaze=on,off, asks=presses,silence,gaze,silence+gaze,
+    /// waiting=on,off. Several settings make a grid. The assistant sends the signals unless --condition says otherwise.
+    /// With a plan, its settings apply, and every trial has another participant.
     #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
     pub(super) sweep: Vec<SweepAxis>,
-    /// Compute the assistant's recommendations in trials in which it does not act, too; they are recorded. A scripted wizard reads them
-    /// where the session shows recommendations; nobody else sees them.
+    /// Compute the assistant's recommendations also in trials in which the assistant does not act, and record them. A
+    /// scripted wizard reads them where the session shows recommendations; nobody else sees them.
     #[arg(long)]
     pub(super) shadow: bool,
     /// Also write a stream for the Rerun viewer beside every log, as recording.rrd.
@@ -201,7 +205,8 @@ pub(super) struct FitArgs {
     /// recordings.
     #[arg(long, value_name = "FILE")]
     pub(super) start: Option<PathBuf>,
-    /// Use answers to probes beside presses, and tell by how much they narrow the intervals; takes a second search without them.
+    /// Use answers to freeze probes beside presses, and tell by how much they narrow the intervals; needs a second
+    /// search, without the answers.
     #[arg(long)]
     pub(super) probes: bool,
     /// Largest number of likelihood evaluations.
@@ -224,17 +229,17 @@ pub(super) enum FitParameter {
     Lapse,
     /// Radius of the area around the fixation.
     Radius,
-    /// Reading rate per second.
+    /// Rate at which gaze at a location becomes knowledge of its content, per second.
     Reading,
     /// Half-life of recipe memory.
     HalfLife,
     /// Share of the robot's unseen presses whose consequences the human infers.
     Foresight,
-    /// Looks a second at what the next press needs, where gaze is unknown.
+    /// Looks at what the next press needs, per second, where gaze is unknown.
     Looks,
-    /// Looks a second at other places, where gaze is unknown.
+    /// Looks at other locations, per second, where gaze is unknown.
     OtherLooks,
-    /// Share of the changes by others that draw the eye, where gaze is unknown.
+    /// Share of changes by others that attract a look, where gaze is unknown.
     Capture,
 }
 
@@ -279,7 +284,7 @@ pub(super) struct KeysArgs {
     pub(super) session: Option<PathBuf>,
 }
 
-/// Excludes a recording from the analysis, or takes that back.
+/// Excludes a recording from the analysis, or includes it again.
 ///
 /// The recording must be closed. Its log stays as it is.
 #[derive(Debug, Args)]
@@ -302,8 +307,8 @@ pub(super) struct ExcludeArgs {
 
 /// Checks whether this machine is ready for a session.
 ///
-/// Checks terminal, disk space, clocks, the port of the wall display, the Rerun viewer and the gaze source, and gives a remedy
-/// for each problem.
+/// Checks terminal, disk space, clocks, the port of the wall display, the Rerun viewer and the gaze source, and gives a
+/// remedy for each problem.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Exit code 0: the session works here. 1: something is broken.\nExamples: tomcom doctor --out recordings\n          \
@@ -320,7 +325,7 @@ pub(super) struct DoctorArgs {
     pub(super) format: OutputFormat,
 }
 
-/// Prints the completions of a shell.
+/// Prints the completion script for a shell.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom completions bash > ~/.local/share/bash-completion/completions/tomcom")]
 pub(super) struct CompletionsArgs {
@@ -331,6 +336,6 @@ pub(super) struct CompletionsArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom man operate | man -l -")]
 pub(super) struct ManArgs {
-    /// The command.
+    /// Command whose man page to print; by default that of the program.
     pub(super) command: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! Values of command line options for session settings.
+//! Values of command line options that stand for session settings.
 
 use clap::ValueEnum;
 
@@ -21,15 +21,15 @@ pub(super) enum GazeArg {
     Simulated,
     /// The mouse pointer over the kitchen, at the console or on the wall display.
     Mouse,
-    /// Pupil Core, through Pupil Capture.
+    /// The eye tracker Pupil Core, through the program Pupil Capture.
     Pupil,
-    /// Recorded gaze: see --gaze-file.
+    /// Recorded gaze from the file that --gaze-file names.
     File,
-    /// Lines of JSON over TCP or UDP.
+    /// Gaze samples as lines of JSON over TCP or UDP.
     Json,
     /// A stream of the Lab Streaming Layer: see [lsl.gaze] in the session file.
     Lsl,
-    /// No gaze at all.
+    /// No gaze.
     None,
 }
 
@@ -67,7 +67,8 @@ pub(super) enum ConceptArg {
     TomCom,
     /// Signals about sufficiently certain false beliefs (ToM).
     Tom,
-    /// Proposals of the next good presses after an error (DEV): on the display where the assistant acts, at the console beside a wizard.
+    /// Proposals of the next good presses after an error (DEV); on the display where the assistant acts by itself, at
+    /// the console where a wizard decides.
     Dev,
     /// No signals.
     None,
@@ -128,10 +129,10 @@ impl From<SimulatedCondition> for Condition {
     }
 }
 
-/// Condition of simulated trials.
+/// Who sends signals in simulated trials.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(super) enum SimulatedCondition {
-    /// Nobody sends signals.
+    /// Nobody sends signals in the simulated trials.
     None,
     /// The scripted wizard of the session sends signals.
     Wizard,

@@ -1,4 +1,4 @@
-//! `tomcom robustness`: checks of its options.
+//! Options of the command `tomcom robustness`, and their checks.
 
 use std::path::PathBuf;
 
@@ -15,26 +15,27 @@ use crate::session::settings::ArmKind;
 
 /// Measures estimate and assistant with cohorts of simulated people.
 ///
-/// Each cohort is away from what the assistant's model of the human was fitted to. Its trials are simulated without signals and
-/// with the assistant acting by itself, and nothing is recorded. Each row is printed when it is finished; with --format json on
-/// standard error.
+/// Each cohort differs from the people to whom the assistant's human model was fitted. Its trials are simulated without
+/// signals and with the assistant acting by itself, and nothing is recorded. Each row is printed when it is finished;
+/// with --format json on standard error.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: tomcom robustness sessions/people/robustness.toml --seed 9101 --choose-seed 9001 --arm timed\nMore: docs/study.md"
 )]
 pub(super) struct RobustnessArgs {
-    /// The battery: a file with a session file and cohorts.
+    /// Battery file, which names a session file and describes the cohorts.
     battery: PathBuf,
-    /// Number of judged trials of each cohort, and of trials on which its thresholds are chosen.
+    /// Number of judged trials of each cohort, and of trials on which the thresholds of its flags are chosen.
     #[arg(long, default_value_t = 160, value_parser = clap::value_parser!(u64).range(2..=100_000))]
     trials: u64,
     /// Seed of the judged trials; by default that of the session file.
     #[arg(long)]
     seed: Option<u64>,
-    /// Seed of the trials on which the thresholds of flags are chosen; by default the seed of the judged trials plus 1.
+    /// Seed of the trials on which the thresholds for flagging false beliefs are chosen; by default the seed of the
+    /// judged trials plus 1.
     #[arg(long)]
     choose_seed: Option<u64>,
-    /// Only this cohort (several: repeat it).
+    /// Simulate only this cohort (several: repeat the option).
     #[arg(long, value_name = "NAME")]
     cohort: Vec<String>,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
@@ -45,7 +46,7 @@ pub(super) struct RobustnessArgs {
     format: OutputFormat,
 }
 
-/// `tomcom robustness BATTERY`.
+/// Runs the command `tomcom robustness BATTERY`.
 pub(super) fn robustness(args: &RobustnessArgs) -> Result<(), Failure> {
     let mut battery = read_battery(&args.battery)?;
     let names: Vec<String> = battery.cohorts.iter().map(|cohort| cohort.name.get_ref().clone()).collect();

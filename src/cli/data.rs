@@ -1,4 +1,4 @@
-//! `tomcom codes` and `tomcom forget`.
+//! Commands about raters' codes (`tomcom codes`) and the deletion of a participant's data (`tomcom forget`).
 
 use std::io::{BufRead, IsTerminal};
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use crate::session::settings::is_code;
 
 /// Prints raters' codes of errors, their agreement, and where they disagree.
 ///
-/// Also what two raters settled. Can import codes from a table, or export them.
+/// Also the codes on which two raters agreed afterwards. Can import codes from a table, or export them.
 #[derive(Debug, Args)]
 #[command(after_help = "tomcom replay RECORDING --rater R1 is where errors are coded;\n\
                   tomcom replay RECORDING --settle R1 R2 is where two raters settle what they coded differently.\n\
@@ -32,7 +32,7 @@ pub(super) struct CodesArgs {
     /// Import codes from this table, with the columns recording, rater (R1+R2: a consensus), press, cause, aspect.
     #[arg(long, value_name = "FILE")]
     import: Option<PathBuf>,
-    /// Export all codes to such a table.
+    /// Export all codes to a table with these columns.
     #[arg(long, value_name = "FILE")]
     export: Option<PathBuf>,
     /// Output format.
@@ -56,21 +56,21 @@ pub(super) fn codes(args: &CodesArgs) -> Result<(), Failure> {
     print(args.format, &figures, || codes::describe(&figures))
 }
 
-/// Codes the errors of a recording at the console.
+/// Runs `tomcom replay --rater`: lets a rater code the errors of a recording at the console.
 pub(super) fn rate(recording: &Path, rater: &str) -> Result<(), Failure> {
     check_rater(rater)?;
     check_terminal()?;
     Ok(review_console::rate(recording, rater)?)
 }
 
-/// Settles at the console what two raters coded differently.
+/// Lets two raters settle, at the console, the errors that they coded differently.
 pub(super) fn settle(recording: &Path, raters: &[String]) -> Result<(), Failure> {
     let [one, other] = two_raters(raters, "--settle")?;
     check_terminal()?;
     Ok(review_console::settle(recording, [&one, &other])?)
 }
 
-/// Two different raters, as the values of an option.
+/// Parses two different raters from the values of an option.
 pub(super) fn two_raters(raters: &[String], option: &str) -> Result<[String; 2], Failure> {
     raters.iter().try_for_each(|rater| check_rater(rater))?;
     let wrong = |found: String| {
@@ -84,7 +84,7 @@ pub(super) fn two_raters(raters: &[String], option: &str) -> Result<[String; 2],
     }
 }
 
-/// Checks that a rater has a code.
+/// Refuses a rater without a valid code.
 fn check_rater(rater: &str) -> Result<(), Failure> {
     if !is_code(rater) {
         let help = "a code of 1 to 32 letters, digits, - and _, such as R1; never a name";
@@ -93,7 +93,7 @@ fn check_rater(rater: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks that there is a terminal to code errors at.
+/// Refuses to code errors without a terminal.
 fn check_terminal() -> Result<(), Failure> {
     if !std::io::stdin().is_terminal() || !std::io::stdout().is_terminal() {
         let help = "a terminal; tomcom codes takes codes from a table";
@@ -104,9 +104,9 @@ fn check_terminal() -> Result<(), Failure> {
 
 /// Deletes everything about a participant below a folder.
 ///
-/// Recordings with their parts, streams and codes; rows of tables, by the columns that name the participant or the recording;
-/// reports about the participant; what a wizard has trained on the recordings. With a wizard's code: the records of training.
-/// Only what tomcom wrote is deleted. It is listed first, and what is left, with the reason.
+/// Recordings with their parts, streams and codes; rows of tables, by the columns that name the participant or the
+/// recording; reports about the participant; what a wizard has trained on the recordings. With a wizard's code: the
+/// records of training. Only what tomcom wrote is deleted. It is listed first, and what is left, with the reason.
 #[derive(Debug, Args)]
 #[command(after_help = "Session files stay, and so does what other programs have written, such as an eye tracker.\n\
                   A code that begins with - stands behind --: tomcom forget --in sessions -- -7\n\
@@ -115,10 +115,10 @@ fn check_terminal() -> Result<(), Failure> {
 pub(super) struct ForgetArgs {
     /// The code of the participant.
     code: String,
-    /// Where to look.
+    /// Folder in which to look for the participant's data.
     #[arg(long = "in", value_name = "FOLDER", default_value = "sessions")]
     folder: PathBuf,
-    /// Do not ask.
+    /// Delete without asking for confirmation.
     #[arg(long)]
     yes: bool,
     /// How to print what is deleted and what is left.
@@ -126,7 +126,7 @@ pub(super) struct ForgetArgs {
     format: OutputFormat,
 }
 
-/// What is or was to be deleted, as JSON.
+/// JSON output of the deletion: what is or was to be deleted, and what stays.
 #[derive(Debug, Serialize)]
 struct ForgetSummary<'a> {
     code: &'a str,
@@ -192,7 +192,7 @@ pub(super) fn forget(args: &ForgetArgs) -> Result<(), Failure> {
     if deletes && done.left.is_empty() { Ok(()) } else { Err(Failure::No) }
 }
 
-/// Shows what would be deleted, and asks for the code.
+/// Shows what would be deleted, and asks for the participant's code as confirmation.
 fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure> {
     let input = std::io::stdin();
     put_aside(&format!("to be deleted:\n{}{}\n", listed(found), left(found)));
@@ -209,7 +209,7 @@ fn is_meant(args: &ForgetArgs, found: &ParticipantData) -> Result<bool, Failure>
     Ok(answer.trim() == args.code)
 }
 
-/// What is deleted, a line each; the files of a recording stand together below their folder.
+/// What is deleted, as text with one line each; the files of a recording stand below their folder.
 fn listed(found: &ParticipantData) -> String {
     let line = |path: &Path, what: &str| format!("  {}{what}\n", path.display());
     let recording = |folder: &PathBuf| {
@@ -226,7 +226,7 @@ fn listed(found: &ParticipantData) -> String {
     recordings.chain(files).chain(tables).chain(trainings).collect()
 }
 
-/// What stays, a line each with the reason; nothing where nothing stays.
+/// What stays although it is about the participant, as text with one line and reason each; empty if nothing stays.
 fn left(found: &ParticipantData) -> String {
     let lines: String = found.left.iter().map(|left| format!("  {}: {}\n", left.path.display(), left.reason)).collect();
     if lines.is_empty() { lines } else { format!("left:\n{lines}") }

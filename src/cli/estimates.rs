@@ -1,4 +1,4 @@
-//! Commands that check estimates: beliefs, benefits of signals, parameters of the human model.
+//! Commands that check estimates: beliefs, net benefits of signals, parameters of the human model.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::edge::files;
 use crate::run::accuracy::AccuracySample;
 use crate::run::{accuracy, check_beliefs, fit, steadiness};
 
-/// `tomcom replay RECORDING... --check-beliefs`.
+/// Runs the command `tomcom replay RECORDING... --check-beliefs`.
 pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
     let bar = progress((args.recordings.len() + args.choose_on.len()) as u64, "recordings");
     let found = check_beliefs::check(&args.recordings, &args.choose_on, || bar.inc(1))?;
@@ -18,18 +18,18 @@ pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
     print(args.format, &found, || belief_check::describe(&found))
 }
 
-/// `tomcom replay RECORDING... --accuracy`.
+/// Runs the command `tomcom replay RECORDING... --accuracy`.
 pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
     let extent =
         AccuracySample { steps: args.steps as usize, reference_steps: args.reference_steps.min(args.steps) as usize };
-    // Each step is planned twice.
+    // Each step is planned twice: with the budget of a session, and with the larger one.
     let bar = progress(2 * args.steps + args.reference_steps, "answers at most");
     let found = accuracy::measure(&args.recordings, extent, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &found, || planner_accuracy::describe(&found))
 }
 
-/// `tomcom replay RECORDING... --offers`.
+/// Runs the command `tomcom replay RECORDING... --offers`.
 pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
     let bar = progress(args.recordings.len() as u64, "recordings");
     let found = steadiness::measure(&args.recordings, || bar.inc(1))?;
@@ -37,7 +37,7 @@ pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
     print(args.format, &found, || offer_steadiness::describe(&found))
 }
 
-/// `tomcom fit RECORDING...`.
+/// Runs the command `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     let start = args.start.as_deref().map(files::read_human_model).transpose()?;
     let mut parameters: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
@@ -48,7 +48,7 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
         Failure::Failed(miette::miette!(help = help, "{}: cannot be written: {error}", path.display()))
     };
     if let Some(path) = &args.out {
-        // Before the search, so that it is not in vain.
+        // The output file is checked before the long search.
         files::check_fitted(path).map_err(|error| unwritable(path, error))?;
     }
     let trials = fit::FitTrials::read(&args.recordings, args.probes)?;

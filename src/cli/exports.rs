@@ -1,4 +1,4 @@
-//! `tomcom export`.
+//! The command `tomcom export`.
 
 use std::path::PathBuf;
 
@@ -15,9 +15,9 @@ use crate::run::bids_export::{self, BidsSummary};
 
 /// Exports recordings for other programs.
 ///
-/// As a BIDS data set (Brain Imaging Data Structure, 1.10 and later): a session for each recording with its events, gaze as eye-tracking
-/// recording, questionnaires as phenotype. As MCAP, for robotics tools: joints, frames and log in Foxglove's types, gaze, beliefs and
-/// events. The logs stay as they are.
+/// As a BIDS data set (Brain Imaging Data Structure, 1.10 and later): a session for each recording with its events,
+/// gaze as eye-tracking recording, questionnaires as phenotype. As MCAP, for robotics tools: joints, frames and log in
+/// Foxglove's types, gaze, beliefs and events. The logs stay as they are.
 #[derive(Debug, Args)]
 #[command(group(ArgGroup::new("what").required(true).multiple(true).args(["bids", "mcap"])))]
 #[command(after_help = "Labels of participants are the letters and digits of their codes; what is changed is told.\n\
@@ -27,13 +27,14 @@ pub(super) struct ExportArgs {
     /// Folders of recordings, or recordings.
     #[arg(value_name = "RECORDING", default_value = "sessions")]
     recordings: Vec<PathBuf>,
-    /// Write a BIDS data set into this folder, which is made, or is empty.
+    /// Write a BIDS data set into this folder, which must be empty or not exist yet.
     #[arg(long, value_name = "DIR")]
     bids: Option<PathBuf>,
     /// Write recording.mcap into the folder of each recording.
     #[arg(long)]
     mcap: bool,
-    /// With --bids: export also what wizards and participants typed (notes, reasons, answers in words), in which names may stand.
+    /// With --bids: also export what wizards and participants typed (notes, reasons, answers in words), which can
+    /// contain names.
     #[arg(long, requires = "bids")]
     words: bool,
     /// Output format.
@@ -41,16 +42,16 @@ pub(super) struct ExportArgs {
     format: OutputFormat,
 }
 
-/// What was exported, as JSON.
+/// JSON output of the export.
 #[derive(Debug, Serialize)]
 struct ExportSummary {
-    /// The BIDS data set.
+    /// Summary of the BIDS data set.
     bids: Option<BidsSummary>,
-    /// The MCAPs with their messages.
+    /// Summary of the MCAP files with their numbers of messages.
     mcap: Option<Value>,
 }
 
-/// `tomcom export`.
+/// Runs the command `tomcom export`.
 pub(super) fn export(args: &ExportArgs) -> Result<(), Failure> {
     let recordings = meant(&args.recordings)?;
     let mut bids = None;
@@ -69,7 +70,7 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), Failure> {
     print(args.format, &ExportSummary { bids, mcap: files }, || text)
 }
 
-/// The recordings that are meant by paths, each once.
+/// The recordings at or below these paths, each once.
 fn meant(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for path in paths {

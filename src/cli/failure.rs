@@ -9,16 +9,16 @@ use crate::edge::log::{ExclusionError, WriteError};
 use crate::run::error::{LiveError, ReviewError, RunError};
 use crate::session::settings::SettingError;
 
-/// Failure of a command.
+/// Failure of a command, which decides the program's exit code and message.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// Wrong arguments or files.
+    /// Arguments or files are invalid.
     Wrong(miette::Report),
-    /// An operation failed.
+    /// The command could not do its work.
     Failed(miette::Report),
-    /// The command ran and its answer is negative; the answer has been printed.
+    /// The command ran, and the result of its check is negative and has been printed.
     No,
-    /// The reader of the output closed the pipe, as `head` does.
+    /// The program that reads the output closed the pipe, as `head` does.
     Unread,
 }
 
@@ -93,12 +93,12 @@ impl From<std::io::Error> for Failure {
     }
 }
 
-/// An invalid setting of the command line.
+/// Failure by an invalid setting on the command line.
 pub(super) fn wrong_setting(error: SettingError) -> Failure {
     Failure::Wrong(miette::miette!(help = error.remedy, "found {}", error.found))
 }
 
-/// An argument that is invalid for this file.
+/// Failure by an argument that is invalid for this file.
 pub(super) fn wrong_argument(path: &Path, found: String, remedy: &str) -> Failure {
     Failure::Wrong(miette::miette!(help = remedy.to_string(), "{}: found {found}", path.display()))
 }

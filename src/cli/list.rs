@@ -1,4 +1,4 @@
-//! `tomcom list`, and the choice of a recording where a folder of recordings is given.
+//! The command `tomcom list`, and the choice of a recording from a folder of recordings.
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -18,8 +18,8 @@ const MOST_NAMED: usize = 12;
 
 /// Lists the recordings of a folder.
 ///
-/// Code, condition, date, length of the trial, errors, and state: whole, cut (without its end), excluded (or aborted), running,
-/// unreadable. Sorted by code and date.
+/// Code, condition, date, length of the trial, errors, and state: whole, cut (without its end), excluded (or aborted),
+/// running, unreadable. Sorted by code and date.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom list sessions\n          tomcom list recordings --format json\nMore: docs/recordings.md"
@@ -33,7 +33,7 @@ pub(super) struct ListArgs {
     format: OutputFormat,
 }
 
-/// `tomcom list DIR`.
+/// Runs the command `tomcom list DIR`.
 pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
     exists(&args.folder)?;
     let bar = progress(0, "recordings");
@@ -43,12 +43,12 @@ pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
     print(args.format, &list, || list.describe())
 }
 
-/// The recordings that are meant by paths, each of which is one recording: of a folder of recordings, one is chosen at a terminal.
+/// One recording per path: if a path is a folder of recordings, the user chooses one at the terminal.
 pub(super) fn each_chosen(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     paths.iter().map(|path| chosen(path)).collect()
 }
 
-/// The recording that is meant by a path: of a folder of recordings, the one that is chosen at a terminal.
+/// The recording at a path: if the path is a folder of recordings, the user chooses one at the terminal.
 pub(super) fn chosen(path: &Path) -> Result<PathBuf, Failure> {
     exists(path)?;
     if !path.is_dir() || path.join(LOG_NAME).exists() {
@@ -71,7 +71,7 @@ pub(super) fn chosen(path: &Path) -> Result<PathBuf, Failure> {
     )))
 }
 
-/// Refuses a path that does not exist, with the one that is nearly the same.
+/// Refuses a path that does not exist, and suggests an existing one with a similar name.
 pub(super) fn exists(path: &Path) -> Result<(), Failure> {
     let Some(near) = Some(path).filter(|path| !path.exists()).and_then(near_path::nearest) else { return Ok(()) };
     Err(Failure::Wrong(miette::miette!(

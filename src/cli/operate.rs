@@ -1,4 +1,4 @@
-//! `tomcom operate`.
+//! The command `tomcom operate`.
 
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -43,11 +43,12 @@ pub(super) struct OperateFlags {
     /// Gaze source, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) gaze: Option<GazeArg>,
-    /// Replay gaze from this file: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of Pupil Cloud's
-    /// Marker Mapper, or the folder of a recording.
+    /// Replay gaze from this file: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of Pupil
+    /// Cloud's Marker Mapper, or the folder of a recording.
     #[arg(long, value_name = "PATH")]
     pub(super) gaze_file: Option<PathBuf>,
-    /// Time in the gaze file at which the trial starts, in seconds after its first sample; negative: the trial starts before it.
+    /// Time in the gaze file at which the trial starts, in seconds after the file's first sample; negative if the trial
+    /// starts before that sample.
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     pub(super) gaze_start: Option<f64>,
     /// Kind of the robot's arm, instead of the session file's.
@@ -59,18 +60,19 @@ pub(super) struct OperateFlags {
     /// Communication concept of the assistant, instead of the session file's.
     #[arg(long, value_enum)]
     pub(super) concept: Option<ConceptArg>,
-    /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the console
-    /// shows. An address without a port: the port is that of the session file.
+    /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the
+    /// console shows. An address without a port: the port is that of the session file.
     #[arg(long, value_name = "ADDRESS", value_parser = address_without_port)]
     pub(super) listen: Option<IpAddr>,
     /// Seed of all random numbers; by default that of the session file.
     #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// Address at which Rerun viewers connect, instead of the session file's. Whoever reaches it can watch without a password,
-    /// and change nothing. An address with a port, such as 127.0.0.1:9876.
+    /// Address at which Rerun viewers connect, instead of the session file's. Whoever reaches it can watch without a
+    /// password, and change nothing. An address with a port, such as 127.0.0.1:9876.
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub(super) rerun_listen: Option<String>,
-    /// Folder in which the recording's folder is created. Not with --continue: a further part is created beside the recording.
+    /// Folder in which the recording's folder is created. Not with --continue: a further part is created beside the
+    /// recording.
     #[arg(long, default_value = "sessions")]
     pub(super) out: PathBuf,
 }
@@ -83,7 +85,7 @@ pub(super) fn operate(args: &OperateArgs) -> Result<(), Failure> {
     Ok(put(&series::describe(&done))?)
 }
 
-/// Runs a session of a file, optionally with a comparison of wizard and assistants.
+/// Runs the session of a session file at the console, optionally with a comparison of wizard and assistants.
 pub(super) fn new_session(
     session: Option<&Path>,
     flags: &OperateFlags,
@@ -124,7 +126,7 @@ pub(super) fn new_session(
     }
 }
 
-/// Parses an address of this computer. A port beside it has no meaning here.
+/// Parses an address of this computer; a port is refused, since none is needed here.
 pub(super) fn address_without_port(text: &str) -> Result<IpAddr, String> {
     text.parse().map_err(|_| match text.parse::<SocketAddr>() {
         Ok(with_port) => format!(

@@ -14,12 +14,12 @@ use super::failure::Failure;
 use crate::base::printable::printable_lines;
 use crate::edge::terminal;
 
-/// Output format.
+/// Format of a command's output: text or JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum OutputFormat {
-    /// Text.
+    /// Text for people.
     Text,
-    /// One JSON object.
+    /// One JSON object for programs.
     Json,
 }
 
@@ -36,21 +36,21 @@ pub(super) fn print(
     Ok(put(&text)?)
 }
 
-/// Prints a text.
+/// Prints a text on standard output.
 pub(super) fn put(text: &str) -> io::Result<()> {
     terminal::print(false, printable_lines(text).into_owned().into_bytes())
 }
 
 /// Prints a text on standard error.
 pub(super) fn put_aside(text: &str) {
-    // A message that cannot be printed is lost.
+    // If standard error cannot be written, nobody can be told.
     let _ = terminal::print(true, printable_lines(text).into_owned().into_bytes());
 }
 
-/// Prints an error on standard error.
+/// Prints an error report on standard error.
 pub(super) fn put_error(report: Report) {
     let report = Report::new(PrintableReport(report));
-    // A message that cannot be printed is lost.
+    // If standard error cannot be written, nobody can be told.
     let _ = terminal::print(true, format!("{report:?}\n").into_bytes());
 }
 

@@ -1,4 +1,4 @@
-//! Commands over pools of simulated participants: `tomcom power` and `tomcom arms`.
+//! Commands that use pools of simulated participants: `tomcom power` and `tomcom arms`.
 
 use std::path::PathBuf;
 
@@ -20,13 +20,14 @@ use crate::study::drawn_study::DrawnEffect;
 use crate::study::simulation_pool::SimulationPool;
 use crate::study::{arm_table, power_answer};
 
-/// Numbers of participants by default: from 8 to 40.
+/// Default numbers of participants for `tomcom power`.
 const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";
 
 /// Says how many participants a study needs.
 ///
-/// Simulates a pool of participants with the plan's conditions, and each trial once more without signals; draws studies of whole persons from
-/// it; analyses each as the plan will be, and prints power, the least effect that is found, and how many participants are needed.
+/// Simulates a pool of participants with the plan's conditions, and each trial once more without signals; draws studies
+/// of whole persons from it; analyses each as the plan will be, and prints power, the least effect that is found, and
+/// how many participants are needed.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom power sessions/paper.toml --pool 200 --seed 9741 --out pool.jsonl --picture power.svg\n          \
@@ -36,17 +37,17 @@ const SIZES: &str = "8,10,12,14,16,20,24,28,32,36,40";
 pub(super) struct PowerArgs {
     #[command(flatten)]
     pool: PoolArgs,
-    /// Numbers of participants, separated by commas.
+    /// Numbers of participants for which the power is computed, separated by commas.
     #[arg(long, value_name = "N,N,…", value_delimiter = ',', default_value = SIZES, value_parser = clap::value_parser!(u16).range(4..=1000))]
     sizes: Vec<u16>,
     /// Number of studies that are drawn for each number of participants.
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(20..=100_000))]
     studies: u64,
-    /// Put this effect into unassisted trials, instead of what the conditions did: the ratio of the rates of every condition to the first,
-    /// above 0; with 1 what is found is an error of type I.
+    /// Simulate this effect by thinning the events of unassisted trials, instead of using the trials of each condition:
+    /// the ratio of each condition's rate to that of the first, above 0; 1 gives the type I error.
     #[arg(long, value_name = "RATIO", value_parser = ratio)]
     effect: Option<f64>,
-    /// Simulate unassisted trials alone, and measure the type I error: short for --effect 1, and quicker.
+    /// Simulate unassisted trials alone, and measure the type I error: short for --effect 1, but faster.
     #[arg(long, conflicts_with = "effect")]
     null: bool,
     /// Write the table to this file (CSV).
@@ -59,8 +60,9 @@ pub(super) struct PowerArgs {
 
 /// Compares all conditions of a plan with simulated participants.
 ///
-/// Each participant has a trial in every condition. Prints a table with errors, belief related errors, lengths of error sequences, orders,
-/// signals and the time with a signal on the display, with intervals, and the contrasts between conditions. Nothing is recorded.
+/// Each participant has a trial in every condition. Prints a table with errors, belief related errors, lengths of error
+/// sequences, orders, signals and the time with a signal on the display, with intervals, and the contrasts between
+/// conditions. Nothing is recorded.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: tomcom arms sessions/all-arms.toml --participants 60 --seed 1\nMore: docs/planning.md"
@@ -70,7 +72,7 @@ pub(super) struct ArmsArgs {
     pool: PoolArgs,
 }
 
-/// The pool of a command.
+/// Options for the pool of simulated participants.
 #[derive(Debug, Args)]
 struct PoolArgs {
     /// The session file with the plan.
@@ -78,7 +80,7 @@ struct PoolArgs {
     /// Number of simulated participants in the pool, whatever the plan says.
     #[arg(long = "pool", visible_alias = "participants", value_name = "PARTICIPANTS", default_value_t = 200, value_parser = clap::value_parser!(u32).range(2..=100_000))]
     participants: u32,
-    /// Seed of everything random; by default that of the session file.
+    /// Seed of all random numbers; by default that of the session file.
     #[arg(long, conflicts_with = "from")]
     seed: Option<u64>,
     /// Kind of the robot's arm, instead of the session file's; "timed" is faster to simulate.
@@ -94,10 +96,10 @@ struct PoolArgs {
         conflicts_with = "from"
     )]
     shard: Shard,
-    /// Take the participants from these files instead of simulating them; shards are joined.
+    /// Read the participants from these files instead of simulating them; shards are joined.
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "participants")]
     from: Vec<PathBuf>,
-    /// Write the pool, the joined one, or the shard to this file (JSON Lines).
+    /// Write the simulated or joined pool, or the shard, to this file (JSON Lines).
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Output format.
@@ -111,8 +113,8 @@ fn ratio(text: &str) -> Result<f64, String> {
 }
 
 impl PoolArgs {
-    /// The pool of these arguments; `None` if only a shard was asked for, which is then written. `arms` and `unassisted` say what is
-    /// simulated.
+    /// The pool that these options ask for; `None` if they ask for a shard, which is written to a file. `arms`:
+    /// simulate trials in the plan's arms; `unassisted`: simulate trials without signals.
     fn pool(&self, arms: bool, unassisted: bool) -> Result<Option<SimulationPool>, Failure> {
         let mut files = read_session(&self.plan)?;
         let spec = &mut files.spec;
@@ -144,7 +146,7 @@ impl PoolArgs {
         Ok(Some(pool))
     }
 
-    /// The pool from files, which must be of the plan.
+    /// The pool from the files of `--from`, which must have been simulated for this plan.
     fn read(&self, mut files: SessionFiles) -> Result<SimulationPool, Failure> {
         let pool = pool_file::read_pool(&self.from)?;
         files.spec.seed = pool.header.seed;
@@ -164,13 +166,13 @@ impl PoolArgs {
         Ok(pool)
     }
 
-    /// Where the pool comes from, for messages.
+    /// Path that error messages about the pool name.
     fn source(&self) -> &PathBuf {
         self.from.first().unwrap_or(&self.plan)
     }
 }
 
-/// `tomcom power PLAN`.
+/// Runs the command `tomcom power PLAN`.
 pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
     power_files::check_power(args.csv.as_deref(), args.picture.as_deref())?;
     let Some(pool) = args.pool.pool(!args.null, true)? else { return Ok(()) };
@@ -192,7 +194,7 @@ pub(super) fn power(args: &PowerArgs) -> Result<(), Failure> {
     print(args.pool.format, &found, || power_answer::describe(&found))
 }
 
-/// `tomcom arms PLAN`.
+/// Runs the command `tomcom arms PLAN`.
 pub(super) fn arms(args: &ArmsArgs) -> Result<(), Failure> {
     let Some(pool) = args.pool.pool(true, false)? else { return Ok(()) };
     if !pool.header.arms {

@@ -1,4 +1,4 @@
-//! Opening recordings in Rerun, and messages about it.
+//! Opening recordings in the Rerun viewer, with the messages about it.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ impl From<RerunError> for Failure {
     }
 }
 
-/// Writes the streams of these recordings beside their logs.
+/// Writes Rerun streams of these recordings beside their logs.
 pub(super) fn save_all(recordings: &[String]) -> Result<(), Failure> {
     for recording in recordings {
         save(Path::new(recording))?;
@@ -26,8 +26,8 @@ pub(super) fn save_all(recordings: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Opens recordings in a viewer at a time on the trial's clock, or writes their stream to a file. `web` uses a browser even if a
-/// native viewer is installed.
+/// Opens recordings in the Rerun viewer at a time on the trial's clock, or writes their stream to a file. `web`: use a
+/// browser even if a native viewer is installed.
 pub(super) fn open(
     recordings: Vec<PathBuf>,
     save: Option<Option<PathBuf>>,
@@ -57,7 +57,7 @@ pub(super) fn open(
     Ok(())
 }
 
-/// Reason why an existing file was rebuilt.
+/// Why an existing stream file was rebuilt, in words.
 fn because(file: &SavedStream) -> String {
     file.because.map_or(String::new(), |because| format!(", anew: {because}"))
 }

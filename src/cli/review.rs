@@ -1,4 +1,4 @@
-//! `tomcom review`.
+//! The command `tomcom review`.
 
 use std::path::PathBuf;
 
@@ -26,7 +26,7 @@ pub(super) struct ReviewArgs {
     /// Only write the stream file: recording.rrd beside the log, or FILE. Several recordings need a FILE.
     #[arg(long, value_name = "FILE", num_args = 0..=1, require_equals = true)]
     save: Option<Option<PathBuf>>,
-    /// Serve the web viewer, even if a native viewer is installed.
+    /// Open the viewer in a browser, even if a native viewer is installed.
     #[arg(long, conflicts_with = "save")]
     web: bool,
     /// Open at this time on the trial's clock, as the console shows it: 1:34, or seconds.
@@ -34,7 +34,7 @@ pub(super) struct ReviewArgs {
     at: Option<SessionTime>,
 }
 
-/// Parses a time as the console shows it, or in seconds.
+/// Parses a time on the trial's clock, written as the console shows it, or in seconds.
 fn moment(text: &str) -> Result<SessionTime, String> {
     let wrong = || "minutes and seconds, as 1:34, or seconds, as 94.6".to_string();
     let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite() && *number >= 0.0);
@@ -48,11 +48,11 @@ fn moment(text: &str) -> Result<SessionTime, String> {
     seconds.map(|seconds| SessionTime::from_secs_f64(minutes * 60.0 + seconds)).ok_or_else(wrong)
 }
 
-/// `tomcom review RECORDING`.
+/// Runs the command `tomcom review RECORDING`.
 pub(super) fn review(args: &ReviewArgs) -> Result<(), Failure> {
     Feature::Rerun.require()?;
     let (mut recordings, mut save) = (args.recordings.clone(), args.save.clone());
-    // No recording is called that: it stands behind `--save`, where others have no `=`.
+    // A path that ends with `.rrd` is no recording, but the stream's file: `--save FILE` without `=` ends up here.
     let is_stream = |path: &mut PathBuf| path.extension().is_some_and(|extension| extension == "rrd");
     if save == Some(None)
         && recordings.len() > 1

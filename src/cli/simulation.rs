@@ -1,4 +1,4 @@
-//! `tomcom simulate`: checks of its options.
+//! Options of the command `tomcom simulate`, and their checks.
 
 use super::args::SimulateArgs;
 use super::failure::{Failure, wrong_argument};
@@ -15,7 +15,7 @@ use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use crate::session::study_arm::StudyArm;
 use crate::wizard::settings::WizardKind;
 
-/// `tomcom simulate SESSION`.
+/// Runs the command `tomcom simulate SESSION`.
 pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     if args.rerun {
         Feature::Rerun.require()?;
@@ -45,7 +45,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     check_condition(args, files.spec.plan.is_some())?;
     tell_unused(args, &files.spec);
     tell_absent_wizard(args, &files.spec);
-    // With a plan, the plan defines the conditions.
+    // The plan defines the conditions, if there is one.
     files.spec.trial.condition = match args.condition {
         None if !args.sweep.is_empty() => Condition::Assistant,
         None => Condition::None,
@@ -75,8 +75,8 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     print(args.format, &figures, || simulate::describe(&figures))
 }
 
-/// Reports assistant settings of the session file that only apply at the console: simulated trials ignore them unless options ask
-/// for the assistant.
+/// Reports assistant settings of the session file that only apply at the console: simulated trials ignore them unless
+/// options ask for the assistant.
 fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     if spec.plan.is_some() || !args.sweep.is_empty() {
         return;
@@ -91,7 +91,7 @@ fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
     }
 }
 
-/// Reports the conditions of a plan in which a person would send signals, who is not there in a simulation.
+/// Reports conditions of a plan in which a person would send signals, since a simulation has no such person.
 fn tell_absent_wizard(args: &SimulateArgs, spec: &SessionSpec) {
     let Some(plan) = spec.plan.as_ref().filter(|_| spec.wizard.kind == WizardKind::Person) else { return };
     let is_wizards = |arm: &&StudyArm| arm.condition() == Condition::Wizard;

@@ -1,4 +1,4 @@
-//! The command that analyses a study.
+//! The command `tomcom study`, which analyses a study.
 
 use std::path::PathBuf;
 
@@ -13,8 +13,8 @@ use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError};
 
 /// Analyses the recordings of a study: report and tables.
 ///
-/// Errors and their causes, effect of assistance, similarity of wizard and assistant, comparison of concepts. Writes a report
-/// (HTML) and tables (CSV).
+/// Errors and their causes, effect of assistance, similarity of wizard and assistant, comparison of concepts. Writes a
+/// report (HTML) and tables (CSV).
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples: tomcom study recordings\n          tomcom study shards/* --out results --format json\nMore: docs/study.md, docs/analysis.md"
@@ -29,7 +29,7 @@ pub(super) struct StudyArgs {
     /// The two raters whose codes of errors are taken; by default the two with the most complete codes of a recording.
     #[arg(long, value_names = ["A", "B"], num_args = 2)]
     raters: Option<Vec<String>>,
-    /// Hold the recordings against a plan that was frozen with tomcom plan PLAN --freeze FILE, and say what differs.
+    /// Compare the recordings with a plan that was frozen with tomcom plan PLAN --freeze FILE, and say what differs.
     #[arg(long, value_name = "FILE")]
     frozen: Option<PathBuf>,
     /// Parts to skip, separated by commas.

@@ -1,4 +1,4 @@
-//! `tomcom tutorial`.
+//! The command `tomcom tutorial`.
 
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
@@ -17,21 +17,23 @@ use crate::session::settings::{ArmKind, GazeSource, ParticipantKind};
 
 /// Runs the participant's tutorial alone, on the display.
 ///
-/// It is recorded as a session without a trial, so that it can be replayed, into a folder of its own: no study reads it there.
+/// The tutorial is recorded as a session without a trial, so that it can be replayed. The recording gets a folder that
+/// no study reads.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom tutorial sessions/study.toml --language de\nMore: docs/display.md")]
 pub(super) struct TutorialArgs {
     /// The session file, whose [plan] names the tutorial.
     #[arg(default_value = "sessions/study.toml")]
     session: PathBuf,
-    /// The display's language, instead of the session file's: en or de. The tutorial is read in that language, if it is there.
+    /// The display's language, instead of the session file's: en or de. The tutorial is read in that language, if it is
+    /// there.
     #[arg(long, value_parser = ["en", "de"])]
     language: Option<String>,
     /// The participant's code, never a name.
     #[arg(long, default_value = "P00")]
     code: String,
-    /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the console
-    /// shows. An address without a port: the port is that of the session file.
+    /// Serve the wall display at this address instead of localhost; the page then asks for the pairing code that the
+    /// console shows. An address without a port: the port is that of the session file.
     #[arg(long, value_name = "ADDRESS", value_parser = address_without_port)]
     listen: Option<IpAddr>,
     /// Folder in which the recording's folder is created.

@@ -1,4 +1,4 @@
-//! Recordings as MCAP, refused in a build without MCAP.
+//! Export of recordings as MCAP files in a build without MCAP: refused.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::failure::Failure;
 use crate::base::features::{Feature, NotBuilt};
 
-/// Refused.
+/// Refuses the export, since this build lacks MCAP.
 pub(super) fn export(_: &[PathBuf]) -> Result<(Value, String), Failure> {
     Err(NotBuilt(Feature::Mcap).into())
 }

@@ -1,4 +1,4 @@
-//! Commands on recordings in Rerun, refused in a build without Rerun.
+//! Rerun commands in a build without Rerun: refused.
 
 use std::path::PathBuf;
 
@@ -6,12 +6,12 @@ use super::failure::Failure;
 use crate::base::features::{Feature, NotBuilt};
 use crate::base::time::SessionTime;
 
-/// Refused.
+/// Refuses to write streams, since this build lacks Rerun.
 pub(super) fn save_all(_: &[String]) -> Result<(), Failure> {
     Err(NotBuilt(Feature::Rerun).into())
 }
 
-/// Refused.
+/// Refuses to open a viewer, since this build lacks Rerun.
 pub(super) fn open(
     _: Vec<PathBuf>,
     _: Option<Option<PathBuf>>,

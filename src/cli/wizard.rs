@@ -30,8 +30,8 @@ use crate::session::settings::is_code;
     after_help = "Examples: tomcom compare sessions/2026-03-14-P07-1 --with tom,dev\n          tomcom compare sessions/2026-03-14-P07-* --only tom\n          tomcom compare sessions/2026-03-14-P07-1 --follow\n          tomcom compare sessions/default.toml\nMore: docs/analysis.md"
 )]
 pub(super) struct CompareArgs {
-    /// Folders of recordings, or their events.jsonl; or a session file, to operate it with the comparison in front (by default
-    /// sessions/default.toml). That unblinds the wizard, and the recording says so.
+    /// Folders of recordings, or their events.jsonl; or a session file, to operate it with the comparison in front (by
+    /// default sessions/default.toml). That unblinds the wizard, and the recording says so.
     #[arg(value_name = "RECORDING|SESSION")]
     paths: Vec<PathBuf>,
     /// Open the console over a session that is still running, read-only from this terminal.
@@ -40,10 +40,10 @@ pub(super) struct CompareArgs {
     /// Further concepts besides the session's own, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',')]
     with: Vec<ConceptArg>,
-    /// Show these concepts only; each is asked, as with --with.
+    /// Show only these concepts; they are asked for advice, as with --with.
     #[arg(long, value_enum, value_delimiter = ',', conflicts_with = "follow")]
     only: Vec<ConceptArg>,
-    /// Window of a match, in presses of the human.
+    /// Window of a match, in presses of the human: communications further apart do not match.
     #[arg(long, default_value_t = WINDOW, value_parser = clap::value_parser!(u32).range(0..=100))]
     window: u32,
     /// Print the statistics for every window from 0 to 10.
@@ -67,8 +67,8 @@ pub(super) struct CompareArgs {
 
 /// Trains a wizard on simulated recordings.
 ///
-/// The wizard watches recordings with known beliefs, sends signals with the usual keys, and gets immediate feedback and a
-/// score.
+/// The wizard watches recordings with known beliefs, sends signals with the usual keys, and gets immediate feedback and
+/// a score.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: tomcom train --wizard W1 --hits 0.6 --wrong 0.4\nMore: docs/training.md")]
 pub(super) struct TrainArgs {
@@ -87,12 +87,12 @@ pub(super) struct TrainArgs {
     /// Speed of the replay.
     #[arg(long, value_parser = ["0.25", "0.5", "1", "2", "4", "16", "64"], default_value = "1")]
     speed: String,
-    /// The seed of the recording that is simulated; its length in seconds is that of --seconds.
+    /// Seed of the recording that is simulated for the training; --seconds sets its length.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     #[arg(long, default_value_t = 300.0)]
     seconds: f64,
-    /// Folder for the result.
+    /// Folder for the training record.
     #[arg(long, default_value = "sessions/training")]
     out: PathBuf,
 }
@@ -142,7 +142,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     }
 }
 
-/// Refuses options that have no effect in this comparison.
+/// Refuses options that have no effect in the requested comparison.
 fn check_flags(args: &CompareArgs, is_session: bool) -> Result<(), Failure> {
     let flags = &args.flags;
     let of_session = [
@@ -193,7 +193,7 @@ pub(super) fn train(args: &TrainArgs) -> Result<(), Failure> {
     Ok(put(&lesson_report::describe(&record, &path))?)
 }
 
-/// A wizard's code.
+/// Parses a wizard's code.
 fn code_of(text: &str) -> Result<String, Failure> {
     let remedy = "a code of 1 to 32 letters, digits, - and _, such as \"W1\"; never a name";
     match is_code(text) {

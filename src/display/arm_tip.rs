@@ -1,22 +1,22 @@
-//! Where the tip of the physical arm is on the table.
+//! Position of the physical arm's tip on the table.
 
 use crate::arm::kinematics::Arm;
 use crate::robot::moment::ArmPhase;
 use crate::session::Session;
 use crate::session::settings::ArmKind;
 
-/// The physical arm of a session.
+/// Kinematics of the session's physical arm, from which the tip's position follows.
 #[derive(Clone, Debug)]
 pub(super) struct ArmTip(Arm);
 
 impl ArmTip {
-    /// The arm of a session, if it is a physical one.
+    /// Kinematics of a session's arm; `None` if the session has no physical arm.
     pub fn of_session(session: &Session) -> Option<ArmTip> {
         (session.spec.robot.arm == ArmKind::Physics).then(|| ArmTip(Arm::ur5()))
     }
 
-    /// The tip at the last recorded pose, in the frame of the arm's base in metres, and whether it is down on a button; `None`
-    /// before the first pose.
+    /// Position of the tip at the last recorded pose, in metres in the frame of the arm's base, and whether the tip is
+    /// down on a button; `None` before the first pose.
     pub fn at(&self, session: &Session) -> Option<([f64; 2], bool)> {
         let (_, sample) = session.robot.arm.last.as_ref()?;
         let tip = self.0.tip(&sample.joints).translation.vector;

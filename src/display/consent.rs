@@ -1,14 +1,14 @@
-//! What the participant sees while consent is asked for on the display.
+//! Content of the participant's display while consent is asked for.
 
 use super::displayed_item::{DisplayedForm, DisplayedItem};
 use super::page_language::DisplayWords;
 use super::sight::{DisplayStage, DisplayUpdate, sight};
 use crate::session::Session;
 
-/// For how long the button of the consent is held, in seconds: longer than anybody touches it by accident.
+/// Time for which the participant holds the consent button, in seconds; long enough to rule out accidental touches.
 const HOLD_S: f64 = 3.0;
 
-/// What the participant sees while consent to this text is asked for, before anything is recorded.
+/// The display's content while the participant is asked to consent to this text, before anything is recorded.
 pub fn consent_sight(session: &Session, text: &str) -> DisplayUpdate {
     let words = DisplayWords::for_display(&session.spec.display);
     let question = DisplayedItem {

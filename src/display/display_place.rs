@@ -1,20 +1,20 @@
-//! Places of the display, where contents are shown and presses happen.
+//! Locations and storages on the participant's display, where contents are shown and presses happen.
 
 use serde::Serialize;
 
 use crate::kitchen::{Agent, ButtonAction, Kitchen};
 
-/// A place of the display: a location or a storage, by its number in the scene.
+/// A location or a storage on the participant's display, by its index in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayPlace {
-    /// The location with this index in the scene.
+    /// A location, by its index in the scene.
     Location(usize),
-    /// The storage with this index in the scene.
+    /// A storage, by its index in the scene.
     Storage(usize),
 }
 
-/// Where a press of an agent happens.
+/// The location or storage where a press of an agent happens.
 pub(super) fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> DisplayPlace {
     let hand = kitchen.hands[agent.index()];
     let location = match action {

@@ -1,4 +1,4 @@
-//! The item of a questionnaire that the participant answers on the display.
+//! The questionnaire item that the participant answers on the display.
 
 use serde::Serialize;
 
@@ -8,85 +8,85 @@ use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{ItemForm, ItemOption};
 use crate::session::wall_display::Answering;
 
-/// An item of a questionnaire that the participant answers.
+/// A questionnaire item as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedItem {
-    /// The heading above the items.
+    /// Heading above the questionnaire's items.
     pub title: String,
-    /// The item; nothing: all are answered, and are to be confirmed.
+    /// Name of the item; `None` when all items are answered and only their confirmation is left.
     pub item: Option<String>,
-    /// The statement; once all are answered, what to do.
+    /// Statement of the item; once all are answered, an instruction to confirm.
     pub text: String,
-    /// Counted from 1.
+    /// Number of the item, from 1.
     pub number: usize,
-    /// Number of items.
+    /// Number of items of the questionnaire.
     pub of: usize,
-    /// How the item is answered; nothing when all are.
+    /// Kind of answer that the item takes; `None` when all items are answered.
     pub form: Option<DisplayedForm>,
-    /// What was answered before.
+    /// The participant's earlier answer to this item.
     pub answer: Option<AnswerValue>,
-    /// The item before, to go back to.
+    /// Name of the previous item, to which the participant can go back.
     pub before: Option<String>,
-    /// When all are answered: each item and its answer, if it got one.
+    /// When all items are answered: each item with its answer, if it got one.
     pub given: Vec<GivenAnswer>,
 }
 
-/// How an item is answered.
+/// Kind of answer that a questionnaire item takes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum DisplayedForm {
-    /// A point of a scale.
+    /// A point on a rating scale.
     Scale {
-        /// Number of points.
+        /// Number of points of the scale.
         points: u8,
-        /// What 1 means.
+        /// Meaning of the scale's first point.
         low: String,
-        /// What the highest point means.
+        /// Meaning of the scale's highest point.
         high: String,
     },
-    /// One of the options, or several.
+    /// One or several of listed options.
     Choice {
-        /// The options in their order.
+        /// Options from which to choose, in their order.
         options: Vec<ItemOption>,
-        /// Whether several can be chosen.
+        /// Whether several options can be chosen.
         several: bool,
     },
-    /// A whole number.
+    /// A whole number that the participant enters.
     Number {
-        /// The least number.
+        /// Least number that may be entered.
         min: i64,
-        /// The greatest number.
+        /// Greatest number that may be entered.
         max: i64,
-        /// What is counted; empty without a unit.
+        /// Unit of the number; empty for none.
         unit: String,
     },
-    /// Words.
+    /// Text that the participant writes.
     Text {
-        /// Most characters.
+        /// Largest number of characters of the text.
         length: u32,
     },
-    /// No item: consent to the text, by holding a button.
+    /// No questionnaire item: consent to a text, given by holding a button.
     Consent {
-        /// For how long, in seconds.
+        /// Time for which the button has to be held, in seconds.
         hold_s: f64,
     },
-    /// A position from 0 to 100.
+    /// A position on a slider from 0 to 100.
     Slider {
-        /// What 0 means.
+        /// Meaning of the slider's position 0.
         low: String,
-        /// What 100 means.
+        /// Meaning of the slider's position 100.
         high: String,
-        /// Positions are multiples of it.
+        /// Step of the slider: positions are multiples of it.
         step: i64,
     },
 }
 
-/// An item with what the participant answered.
+/// A questionnaire item with the participant's answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GivenAnswer {
-    /// The statement.
+    /// Statement of the item.
     pub text: String,
-    /// The answer in words; none: left out.
+    /// The answer in words; `None` if the participant left the item out.
     pub answer: Option<String>,
 }
 
@@ -106,7 +106,7 @@ impl From<ItemForm<'_>> for DisplayedForm {
     }
 }
 
-/// The item that is to be answered here; nothing where the wizard reads it out.
+/// The item that the participant has to answer on the display now; `None` also where the wizard reads items out.
 pub(super) fn question(session: &Session) -> Option<DisplayedItem> {
     if session.spec.display.questionnaire == Answering::Console {
         return None;

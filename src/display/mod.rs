@@ -1,9 +1,9 @@
-//! What the participant may see: made from the session by two functions and the robot's hand, and from nothing else. [`scene`] is what stays
-//! the same during a recording, [`sight`] what changes, [`RobotHand`] where the robot is now. They pick what is shown; whatever they do not pick (beliefs, advice,
+//! What the participant may see. [`scene`] is what stays the same during a recording, [`sight`] what changes,
+//! [`RobotHand`] where the robot's hand is now. These pick what the page receives; anything else (beliefs, advice,
 //! recipes, the robot's intention) has no way to the page.
 //!
-//! `sight` computes what the participant may see now, `scene` what stays the same: a whitelist, so that a new field of the session is
-//! invisible until it is added here. The page always gets the whole sight, so a lost message, a second page and a restart are the same case.
+//! This is a whitelist: a new field of the session is invisible until it is added here. The page always receives the
+//! complete content, so a lost message, a second page and a restart are handled alike.
 
 #[cfg(feature = "physics")]
 mod arm_tip;

@@ -1,4 +1,4 @@
-//! The words of the display: two languages that the program carries, and whatever a file says.
+//! Texts of the participant's display: two built-in languages, and texts from files.
 
 use std::collections::BTreeMap;
 
@@ -8,19 +8,19 @@ use crate::session::wall_display::DisplaySpec;
 
 const ENGLISH: &str = include_str!("languages/en.toml");
 const GERMAN: &str = include_str!("languages/de.toml");
-/// Words of the page itself begin so; all others are names of the kitchen.
+/// Prefix of the names of the page's own texts; all other names are from the kitchen.
 const PAGE: &str = "page ";
 
-/// Words by their English names.
+/// Texts of the display in the participant's language, by their English names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DisplayWords {
-    /// "en": for the browser.
+    /// Language code for the browser, such as "en".
     pub language: String,
     words: BTreeMap<String, String>,
 }
 
 impl DisplayWords {
-    /// English, with the words of the chosen language over it, and those of the session file over these.
+    /// English texts, replaced by those of the chosen language, and these by the texts of the session file.
     pub fn for_display(spec: &DisplaySpec) -> DisplayWords {
         let read = |text: &str| toml::from_str::<BTreeMap<String, String>>(text).unwrap_or_default();
         let mut words = read(ENGLISH);
@@ -32,8 +32,8 @@ impl DisplayWords {
         DisplayWords { language, words }
     }
 
-    /// The same with the kitchen's words for its contents: in this language, or else in that of the screens. The words of the
-    /// session file stand over them.
+    /// The display's texts with the kitchen's own words for its contents: in this language, or else in the language of
+    /// the screens. Texts of the session file take precedence.
     pub fn for_kitchen(kitchen: &Kitchen, spec: &DisplaySpec) -> DisplayWords {
         let DisplayWords { language, words: others } = DisplayWords::for_display(spec);
         let mut words = kitchen.words.in_language(SCREEN_LANGUAGE).clone();
@@ -43,13 +43,13 @@ impl DisplayWords {
         DisplayWords { language, words }
     }
 
-    /// A name of the kitchen in this language; in its own words where the language has none for it.
+    /// A name of the kitchen in this language; unchanged where the language has no word for it.
     pub fn of_name(&self, name: &str) -> String {
         let plain = name.replace('_', " ");
         if let Some(word) = self.words.get(&plain) {
             return word.clone();
         }
-        // "take rice" and "order 1" are made of words that are there.
+        // Names such as "take rice" and "order 1" are translated word by word if each word is known.
         let parts: Vec<&str> = plain.split(' ').collect();
         let known = parts.iter().all(|part| self.words.contains_key(*part) || part.parse::<u32>().is_ok());
         match known {
@@ -62,17 +62,17 @@ impl DisplayWords {
         }
     }
 
-    /// The words that stand for exactly this; none where the language has none.
+    /// The text for exactly this name; `None` if the language has none.
     pub(super) fn known(&self, name: &str) -> Option<String> {
         self.words.get(name).cloned()
     }
 
-    /// The sentence of this name with `what` in place of its "#".
+    /// The text of this name, with `what` inserted for its "#".
     pub(super) fn filled(&self, name: &str, what: &str) -> String {
         self.of_name(name).replace('#', what)
     }
 
-    /// The page's own words, by what they stand for.
+    /// The page's own texts, by their names.
     pub fn of_page(&self) -> BTreeMap<String, String> {
         let own = self.words.iter().filter_map(|(key, word)| Some((key.strip_prefix(PAGE)?.to_string(), word.clone())));
         own.collect()

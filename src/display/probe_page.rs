@@ -1,4 +1,5 @@
-//! The question of a freeze probe that the participant is asked: its words, its choices in words and pictures, and what an answer means.
+//! The freeze probe question on the participant's display: its text, its choices in words and pictures, and which
+//! choice an answer stands for.
 
 use serde::Serialize;
 
@@ -9,78 +10,79 @@ use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, Locati
 use crate::session::probes::{OpenProbe, ProbeQuestion, ProbeSubject};
 use crate::session::{Phase, Session};
 
-/// Longer lists of contents are answered by putting a stack together from its items.
+/// Largest number of contents that are shown as a list; with more, the participant composes a stack from its items.
 const MOST_CARDS: usize = 16;
 
-/// A probe that is open: the question, or what stands before the first and after the last one. Nothing in it says what is true, how
-/// the question was drawn, or what was answered before.
+/// An open freeze probe as the participant's display shows it: a question, or the page before the first or after the
+/// last one. It contains nothing about the truth, the drawing of the question, or earlier answers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedProbe {
-    /// Number of the probe in its trial, which the page says with the answer.
+    /// Number of the probe in its trial, which the page sends back with the answer.
     pub probe: u32,
-    /// Number of the question, from 1; 0 before the first.
+    /// Number of the question, from 1; 0 before the first question.
     pub question: u32,
-    /// Number of questions.
+    /// Number of questions in the probe.
     pub of: usize,
-    /// The question in words.
+    /// Text of the question.
     pub text: String,
-    /// Picture of what is asked about.
+    /// Picture of what the question is about.
     pub about: Option<ProbePicture>,
-    /// What can be chosen, in the order of the log; none: no question is shown.
+    /// Choices, in the order of the log; empty if no question is shown.
     pub choices: Vec<ProbeChoice>,
-    /// Items that can be chosen together to name a stack, at most one of each list; none: one choice is the answer.
+    /// Lists of items from which the participant composes a stack, with at most one item of each list; empty if one
+    /// choice is the answer.
     pub parts: Vec<Vec<String>>,
-    /// Whether the participant is asked how sure the answer is.
+    /// Whether the participant is asked for the confidence in the answer.
     pub confidence: bool,
-    /// Longest duration of a probe, in seconds.
+    /// Longest duration of the freeze probe, in seconds.
     pub limit_s: f64,
-    /// No more questions: the count-down runs.
+    /// Whether all questions are done and the count-down to the trial runs.
     pub closed: bool,
 }
 
-/// A choice.
+/// One choice of a freeze probe question.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeChoice {
-    /// Its number in the question's choices, from 1.
+    /// Number of the choice, from 1.
     pub number: usize,
-    /// The choice in words.
+    /// Text of the choice.
     pub words: String,
-    /// Its picture.
+    /// Picture of the choice.
     pub shows: Option<ProbePicture>,
 }
 
-/// The picture of a choice or a question.
+/// Picture for a choice or a question of a freeze probe.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbePicture {
-    /// Nothing lies there.
+    /// An empty location.
     Empty,
-    /// An item.
+    /// A single item, by name.
     Item(String),
-    /// Items on one another.
+    /// A stack of items, by name.
     Stack(Vec<String>),
-    /// A dish.
+    /// A dish, by name.
     Dish(String),
-    /// The card of a recipe: what goes into the dish.
+    /// A recipe card with the ingredients of a dish.
     Recipe(Vec<String>),
-    /// The order with this index among the orders.
+    /// An order, by its index among the orders.
     Order(usize),
-    /// The location with this index in the scene.
+    /// A location, by its index in the scene.
     Location(usize),
-    /// The storage with this index in the scene.
+    /// A storage, by its index in the scene.
     Storage(usize),
 }
 
-/// A question in words, as it is put to the participant.
+/// Text of a freeze probe question and of its choices.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbeWording {
-    /// The question.
+    /// Text of the question.
     pub question: String,
-    /// Its choices, in their order.
+    /// Texts of the choices, in their order.
     pub choices: Vec<String>,
 }
 
-/// The open probe, as the participant sees it; none without a probe, and while the wizard pauses it.
+/// The open probe as the participant sees it; `None` without a probe, and while the wizard pauses it.
 pub(super) fn probe(session: &Session) -> Option<DisplayedProbe> {
     let open = shown_probe(session)?;
     let (kitchen, settings) = (&session.kitchen, session.spec.probes.as_ref()?);
@@ -103,18 +105,18 @@ pub(super) fn probe(session: &Session) -> Option<DisplayedProbe> {
     })
 }
 
-/// The probe that is open and not paused by the wizard.
+/// The open probe, unless the wizard pauses it.
 fn shown_probe(session: &Session) -> Option<&OpenProbe> {
     session.probes.open.as_ref().filter(|open| session.phase == Phase::Paused && !open.is_paused())
 }
 
-/// The question that is shown now, with its index.
+/// The freeze probe question that is shown now, with its index.
 fn asked(open: &OpenProbe) -> Option<(usize, &ProbeQuestion)> {
     let index = open.shown.filter(|_| open.closed.is_none())?;
     Some((index, open.questions.get(index)?))
 }
 
-/// The time that the probe still has for its questions, or its count-down; none where no time runs.
+/// Remaining time of the probe for its questions, or of its count-down; `None` while no time runs.
 pub fn probe_left(session: &Session, now: SessionTime) -> Option<SessionTime> {
     let open = shown_probe(session)?;
     let settings = session.spec.probes.as_ref()?;
@@ -126,7 +128,7 @@ pub fn probe_left(session: &Session, now: SessionTime) -> Option<SessionTime> {
     Some(SessionTime(ends.0.saturating_sub(now.0)))
 }
 
-/// A question in the words of the participant's language.
+/// Question and choices in the participant's language.
 pub fn probe_wording(session: &Session, question: &ProbeQuestion) -> ProbeWording {
     let words = DisplayWords::for_kitchen(&session.kitchen, &session.spec.display);
     let all = choices(&session.kitchen, &words, question);
@@ -136,7 +138,7 @@ pub fn probe_wording(session: &Session, question: &ProbeQuestion) -> ProbeWordin
     }
 }
 
-/// The choice that consists of these items, by its name in the log; none if the question has no such choice.
+/// Name in the log of the choice that consists of these items; `None` if the question has no such choice.
 pub fn choice_made_of(kitchen: &Kitchen, question: &ProbeQuestion, items: &[String]) -> Option<String> {
     let sorted = |ids: &[ContentId]| {
         let mut names: Vec<&str> = ids.iter().map(|id| kitchen.content(*id).name.as_str()).collect();
@@ -196,7 +198,7 @@ fn choices(kitchen: &Kitchen, words: &DisplayWords, question: &ProbeQuestion) ->
     question.choices.iter().enumerate().map(choice).collect()
 }
 
-/// A content of a location, or what an order wants.
+/// Text and picture of a location's content, or of the dish that an order asks for.
 fn content(kitchen: &Kitchen, words: &DisplayWords, location: &str, name: &str) -> (String, Option<ProbePicture>) {
     let is_order =
         kitchen.location_named(location).is_some_and(|location| kitchen.location(location).kind == LocationKind::Order);
@@ -217,14 +219,15 @@ fn content(kitchen: &Kitchen, words: &DisplayWords, location: &str, name: &str) 
     }
 }
 
-/// A recipe by the name of its stack, which can be the name of another dish: what counts are the items.
+/// Text and picture of a recipe given by the name of its stack. That name can be the name of another dish, so the items
+/// of the stack are shown.
 fn recipe(kitchen: &Kitchen, words: &DisplayWords, name: &str) -> (String, Option<ProbePicture>) {
     let items = kitchen.content_named(name).map_or(&[][..], |id| &kitchen.content(id).items);
     let names: Vec<String> = items.iter().map(|item| kitchen.content(*item).name.clone()).collect();
     (joined(words, &names), Some(ProbePicture::Recipe(names)))
 }
 
-/// A press of the robot.
+/// Text and picture of a press of the robot.
 fn press(kitchen: &Kitchen, words: &DisplayWords, name: &str) -> (String, Option<ProbePicture>) {
     let Some(button) = kitchen.button_named(Agent::Robot, name) else { return (words.of_name(name), None) };
     let action = kitchen.button(Agent::Robot, button).action;
@@ -246,8 +249,8 @@ fn joined(words: &DisplayWords, names: &[String]) -> String {
     names.iter().map(|name| words.of_name(name)).collect::<Vec<_>>().join(" + ")
 }
 
-/// The items from which a stack is put together, by slot of the stacking rule, where a list of all stacks would be too long. Which full
-/// stacks are on the menu does not follow from them.
+/// The items from which the participant composes a stack, by slot of the stacking rule, where a list of all stacks
+/// would be too long. They do not reveal which full stacks are on the menu.
 fn parts(kitchen: &Kitchen, question: &ProbeQuestion, choices: &[ProbeChoice]) -> Vec<Vec<String>> {
     let has_stacks = choices.iter().any(|choice| matches!(choice.shows, Some(ProbePicture::Stack(_))));
     if choices.len() <= MOST_CARDS || !has_stacks {

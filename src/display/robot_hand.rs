@@ -1,9 +1,9 @@
-//! The robot's hand over the display, where there is no real robot to be seen. An approaching hand tells an intention, as that of a
-//! real robot does; the page is told where it is now, and never where it goes or when.
+//! The robot's hand on the participant's display, for sessions without a real robot to see. An approaching hand reveals
+//! an intention, as a real robot's does; the page is told where the hand is now, and never where or when it goes.
 //!
-//! The hand goes from place to place on the display. That of the timed arm goes slowly at both ends (a quintic; Craig, Introduction to
-//! Robotics) and arrives as the press is made. That of the physical arm has come as far as the arm's tip has on its way to the
-//! button, so that it slows down and stops with the arm.
+//! The hand moves from place to place on the display. The timed arm's hand follows a quintic polynomial, slow at both
+//! ends (Craig, Introduction to Robotics), and arrives when the press is made. The physical arm's hand has covered the
+//! same share of its way as the arm's tip has towards the button, so that it slows down and stops with the arm.
 
 #[cfg(feature = "physics")]
 use super::arm_tip::ArmTip;
@@ -14,30 +14,30 @@ use crate::kitchen::{Agent, ButtonId};
 use crate::session::wall_display::DisplayedArm;
 use crate::session::{Phase, Session};
 
-/// Share of the timed arm's motion after which the hand is above its place, and goes down.
+/// Share of the timed arm's motion after which the hand is above its target and goes down.
 const ABOVE: f64 = 0.85;
-/// Time for going up after a press, in seconds.
+/// Time for the hand to go up after a press, in seconds.
 const UP_S: f64 = 0.3;
-/// Below this distance the physical arm's tip is at its button, in metres.
+/// Distance, in metres, below which the physical arm's tip counts as being at its button.
 #[cfg(feature = "physics")]
 const AT_M: f64 = 1e-3;
 
-/// A motion to a place.
+/// A motion of the robot's hand to a location or storage on the display.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
     button: ButtonId,
-    /// When the robot set out.
+    /// Session time at which the motion began.
     since: SessionTime,
     from: [f64; 2],
     to: [f64; 2],
-    /// Where the physical arm's tip set out, in metres.
+    /// Position of the physical arm's tip when the motion began, in metres.
     #[cfg(feature = "physics")]
     tip_from: Option<[f64; 2]>,
-    /// Share of the motion that is done.
+    /// Share of the motion that is completed, from 0 to 1.
     done: f64,
 }
 
-/// The robot's hand over time.
+/// Position of the robot's hand on the display over time.
 #[derive(Clone, Debug)]
 pub struct RobotHand {
     pose: RobotPose,
@@ -48,7 +48,7 @@ pub struct RobotHand {
 }
 
 impl RobotHand {
-    /// The hand at rest on its own place; `None` if the session does not show it.
+    /// The hand at its resting position; `None` if the session does not show the hand.
     pub fn new(session: &Session) -> Option<RobotHand> {
         session.spec.display.arm.filter(|arm| *arm != DisplayedArm::None)?;
         let kitchen = &session.kitchen;
@@ -62,7 +62,7 @@ impl RobotHand {
         })
     }
 
-    /// Where it is now; times must not decrease.
+    /// Pose of the hand at a time; calls must not go back in time.
     pub fn at(&mut self, session: &Session, now: SessionTime) -> RobotPose {
         let passed_s = now.secs_since(self.last).max(0.0);
         self.last = now;
@@ -73,7 +73,7 @@ impl RobotHand {
         self.pose.rounded()
     }
 
-    /// Goes on towards the place of the intended press.
+    /// Moves the hand on towards the location of the intended press.
     fn go(&mut self, session: &Session, now: SessionTime) {
         let Some((button, since, _)) = session.robot.intention else {
             self.motion = None;
@@ -89,7 +89,7 @@ impl RobotHand {
             tip_from: self.arm.as_ref().and_then(|arm| arm.at(session)).map(|(tip, _)| tip),
             done: 0.0,
         });
-        // A stop postpones the press; the hand never goes back.
+        // A stop of the arm delays the press; the hand never moves back.
         let done = self.share(session, &motion, now).clamp(motion.done, 1.0);
         let travelled = if self.is_physical() { done } else { eased((done / ABOVE).min(1.0)) };
         let along = |axis: usize| motion.from[axis] + (motion.to[axis] - motion.from[axis]) * travelled;
@@ -97,7 +97,7 @@ impl RobotHand {
         self.motion = Some(Motion { done, ..motion });
     }
 
-    /// Share of a motion that is done now.
+    /// Share of a motion that is completed at this time.
     fn share(&self, session: &Session, motion: &Motion, now: SessionTime) -> f64 {
         #[cfg(feature = "physics")]
         if let Some(arm) = &self.arm {
@@ -115,7 +115,7 @@ impl RobotHand {
         }
     }
 
-    /// Goes down at the end of a motion, and up after it.
+    /// Lowers the hand at the end of a motion, and raises it afterwards.
     fn go_down(&mut self, session: &Session, passed_s: f64) {
         let up = (self.pose.down - passed_s / UP_S).max(0.0);
         #[cfg(feature = "physics")]

@@ -1,20 +1,20 @@
-//! Where the robot's hand is over the display, as the page is told.
+//! Pose of the robot's hand on the participant's display.
 
 use serde::Serialize;
 
-/// Where the robot's hand is.
+/// Pose of the robot's hand on the participant's display.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RobotPose {
-    /// Fraction of the display's width.
+    /// Horizontal position of the hand, as a fraction of the display's width.
     pub x: f64,
-    /// Fraction of the display's height, downwards.
+    /// Vertical position of the hand, as a fraction of the display's height, downwards.
     pub y: f64,
-    /// How far it is down: 0 above the places, 1 at a press.
+    /// How far the hand is lowered: 0 above the display, 1 at a press.
     pub down: f64,
 }
 
 impl RobotPose {
-    /// The pose to a thousandth, which nobody sees: a resting hand sends nothing.
+    /// The pose rounded to a thousandth, which is invisible, so that a resting hand causes no messages.
     pub(super) fn rounded(self) -> RobotPose {
         let to_thousandth = |value: f64| (1000.0 * value).round() / 1000.0;
         RobotPose { x: to_thousandth(self.x), y: to_thousandth(self.y), down: to_thousandth(self.down) }

@@ -1,4 +1,4 @@
-//! What stays the same during a recording: where things are, how they look, what the buttons are called.
+//! What stays the same on the participant's display during a recording: areas, pictures, names and buttons.
 
 use std::collections::BTreeMap;
 
@@ -11,112 +11,113 @@ use crate::session::settings::GazeSource;
 use crate::session::wall_display::{DisplayedArm, Names};
 use crate::session::{Session, SessionSpec};
 
-/// Where something is on the display: fractions of its width and height, the origin at the top left.
+/// Area on the display: left, top, width and height in fractions of the display's size, with the origin at the top
+/// left.
 type Rect = [f64; 4];
 
-/// The display as it is built once.
+/// The constant part of the participant's display, which the page builds once.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayScene {
-    /// What the page calls the kitchen.
+    /// Title that the page shows for the kitchen.
     pub title: String,
-    /// "en": for the browser.
+    /// Language code for the browser, such as "en".
     pub language: String,
-    /// Width and height in metres.
+    /// Width and height of the display in metres.
     pub display_m: [f64; 2],
-    /// In the order of [`super::DisplayUpdate::contents`].
+    /// Locations, in the order of [`super::DisplayUpdate::contents`].
     pub locations: Vec<DisplayLocation>,
     /// The storages with their areas and pictures.
     pub storages: Vec<DisplayStorage>,
-    /// The human's.
+    /// Buttons of the human.
     pub buttons: Vec<DisplayButton>,
-    /// AprilTags: none, if the session wants none or there is no room for them.
+    /// AprilTags in the corners; empty if the session wants none or there is no room for them.
     pub tags: Vec<TagPicture>,
-    /// How items look, by their names.
+    /// Appearance of items, by their names.
     pub items: BTreeMap<String, LabelledAppearance>,
-    /// How dishes look, by their names. No dish says here what it is made of.
+    /// Appearance of dishes, by their names; their recipes are not included.
     pub dishes: BTreeMap<String, LabelledAppearance>,
-    /// The page's own words.
+    /// The page's own texts in the display's language.
     pub words: BTreeMap<String, String>,
-    /// Names in the display's language.
+    /// Names of the kitchen's things in the display's language.
     pub names: Names,
-    /// The page shows the keys of the buttons.
+    /// Whether the page shows the keys of the buttons.
     pub keys: bool,
-    /// How the robot is shown: "none", "hand", "arm".
+    /// How the display shows the robot: "none", "hand" or "arm".
     pub arm: &'static str,
-    /// New events are marked by a flash, for recordings with a camera.
+    /// Whether new events are marked by a flash, for recordings with a camera.
     pub flash: bool,
-    /// The mouse pointer stands for the gaze.
+    /// Whether the mouse pointer stands for the participant's gaze.
     pub pointer: bool,
 }
 
-/// An AprilTag.
+/// Picture and area of an AprilTag.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TagPicture {
-    /// Its area with its white border.
+    /// Area of the tag with its white border.
     pub area: Rect,
-    /// Rows of cells from the top, "#" for black cells.
+    /// Rows of the tag's cells from the top, "#" for black cells.
     pub rows: Vec<String>,
 }
 
-/// A location.
+/// A location on the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayLocation {
     /// The location's name in the layout file.
     pub name: String,
-    /// Its name in the display's language.
+    /// Name of the location in the display's language.
     pub label: String,
-    /// "order", "human_hand", "robot_hand", "place".
+    /// Kind of the location: "order", "human_hand", "robot_hand" or "place".
     pub kind: &'static str,
-    /// Its area.
+    /// Area of the location on the display.
     pub area: Rect,
-    /// How it is drawn, if its file says so.
+    /// Appearance of the location, if the layout file sets one.
     pub look: Option<Appearance>,
 }
 
-/// A storage.
+/// A storage on the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayStorage {
-    /// The agent who can take from it.
+    /// Agent who can take the item from the storage.
     pub agent: Agent,
-    /// The item that it gives, by its name in [`DisplayScene::items`].
+    /// Item that the storage holds, by its name in [`DisplayScene::items`].
     pub item: String,
-    /// Its name in the display's language.
+    /// Name of the storage in the display's language.
     pub label: String,
-    /// Its area.
+    /// Area of the storage on the display.
     pub area: Rect,
 }
 
-/// A button of the human.
+/// A button of the human, as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayButton {
     /// The button's name in logs.
     pub name: String,
-    /// Its name in the display's language.
+    /// Name of the button in the display's language.
     pub label: String,
-    /// Its key on the keyboard.
+    /// Key of the button on the keyboard.
     pub key: Option<char>,
-    /// The number of its gamepad button.
+    /// Number of the gamepad button that presses this button.
     pub gamepad: Option<u8>,
-    /// The colour of its cap on the table.
+    /// Colour of the button's cap on the table.
     pub colour: Option<ButtonColour>,
-    /// The name of its area on the table.
+    /// Name of the button's area on the table.
     pub area: Option<String>,
-    /// What it does: "take", "use", "process", "trash", "serve".
+    /// What a press of the button does: "take", "use", "process", "trash" or "serve".
     pub does: &'static str,
-    /// The location that it is at; of a storage, its place in [`DisplayScene::storages`].
+    /// Index of the location at which the button acts; for a storage, index in [`DisplayScene::storages`].
     pub at: usize,
 }
 
-/// How something looks, and what it is called.
+/// Appearance and name of an item or a dish.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LabelledAppearance {
-    /// The name in the display's language.
+    /// Name of the item or dish in the display's language.
     pub label: String,
-    /// How it is drawn, if its file says so.
+    /// Appearance of the item or dish, if a file of the kitchen sets one.
     pub look: Option<Appearance>,
 }
 
-/// The scene of a session.
+/// The constant part of the participant's display in a session.
 pub fn scene(session: &Session) -> DisplayScene {
     let (kitchen, spec) = (&session.kitchen, &session.spec);
     let words = DisplayWords::for_kitchen(kitchen, &spec.display);

@@ -1,4 +1,4 @@
-//! What changes: stage, orders, contents, presses and their effect, signals.
+//! What changes on the participant's display: stage, contents, presses and their effects, signals, questions.
 
 use serde::Serialize;
 
@@ -13,124 +13,126 @@ use crate::session::accuracy_check::RunningGazeCheck;
 use crate::session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
 use crate::session::{Phase, Session, TimelineEvent, proposals};
 
-/// What the participant sees of the session now; always the whole of it.
+/// Everything that changes on the participant's display; each update is complete.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayUpdate {
-    /// What the display is for now.
+    /// Stage of the session, which decides which page the display shows.
     pub stage: DisplayStage,
-    /// It is for practice.
+    /// Whether the trial is for practice.
     pub practice: bool,
-    /// What each location shows, in the order of [`super::DisplayScene::locations`]; nothing of it during a probe.
+    /// What each location shows, in the order of [`super::DisplayScene::locations`]; empty during a freeze probe.
     pub contents: Vec<ShownContent>,
-    /// Orders served in this trial.
+    /// Number of orders served in this trial.
     pub served: usize,
-    /// The last press of the human and of the robot, by [`Agent::index`].
+    /// Last press of the human and of the robot, by [`Agent::index`].
     pub presses: [Option<DisplayedPress>; 2],
-    /// Where the robot is about to press, if the session shows it.
+    /// Location or storage where the robot is about to press, if the session shows the robot's intention.
     pub intention: Option<DisplayPlace>,
-    /// The signal that is shown, if one is.
+    /// The signal on the display, if any.
     pub signal: Option<DisplayedSignal>,
-    /// The number of the newest event to be marked by a flash.
+    /// Number of the newest event that is marked by a flash.
     pub cue: Option<u64>,
-    /// The questionnaire item that is asked, if one is.
+    /// The questionnaire item that is asked, if any.
     pub question: Option<DisplayedItem>,
-    /// The step of the tutorial, if there is one.
+    /// The present step of the tutorial, if any.
     pub tutorial: Option<DisplayedTutorial>,
-    /// The question of a probe, if one is open.
+    /// The open freeze probe, if any.
     pub probe: Option<DisplayedProbe>,
-    /// Where the eyes are asked to look while the gaze is checked, in fractions of the display.
+    /// Target for the eyes while the gaze is checked, in fractions of the display.
     pub target: Option<[f64; 2]>,
-    /// The gaze is being checked: nothing else is shown.
+    /// Whether the gaze is being checked, in which case nothing else is shown.
     pub checks: bool,
 }
 
-/// What the display is for now.
+/// Stage of the session, such as instruction, trial or questionnaire, which decides which page the participant's
+/// display shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayStage {
-    /// Before a trial or the first step of the protocol.
+    /// A greeting before a trial or before the first step of the protocol.
     Welcome,
-    /// The experimenter instructs.
+    /// The experimenter instructs the participant.
     Instruction,
     /// The participant goes through a tutorial.
     Tutorial,
     /// The kitchen before the trial starts.
     Ready,
-    /// The trial runs.
+    /// The trial is running.
     Running,
     /// The trial is paused.
     Paused,
-    /// The trial stands still, and the participant is asked what they believe.
+    /// A freeze probe: the trial stands still, and the participant is asked what they believe.
     Probe,
     /// The trial is over.
     Over,
-    /// An item of a questionnaire is asked.
+    /// The participant is asked an item of a questionnaire.
     Questionnaire,
-    /// The answers of a questionnaire are confirmed.
+    /// All items are answered, and the participant confirms the answers.
     Answered,
-    /// The debriefing, and after the session's end.
+    /// Thanks to the participant, in the debriefing and after the session's end.
     Thanks,
 }
 
-/// What a location shows.
+/// Content that a location shows on the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShownContent {
-    /// Nothing.
+    /// The location is empty.
     Empty,
-    /// This item.
+    /// A single item, by its name.
     Item(String),
-    /// What lies on one another. A stack that is on the menu is its dish.
+    /// A stack of items, by name; a stack that is a dish of the menu is shown as that dish.
     Stack(Vec<String>),
-    /// This dish: wanted by an order, or lying on one another.
+    /// A dish, by name: ordered, or finished at a location.
     Dish(String),
     /// An order that was served a moment ago.
     Served,
 }
 
-/// A press and its effect.
+/// A press and its effect, as the participant's display shows them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DisplayedPress {
-    /// Presses of this agent so far.
+    /// Number of this agent's presses so far.
     pub number: u32,
-    /// Where the button is.
+    /// Location or storage of the pressed button.
     pub at: DisplayPlace,
-    /// The press changed the kitchen.
+    /// Whether the press changed the kitchen.
     pub effective: bool,
-    /// Why the human's press did not, if the session says so.
+    /// Why the human's press had no effect, if the session shows reasons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why: Option<DisplayedReason>,
 }
 
-/// Why a press had no effect.
+/// Reason why a press had no effect, as the participant's display shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct DisplayedReason {
-    /// The page has words for it.
+    /// The reason, for which the page has a text.
     pub reason: NoEffect,
-    /// The location that it is about, by its index in the scene.
+    /// The location that the reason is about, by its index in the scene.
     pub about: usize,
 }
 
-/// A signal.
+/// A signal on the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayedSignal {
-    /// The recipe of what an order wants.
+    /// The recipe of the dish that an order asks for.
     Recipe {
         /// The order's location, by its index in the scene.
         order: usize,
-        /// The wanted dish.
+        /// Name of the ordered dish.
         dish: String,
-        /// What the dish is made of.
+        /// Ingredients of the dish.
         items: Vec<String>,
     },
-    /// The location with this index in the scene is highlighted.
+    /// A highlighted location, by its index in the scene.
     Highlight(usize),
-    /// The proposed presses that are still to be made, the next one first, by their indices in [`super::DisplayScene::buttons`].
+    /// Proposed presses that are not made yet, the next one first, by their indices in
+    /// [`super::DisplayScene::buttons`].
     Next(Vec<usize>),
 }
 
-/// What the participant sees of a session.
+/// The changing part of the participant's display in a session.
 pub fn sight(session: &Session) -> DisplayUpdate {
     let kitchen = &session.kitchen;
     let practised = session.tutorial_step();
@@ -223,7 +225,7 @@ fn pressed(session: &Session, agent: Agent) -> Option<DisplayedPress> {
     Some(DisplayedPress { number: session.presses[agent.index()], at, effective, why })
 }
 
-/// The last press of the tutorial's step.
+/// The last press that the participant made in the present step of the tutorial.
 fn practised_press(session: &Session) -> Option<DisplayedPress> {
     let (_, tutorial) = session.tutorial_step()?;
     let press = tutorial.last?;
@@ -244,7 +246,7 @@ fn explained(kitchen: &Kitchen, state: State, step: &TutorialStep) -> Option<Dis
     told(kitchen, state, &signal)
 }
 
-/// The middle of the place at which the robot presses a button, in fractions of the display.
+/// Centre of the location or storage where the robot presses a button, in fractions of the display.
 pub(super) fn button_place(session: &Session, button: ButtonId) -> [f64; 2] {
     let kitchen = &session.kitchen;
     match spot(kitchen, Agent::Robot, kitchen.button(Agent::Robot, button).action) {
@@ -253,7 +255,7 @@ pub(super) fn button_place(session: &Session, button: ButtonId) -> [f64; 2] {
     }
 }
 
-/// Proposed presses, if the display shows any.
+/// The proposed presses that the display shows, if any.
 fn proposed(session: &Session) -> Option<DisplayedSignal> {
     let button = |name: &String| session.kitchen.button_named(Agent::Human, name).map(ButtonId::index);
     Some(DisplayedSignal::Next(proposals::left(session)?.iter().filter_map(button).collect()))

@@ -1,4 +1,4 @@
-//! The page of a tutorial's step: what the participant may see of it.
+//! Page of a tutorial's step on the participant's display.
 
 use serde::Serialize;
 
@@ -8,83 +8,83 @@ use crate::session::Session;
 use crate::session::plan::{TutorialStep, TutorialStepKind, TutorialTarget};
 use crate::session::tutorial::TutorialState;
 
-/// A step of the tutorial.
+/// A step of the tutorial, as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedTutorial {
-    /// The step's id.
+    /// Identifier of the tutorial's step, as in the tutorial file.
     pub step: String,
-    /// What it is for.
+    /// Kind of the tutorial's step.
     pub kind: TutorialStepKind,
-    /// The heading.
+    /// Heading of the page.
     pub title: String,
-    /// The text.
+    /// Text of the page.
     pub text: String,
-    /// Counted from 1.
+    /// Number of the step, from 1.
     pub number: usize,
-    /// Number of steps.
+    /// Number of steps in the tutorial.
     pub of: usize,
-    /// The step is done: the participant can go on.
+    /// Whether the step is completed, so that the participant can go on.
     pub done: bool,
-    /// What is framed.
+    /// What the page marks with a frame.
     pub frames: Vec<TutorialFrame>,
-    /// The button that is to be pressed now.
+    /// The button that the participant has to press now.
     pub hint: Option<TutorialHint>,
-    /// Presses that are done, and presses of the step, if it has any.
+    /// Number of presses made and number of presses required, if the step has presses.
     pub presses: Option<[usize; 2]>,
-    /// The last press was not the one that is asked for.
+    /// Whether the last press was another than the required one.
     pub missed: bool,
-    /// Recipe cards, as long as they are shown.
+    /// Recipe cards, while they are shown.
     pub cards: Vec<RecipeCard>,
-    /// Time for which the cards are shown, in seconds; none: until the participant goes on.
+    /// Time for which the recipe cards are shown, in seconds; `None` until the participant goes on.
     pub seconds: Option<f64>,
-    /// The question of the step, if it has one.
+    /// Comprehension question of the step, if it has one.
     pub question: Option<DisplayedQuestion>,
 }
 
-/// What is framed.
+/// Something that the tutorial marks with a frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TutorialFrame {
-    /// The area of an agent.
+    /// The locations and storages of an agent.
     Area(Agent),
-    /// A location or storage.
+    /// A location or storage of the kitchen.
     Place(DisplayPlace),
     /// A button of the human, by its name.
     Button(String),
 }
 
-/// The button that is to be pressed.
+/// The button that the tutorial asks the participant to press.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TutorialHint {
-    /// The button's name.
+    /// Name of the button.
     pub button: String,
-    /// It is marked after this time without the right press, in seconds.
+    /// Time without the right press after which the page marks the button, in seconds.
     pub after_s: f64,
 }
 
-/// The recipe card of a dish.
+/// The recipe card of a dish in the tutorial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecipeCard {
-    /// The dish.
+    /// Name of the dish.
     pub dish: String,
-    /// What it is made of.
+    /// Ingredients of the dish.
     pub items: Vec<String>,
 }
 
-/// A question of the check of understanding.
+/// A question of the tutorial's check of understanding.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayedQuestion {
-    /// What can be chosen.
+    /// Answers from which the participant chooses.
     pub choices: Vec<String>,
-    /// The wrong choice that was made, counted from 1, until another is made.
+    /// Number, from 1, of the wrong answer that the participant gave last; `None` once another is given.
     pub wrong: Option<u8>,
-    /// Explanation after a wrong choice.
+    /// Explanation shown after a wrong answer.
     pub explanation: Option<String>,
-    /// The right choice, once it was made.
+    /// Number of the right answer, once the participant has given it.
     pub right: Option<u8>,
 }
 
-/// The card of a dish.
+/// Makes the recipe card of a dish for the tutorial.
 pub(super) fn card(kitchen: &Kitchen, dish: DishId) -> RecipeCard {
     let dish = kitchen.dish(dish);
     let items = kitchen.content(dish.stack()).items.iter();
@@ -92,7 +92,7 @@ pub(super) fn card(kitchen: &Kitchen, dish: DishId) -> RecipeCard {
     RecipeCard { dish: dish.name.clone(), items }
 }
 
-/// The page of the shown step; nothing without a tutorial, or after its end.
+/// The page of the present step; `None` without a tutorial, or after its end.
 pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
     let kitchen = &session.kitchen;
     let (tutorial, _) = session.tutorial()?;
@@ -101,7 +101,7 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
     let are_shown = step.kind == TutorialStepKind::Recipes && !state.are_cards_hidden;
     let dishes = (0..kitchen.dishes.len()).filter(|_| are_shown);
     let hint = state.wanted(step).map(|button| {
-        // After a press that is not asked for, the button is marked at once.
+        // After a wrong press, the required button is marked at once.
         let is_missed = state.last.is_some_and(|last| !last.is_right);
         let after_s = if is_missed { 0.0 } else { step.hint_after_s(state.presses) };
         TutorialHint { button: button.clone(), after_s }

@@ -5,50 +5,50 @@ use crate::kitchen::{AspectId, Kitchen, State};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
 
-/// Least time between snapshots that differ little, in seconds.
+/// Least time between two snapshots of the belief estimate that differ little, in seconds.
 const STEP_S: f64 = 0.2;
-/// Change of a P(truth) for which a snapshot is kept at once.
+/// Change of a P(truth), the estimated probability of an aspect's true value, for which a snapshot is kept at once.
 const JUMP: f64 = 0.1;
-/// A change of a P(truth) by gaze of at least [`NEWS`] is shown for this long, in seconds.
+/// A change of a P(truth) by gaze of at least [`NEWS`] is marked on screens for this long, in seconds.
 const NEWS_S: f64 = 2.0;
 const NEWS: f64 = 0.2;
 
-/// Longest period that a panel shows (the chart of one aspect), in seconds.
+/// Longest period that the console's chart of one state aspect shows, in seconds.
 pub const SHOWN_S: f64 = 60.0;
 
-/// Estimate of one aspect at one time.
+/// Estimate of the participant's belief about one state aspect at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AspectSnapshot {
-    /// Index of the value with the highest expected probability.
+    /// Index of the value that the participant most probably believes.
     pub believes: u8,
-    /// The expected probability of that value.
+    /// Expected probability that the participant gives to the value most probably believed.
     pub p: f32,
-    /// Expected probability of the true value.
+    /// Expected probability that the participant gives to the true value.
     pub p_truth: f32,
 }
 
 impl AspectSnapshot {
-    /// Whether the most probable value is false.
+    /// Whether the value that the participant most probably believes is false.
     pub fn is_false(self) -> bool {
         f64::from(self.p_truth) < FALSE_BELOW
     }
 }
 
-/// Estimate of all aspects at one time.
+/// Estimate of the participant's beliefs about all aspects at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeliefSnapshot {
     /// Session time of the estimate.
     pub time: SessionTime,
-    /// Whether only gaze samples came since the previous snapshot.
+    /// Whether only gaze samples, and no other events, came since the previous snapshot.
     by_gaze: bool,
-    /// One entry per aspect.
+    /// Estimated belief about each state aspect.
     pub held: Vec<AspectSnapshot>,
-    /// By aspect, the start of the present false belief, if there is one.
+    /// For each state aspect, the start of the present false belief; `None` where the belief is right.
     wrong_since: Vec<Option<SessionTime>>,
 }
 
 impl BeliefSnapshot {
-    /// Snapshot of the estimate at a time, for the kitchen in `state`.
+    /// Snapshot of the belief estimate at a time, when the kitchen's true state is `state`.
     pub fn new(
         kitchen: &Kitchen,
         state: State,
@@ -71,20 +71,20 @@ impl BeliefSnapshot {
     }
 }
 
-/// Snapshots of the estimate in order of time.
+/// Snapshots of the belief estimate in the order of time.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefHistory {
     moments: Vec<BeliefSnapshot>,
 }
 
 impl BeliefHistory {
-    /// Times at which a false belief begins.
+    /// Session times at which a false belief begins in the estimate.
     pub fn newly_false(&self) -> impl Iterator<Item = SessionTime> {
         let begins = |moment: &&BeliefSnapshot| moment.wrong_since.contains(&Some(moment.time));
         self.moments.iter().filter(begins).map(|moment| moment.time)
     }
 
-    /// Adds a snapshot, unless only gaze samples with little effect came since the previous one.
+    /// Adds a snapshot of the estimate, unless only gaze samples with little effect came since the previous snapshot.
     pub fn note(&mut self, mut moment: BeliefSnapshot) {
         if let Some(last) = self.moments.last().filter(|_| moment.by_gaze) {
             let pairs = || last.held.iter().zip(&moment.held);
@@ -104,29 +104,29 @@ impl BeliefHistory {
     /// Removes snapshots older than `kept_s` seconds, so that memory does not grow with the length of a session.
     pub fn forget(&mut self, now: SessionTime, kept_s: f64) {
         let old = self.moments.partition_point(|moment| now.secs_since(moment.time) > kept_s);
-        // Removed in batches; the last snapshot before the limit stays, since it holds at the limit.
+        // Old snapshots are removed in batches; the last one before the limit stays, since it holds at the limit.
         if old > 2 * (self.moments.len() - old) {
             self.moments.drain(..old.min(self.moments.len() - 1));
         }
     }
 
-    /// Appends the later snapshots of another history of the same session.
+    /// Appends those snapshots of another history of the same session that are later than the last one here.
     pub fn catch_up(&mut self, other: &BeliefHistory) {
         let known = self.moments.len().min(other.moments.len());
         self.moments.extend_from_slice(&other.moments[known..]);
     }
-    /// Snapshots up to and including a time.
+    /// Snapshots of the belief estimate up to and including a time.
     pub fn until(&self, time: SessionTime) -> &[BeliefSnapshot] {
         &self.moments[..self.moments.partition_point(|moment| moment.time <= time)]
     }
 }
 
-/// Start of the present false belief about an aspect; `None` if the belief is right.
+/// Start of the present false belief about a state aspect; `None` if the belief is right.
 pub fn wrong_since(moments: &[BeliefSnapshot], aspect: usize) -> Option<SessionTime> {
     moments.last()?.wrong_since[aspect]
 }
 
-/// Time of the last change of an aspect's estimate by gaze, if it was recent.
+/// Time of the last change of an aspect's estimate by gaze, if that change is recent enough to be marked on screens.
 pub fn read_at(moments: &[BeliefSnapshot], aspect: usize, now: SessionTime) -> Option<SessionTime> {
     let recent = moments.windows(2).rev().take_while(|pair| now.secs_since(pair[1].time) <= NEWS_S);
     let is_news = |pair: &&[BeliefSnapshot]| {
@@ -136,7 +136,7 @@ pub fn read_at(moments: &[BeliefSnapshot], aspect: usize, now: SessionTime) -> O
     recent.into_iter().find(is_news).map(|pair| pair[1].time)
 }
 
-/// P(truth) of an aspect at evenly spaced times over the last `seconds`; `None` before the first snapshot.
+/// P(truth) of one state aspect at evenly spaced times over the last `seconds`; `None` before the first snapshot.
 pub fn course(
     moments: &[BeliefSnapshot],
     aspect: usize,

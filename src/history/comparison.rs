@@ -1,4 +1,5 @@
-//! Comparison of wizard and assistants: their communications in lanes, matches, and differences with their context.
+//! Comparison of wizard and assistants: the communications of each in a lane, their matches, and the differences with
+//! context.
 
 use std::sync::Arc;
 
@@ -16,35 +17,35 @@ use crate::measures::matching::{
 use crate::measures::sequences::FALSE_BELOW;
 use crate::session::wizard_screen::VisibleScreen;
 
-/// A P(truth) of at least this counts as sure.
+/// A belief with a P(truth) of at least this counts as certain.
 const SURE: f64 = 0.9;
 
-/// Context of a possible communication: state, estimate, recommendations, and what the wizard saw.
+/// Context of a possible communication: true state, belief estimate, recommendations, and what the wizard saw.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommunicationContext {
-    /// Sequence number of the event that led to the question.
+    /// Sequence number of the event after which the assistants were asked for advice.
     pub seq: u64,
-    /// The true state at that event.
+    /// The true state of the kitchen at that event.
     pub state: State,
-    /// Estimate by aspect, without the signals sent within the window.
+    /// Estimate by state aspect, without the effect of signals sent within the matching window.
     pub held: Vec<AspectSnapshot>,
-    /// Recommendation of each assistant, in the order of the lanes.
+    /// Recommendation of each assistant, in the order of the assistants' lanes.
     pub advice: Vec<Recommendation>,
-    /// Content of the wizard's screen; `None` before the first frame and without a wizard.
+    /// Content of the wizard's screen; `None` before the screen was first drawn, and without a wizard.
     pub screen: Option<VisibleScreen>,
 }
 
-/// Content of a communication.
+/// What one communication says: a signal, or proposed presses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CommunicationContent {
-    /// A signal of the wizard or of an assistant.
+    /// A signal that the wizard or an assistant sends.
     Signal(Signal),
-    /// Proposed presses, by the names of their buttons.
+    /// Proposed presses, as the names of their buttons.
     Proposal(Vec<String>),
 }
 
 impl CommunicationContent {
-    /// The content of a signal that was sent.
+    /// Content of a communication that consists of this signal.
     pub fn from_signal(signal: &Signal) -> CommunicationContent {
         match signal {
             Signal::Propose(presses) => CommunicationContent::Proposal(presses.clone()),
@@ -52,7 +53,7 @@ impl CommunicationContent {
         }
     }
 
-    /// The content as the matching compares it.
+    /// Content in the form that the matching of communications compares.
     pub fn content(&self, kitchen: &Kitchen) -> CommunicationTarget {
         let kind = match self {
             CommunicationContent::Signal(Signal::ShowRecipe(_)) => CommunicationKind::Recipe,
@@ -71,7 +72,7 @@ impl CommunicationContent {
         }
     }
 
-    /// The content in words.
+    /// What the communication says, in words.
     pub fn words(&self) -> String {
         match self {
             CommunicationContent::Signal(signal) => wording::signal(signal),
@@ -80,72 +81,73 @@ impl CommunicationContent {
     }
 }
 
-/// A communication of one lane.
+/// One communication of the wizard or of an assistant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Communication {
-    /// Number of presses, trial clock and content, for the matching.
+    /// The communication in the form that the matching compares: number of presses, trial clock and content.
     pub said: CommunicationEvent,
-    /// Session time.
+    /// Session time of the communication.
     pub time: SessionTime,
-    /// The signal or proposal itself.
+    /// The signal or the proposal.
     pub what: CommunicationContent,
-    /// Context at the last question to the assistants before it.
+    /// Context at the last time before it at which the assistants were asked for advice.
     pub known: Option<Arc<CommunicationContext>>,
 }
 
-/// All communications of one side in a trial.
+/// All communications of one sender (the wizard or one assistant) in a trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommunicationLane {
-    /// "wizard", "tom-com".
+    /// Name of the sender: "wizard", "tom-com".
     pub name: String,
-    /// Concept of an assistant's lane; `None` for the lane of the signals that the participant saw.
+    /// Communication concept of the assistant; `None` for the signals that the participant saw.
     pub concept: Option<ConceptName>,
-    /// The communications, in the order of time.
+    /// Communications of this sender, in the order of time.
     pub spoken: Vec<Communication>,
 }
 
 impl CommunicationLane {
-    /// The communications as the matching takes them, in the order of time.
+    /// Communications in the form that the matching takes, in the order of time.
     pub fn said(&self) -> Vec<CommunicationEvent> {
         self.spoken.iter().map(|spoken| spoken.said).collect()
     }
 }
 
-/// A communication without a match in another lane.
+/// A communication of one sender without a match among the communications of another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnmatchedCommunication {
-    /// Index of the lane.
+    /// Index of the lane with the communication.
     pub lane: usize,
-    /// Its index in that lane.
+    /// Index of the communication in its lane.
     pub index: usize,
-    /// Index of the lane without a match.
+    /// Index of the lane that has no matching communication.
     pub not: usize,
 }
 
-/// Comparison of the first lane with another lane.
+/// Comparison of the first lane, which holds the signals that the participant saw, with an assistant's lane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LanePair {
-    /// Strict matches, as indices into both lanes.
+    /// Strict matches, as pairs of indices into the first and the other lane.
     pub matched: Vec<(usize, usize)>,
-    /// How far the two lanes agree.
+    /// Similarity of the two lanes' communications: how many of them match.
     pub similarity: Similarity,
 }
 
-/// Comparison of all lanes so far.
+/// Comparison of the wizard's and the assistants' communications in a trial so far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LaneComparison {
-    /// Window of a match, in presses of the human.
+    /// Two communications can match if at most this many presses of the human lie between them.
     pub window: u32,
-    /// The lanes; the first holds the signals that the participant saw.
+    /// The lanes, one for each sender; the first holds the signals that the participant saw.
     pub lanes: Vec<CommunicationLane>,
-    /// The first lane compared with each other lane.
+    /// Comparisons of the first lane with each assistant's lane.
     pub pairs: Vec<LanePair>,
-    /// Unmatched communications in order of time, without those that can still be matched.
+    /// Communications without a match, in order of time; those that later ones can still match are left out.
     pub differences: Vec<UnmatchedCommunication>,
 }
 
 impl LaneComparison {
-    /// Compares the lanes of a trial after `presses` presses of the human; `over` says that the trial has ended.
+    /// Compares the communications of all senders in a trial after `presses` presses of the human; `over`: the trial
+    /// has ended.
     pub fn new(lanes: Vec<CommunicationLane>, window: u32, presses: u32, over: bool) -> LaneComparison {
         let said: Vec<Vec<CommunicationEvent>> = lanes.iter().map(CommunicationLane::said).collect();
         let pair = |with: &Vec<CommunicationEvent>| {
@@ -172,22 +174,22 @@ impl LaneComparison {
         LaneComparison { window, lanes, pairs, differences }
     }
 
-    /// The communication of a difference.
+    /// The communication that is without a match.
     pub fn spoken(&self, difference: &UnmatchedCommunication) -> &Communication {
         &self.lanes[difference.lane].spoken[difference.index]
     }
 
-    /// Index of the assistant's lane in a difference.
+    /// Index of the assistant's lane in a difference between two lanes.
     fn assistant(&self, difference: &UnmatchedCommunication) -> usize {
         difference.lane.max(difference.not)
     }
 
-    /// Recommendation of that assistant at the time.
+    /// Recommendation, at the time of an unmatched communication, of the assistant that is compared.
     pub fn advice(&self, difference: &UnmatchedCommunication) -> Option<&Recommendation> {
         self.spoken(difference).known.as_ref()?.advice.get(self.assistant(difference) - 1)
     }
 
-    /// A difference in one line: "4:32  only tom-com: recipe of order 1".
+    /// An unmatched communication in one line: "4:32  only tom-com: recipe of order 1".
     pub fn headline(&self, difference: &UnmatchedCommunication) -> String {
         let (spoken, by) = (self.spoken(difference), &self.lanes[difference.lane].name);
         let not = match self.lanes.len() {
@@ -198,7 +200,7 @@ impl LaneComparison {
         format!("{}  {only}{by}{not}: {}", spoken.said.clock, spoken.what.words())
     }
 
-    /// The context of a difference, as lines of text.
+    /// The context of an unmatched communication, as lines of text.
     pub fn opened(&self, kitchen: &Kitchen, difference: &UnmatchedCommunication) -> Vec<String> {
         let spoken = self.spoken(difference);
         let other = &self.lanes[difference.not];
@@ -233,7 +235,7 @@ impl LaneComparison {
     }
 }
 
-/// A recommendation in words; ToM's options are expected belief deviations.
+/// A recommendation in words; for the concept ToM, the values of its options are expected deviations of beliefs.
 fn thought(kitchen: &Kitchen, advice: &Recommendation, is_tom: bool) -> String {
     if let Some(proposal) = &advice.proposal {
         return CommunicationContent::Proposal(proposal.presses.clone()).words();
@@ -256,7 +258,8 @@ fn thought(kitchen: &Kitchen, advice: &Recommendation, is_tom: bool) -> String {
     }
 }
 
-/// Lists of the false beliefs (lowest P(truth) first) and of the right but uncertain beliefs.
+/// Two lists of state aspects in words: false beliefs (lowest P(truth) first), and beliefs that are right but
+/// uncertain.
 fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
     let mut doubtful: Vec<(usize, &AspectSnapshot)> =
         known.held.iter().enumerate().filter(|(_, held)| f64::from(held.p_truth) < SURE).collect();
@@ -286,7 +289,7 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
     ]
 }
 
-/// Contents of all locations that are not empty.
+/// Contents of all locations that are not empty, in words.
 fn truly(kitchen: &Kitchen, state: State) -> String {
     let location = |index: usize| {
         let (id, location) = (LocationId(index as u8), &kitchen.locations[index]);

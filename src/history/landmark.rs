@@ -1,14 +1,14 @@
-//! Landmarks: kinds of events in a recording to which a replay can jump.
+//! Landmarks of a recording: kinds of events to which a replay can jump.
 
-/// Kind of a landmark.
+/// Kind of event in a recording to which a replay can jump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplayLandmark {
-    /// A press that was an error.
+    /// The human's press was an error.
     Error,
-    /// A signal was shown.
+    /// A signal was shown to the participant.
     Signal,
-    /// The wizard set a marker.
+    /// A marker that the wizard set.
     Marker,
-    /// Start of a false belief in the estimate.
+    /// A false belief began in the belief estimate.
     FalseBelief,
 }

@@ -1,5 +1,5 @@
-//! History of a session for console, replay, study and Rerun: the belief estimate over time, the comparison of wizard and
-//! assistants, and the words for events. Nothing is drawn here, and no file is read.
+//! History of a session for console, replay, study and Rerun: the belief estimate over time, the comparison of wizard
+//! and assistants, and the wording of events. This module draws nothing and reads no files.
 
 pub mod belief_track;
 pub mod comparison;

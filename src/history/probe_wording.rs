@@ -1,14 +1,14 @@
-//! Words for freeze probes: their questions, answers and events.
+//! Wording of freeze probes: questions, answers and events as texts.
 
 use crate::base::words::count;
 use crate::session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
 
-/// A name of the log in words.
+/// A name from the log as words on a screen, without underscores.
 fn said(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// What a question is about, in words: "cutting board", "recipe of tuna maki".
+/// The state aspect that a question of a freeze probe is about, in words: "cutting board", "recipe of tuna maki".
 pub fn subject(about: &ProbeSubject) -> String {
     match about {
         ProbeSubject::Location { location } => said(location),
@@ -18,7 +18,7 @@ pub fn subject(about: &ProbeSubject) -> String {
     }
 }
 
-/// An event of a probe in words.
+/// An event of a freeze probe in words.
 pub fn event(event: &ProbeEvent) -> String {
     match event {
         ProbeEvent::Requested => "the wizard asks for a probe".to_string(),

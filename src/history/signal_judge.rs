@@ -1,7 +1,8 @@
-//! Judges the signals of a running trial as they are sent, for the summary at its end: was the belief that a signal tells false?
+//! Judges the signals of a running trial as they are sent, for the summary at its end: was the belief that a signal
+//! corrects false?
 //!
 //! The measures of a study look at the whole trial and leave out false beliefs that led to no error
-//! ([`crate::measures::wizard_performance`]); at the console it counts what was believed when the signal was sent.
+//! ([`crate::measures::wizard_performance`]); here a signal is judged by the beliefs at the time it was sent.
 
 use crate::communication::recommendation::aspects_told;
 use crate::communication::{Sender, Signal};
@@ -10,50 +11,50 @@ use crate::measures::wizard_performance::LATE_PRESSES;
 use crate::session::event::SignalEnd;
 use crate::session::{Event, Session, Stamped};
 
-/// How the signals of a sender were judged.
+/// Counts of a sender's signals by how they were judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SignalTally {
-    /// Signals about a false belief.
+    /// Number of signals about a false belief of the participant.
     pub hits: u64,
-    /// Signals about a belief that had been false at most [`LATE_PRESSES`] presses of the human before.
+    /// Signals about a belief that became right at most [`LATE_PRESSES`] presses of the human before.
     pub late: u64,
-    /// Signals about a right belief.
+    /// Number of signals about a belief that was right already.
     pub needless: u64,
-    /// Signals that were taken back; they are judged, too.
+    /// Signals that the sender took back; they count among hits, late and needless ones, too.
     pub taken_back: u64,
 }
 
 impl SignalTally {
-    /// Number of signals.
+    /// Number of signals that the sender sent.
     pub fn sent(&self) -> u64 {
         self.hits + self.late + self.needless
     }
 }
 
-/// What is believed about one aspect.
+/// Whether the participant's belief about one state aspect is false, and when it became right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Standing {
     is_false: bool,
-    /// Number of the human's presses when it became right.
+    /// Number of the human's presses when the belief became right.
     corrected: Option<u32>,
 }
 
-/// Judges signals by the beliefs before each of them.
+/// Judges each signal by the participant's beliefs at the time it is sent.
 #[derive(Clone, Debug, Default)]
 pub struct SignalJudge {
     beliefs: Vec<Standing>,
     wizard: SignalTally,
     assistant: SignalTally,
-    /// Who sent the last signal.
+    /// Who sent the last signal: wizard or assistant.
     last: Option<Sender>,
 }
 
 impl SignalJudge {
-    /// Judges an event that has been applied to the session, by the beliefs that were noted before it.
+    /// Judges the signal in an event that has been applied to the session, by the beliefs noted before the event.
     pub fn judge(&mut self, stamped: &Stamped, session: &Session) {
         match &stamped.event {
             Event::TrialStarted => *self = SignalJudge::default(),
-            // A proposal says nothing about beliefs.
+            // A proposal of presses is not about beliefs, so it is not judged.
             Event::SignalShown { by, signal: Signal::Propose(_), .. } => self.last = Some(*by),
             Event::SignalShown { by, signal, .. } => {
                 let told = aspects_told(&session.kitchen, session.state, signal);
@@ -78,7 +79,7 @@ impl SignalJudge {
         }
     }
 
-    /// Notes which beliefs are false now.
+    /// Notes which of the participant's beliefs are false now.
     pub fn note(&mut self, session: &Session, is_false: impl Fn(AspectId) -> bool) {
         let presses = session.presses[Agent::Human.index()];
         self.beliefs.resize(session.kitchen.aspects.len(), Standing::default());
@@ -91,7 +92,7 @@ impl SignalJudge {
         }
     }
 
-    /// The signals of a sender so far.
+    /// Counts of the signals of a sender so far.
     pub fn tally(&self, by: Sender) -> SignalTally {
         match by {
             Sender::Wizard => self.wizard,

@@ -1,4 +1,4 @@
-//! Words for buttons, locations, signals, phases and events.
+//! Wording of buttons, locations, signals, phases and events as texts for screens and reports.
 
 use super::probe_wording;
 use crate::base::words::count;
@@ -23,17 +23,17 @@ use crate::session::tutorial::TutorialEvent;
 use crate::session::wall_display::Answering;
 use crate::session::{Phase, Session, TimelineEvent};
 
-/// A button in words: "cutting board", "take rice".
+/// A button's label in words: "cutting board", "take rice".
 pub fn button(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> String {
     kitchen.button(agent, id).name.replace('_', " ")
 }
 
-/// A location's name in words.
+/// A location of the kitchen in words, such as "cutting board".
 pub fn location(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// A rater's code in words: "slip", "wrong about cooking pot".
+/// A rater's code for the cause of an error, in words: "slip", "wrong about cooking pot".
 pub fn code(code: &Code) -> String {
     match code {
         Code::Belief(place) => format!("{} {}", CauseKind::Belief.title(), location(place)),
@@ -41,14 +41,15 @@ pub fn code(code: &Code) -> String {
     }
 }
 
-/// Why the human's press of this button would have no effect now: "no effect: the cooking pot is empty"; `None` if it would have one.
-/// Short, since it stands beside the keys at 80 columns.
+/// Why a press of this button by the human would have no effect now, as text: "no effect: the cooking pot is empty";
+/// `None` if the press would have one. The text is short, since it stands beside the keys on a terminal with 80
+/// columns.
 pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String> {
     let (why, about) = kitchen.no_effect(state, Agent::Human, id)?;
     Some(format!("no effect: {}", because(kitchen, why, about, kitchen.content_label(state, about))))
 }
 
-/// Why a press has no effect; `content` is what lies where the reason is about.
+/// Why a press has no effect, in words; `content` is what the location in question holds.
 fn because(kitchen: &Kitchen, why: NoEffect, about: LocationId, content: &str) -> String {
     let name = kitchen.location(about).label();
     match why {
@@ -65,7 +66,7 @@ fn because(kitchen: &Kitchen, why: NoEffect, about: LocationId, content: &str) -
     }
 }
 
-/// Location of a button: its own location, or the agent's hand.
+/// Location at which a button acts: its own location, or the agent's hand.
 pub fn place(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> LocationId {
     let hand = kitchen.hands[agent.index()];
     match kitchen.button(agent, id).action {
@@ -75,7 +76,7 @@ pub fn place(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> L
     }
 }
 
-/// A signal in words.
+/// A signal to the participant in words, such as "recipe of order 1".
 pub fn signal(signal: &Signal) -> String {
     match signal {
         Signal::ShowRecipe(order) => format!("recipe of {}", location(order)),
@@ -90,7 +91,7 @@ pub fn proposal(presses: &[String]) -> String {
     format!("press {}", presses.join(", then "))
 }
 
-/// What is offered in words.
+/// What an offer to the wizard contains, in words.
 pub fn offered(what: &OfferedAct) -> String {
     match what {
         OfferedAct::Signal(told) => signal(told),
@@ -98,13 +99,14 @@ pub fn offered(what: &OfferedAct) -> String {
     }
 }
 
-/// The reason of a recommendation with its contents worded as on screens; the recorded one has their names.
+/// The reason of a recommendation with contents in words, as screens show them; the recorded reason has the names of
+/// the log.
 pub fn reason(kitchen: &Kitchen, reason: &Reason) -> Reason {
     let worded = |name: &str| kitchen.worded(name).to_string();
     Reason { believes: worded(&reason.believes), truth: worded(&reason.truth), ..reason.clone() }
 }
 
-/// A sender in words.
+/// The sender of a signal in words: wizard or assistant.
 pub fn sender(by: Sender) -> &'static str {
     match by {
         Sender::Wizard => "wizard",
@@ -125,7 +127,7 @@ pub fn dish(kitchen: &Kitchen, dish: &Dish) -> String {
     names.join(" + ")
 }
 
-/// Phase of the study and of the trial, in a word.
+/// Phase of the study's protocol and of the trial, in a word.
 pub fn stage(session: &Session) -> String {
     match session.study_phase().map(PhaseSpec::phase) {
         Some(around) if !around.has_trial() && session.phase != Phase::Closed => around.name().to_uppercase(),
@@ -158,7 +160,8 @@ pub fn protocol(event: &ProtocolEvent) -> String {
         ProtocolEvent::Tutorial(event) => tutorial(event),
         ProtocolEvent::ItemShown { item } => format!("item {item} is shown"),
         ProtocolEvent::AnswersShown => "all answers are shown".to_string(),
-        // Words and choices can be personal, and viewers of the stream are not the analysis.
+        // Answers in words and choices can be personal, and people who watch the stream are not the ones who analyse
+        // the study.
         ProtocolEvent::ItemAnswered { item, answer: AnswerValue::Number(number) } => format!("item {item}: {number}"),
         ProtocolEvent::ItemAnswered { item, .. } => format!("item {item} is answered"),
         ProtocolEvent::ItemSkipped { item } => format!("item {item}: no answer"),
@@ -183,7 +186,7 @@ fn tutorial(event: &TutorialEvent) -> String {
     }
 }
 
-/// An entry of the timeline in words, with its agent.
+/// An entry of the timeline in words, together with who caused it.
 pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, String) {
     match what {
         TimelineEvent::Press { agent, button: id, no_effect } => {
@@ -239,7 +242,7 @@ pub fn arm_phase(phase: ArmPhase) -> &'static str {
     }
 }
 
-/// The state of the trial in a few words: "over: time is up".
+/// State of the trial in a few words: "over: time is up".
 pub fn trial(phase: Phase) -> &'static str {
     match phase {
         Phase::Ready => "ready",
@@ -254,7 +257,7 @@ pub fn trial(phase: Phase) -> &'static str {
     }
 }
 
-/// A tracker event in words; `None` for fixations and blinks, which are too frequent.
+/// An event of the eye tracker in words; `None` for fixations and blinks, which are too frequent.
 pub fn tracker(event: &TrackerEvent) -> Option<String> {
     Some(match event {
         TrackerEvent::Connected { device } => format!("eye tracker connected: {device}"),
@@ -283,18 +286,18 @@ pub fn tracker(event: &TrackerEvent) -> Option<String> {
     })
 }
 
-/// Names in quotation marks.
+/// These names, each in quotation marks.
 pub fn quoted(names: &[String]) -> String {
     names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ")
 }
 
-/// Input that could not be recorded, by kind.
+/// Counts of gaze input that could not be recorded, by kind, in words.
 pub fn drops(counts: &DropCounts) -> String {
     let kinds = [(counts.malformed, "malformed"), (counts.too_frequent, "too frequent"), (counts.overrun, "overrun")];
     kinds.iter().filter(|(n, _)| *n > 0).map(|(n, kind)| format!("{n} {kind}")).collect::<Vec<_>>().join(", ")
 }
 
-/// A step of the gaze accuracy check in words.
+/// An event of the gaze accuracy check in words.
 pub fn calibration(event: &CalibrationEvent) -> String {
     match event {
         CalibrationEvent::Begun { targets } => format!("check of the gaze begins: {} targets", targets.len()),
@@ -317,7 +320,7 @@ pub fn calibration(event: &CalibrationEvent) -> String {
     }
 }
 
-/// A press that was an error: what it costs beside the human's best press, and what it is put down to, where that is known.
+/// An error of the human in words: its cost compared with the human's best press, and its cause, where that is known.
 pub fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
     let because = match press.cause {
         None => String::new(),

@@ -1,4 +1,5 @@
-//! `tomcom replay RECORDING... --accuracy`: reads recordings and runs the planners for [`crate::analysis::planner_accuracy`].
+//! Command `tomcom replay RECORDING... --accuracy`: reads recordings and runs the planners for
+//! [`crate::analysis::planner_accuracy`].
 
 use std::path::PathBuf;
 
@@ -10,19 +11,19 @@ use crate::analysis::planner_accuracy::{
 };
 use crate::edge::file_error::FileResult;
 
-/// Number of steps to check.
+/// Numbers of steps at which the planner's accuracy is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AccuracySample {
-    /// Steps of the converged planner.
+    /// Number of steps answered by the converged planner.
     pub steps: usize,
-    /// Steps of the plain reference, a subset.
+    /// Number of steps answered by the plain reference planner, a subset of them.
     pub reference_steps: usize,
 }
 
 /// Compares the planner's answers with more precise ones. `done` is called after each step of each planner.
 ///
 /// # Errors
-/// A recording that cannot be read or applied, or one of another kitchen.
+/// A recording cannot be read or replayed, or the recordings are of different kitchens.
 pub fn measure(recordings: &[PathBuf], extent: AccuracySample, done: impl Fn() + Sync) -> FileResult<AccuracySummary> {
     each_once(recordings)?;
     let (mut one_kitchen, mut asked) = (SameKitchen::default(), Vec::new());
@@ -39,7 +40,7 @@ pub fn measure(recordings: &[PathBuf], extent: AccuracySample, done: impl Fn() +
     Ok(bench.summary(&steps))
 }
 
-/// The requests for advice after presses.
+/// The requests for advice after the presses of a recording.
 fn ask(replay: &mut Replay) -> FileResult<RecordedQuestions> {
     let session = replay.log().session();
     let mut questions = Vec::new();

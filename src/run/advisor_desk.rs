@@ -1,4 +1,4 @@
-//! The assistant of a live session on its own thread, which always answers the latest request.
+//! The assistant of a live session, which runs on a thread of its own and always answers the latest request.
 
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
@@ -9,13 +9,13 @@ use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::communication::recommendation::Recommendation;
 
 impl Advisor {
-    /// Starts the advisor's thread, which ends when the desk is dropped.
+    /// Starts the assistant's thread, which ends when the returned desk is dropped.
     pub fn on_thread(mut self) -> AdvisorDesk {
         let (ask, questions) = channel::<AdviceRequest>();
         let (answer, answers) = unbounded_channel();
         thread::spawn(move || {
             while let Ok(question) = questions.recv() {
-                // A newer request replaces this one.
+                // The newest request replaces earlier ones that have not been answered.
                 let newest = questions.try_iter().last().unwrap_or(question);
                 if answer.send(self.answer(&newest)).is_err() {
                     return;
@@ -26,23 +26,23 @@ impl Advisor {
     }
 }
 
-/// The session's connection to the advisor's thread.
+/// A live session's connection to the assistant's thread.
 #[derive(Debug)]
 pub struct AdvisorDesk {
     ask: Sender<AdviceRequest>,
-    /// The recommendations, in the order of the requests.
+    /// Recommendations of the assistant, in the order of the requests.
     pub answers: UnboundedReceiver<Recommendation>,
 }
 
 impl AdvisorDesk {
-    /// Sends a request; a newer request replaces one that has not been answered.
+    /// Sends a request for advice, which replaces an earlier one that has not been answered.
     pub fn ask(&self, question: AdviceRequest) {
-        // If the thread has ended, the session continues without recommendations.
+        // If the assistant's thread has ended, the session continues without recommendations.
         let _ = self.ask.send(question);
     }
 }
 
-/// Waits for the next recommendation; forever if there is no advisor.
+/// Waits for the assistant's next recommendation; forever if the session has no assistant.
 pub async fn next_advice(advisor: &mut Option<AdvisorDesk>) -> Option<Recommendation> {
     match advisor {
         Some(desk) => desk.answers.recv().await,

@@ -1,4 +1,4 @@
-//! Exports recordings as a BIDS data set.
+//! Exports recordings as a data set in the Brain Imaging Data Structure (BIDS).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -23,33 +23,33 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Header, apply};
 
-/// What was exported.
+/// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsSummary {
-    /// The folder of the tree.
+    /// Folder of the data set.
     pub folder: PathBuf,
-    /// Codes that are no labels, with the labels that they got.
+    /// Participants' codes that are not valid BIDS labels, with the labels that they got.
     pub changed_codes: Vec<(String, String)>,
-    /// The recordings with their places in the tree.
+    /// Exported recordings with their places in the data set.
     pub recordings: Vec<BidsRecording>,
-    /// Tables of questionnaires.
+    /// Number of tables of questionnaires.
     pub questionnaires: usize,
-    /// Whether words that somebody typed were exported.
+    /// Whether text that somebody typed was exported.
     pub words: bool,
 }
 
-/// An exported recording.
+/// An exported recording with its place in the data set.
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsRecording {
-    /// The recording.
+    /// Folder of the recording.
     pub recording: PathBuf,
-    /// Where its files are in the tree, up to what their names differ by.
+    /// Common beginning of the paths of the recording's files in the data set.
     pub place: String,
-    /// Rows of its tables.
+    /// Numbers of rows in the recording's tables.
     pub rows: TableCounts,
 }
 
-/// A recording with its place in the tree, before it is read.
+/// A recording with its place in the data set, before it is read.
 struct Planned {
     recording: PathBuf,
     header: Header,
@@ -57,14 +57,14 @@ struct Planned {
     session: String,
 }
 
-/// Kitchen and cost to go of the last recording, which the next one often shares.
+/// Kitchen of the last recording with its cost to go, since the next recording often has the same kitchen.
 type KnownCost = Option<(Arc<Kitchen>, CostToGo)>;
 
-/// Exports these recordings into a new folder. `with_words`: what wizards and participants typed is exported, too. `done` is called after
-/// each recording.
+/// Exports these recordings into a new folder. `with_words`: text that wizards and participants typed is exported, too.
+/// `done` is called after each recording.
 ///
 /// # Errors
-/// A recording cannot be read or is still being written, or the tree cannot be written.
+/// A recording cannot be read or is still being written, or the data set cannot be written.
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
     let named = recordings.iter().map(|path| Ok((path.clone(), header(path)?))).collect::<FileResult<Vec<_>>>()?;
     let whole = without_parts(named);
@@ -104,7 +104,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     })
 }
 
-/// The header of a recording that nobody is writing.
+/// Header of a recording; refuses one that is still being written.
 fn header(recording: &Path) -> FileResult<Header> {
     let log = LogReader::open(recording)?;
     if log.ending() == LogEnding::Running {
@@ -114,7 +114,8 @@ fn header(recording: &Path) -> FileResult<Header> {
     Ok(log.header)
 }
 
-/// The recordings, each once, without the parts that others of them continue: a later part is read with all parts before it.
+/// The recordings, each once, without parts that another recording continues: a later part is read together with all
+/// earlier ones.
 fn without_parts(named: Vec<(PathBuf, Header)>) -> Vec<(PathBuf, Header)> {
     let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
     let before = |(path, header): &(PathBuf, Header)| {
@@ -126,7 +127,7 @@ fn without_parts(named: Vec<(PathBuf, Header)>) -> Vec<(PathBuf, Header)> {
     named.into_iter().filter(|(path, _)| !continued.contains(&place(path)) && seen.insert(place(path))).collect()
 }
 
-/// The places of recordings in the tree: participants by their labels, the recordings of each by plan, date and name.
+/// Places of the recordings in the data set: by the participant's label, then by plan, date and name of the recording.
 fn places(mut all: Vec<(PathBuf, Header)>, labels: &Labels) -> Vec<Planned> {
     all.sort_by_cached_key(|(path, header)| {
         let step = header.session.step.as_ref().map(|step| (step.plan.clone(), step.period, step.attempt));
@@ -142,7 +143,7 @@ fn places(mut all: Vec<(PathBuf, Header)>, labels: &Labels) -> Vec<Planned> {
     all.into_iter().map(place).collect()
 }
 
-/// Reads a recording: its files, its row among the sessions with the name of its kitchen, the numbers of rows.
+/// Reads a recording: its files, its row of the table of sessions with the kitchen's name, and the numbers of rows.
 fn read(
     one: &Planned,
     with_words: bool,
@@ -213,7 +214,7 @@ fn participants(planned: &[Planned]) -> Vec<BidsParticipant> {
     rows
 }
 
-/// What was exported, for people.
+/// The export as text for the terminal.
 pub fn describe(summary: &BidsSummary) -> String {
     let rows = |of: fn(&TableCounts) -> u64| summary.recordings.iter().map(|one| of(&one.rows)).sum::<u64>();
     let line = |one: &BidsRecording| format!("  {} from {}\n", one.place, one.recording.display());

@@ -1,4 +1,4 @@
-//! `tomcom replay RECORDING... --check-beliefs`: replays recordings for [`crate::analysis::belief_check`].
+//! Command `tomcom replay RECORDING... --check-beliefs`: replays recordings for [`crate::analysis::belief_check`].
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -15,12 +15,12 @@ use crate::measures::belief_detection::{EstimateView, TrialView, aspect_groups};
 use crate::measures::flags::chosen_thresholds;
 use crate::session::settings::ParticipantKind;
 
-/// Checks the pooled recordings of one kitchen. The thresholds of flags are chosen on the recordings `choose_on`, which are not
-/// checked, or by cross-fitting if there are none. `done` is called after each recording.
+/// Checks the pooled recordings of one kitchen. The thresholds for flagging false beliefs are chosen on the recordings
+/// `choose_on`, which are not checked, or by cross-fitting if there are none. `done` is called after each recording.
 ///
 /// # Errors
-/// A recording that cannot be read or applied, or one of another kitchen; a recording that is both checked and chosen on; recordings
-/// to choose on whose beliefs are not known.
+/// A recording cannot be read or replayed; the recordings are of different kitchens; a recording is both checked and in
+/// `choose_on`; the beliefs in `choose_on` are not known.
 pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheck> {
     let all: Vec<PathBuf> = recordings.iter().chain(choose_on).cloned().collect();
     let BeliefCheckTrials { kitchen, mut trials, probes } = views(&all, done)?;
@@ -37,24 +37,24 @@ pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sy
     Ok(BeliefCheck::from_trials(&kitchen, &trials, thresholds, probes))
 }
 
-/// A recording's probes, with the participant.
+/// Code of a participant, with the freeze probes of one of their trials.
 pub type ProbedParticipant = (String, ProbedTrial);
 
-/// Recorded trials of one kitchen.
+/// Trials of one kitchen whose estimates are checked.
 #[derive(Clone, Debug)]
 pub struct BeliefCheckTrials {
-    /// The kitchen of all these trials.
+    /// The kitchen that all trials share.
     pub kitchen: Arc<Kitchen>,
     /// Trials in the order of the recordings.
     pub trials: Vec<TrialView>,
-    /// The probes of each trial, with the participant; `None` where there were none.
+    /// Freeze probes of each trial, with the participant; `None` for trials without probes.
     pub probes: Vec<Option<ProbedParticipant>>,
 }
 
 /// Replays recordings on all processors and collects their presses. `done` is called after each recording.
 ///
 /// # Errors
-/// Errors of [`check`].
+/// The same as of [`check`].
 pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheckTrials> {
     each_once(recordings)?;
     let results = parallel::each(recordings, |recording| view(recording), done);
@@ -68,7 +68,7 @@ pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Belie
     Ok(BeliefCheckTrials { kitchen: one_kitchen.kitchen()?, trials, probes })
 }
 
-/// The presses of one recording, and its probes.
+/// The presses and freeze probes of one recording.
 fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView, Option<ProbedParticipant>)> {
     let mut replay = Replay::open(recording)?;
     let mut probes = ProbeCollector::default();
@@ -83,7 +83,7 @@ fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView, Option<ProbedP
     }
     let session = replay.session();
     let spec = &session.spec;
-    // Every seed reuses the codes of simulated participants.
+    // Simulated participants have the same codes for every seed, so the seed is added.
     let participant = match spec.participant.kind {
         ParticipantKind::Simulated => format!("seed{}-{}", spec.seed, spec.participant.code),
         _ => spec.participant.code.clone(),

@@ -1,4 +1,4 @@
-//! Export and import of raters' codes, and of what two raters settled, as one table.
+//! Export and import of raters' codes and of two raters' consensus codes, as one table.
 
 use std::path::Path;
 
@@ -10,11 +10,11 @@ use crate::measures::cause_codes::{Code, Codes};
 use crate::measures::consensus::Consensus;
 use crate::session::settings::is_code;
 
-/// What would be right where the table names a rater.
+/// Advice in error messages on how the table names a rater.
 const RATER: &str =
     "a code of 1 to 32 letters, digits, - and _, never a name; or two of them such as R1+R2, for their consensus";
 
-/// Who gave the code of a row.
+/// Author of a row's code: one rater, or two with a consensus.
 enum RowAuthor {
     Rater(String),
     Pair([String; 2]),
@@ -32,11 +32,12 @@ impl RowAuthor {
     }
 }
 
-/// Imports the rows of a file into the recordings, in addition to existing codes. Nothing is written if a row is invalid.
+/// Imports the rows of a file into the recordings, in addition to existing codes. Nothing is written if a row is
+/// invalid.
 ///
 /// # Errors
-/// The file cannot be read, a row does not refer to an error of these recordings, two raters settled what they agree on otherwise, or
-/// a folder is not writable.
+/// The file cannot be read, a row does not refer to an error of these recordings, a consensus contradicts a code that
+/// both raters gave, or a folder is not writable.
 pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, RunError> {
     let (text, rows) = rater_codes::read_export(file)?;
     let mut changed = vec![Vec::new(); recordings.len()];
@@ -61,7 +62,7 @@ pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, Run
                 one.codes.entry(rater.clone()).or_default().0.insert(row.press, row.code.clone());
                 changed[index].push(rater);
             }
-            // The raters' own codes can stand below in the table.
+            // Consensus codes are added last, since the raters' own codes can stand in later rows of the table.
             RowAuthor::Pair(raters) => settled.push((index, raters, row)),
         }
     }
@@ -86,7 +87,7 @@ pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, Run
 }
 
 impl CodedRecording {
-    /// Adds a code that two raters share; what was found and what would be right, if they cannot.
+    /// Adds a consensus code of two raters. If that is not possible, returns what was found and what would be right.
     fn settle(&mut self, raters: &[String; 2], press: u64, code: &Code) -> Result<(), (String, String)> {
         let new = Consensus::new(&raters[0], &raters[1]);
         let own = new.raters.clone().map(|rater| self.codes.get(&rater).cloned().unwrap_or_default());
@@ -105,7 +106,7 @@ impl CodedRecording {
     }
 }
 
-/// Writes all codes of the recordings into a file: those of raters, and below them what two raters settled and still holds.
+/// Writes all codes of the recordings into a file: codes of raters, and below them the consensus codes that still hold.
 ///
 /// # Errors
 /// The file cannot be written.

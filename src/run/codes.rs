@@ -1,4 +1,4 @@
-//! `tomcom codes`: raters' codes of errors, the agreement between raters, where they disagree, and what they settled.
+//! Command `tomcom codes`: raters' codes of errors, agreement and disagreements between raters, and their consensus.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,20 +15,20 @@ use crate::measures::cause_codes::{Agreement, AgreementTable, Codable, Code, Cod
 use crate::measures::consensus::{Consensus, unsettled};
 use crate::session::settings::ParticipantKind;
 
-/// A recording with the codes of its errors.
+/// A recording with raters' codes of its errors.
 #[derive(Clone, Debug)]
 pub struct CodedRecording {
-    /// The recording's folder.
+    /// Folder of the recording.
     pub folder: PathBuf,
-    /// The errors that can be coded, and where they can lie.
+    /// The errors that can be coded, and the false beliefs that can be named as causes.
     pub codable: Codable,
-    /// These errors with their times and presses.
+    /// Errors of the recording, with times and presses.
     pub errors: Vec<ListedError>,
-    /// Codes by rater.
+    /// Codes of the errors, by the rater's identifier.
     pub codes: BTreeMap<String, Codes>,
-    /// What two raters settled.
+    /// Consensus of two raters about the codes.
     pub consensus: Option<Consensus>,
-    /// True causes, for a simulated participant.
+    /// True causes of the errors, for a simulated participant.
     pub known: Option<Codes>,
 }
 
@@ -58,13 +58,13 @@ impl CodedRecording {
         })
     }
 
-    /// The name of its folder.
+    /// Name of the recording's folder.
     pub fn name(&self) -> String {
         let resolved = self.folder.canonicalize().unwrap_or_else(|_| self.folder.clone());
         resolved.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// The settled codes that still hold.
+    /// The consensus codes that still hold, since the raters have not changed their codes.
     pub fn current(&self, consensus: &Consensus) -> Codes {
         let none = Codes::default();
         consensus.current(consensus.raters.each_ref().map(|rater| self.codes.get(rater).unwrap_or(&none)))
@@ -86,7 +86,7 @@ impl CodedRecording {
         Some(SettledSummary { of, with, agreed, settled, open: errors - settled, stale: stale.collect() })
     }
 
-    /// The errors about which two raters disagree.
+    /// The errors that two raters coded differently.
     fn disagreements(&self, of: (&String, &Codes), with: (&String, &Codes)) -> Vec<Disagreement> {
         let differ = unsettled(&self.codable.errors, [of.1, with.1]);
         let is_pairs = |consensus: &&Consensus| consensus.raters.contains(of.0) && consensus.raters.contains(with.0);
@@ -118,50 +118,50 @@ impl CodedRecording {
     }
 }
 
-/// Output of `tomcom codes`.
+/// Raters' codes, agreement and disagreements: the output of `tomcom codes`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CodesSummary {
-    /// The recordings with what each rater has coded.
+    /// Recordings, with the number of errors that each rater has coded.
     pub recordings: Vec<CodedRecordingSummary>,
-    /// Agreement of each pair of raters with common errors. A consensus is no rater.
+    /// Agreement of each pair of raters with common errors. A consensus does not count as a rater.
     pub agreements: Vec<RaterPairSummary>,
     /// Agreement of each rater with the true causes of simulated participants.
     pub known: Vec<RaterPairSummary>,
-    /// The errors that two raters coded differently, pair by pair.
+    /// The errors that two raters coded differently, for each pair of raters.
     pub disagreements: Vec<Disagreement>,
 }
 
-/// Summary of one recording.
+/// Progress of the raters in coding one recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CodedRecordingSummary {
     /// The name of the recording's folder.
     pub recording: String,
-    /// Number of errors.
+    /// Number of errors of the human in the recording.
     pub errors: u64,
     /// Number of errors coded by each rater.
     pub coded: BTreeMap<String, u64>,
-    /// What two raters settled; null if nothing was.
+    /// Consensus of two raters; null without one.
     pub consensus: Option<SettledSummary>,
 }
 
-/// What two raters settled about a recording.
+/// Consensus of two raters about a recording's errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SettledSummary {
-    /// The first rater.
+    /// Identifier of the first rater.
     pub of: String,
-    /// The second rater.
+    /// Identifier of the second rater.
     pub with: String,
-    /// Number of errors that both code alike.
+    /// Number of errors that both raters code alike.
     pub agreed: u64,
-    /// Number of errors with a shared code that holds, these among them.
+    /// Number of errors with a consensus code that holds, including those coded alike.
     pub settled: u64,
-    /// Number of errors without one.
+    /// Number of errors without a consensus code.
     pub open: u64,
-    /// Raters' codes that changed after they were settled.
+    /// Raters' codes that changed after the raters had settled them.
     pub stale: Vec<StaleCode>,
 }
 
-/// A rater's code that changed after it was settled.
+/// A rater's code that changed after two raters had settled it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct StaleCode {
     /// Number of the error in the recording, from 1.
@@ -177,47 +177,47 @@ pub struct StaleCode {
 pub struct Disagreement {
     /// The name of the recording's folder.
     pub recording: String,
-    /// The error.
+    /// The error that is coded differently.
     #[serde(flatten)]
     pub error: ListedError,
-    /// The first rater.
+    /// Identifier of the first rater.
     pub of: String,
-    /// The second rater.
+    /// Identifier of the second rater.
     pub with: String,
-    /// The first rater's cause.
+    /// Cause according to the first rater.
     pub of_cause: String,
-    /// What the first rater says was believed wrong; null for other causes.
+    /// State aspect that was believed wrong according to the first rater; null for other causes.
     pub of_aspect: Option<String>,
-    /// The second rater's cause.
+    /// Cause according to the second rater.
     pub with_cause: String,
-    /// What the second rater says was believed wrong; null for other causes.
+    /// State aspect that was believed wrong according to the second rater; null for other causes.
     pub with_aspect: Option<String>,
-    /// The cause that both settled; null if they did not, or changed a code since.
+    /// Cause in the consensus code; null without one, or if a rater changed a code since.
     pub settled_cause: Option<String>,
-    /// What they settled was believed wrong; null for other causes.
+    /// State aspect that was believed wrong by the consensus code; null for other causes.
     pub settled_aspect: Option<String>,
-    /// Both codes in words.
+    /// Codes of both raters in words.
     #[serde(skip)]
     pub words: [String; 2],
-    /// What both settled, in words.
+    /// Consensus code in words.
     #[serde(skip)]
     pub settled_words: Option<String>,
 }
 
-/// Agreement of two raters.
+/// Agreement between two raters, or between a rater and the simulation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RaterPairSummary {
-    /// The first rater.
+    /// Identifier of the first rater.
     pub of: String,
-    /// The second rater, or "simulation" for what a simulated participant believed.
+    /// Identifier of the second rater, or "simulation" for the true causes of a simulated participant.
     pub with: String,
-    /// How far they agree, over all recordings together.
+    /// Agreement of the two, over all recordings together.
     #[serde(flatten)]
     pub agreement: Agreement,
 }
 
 impl CodesSummary {
-    /// Summary of recordings.
+    /// Summary of coded recordings.
     pub fn from_recordings(recordings: &[CodedRecording]) -> CodesSummary {
         let mut pairs: BTreeMap<(String, String), (AgreementTable, Vec<Disagreement>)> = BTreeMap::new();
         let mut known: BTreeMap<String, AgreementTable> = BTreeMap::new();
@@ -258,7 +258,7 @@ impl CodesSummary {
     }
 }
 
-/// The summary as text.
+/// The summary of raters' codes as text for the terminal.
 pub fn describe(figures: &CodesSummary) -> String {
     let mut text = String::new();
     for one in &figures.recordings {
@@ -295,7 +295,7 @@ fn describe_consensus(found: &SettledSummary) -> String {
     text
 }
 
-/// The disagreements as a table, below it how to settle them.
+/// The disagreements as a table, followed by how to settle them.
 fn describe_disagreements(all: &[Disagreement]) -> String {
     let Some(first) = all.first() else { return String::new() };
     let recordings = all.iter().map(|one| one.recording.chars().count()).max().unwrap_or(0).max(9);

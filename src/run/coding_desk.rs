@@ -1,4 +1,4 @@
-//! Opens and saves the codes of a rater, and of two raters who settle their differences.
+//! Opens and saves the codes of one rater, or of two raters who settle their differences, for the console.
 
 use super::error::ReviewError;
 use super::seekable_replay::SeekableReplay;
@@ -25,10 +25,12 @@ pub(super) fn of_rater(film: &SeekableReplay, rater: &str) -> Result<RaterSessio
     Ok(session)
 }
 
-/// The session of two raters about the errors that they coded differently. What they agree on is taken over.
+/// The session of two raters who settle the errors that they coded differently. Codes on which they agree are taken
+/// over.
 ///
 /// # Errors
-/// One of them has coded nothing, other raters settled this recording, a file is damaged, or the folder cannot be written to.
+/// A rater has coded nothing, other raters have settled this recording, a file is damaged, or the folder cannot be
+/// written to.
 pub(super) fn of_pair(film: &SeekableReplay, raters: [&str; 2]) -> Result<RaterSession, ReviewError> {
     let (log, follower) = (film.replay.log(), &film.replay.follower);
     let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
@@ -58,14 +60,15 @@ pub(super) fn of_pair(film: &SeekableReplay, raters: [&str; 2]) -> Result<RaterS
         ListedError::all(follower).into_iter().filter(|error| open.contains(&error.press)).collect();
     let current = consensus.current(own.each_ref()).0.into_iter();
     let codes = Codes(current.filter(|(press, _)| open.contains(press)).collect());
-    // What can be undone in this session stands in its codes; the consensus keeps the rest.
+    // Errors that the raters can still change are in the session's codes; the consensus holds the others.
     consensus.settled.retain(|press, _| !codes.0.contains_key(press));
     let session = RaterSession::new(CodingParty::Pair { consensus, own }, errors, codes);
     save(film, &session)?;
     Ok(session)
 }
 
-/// What is to be said when the recording is opened: where the session begins, and what changed since the errors were settled.
+/// Message when a recording is opened for raters: at which error the session begins, and which codes changed since the
+/// errors were settled.
 pub(super) fn greeting(session: &RaterSession) -> String {
     let name = session.name();
     let begins = match session.first_open() {
@@ -84,7 +87,7 @@ pub(super) fn greeting(session: &RaterSession) -> String {
     }
 }
 
-/// Saves the codes beside the log.
+/// Saves the raters' codes beside the log.
 ///
 /// # Errors
 /// The folder cannot be written to.

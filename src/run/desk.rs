@@ -1,5 +1,5 @@
-//! The wizard's desk: terminal, eye tracker, the participant's display, and termination signals. It is opened once for all
-//! recordings of a series.
+//! The operator's desk: terminal, eye tracker, the participant's display, and termination signals. The desk is opened
+//! once for all recordings of a series.
 
 use std::io;
 use std::net::SocketAddr;
@@ -29,7 +29,7 @@ use crate::session::SessionSpec;
 use crate::session::accuracy_check::AcceptedGazeCheck;
 use crate::session::settings::{ConsoleSpec, GazeSource};
 
-/// Largest number of tracker messages that are processed together, so that keys are not delayed.
+/// Largest number of tracker messages that are processed together; more would delay keys.
 const PACKET: usize = 32;
 /// Longest wait for Pupil Capture to finish its last request.
 const SETTLE: Duration = Duration::from_secs(2);
@@ -46,10 +46,10 @@ use lsl_desk::LslDesk;
 use wall::WallDisplay;
 pub(super) use wall::{PageInput, is_consent};
 
-/// Devices and terminal that the recordings of a series share.
+/// Terminal and devices that the recordings of a series share.
 pub(super) struct OperatorDesk {
     pub screen: TerminalScreen,
-    /// Theme of questions.
+    /// Colour theme of questions before a recording.
     pub theme: Theme,
     pub seat: OperatorInput,
     pub tracker: GazeTracker,
@@ -57,28 +57,28 @@ pub(super) struct OperatorDesk {
     pub lsl: LslDesk,
 }
 
-/// Input of the wizard, and termination signals.
+/// The wizard's input from the terminal, and termination signals from the system.
 pub(super) struct OperatorInput {
     hands: TerminalInput,
     end: Pin<Box<dyn Future<Output = io::Result<()>>>>,
 }
 
-/// The external gaze source.
+/// External gaze source: an eye tracker, a stream or a file.
 #[derive(Default)]
 pub(super) struct GazeTracker {
     news: Option<Receiver<GazeNews>>,
     /// Channel for requests to Pupil Capture.
     orders: Option<Sender<CaptureRequest>>,
-    /// The end of the thread that reads a stream of the Lab Streaming Layer, waited for once `news` is dropped.
+    /// End of the thread that reads a Lab Streaming Layer stream; it is waited for once `news` is dropped.
     _inlet: Option<InletEnd>,
     file: Option<Arc<GazeFile>>,
-    /// How senders at other computers pair, if they do.
+    /// Pairing codes for gaze senders at other computers, if they have to pair.
     pairing: Option<GazePairing>,
-    /// Latest state of the tracker, for recordings that begin later.
+    /// Latest connection state of the tracker, for recordings that begin later.
     link: Option<GazeNews>,
     sees_display: Option<GazeNews>,
     other_surfaces: Option<GazeNews>,
-    /// Last accepted gaze accuracy check.
+    /// Last gaze accuracy check that was accepted.
     calibrated: Option<AcceptedGazeCheck>,
 }
 
@@ -95,11 +95,11 @@ impl GazeTracker {
 }
 
 impl OperatorDesk {
-    /// Opens the devices that these settings need, and takes the terminal.
+    /// Opens the devices that these settings need, and takes over the terminal.
     ///
     /// # Errors
-    /// There is no terminal, the gaze port cannot be opened, a gaze file cannot be read, the tags do not fit on the display, or the library
-    /// of the Lab Streaming Layer is missing.
+    /// There is no terminal, the gaze port cannot be opened, a gaze file cannot be read, the tags do not fit on the
+    /// display, or the library of the Lab Streaming Layer is missing.
     pub async fn take(spec: &SessionSpec, kitchen: &Kitchen) -> Result<OperatorDesk, LiveError> {
         outlive_file_limits().map_err(TerminalError)?;
         let lsl = LslDesk::open(spec)?;
@@ -108,7 +108,7 @@ impl OperatorDesk {
         Ok(OperatorDesk { tracker, wall, lsl, ..OperatorDesk::without_devices(&spec.console)? })
     }
 
-    /// Takes the terminal, without devices.
+    /// Takes over the terminal, without devices.
     ///
     /// # Errors
     /// There is no terminal.
@@ -122,7 +122,8 @@ impl OperatorDesk {
 }
 
 impl OperatorInput {
-    /// The next input; `None` if the program has to end, because of a signal or because the terminal was closed.
+    /// Waits for the next input of the wizard; `None` if the program has to end, because of a signal or because the
+    /// terminal was closed.
     pub async fn next(&mut self) -> Option<ConsoleMessage> {
         tokio::select! {
             biased;
@@ -165,7 +166,7 @@ impl GazeTracker {
             }
             GazeSource::Lsl => {
                 let stream = spec.lsl.as_ref().and_then(|lsl| lsl.gaze.clone());
-                // The settings have been checked: there are both.
+                // The settings were checked, so both library and stream exist.
                 let Some((library, stream)) = desk.library().zip(stream) else { return Ok(GazeTracker::default()) };
                 let followed = lsl::follow(library, stream, kitchen.display_m);
                 let (news, inlet) = followed.map_err(|_| LslError::NoThread)?;
@@ -179,7 +180,8 @@ impl GazeTracker {
     pub async fn next(&mut self) -> Option<Vec<GazeNews>> {
         let Some(news) = &mut self.news else { return std::future::pending().await };
         let mut packet = Vec::new();
-        // All messages are received at once, so none is lost if another branch is selected.
+        // All pending messages are received in one call, so that none is lost if another branch of the event loop is
+        // selected.
         news.recv_many(&mut packet, PACKET).await;
         packet.iter().for_each(|news| self.know(news));
         (!packet.is_empty()).then_some(packet)
@@ -197,23 +199,23 @@ impl GazeTracker {
         }
     }
 
-    /// Messages with the present tracker state, for a recording that begins now.
+    /// Messages that describe the tracker's present state, for a recording that begins now.
     pub fn known(&self) -> impl Iterator<Item = GazeNews> {
         let known = self.link.iter().chain(&self.sees_display).chain(&self.other_surfaces);
         known.cloned().collect::<Vec<_>>().into_iter()
     }
 
-    /// How senders at other computers pair, if they do.
+    /// Pairing codes for gaze senders at other computers, if they have to pair.
     pub fn pairing(&self) -> Option<GazePairing> {
         self.pairing.clone()
     }
 
-    /// The file that gaze is replayed from, if it is.
+    /// The file from which gaze is replayed, if any.
     pub fn file(&self) -> Option<Arc<GazeFile>> {
         self.file.clone()
     }
 
-    /// The way to Pupil Capture, if the tracker is one.
+    /// Channel for requests to Pupil Capture, if that is the tracker.
     pub fn orders(&self) -> Option<Sender<CaptureRequest>> {
         self.orders.clone()
     }
@@ -225,7 +227,7 @@ impl GazeTracker {
         };
         let (sender, done) = oneshot::channel();
         if orders.try_send(CaptureRequest::Report(sender)).is_ok() {
-            // Capture may have been closed.
+            // Pupil Capture may have been closed, so the wait is limited.
             let _ = timeout(SETTLE, done).await;
         }
     }

@@ -1,14 +1,17 @@
-//! The engine: a running session. It raises the session's own events when they are due, accepts events from outside, and returns
-//! every event once, stamped and in order, for the log.
+//! The engine runs a session: it raises the session's own events when they are due, accepts events from outside, and
+//! returns every event once, stamped and in order, for the log.
 //!
-//! At equal times the order is timers, robot, simulated participant, scripted wizard, probes; immediate consequences are applied before anything
-//! else. `headless` jumps from one due time to the next, `live` sleeps until then, and verification uses the recorded times.
+//! At equal times the order is timers, robot, simulated participant, scripted wizard, probes; immediate consequences
+//! are applied before anything else. `headless` jumps from one due time to the next, `live` sleeps until then, and
+//! verification uses the recorded times.
 //!
-//! A pause stops clock, robot, orders and participant; pending events are postponed by its length. Presses during a pause are recorded and
-//! do not count. The signals of a scripted wizard and of the assistant are internal events, so a verification repeats them; those of a
-//! person are external. A recommendation is an external event (`advised`): computed at once in headless runs, by a thread in live ones.
+//! A pause stops clock, robot, orders and participant; pending events are postponed by the length of the pause. Presses
+//! during a pause are recorded and do not count. The signals of a scripted wizard and of the assistant are internal
+//! events, so a verification repeats them; those of a person are external. A recommendation is an external event
+//! (`advised`): computed at once in headless runs, by a thread in live ones.
 //!
-//! It has no clock: the caller passes the time, so that live sessions, simulations and verifications use the same code.
+//! The engine has no clock: the caller passes the time, so that live sessions, simulations and verifications use the
+//! same code.
 
 mod agents;
 mod consequences;
@@ -44,7 +47,7 @@ use crate::session::timers::TimerQueue;
 use crate::session::{Applied, Effect, Event, Header, Session, SessionSpec, Stamped, Timer};
 use crate::wizard::{ScriptedWizard, WizardAction};
 
-/// A running session.
+/// Runs a session: raises due events, accepts external ones, and stamps all of them.
 #[derive(Clone, Debug)]
 pub struct Engine {
     follower: Follower,
@@ -52,32 +55,33 @@ pub struct Engine {
     orders: OrderList,
     robot: Robot,
     participant: Option<SimulatedParticipant>,
-    /// Drop-outs of the simulated tracker, if the session has any.
+    /// Gaps in the simulated eye tracker's data, if the session has any.
     gaps: Option<GazeGaps>,
-    /// The scripted wizard, if there is one.
+    /// The scripted wizard of the session, if there is one.
     wizard: Option<ScriptedWizard>,
     next_seq: u64,
-    /// Stamped events that have not been returned yet.
+    /// Stamped events that the engine has not returned to the caller yet.
     out: Vec<Stamped>,
-    /// The latest event after which advice is requested, once its immediate consequences have been applied.
+    /// The latest event after which advice is requested; the request is made once the event's immediate consequences
+    /// have been applied.
     to_ask: Option<(u64, SessionTime)>,
     /// The latest request for advice, until it is answered.
     asked: Option<AdviceRequest>,
-    /// Requests for advice that have not been returned yet.
+    /// Requests for advice that the engine has not returned to the caller yet.
     questions: Vec<AdviceRequest>,
 }
 
-/// Result of an input.
+/// Result of an event from outside: the events that it led to, or why it was refused.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "the events belong into the log, also when the input was refused"]
 pub struct InputResult {
-    /// Events until the input and because of it, in order.
+    /// Events up to the one from outside, and its immediate consequences, in order.
     pub events: Vec<Stamped>,
-    /// Reason for refusing the input, in words for the wizard.
+    /// Why the event from outside was refused, in words for the wizard.
     pub refused: Option<String>,
 }
 
-/// Source of the next internal event; ties go to the first variant.
+/// Source of the next internal event; at equal times, the first variant goes first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Source {
     Timer,
@@ -88,11 +92,12 @@ enum Source {
 }
 
 impl Engine {
-    /// A session before its first event. `cost` may be shared with other engines of the same kitchen: what it remembers
-    /// never changes what it answers.
+    /// A session before its first event. `cost` may be shared with other engines of the same kitchen: its cache never
+    /// changes its results.
     ///
     /// # Panics
-    /// The settings ask for an arm in the physics, and this build has no physics: `SessionSpec::require_built` tells.
+    /// The settings ask for an arm with simulated physics, and this build has none; `SessionSpec::require_built` checks
+    /// that.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> Engine {
         let orders = OrderList::new(kitchen.dishes.len(), &spec, trial);
         let robot = trial_robot(&kitchen, &spec, trial);
@@ -124,22 +129,22 @@ impl Engine {
         Advisor::new(self.session(), self.follower.cost.clone())
     }
 
-    /// New requests for advice since the last call, the oldest first.
+    /// Requests for advice since the last call, the oldest first.
     pub fn take_questions(&mut self) -> Vec<AdviceRequest> {
         std::mem::take(&mut self.questions)
     }
 
-    /// The same engine without attribution of errors, which takes too long for a running session.
+    /// This engine without attribution of errors to causes, which takes too long in a running session.
     pub fn without_causes(self) -> Engine {
         Engine { follower: self.follower.without_causes(), ..self }
     }
 
-    /// The present belief estimate.
+    /// The present estimate of the human's belief.
     pub fn belief(&self) -> &DirichletBelief {
         self.follower.filter.belief()
     }
 
-    /// Whether the belief about an aspect is false now: by what a simulated participant believes, else by the estimate.
+    /// Whether the belief about an aspect is false now: by the belief of a simulated participant, else by the estimate.
     pub fn is_false(&self, aspect: AspectId) -> bool {
         let (kitchen, state) = (&self.session().kitchen, self.session().state);
         let p_truth = match &self.participant {
@@ -159,7 +164,7 @@ impl Engine {
         &self.follower.judged
     }
 
-    /// Time of the next internal event; `None` while the trial is not running.
+    /// Session time of the next internal event; `None` while the trial is not running.
     pub fn next_due(&self) -> Option<SessionTime> {
         self.next_source().map(|(time, _)| time)
     }
@@ -170,8 +175,8 @@ impl Engine {
         std::mem::take(&mut self.out)
     }
 
-    /// Applies an event from outside (wizard, participant, tracker) at `time`, after all internal events due before. A time before the
-    /// last event is replaced by that of the last event.
+    /// Applies an event from outside (wizard, participant, tracker) at `time`, after all internal events due before. A
+    /// time before the last event is replaced by that of the last event.
     pub fn input(&mut self, time: SessionTime, event: Event) -> InputResult {
         while self.next_due().is_some_and(|due| due <= time) {
             self.fire_next();
@@ -184,17 +189,17 @@ impl Engine {
         InputResult { events: std::mem::take(&mut self.out), refused: taken.err() }
     }
 
-    /// The session with everything that is derived from it.
+    /// The session with everything that is derived from it, such as judged presses and the estimate.
     pub fn follower(&self) -> &Follower {
         &self.follower
     }
 
-    /// The same engine without the scripted wizard, who sends no further signals.
+    /// This engine without its scripted wizard, who sends no further signals.
     pub fn without_wizard(self) -> Engine {
         Engine { wizard: None, ..self }
     }
 
-    /// The engine of a recording's header, with what the format of the recording has.
+    /// The engine for a recording's header, without features that the recording's format lacks.
     ///
     /// # Panics
     /// As [`Self::new`].
@@ -203,7 +208,7 @@ impl Engine {
         if header.has_offers() { engine } else { engine.without_offers() }
     }
 
-    /// The engine of a recording that was made without offers.
+    /// This engine without offers to the wizard, for recordings that have none.
     pub fn without_offers(mut self) -> Engine {
         self.follower.session.makes_offers = false;
         self
@@ -224,7 +229,7 @@ impl Engine {
         let participant = self.participant.as_ref().and_then(SimulatedParticipant::next_due);
         let sources = [
             (self.timers.next_due(), Source::Timer),
-            // A held arm has been due for a while; its event must not precede events that have happened.
+            // An arm that was held can have been due earlier; its event gets no earlier time than the last event.
             (self.robot.next_due().map(|due| due.max(self.session().time)), Source::Robot),
             (participant, Source::Participant),
             (self.wizard.as_ref().and_then(ScriptedWizard::next_due), Source::Wizard),
@@ -260,7 +265,7 @@ impl Engine {
                     self.record_own(now, Event::Gaze(sample));
                 }
             }
-            // With an external tracker, the simulated gaze is not used.
+            // The simulated gaze is not used if an external tracker delivers gaze.
             Some(ParticipantAction::Gaze(_)) | None => {}
             Some(ParticipantAction::Press { button, belief }) => {
                 let button = self.session().kitchen.button(Agent::Human, button).name.clone();
@@ -304,7 +309,7 @@ impl Engine {
         self.record_own(now, event);
     }
 
-    /// Applies immediate consequences, then opens or closes offers and requests advice.
+    /// Applies the immediate consequences of an event, then opens or closes offers and requests advice.
     fn settle(&mut self, now: SessionTime) {
         self.let_follow(now);
         self.note_unawareness(now);
@@ -317,7 +322,7 @@ impl Engine {
         self.review_probe(now);
     }
 
-    /// Applies due timers, then the robot's reaction to the state.
+    /// Applies the timers that are due, then lets the robot react to the state.
     fn let_follow(&mut self, now: SessionTime) {
         while self.session().is_running() {
             if self.timers.next_due().is_some_and(|due| due <= now) {
@@ -338,7 +343,8 @@ impl Engine {
         self.record(now, event).expect("an engine's own events fit its session");
     }
 
-    /// Stamps and applies an event, performs its effects, informs robot and participant, and queues the event for the caller.
+    /// Stamps and applies an event, performs its effects, informs robot and participant, and queues the event for the
+    /// caller.
     fn record(&mut self, now: SessionTime, event: Event) -> Result<(), ApplyError> {
         let event = match event {
             Event::Gaze(sample) => Event::Gaze(sample.rounded()),
@@ -360,7 +366,8 @@ impl Engine {
                 self.acted_on(advice)
             }
             Event::Probe(ProbeEvent::Ended { .. }) => {
-                // Advice that came while the task stood still was refused. The same request again gives the same advice.
+                // A recommendation that came while the task stood still was refused. The same request leads to the same
+                // recommendation.
                 self.questions.extend(self.asked.clone());
                 None
             }

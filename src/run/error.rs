@@ -1,4 +1,4 @@
-//! Errors of commands on recordings, and of running a console.
+//! Errors of commands that read recordings, and of running a console.
 
 use std::io;
 use std::net::{IpAddr, SocketAddr};
@@ -11,7 +11,7 @@ use crate::edge::log::WriteError;
 use crate::edge::lsl::LslError;
 use crate::gaze::tags::TagError;
 
-/// A file cannot be read, or a result cannot be written.
+/// Error of a command: a file cannot be read, or a result cannot be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum RunError {
     /// A file cannot be read.
@@ -35,14 +35,14 @@ impl From<FileError> for RunError {
 #[error("the console cannot be opened: {0}")]
 pub struct TerminalError(pub io::Error);
 
-/// Error of a live session.
+/// Error of a live session: a device, a file or the recording fails.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum LiveError {
     /// The console cannot be opened.
     #[error(transparent)]
     #[diagnostic(help("run it in a terminal, not through a pipe"))]
     Terminal(#[from] TerminalError),
-    /// A key cannot be bound.
+    /// A key of the console cannot be bound.
     #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy))]
     Keys(#[from] KeyError),
@@ -50,13 +50,13 @@ pub enum LiveError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
-    /// Nothing can listen for gaze.
+    /// The port for gaze samples cannot be opened.
     #[error("nothing can listen at {at} for gaze: {reason}")]
     #[diagnostic(help("another gaze_port in the session file, or as gaze_listen an address of this computer"))]
     Gaze {
-        /// The address and the port.
+        /// Address and port that cannot be opened.
         at: SocketAddr,
-        /// Why not.
+        /// Why the operating system could not open the port.
         reason: io::Error,
     },
     /// The Lab Streaming Layer cannot be used.
@@ -67,14 +67,14 @@ pub enum LiveError {
     #[error("nothing can listen on {address}, port {port}, for the participant's display: {reason}")]
     #[diagnostic(help("another port in the session file (port under [display]), or an address of this computer"))]
     Display {
-        /// The address to listen on.
+        /// Address of the display's server.
         address: IpAddr,
-        /// The port there.
+        /// Port of the display's server.
         port: u16,
-        /// Why not.
+        /// Why the operating system could not open the address.
         reason: io::Error,
     },
-    /// The tags do not fit on the display, so that the eye tracker has no surface.
+    /// The tags do not fit on the display, so that the eye tracker could not find it.
     #[error("the eye tracker has no surface to look for: found {}", .0.found)]
     #[diagnostic(help("{}; or a surface of your own, with its corners in [tracker]", .0.remedy))]
     Tags(TagError),
@@ -86,7 +86,7 @@ pub enum LiveError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Resume(#[from] ResumeError),
-    /// The recordings do not belong to the study plan, as this says.
+    /// Recordings do not belong to the study plan, for this reason.
     #[error("found {0}")]
     #[diagnostic(help(
         "the plan as it was, or another folder with --out for another plan; tomcom plan SESSION shows it"
@@ -100,7 +100,7 @@ impl From<FileError> for LiveError {
     }
 }
 
-/// Error of showing a recording.
+/// Error of showing a recording at the console.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ReviewError {
     /// The console cannot be opened.
@@ -115,13 +115,13 @@ pub enum ReviewError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
-    /// The record of a training cannot be written.
+    /// The record of a wizard's training cannot be written.
     #[error("{}: the training cannot be recorded: {reason}", path.display())]
     #[diagnostic(help("a folder that can be written to, with --out"))]
     Training {
-        /// The file.
+        /// Path of the training record.
         path: PathBuf,
-        /// Why not.
+        /// Why the operating system could not write the file.
         reason: io::Error,
     },
     /// A key of the recording's key file cannot be bound.

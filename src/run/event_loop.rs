@@ -1,7 +1,7 @@
 //! The event loop of every console: live session, review, training, and the questions before a recording.
 //!
-//! It waits for the next event, passes it to the shell as a [`LoopEvent`], and draws. A shell is one kind of console: it gives its
-//! deadlines, handles events, and provides the view.
+//! The loop waits for the next event, passes it to the shell as a [`LoopEvent`], and draws. A shell is one kind of
+//! console: it tells its deadlines, handles events, and provides the view.
 
 use std::time::Duration;
 
@@ -18,76 +18,77 @@ use crate::edge::gaze_input::GazeNews;
 use crate::edge::terminal::TerminalScreen;
 use crate::session::Session;
 
-/// Least time between frames (30 frames per second).
+/// Least time between frames of the console (30 frames per second).
 pub(super) const FRAME: Duration = Duration::from_millis(33);
-/// Sampling period of the mouse pointer as gaze (60 Hz).
+/// Sampling period of the mouse pointer when it stands for gaze (60 Hz).
 const POINTER: Duration = Duration::from_nanos(16_666_667);
-/// The period of [`LoopEvent::FileTick`].
+/// Period of [`LoopEvent::FileTick`], the reading and flushing of files.
 const FILES: Duration = Duration::from_millis(50);
-/// The period of [`LoopEvent::WatchTick`].
+/// Period of [`LoopEvent::WatchTick`], the check of recording and devices.
 const WATCH: Duration = Duration::from_millis(250);
 
-/// An event of the loop. Several pending events are handled in the order of the variants.
+/// An event of the console's event loop. If several are pending, they are handled in the order of the variants.
 pub(super) enum LoopEvent {
-    /// A termination signal arrived, or the terminal was closed.
+    /// The program has to end: a termination signal arrived, or the terminal was closed.
     EndRequest,
-    /// An input of the terminal: key, mouse, size, focus.
+    /// An input from the terminal: key, mouse, size, focus.
     Terminal(ConsoleMessage),
     /// An internal event of the session is due.
     EngineDue,
-    /// A step of a gaze accuracy check is due.
+    /// A step of a check of gaze accuracy is due.
     TargetDue,
-    /// An input of the participant's page.
+    /// An input from the participant's page.
     Page(PageInput),
     /// A recommendation of the assistant.
     Advice(Box<Recommendation>),
-    /// Time to sample the mouse pointer.
+    /// The mouse pointer is due to be sampled as gaze.
     PointerTick,
-    /// Time to flush or read growing files.
+    /// Growing files are due to be flushed or read.
     FileTick,
-    /// Time to check the state of recording and devices.
+    /// The state of recording and devices is due to be checked.
     WatchTick,
-    /// Time to draw a frame.
+    /// A frame is due to be drawn.
     FrameDue,
-    /// The next sample of a file of gaze is due.
+    /// The next sample of a gaze file is due.
     FileGazeDue,
-    /// Tracker messages in order of arrival. They come last, so that a tracker that sends too much delays only itself.
+    /// Messages of the eye tracker, in order of arrival. This variant is last, so that a tracker that sends too much
+    /// delays only itself.
     Gaze(Vec<GazeNews>),
 }
 
-/// Deadlines of a shell; `None` for no deadline.
+/// Deadlines of a console's shell; `None` for no deadline.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShellDeadlines {
     pub engine: Option<Instant>,
     pub target: Option<Instant>,
     pub file_gaze: Option<Instant>,
-    /// Time from the last frame to the next.
+    /// Longest time from the last frame to the next.
     pub frame_after: Duration,
 }
 
 impl Default for ShellDeadlines {
-    /// Only frames, at the highest rate.
+    /// No deadlines except for frames, which come at the highest rate.
     fn default() -> ShellDeadlines {
         ShellDeadlines { engine: None, target: None, file_gaze: None, frame_after: FRAME }
     }
 }
 
-/// Content that a shell shows.
+/// Content that a console's shell shows.
 pub(super) enum ShellView<'a> {
     Console(&'a Session, &'a ConsoleModel),
-    /// A question without a session.
+    /// A question to the wizard before a recording.
     Question(&'a QuestionPage, Theme),
-    /// A list of recordings without a session.
+    /// A list of recordings to choose from.
     Recordings(&'a RecordingPicker, Theme),
 }
 
-/// One kind of console: live session, review, training, question, or list of recordings.
+/// One kind of console in the event loop: live session, review, training, question, or list of recordings.
 pub(super) trait ConsoleShell {
-    /// Result with which the shell is left.
+    /// Result when the shell is left.
     type Outcome;
     type Error: From<TerminalError>;
 
-    /// The shell's deadlines, asked before each wait.
+    /// Deadlines of the shell; called before each wait.
     fn deadlines(&mut self) -> ShellDeadlines {
         ShellDeadlines::default()
     }
@@ -97,15 +98,15 @@ pub(super) trait ConsoleShell {
         false
     }
 
-    /// Waits for the next recommendation; forever without an advisor.
+    /// Waits for the assistant's next recommendation; forever without an advisor.
     async fn advice(&mut self) -> Option<Recommendation> {
         std::future::pending().await
     }
 
-    /// Handles an event; returns the result if the shell is left.
+    /// Handles an event of the loop; returns the shell's result if the shell is left.
     fn take(&mut self, event: LoopEvent) -> Result<Option<Self::Outcome>, Self::Error>;
 
-    /// Advances to the present before a frame; returns whether a frame is needed.
+    /// Advances the shell to the present time before a frame; returns whether a frame is needed.
     fn advance(&mut self) -> bool {
         true
     }
@@ -113,14 +114,14 @@ pub(super) trait ConsoleShell {
     /// Prepares the frame that is drawn next.
     fn prepare(&mut self) {}
 
-    /// The present content.
+    /// The content to be shown.
     fn view(&self) -> ShellView<'_>;
 
-    /// Notes that the frame was passed to the terminal.
+    /// Notes that a frame was passed to the terminal.
     fn drawn(&mut self) {}
 }
 
-/// Runs a shell at a desk until it is left; `None` if the program has to end or the terminal was closed.
+/// Runs a shell in the event loop until it is left; `None` if the program has to end or the terminal was closed.
 pub(super) async fn run<S: ConsoleShell>(
     shell: &mut S,
     desk: &mut OperatorDesk,
@@ -143,12 +144,12 @@ pub(super) async fn run<S: ConsoleShell>(
     Ok(None)
 }
 
-/// Periodic deadlines of the loop.
+/// Deadlines of the event loop's periodic events.
 struct LoopTicks {
     pointer: Interval,
     files: Interval,
     watch: Interval,
-    /// Time of the last frame.
+    /// Time at which the last frame was drawn.
     frame: Option<Instant>,
 }
 
@@ -163,7 +164,7 @@ impl LoopTicks {
     }
 }
 
-/// Waits for the next event.
+/// Waits for the next event of the loop.
 async fn next_event<S: ConsoleShell>(shell: &mut S, desk: &mut OperatorDesk, ticks: &mut LoopTicks) -> LoopEvent {
     let (due, with_pointer) = (shell.deadlines(), shell.samples_pointer());
     let frame = ticks.frame.map_or_else(Instant::now, |last| last + due.frame_after);

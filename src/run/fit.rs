@@ -1,4 +1,4 @@
-//! `tomcom fit RECORDING...`: reads recordings, and computes their likelihood on all processors for
+//! Command `tomcom fit RECORDING...`: reads recordings, and computes their likelihood on all processors for
 //! [`crate::analysis::fitting`].
 
 use std::path::{Path, PathBuf};
@@ -18,24 +18,25 @@ use crate::session::Event;
 use crate::session::probe_sampling;
 use crate::session::probes::{ProbeEvent, ProbeQuestion};
 
-/// The trials of a fit, all of one kitchen.
+/// Recorded trials to which the human model is fitted, all of one kitchen.
 #[derive(Clone, Debug)]
 pub struct FitTrials {
-    /// The kitchen of all these trials.
+    /// The kitchen that all trials share.
     pub kitchen: Arc<Kitchen>,
     /// Human model in the header of the first recording.
     pub model: HumanModel,
     /// Whether another recording has a different human model.
     pub differ: bool,
-    /// Observations of each trial.
+    /// Observations of each trial, to which the model is fitted.
     pub observations: Vec<FitObservations>,
 }
 
 impl FitTrials {
-    /// Reads recordings; their answers to probes only with `probes`.
+    /// Reads recordings for a fit; answers to freeze probes are read only with `probes`.
     ///
     /// # Errors
-    /// A recording that cannot be read or applied, or one of another kitchen; no answer where answers are to be used.
+    /// A recording cannot be read or replayed; the recordings are of different kitchens; there are no answers although
+    /// `probes` asks for them.
     pub fn read(recordings: &[PathBuf], probes: bool) -> FileResult<FitTrials> {
         each_once(recordings)?;
         let (mut one_kitchen, mut observations, mut models) = (SameKitchen::default(), Vec::new(), Vec::new());
@@ -56,7 +57,7 @@ impl FitTrials {
         Ok(FitTrials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations })
     }
 
-    /// The same trials without their answers.
+    /// These trials without answers to freeze probes.
     fn without_answers(&self) -> FitTrials {
         let mut trials = self.clone();
         trials.observations.iter_mut().for_each(|one| one.answers.clear());
@@ -64,7 +65,7 @@ impl FitTrials {
     }
 }
 
-/// Observations and answers of a recording, without those about what comes next.
+/// Observations and probe answers of a recording, without answers about what comes next.
 fn read_trial(replay: &mut Replay) -> FileResult<FitObservations> {
     let mut trial = FitObservations { seed: replay.session().seed(), ..FitObservations::default() };
     let mut questions: Vec<ProbeQuestion> = Vec::new();
@@ -93,8 +94,8 @@ fn read_trial(replay: &mut Replay) -> FileResult<FitObservations> {
     Ok(trial)
 }
 
-/// Fits the parameters of a plan to trials. `tried` is called after each evaluation. Where there are answers to probes, the fit is repeated
-/// without them, to tell what they add.
+/// Fits the parameters of a plan to trials. `tried` is called after each evaluation. If there are answers to freeze
+/// probes, the fit is repeated without them, to tell what the answers add.
 pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
     let mut found = fit_once(trials, plan, &tried);
     if let Some(answers) = &mut found.answers {
@@ -110,11 +111,11 @@ pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
 
 fn fit_once(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
     let kitchen = &trials.kitchen;
-    // The threads' caches of costs to go are kept between evaluations.
+    // Each thread keeps its cache of costs to go between evaluations.
     let pool = WorkerPool::new(|| CostToGo::new(kitchen.clone()));
     let of_all = |model: &HumanModel| {
         let of_trial = |cost: &mut CostToGo, trial: &FitObservations| likelihood(kitchen, model, trial, cost);
-        // Summed in the order of the trials, so the sum does not depend on the number of threads.
+        // Likelihoods are added in the order of the trials, so that the sum does not depend on the number of threads.
         let found = pool.each(&trials.observations, of_trial, || {});
         found.into_iter().fold(Likelihood::default(), Likelihood::plus)
     };

@@ -1,14 +1,14 @@
-//! Runs a session in virtual time, from one due event to the next, as fast as possible.
+//! Runs a session in virtual time as fast as possible, by jumping from one due event to the next.
 
 use super::engine::Engine;
 use crate::base::time::SessionTime;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{Event, Phase, Stamped};
 
-/// Delay after which the run resumes an arm that stopped by itself, in seconds, in place of a wizard.
+/// Time after which a simulated attendant resumes an arm that has stopped by itself, in seconds.
 const LOOKS_S: f64 = 3.0;
 
-/// Takes the place of a wizard beside the robot: resumes an arm that stopped by itself.
+/// Stands in for a wizard in simulations: resumes an arm that has stopped by itself.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Attendant {
     stopped: Option<SessionTime>,
@@ -39,7 +39,7 @@ pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<()
     }
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
     let mut attendant = Attendant::default();
-    // The end of the trial's time is always pending, so there is a next event until the trial ends.
+    // Until the trial ends, a next event is always pending: the end of the trial's time.
     while engine.session().phase == Phase::Running || engine.session().is_frozen() {
         for question in engine.take_questions() {
             if let Some(advisor) = &mut advisor {

@@ -1,4 +1,4 @@
-//! How a live session was left, and its result.
+//! Result of a live session, and the way in which the wizard left it.
 
 use std::path::PathBuf;
 
@@ -7,34 +7,34 @@ use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::trial_summary::TrialSummary;
 use crate::base::words::count;
 
-/// The wizard's way of leaving a recording.
+/// How the wizard left a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeavingReason {
-    /// The program ends.
+    /// The wizard ended the program.
     Quit,
-    /// Continue with the next recording of the series.
+    /// The wizard went on to the next recording of the series.
     Next,
-    /// Repeat the trial in another recording.
+    /// The wizard repeats the trial in a new recording.
     Redo,
 }
 
-/// Result of a live session.
+/// Result of a live session: recording, summary, and how it was left.
 #[derive(Clone, Debug)]
 pub struct LiveOutcome {
-    /// The folder of the recording.
+    /// Folder of the recording.
     pub folder: PathBuf,
-    /// Why the console was left.
+    /// How the wizard left the recording.
     pub leaving: LeavingReason,
-    /// The summary of the trial.
+    /// Summary of the trial.
     pub figures: TrialSummary,
-    /// Whether the trial counts in the analysis.
+    /// Whether the trial was aborted or excluded from the analysis.
     pub standing: ExclusionStatus,
-    /// Start of the repeated trial, if requested.
+    /// Start of the repeated trial, if the wizard asked for one.
     pub again: Option<SessionStart>,
 }
 
 impl LiveOutcome {
-    /// The result as text.
+    /// The result of the live session as text.
     pub fn describe(&self) -> String {
         let folder = self.folder.display();
         let presses = count(self.figures.human_actions + self.figures.robot_actions, "press", "presses");

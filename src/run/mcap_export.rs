@@ -1,4 +1,4 @@
-//! Exports recordings as MCAP, each beside its log.
+//! Exports recordings as MCAP files, each beside its log.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -16,19 +16,20 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::Header;
 use crate::session::study_arm::StudyArm;
 
-/// An exported recording.
+/// Summary of a recording's export as MCAP.
 #[derive(Clone, Debug, Serialize)]
 pub struct McapSummary {
-    /// The file.
+    /// Path of the MCAP file.
     pub file: PathBuf,
-    /// Numbers of messages by channel.
+    /// Number of messages in each channel.
     pub messages: BTreeMap<&'static str, u32>,
 }
 
 /// Exports a recording into its folder.
 ///
 /// # Errors
-/// It cannot be read, is still being written, is no folder of a recording, or the file cannot be written.
+/// The recording cannot be read or is still being written, the path is not a recording's folder, or the file cannot be
+/// written.
 pub fn export(recording: &Path) -> FileResult<McapSummary> {
     let mut log = LogReader::open(recording)?;
     let wrong =
@@ -61,7 +62,8 @@ pub fn export(recording: &Path) -> FileResult<McapSummary> {
     Ok(McapSummary { file, messages })
 }
 
-/// What the file says of the recording, whose arm by what was done is `arm`. Its times are session times; `started` is the wall clock at the beginning.
+/// Metadata of the recording in the MCAP file. `arm`: study arm by what was done. Times in the file are session times;
+/// `started` is the wall clock time of session time 0.
 fn about(folder: &Path, header: &Header, arm: StudyArm) -> BTreeMap<String, String> {
     let spec = &header.session;
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -81,7 +83,7 @@ fn about(folder: &Path, header: &Header, arm: StudyArm) -> BTreeMap<String, Stri
     about
 }
 
-/// What was exported, for people.
+/// The exports as text for the terminal.
 pub fn describe(summaries: &[McapSummary]) -> String {
     let line = |one: &McapSummary| {
         let messages = one.messages.iter().filter(|(_, messages)| **messages > 0);

@@ -1,4 +1,4 @@
-//! The shells: they combine session, robot, participant, files and clock. No other room does.
+//! Shells that run sessions: they combine session, robot, participant, files and clock. No other room does so.
 
 #[cfg(feature = "cli")]
 pub mod accuracy;

@@ -1,4 +1,5 @@
-//! `tomcom review`: opens recordings in the Rerun viewer, from the stream file beside the log or rebuilt from the log.
+//! Command `tomcom review`: opens recordings in the Rerun viewer, from the stream file beside the log or rebuilt from
+//! the log.
 
 use std::fs;
 use std::io;
@@ -23,30 +24,30 @@ use crate::scene::entity_content::slug;
 use crate::scene::{DerivedData, SessionScene};
 use crate::session::Stamped;
 
-/// First ports of the server and of the web viewer.
+/// First ports that are tried for the stream's server and for the web viewer.
 const SERVER_PORT: u16 = 9878;
 const WEB_PORT: u16 = 9090;
-/// Interval at which a stream that another program writes is looked at.
+/// Period of polling a stream file that another program is writing.
 const LOOK: Duration = Duration::from_millis(50);
-/// Number of characters that the names of recordings have in the name of a temporary stream file.
+/// Largest number of characters of recordings' names in the name of a temporary stream file.
 const NAMED: usize = 50;
-/// Ending of the name of a stream that is being written.
+/// Ending of the name of a stream file while it is being written.
 const BEGUN: &str = ".new";
 
-/// Why a recording could not be reviewed.
+/// Error of showing recordings in the Rerun viewer.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum RerunError {
     /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
-    /// The stream's file cannot be written.
+    /// The stream file cannot be written.
     #[error("{}: the stream cannot be written: {reason}", path.display())]
     #[diagnostic(help("a place that can be written to, with --save=FILE"))]
     Unwritable {
-        /// The file.
+        /// Path of the stream file.
         path: PathBuf,
-        /// Why not.
+        /// Why the operating system could not write the file.
         reason: io::Error,
     },
     /// The viewer cannot be served on this machine.
@@ -56,20 +57,20 @@ pub enum RerunError {
          listens there"
     ))]
     Web(io::Error),
-    /// Another program writes the stream of this recording.
+    /// Another program is writing the stream file of this recording.
     #[error("{}: another program writes this recording, and its stream", folder.display())]
     #[diagnostic(help("--save=FILE, for what is there up to now"))]
     InUse {
-        /// The recording's folder.
+        /// Folder of the recording.
         folder: PathBuf,
     },
-    /// The viewer's program cannot be started.
+    /// The viewer cannot be started.
     #[error("{}: the viewer cannot be started: {reason}", path.display())]
     #[diagnostic(help("--web serves one for a browser"))]
     Viewer {
-        /// The program.
+        /// Path of the viewer's program.
         path: PathBuf,
-        /// Why not.
+        /// Why the operating system could not start the program.
         reason: io::Error,
     },
 }
@@ -80,12 +81,12 @@ impl From<FileError> for RerunError {
     }
 }
 
-/// Request of `tomcom review`.
+/// Request of `tomcom review`: recordings, and how to show them.
 #[derive(Clone, Debug)]
 pub struct ReviewRequest {
-    /// The recordings to look at, by their folders.
+    /// Folders of the recordings.
     pub recordings: Vec<PathBuf>,
-    /// Write the file only: beside the log, or to this path.
+    /// Only write the stream file: beside the log, or to this path.
     pub save: Option<Option<PathBuf>>,
     /// Serve the web viewer even if a native viewer is installed.
     pub web: bool,
@@ -93,27 +94,27 @@ pub struct ReviewRequest {
     pub at: Option<SessionTime>,
 }
 
-/// A stream file with its origin.
+/// A stream file, and whether it had to be rebuilt.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SavedStream {
-    /// The file of the stream.
+    /// Path of the stream file.
     pub path: PathBuf,
-    /// Whether it was just rebuilt from the log.
+    /// Whether the file was just rebuilt from the log.
     pub made: bool,
-    /// Reason why the existing file was not used.
+    /// Why an existing file was not used.
     pub because: Option<&'static str>,
 }
 
 /// A recording that is still being written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OngoingRecording {
-    /// Its folder.
+    /// Folder of the recording.
     pub recording: PathBuf,
-    /// Address for live viewers, if there is one.
+    /// Address at which live viewers connect, if there is one.
     pub viewers: Option<String>,
 }
 
-/// The recordings whose sessions are still running; the review shows them up to now.
+/// The recordings among these whose sessions are still running; the review shows them up to the present.
 ///
 /// # Errors
 /// A recording cannot be read.
@@ -129,25 +130,25 @@ pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<OngoingRecording>> {
 
 /// Result of a review.
 pub enum ReviewOutcome {
-    /// The file was written.
+    /// The stream file was written.
     Saved(SavedStream),
-    /// The viewer was opened on the file.
+    /// A viewer was opened on the stream file.
     Opened(SavedStream),
-    /// The viewer is served until this is dropped.
+    /// The viewer is served for a browser until this value is dropped.
     Served {
-        /// The address to open in a browser.
+        /// Address to open in a browser.
         url: String,
-        /// Why no other viewer was opened.
+        /// Why no native viewer was opened.
         because: &'static str,
-        /// Keeps the viewer and its stream alive.
+        /// Server of viewer and stream, which end when it is dropped.
         _serving: Box<(RerunWriter, WebViewer)>,
     },
 }
 
-/// Opens recordings in the viewer, several beside each other by the clocks of their trials.
+/// Opens recordings in the viewer; several are shown side by side, aligned by the clocks of their trials.
 ///
 /// # Errors
-/// A recording that cannot be read, a file that cannot be written, or a viewer that cannot be opened.
+/// A recording cannot be read, a file cannot be written, or the viewer cannot be opened.
 pub fn review(asked: &ReviewRequest) -> Result<ReviewOutcome, RerunError> {
     let viewer = if asked.web { Viewer::None } else { Viewer::find() };
     match (&asked.save, viewer) {
@@ -182,8 +183,8 @@ pub fn until_asked_to_end() -> io::Result<()> {
     runtime.block_on(asked_to_end())
 }
 
-/// The stream file of a recording beside its log: rebuilt from the log unless it is up to date. Waits for another program
-/// that writes it.
+/// The stream file of a recording beside its log: rebuilt from the log unless it is up to date. If another program is
+/// writing the file, this waits for it.
 ///
 /// # Errors
 /// The recording cannot be read, or the file not be written.
@@ -196,13 +197,13 @@ pub fn save(recording: &Path) -> Result<PathBuf, RerunError> {
     }
 }
 
-/// Place of a stream file.
+/// Where a stream file may be written.
 #[derive(Clone, Copy)]
 enum StreamPlace<'a> {
     File(&'a Path),
-    /// Beside the log of a single recording that no program is writing.
+    /// Only beside the log, for a single recording that no program is writing.
     BesideLog,
-    /// Beside the log, or else in the system's folder for temporary files, for a viewer.
+    /// Beside the log or, if that is not possible, in the system's folder for temporary files.
     Anywhere,
 }
 
@@ -217,8 +218,8 @@ fn serve(recordings: &[PathBuf], at: Option<SessionTime>, because: &'static str)
     Ok(ReviewOutcome::Served { url, because, _serving: Box::new((writer, viewer)) })
 }
 
-/// The first free pair of ports for stream and web viewer; the web viewer is served at once. Ports are taken in pairs, because
-/// Rerun's server does not report that another program took its port in the meantime.
+/// The first free pair of ports for stream and web viewer; the web viewer is served at once. Ports are taken in pairs,
+/// because Rerun's server does not report that another program took its port in the meantime.
 fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
     let mut failed = io::Error::from(io::ErrorKind::AddrInUse);
     for nth in 0..=PORTS {
@@ -231,7 +232,7 @@ fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
     Err(failed)
 }
 
-/// The stream file of these recordings: the file beside the log if it is up to date, else rebuilt from the logs.
+/// The stream file of these recordings: the existing one if it is up to date, else one rebuilt from the logs.
 fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<SavedStream, RerunError> {
     let (mut locked, mut because, mut logs) = (None, None, None);
     let path = match (place, recordings) {
@@ -268,8 +269,8 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<SavedStream, Reru
     }
 }
 
-/// Builds the stream file of these recordings. An existing file is replaced only when the new one is complete, so a damaged log
-/// loses nothing.
+/// Builds the stream file of these recordings. An existing file is replaced only when the new one is complete, so a
+/// damaged log loses nothing.
 fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError> {
     let mut begun = path.as_os_str().to_os_string();
     begun.push(BEGUN);
@@ -287,17 +288,17 @@ fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError
     match written {
         Ok(Ok(_)) => Ok(fs::rename(&begun, path)),
         failed => {
-            // A leftover temporary file is harmless.
+            // If removing the temporary file fails, the leftover does no harm.
             let _ = fs::remove_file(&begun);
             failed.map(|written| written.map(|_| ()))
         }
     }
 }
 
-/// Makes an empty file for a stream in the system's folder for temporary files, where it is written to; the path of the stream.
+/// Creates an empty file for a stream in the system's folder for temporary files; returns its path.
 fn elsewhere(recordings: &[PathBuf]) -> Result<PathBuf, RerunError> {
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
-    // A name of a file has at most 255 bytes on most systems.
+    // A file name has at most 255 bytes on most systems.
     let names: String = names.join("-and-").chars().take(NAMED).collect();
     let (below, stem) = (std::env::temp_dir(), format!("tomcom-{names}-{}", std::process::id()));
     let made = new_file(&below, &stem, &format!(".rrd{BEGUN}"));
@@ -311,7 +312,8 @@ fn name(recording: &Path) -> String {
     folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Prepares recordings for one stream: a single one at the root, several below their names with participant and arm.
+/// Prepares recordings for one stream: a single recording at the root, several below their names with participant and
+/// arm.
 fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
     let one = |(nth, recording): (usize, &PathBuf)| {
         let playing = Playing::open(recording)?;
@@ -326,7 +328,8 @@ fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
     recordings.iter().enumerate().map(one).collect()
 }
 
-/// Writes recordings to outlets one after another; the outer error is of the recordings, the inner one of the outlets.
+/// Writes recordings to stream outputs one after another; the outer error is about the recordings, the inner one about
+/// the outputs.
 fn write(
     playing: Vec<Playing>,
     recordings: &[PathBuf],
@@ -347,7 +350,7 @@ fn write(
     Ok(Ok(writer))
 }
 
-/// A recording that is being streamed.
+/// A recording that is being written to a stream.
 struct Playing {
     replay: Replay,
     scene: SessionScene,
@@ -361,13 +364,13 @@ impl Playing {
         Ok(Playing { replay, scene, lane: StreamLane::default() })
     }
 
-    /// Identifies it among recordings of the same name.
+    /// Text that tells recordings of the same name apart: when the recording began.
     fn began(&self) -> String {
         let header = &self.replay.log().header;
         header.started.clone().unwrap_or_else(|| format!("seed {} trial {}", header.session.seed, header.trial))
     }
 
-    /// Writes the whole recording; returns the number of rows.
+    /// Writes the whole recording to the stream; returns the number of rows.
     fn write(mut self, writer: &mut RerunWriter) -> FileResult<u64> {
         writer.fixed(&self.lane, &self.scene.fixed());
         let mut rows = writer.moment(&self.lane, &self.scene.opening());
@@ -375,7 +378,7 @@ impl Playing {
         loop {
             let next = self.replay.step()?;
             if let Some((stamped, belief)) = held.take() {
-                // An estimate is shown after all events of its time.
+                // The estimate is shown once all events of the same time have been applied.
                 let is_last = next.as_ref().is_none_or(|next| next.stamped.time > stamped.time);
                 let judged = &self.replay.follower.judged;
                 let derived = DerivedData { judged, belief: belief.as_ref().filter(|_| is_last) };

@@ -1,4 +1,4 @@
-//! Requests of `tomcom operate`, and overrides of session settings by the command line.
+//! Options of `tomcom operate`: what to run, and overrides of session settings.
 
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
@@ -13,77 +13,77 @@ use crate::session::Header;
 use crate::session::plan::PlanSpec;
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
 
-/// Start of a session.
+/// What a live session starts from: a new session, a repeated trial, or a recording to continue.
 #[derive(Clone, Debug)]
 pub enum SessionStart {
-    /// A repeated trial in another recording in `out`: its header and kitchen.
+    /// Repetition of a trial in a new recording below `out`.
     Again {
-        /// The header of the new recording.
+        /// Header of the new recording.
         header: Box<Header>,
-        /// The kitchen that the header describes.
+        /// Kitchen that the header describes.
         kitchen: Arc<Kitchen>,
-        /// The folder for the recording's folder.
+        /// Folder in which the recording's folder is created.
         out: PathBuf,
     },
     /// A new session with these settings, recorded in `out`; `trial` distinguishes sessions with the same seed.
     New {
-        /// The settings with their files.
+        /// Settings with the files that they name.
         files: Box<SessionFiles>,
-        /// Which trial of its seed it is.
+        /// Index of the trial among those with the same seed.
         trial: u64,
-        /// The folder for the recording's folder.
+        /// Folder in which the recording's folder is created.
         out: PathBuf,
     },
-    /// The session of a recording that was cut off.
+    /// Continuation of a recording that was cut off.
     Continued(PathBuf),
 }
 
-/// The remaining recordings of a participant of a plan.
+/// Remaining recordings of a participant in a study plan.
 #[derive(Clone, Debug)]
 pub struct RemainingTrials {
-    /// The settings with the plan.
+    /// Settings with the study plan.
     pub files: SessionFiles,
     /// Index of the participant in the plan.
     pub participant: usize,
-    /// Folder of its recordings.
+    /// Folder of the participant's recordings.
     pub out: PathBuf,
-    /// Comparison of wizard and assistants, if it is shown.
+    /// Comparison of wizard and assistants, if the console shows it.
     pub compare: Option<CompareRequest>,
 }
 
-/// Session settings that the command line overrides.
+/// Session settings that the command line overrides; `None` keeps the session file's value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SettingOverrides {
-    /// Who plays the human's part.
+    /// Kind of participant: a person or a simulation.
     pub participant: Option<ParticipantKind>,
-    /// Which arm carries out the robot's presses.
+    /// Kind of the robot's arm.
     pub arm: Option<ArmKind>,
-    /// Where gaze samples come from.
+    /// Source of gaze samples.
     pub gaze: Option<GazeSource>,
-    /// Address of the display's server.
+    /// Address of the server of the participant's display.
     pub listen: Option<IpAddr>,
     /// File from which gaze is replayed.
     pub gaze_file: Option<PathBuf>,
-    /// Time in that file at which the trial starts, in seconds.
+    /// Time in the gaze file at which the trial starts, in seconds.
     pub gaze_start_s: Option<f64>,
-    /// Who may send signals.
+    /// Condition: who may send signals.
     pub condition: Option<Condition>,
     /// The assistant's communication concept.
     pub concept: Option<ConceptName>,
-    /// The seed of everything random.
+    /// Seed of all random numbers.
     pub seed: Option<u64>,
-    /// The participant's code.
+    /// The participant's pseudonymous code.
     pub code: Option<String>,
-    /// Where Rerun's viewers connect: "ADDRESS:PORT".
+    /// Address at which Rerun viewers connect, as "ADDRESS:PORT".
     pub rerun_listen: Option<String>,
 }
 
 impl SettingOverrides {
-    /// Applies the overrides. If a person replaces the simulated participant and no gaze source is given, the mouse pointer serves
-    /// as gaze.
+    /// Applies the overrides. If a person replaces the simulated participant and no gaze source is given, the mouse
+    /// pointer serves as gaze.
     ///
     /// # Errors
-    /// Settings that exclude each other.
+    /// Settings exclude each other.
     pub fn apply(self, files: &mut SessionFiles) -> Result<(), SettingError> {
         let spec = &mut files.spec;
         let decided = [("--condition", self.condition.is_some()), ("--seed", self.seed.is_some())];

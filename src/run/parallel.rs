@@ -9,7 +9,7 @@ pub fn each<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync, done: 
     each_with(items, || (), |(), item| work(item), done)
 }
 
-/// The same, with a worker state per thread that is kept from item to item.
+/// Processes all items on all processors, with a worker state per thread that is kept from item to item.
 pub fn each_with<T: Sync, R: Send, W: Send>(
     items: &[T],
     own: impl Fn() -> W + Sync,
@@ -19,10 +19,11 @@ pub fn each_with<T: Sync, R: Send, W: Send>(
     WorkerPool::new(own).each(items, work, done)
 }
 
-/// A pool of worker states (such as caches) that are kept between calls. They change computing time, never results.
+/// A pool of worker states (such as caches) that are kept between calls. Worker states change computing time, never
+/// results.
 pub struct WorkerPool<W, F: Fn() -> W> {
     own: F,
-    /// Idle worker states.
+    /// Worker states that no thread is using.
     idle: Mutex<Vec<W>>,
 }
 
@@ -32,7 +33,7 @@ impl<W: Send, F: Fn() -> W + Sync> WorkerPool<W, F> {
         WorkerPool { own, idle: Mutex::new(Vec::new()) }
     }
 
-    /// Does the same with every item; the results have the order of the items. `done` is called after each.
+    /// Processes all items on all processors; results keep the order of the items. `done` is called after each item.
     pub fn each<T: Sync, R: Send>(
         &self,
         items: &[T],
@@ -47,7 +48,7 @@ impl<W: Send, F: Fn() -> W + Sync> WorkerPool<W, F> {
             done();
             result
         };
-        // Items take long and differ in length, so they are distributed one by one.
+        // Items take long and differ in duration, so they are distributed one by one.
         items.par_iter().with_max_len(1).map(one).collect()
     }
 

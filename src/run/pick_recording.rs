@@ -1,4 +1,4 @@
-//! Lets a person at a terminal choose a recording of a folder.
+//! Lets a person at a terminal choose one recording from a folder.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -19,13 +19,13 @@ use crate::session::settings::ConsoleSpec;
 /// Period of redrawing the list, in case the terminal's size changed.
 const REDRAW: Duration = Duration::from_millis(100);
 
-/// Asks which recording of the folder is meant; `None` if that is left open.
+/// Asks the person which recording of the folder to use; `None` if the person chooses none.
 ///
 /// # Errors
 /// The folder cannot be read or has no recordings, or there is no terminal.
 pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
     let (list, paths) = recording_list::list(folder, ListDepth::Quick, |_| (), || ())?;
-    // Errors are not counted here: the column would be empty.
+    // The column of errors is left out, since errors are not counted here.
     let without_errors = |cells: [String; 7]| {
         let [code, condition, date, length, _, state, recording] = cells;
         vec![code, condition, date, length, state, recording]
@@ -46,16 +46,16 @@ pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
     })
 }
 
-/// A list in which nothing is chosen yet.
+/// A list of recordings from which none has been chosen yet.
 struct OpenPicker {
     picker: RecordingPicker,
     theme: Theme,
-    /// Whether the screen must be redrawn.
+    /// Whether the screen has to be redrawn.
     dirty: bool,
 }
 
 impl OpenPicker {
-    /// Handles a click on what the list offers.
+    /// Handles a mouse click on the list.
     fn click(&mut self, cell: (u16, u16)) -> Option<RecordingReply> {
         let size = TerminalScreen::size().ok()?;
         let targets = recording_targets(&self.picker, self.theme, size);

@@ -1,4 +1,4 @@
-//! `tomcom plan`: participants, groups, progress and next recordings of a study.
+//! Command `tomcom plan`: participants, groups, progress and next recordings of a study.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,20 +14,20 @@ use crate::edge::{frozen_file, recordings};
 use crate::session::plan::{Progress, RecordingOutcome, Study};
 use crate::study::frozen_plan::FrozenPlan;
 
-/// Output of `tomcom plan SESSION`.
+/// Progress of a study: the output of `tomcom plan SESSION`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyPlanSummary {
-    /// The plan's name.
+    /// Name of the study plan.
     pub plan: String,
-    /// The checksum of the plan and its settings.
+    /// Checksum of the plan and its settings.
     pub digest: String,
-    /// The seed of counterbalancing and trials.
+    /// Seed of counterbalancing and trials.
     pub seed: u64,
-    /// Number of participants.
+    /// Number of participants in the plan.
     pub planned: usize,
-    /// Of these, participants who have had everything.
+    /// Number of participants who have completed all recordings.
     pub finished: usize,
-    /// How far each participant is.
+    /// Progress of each participant.
     pub participants: Vec<Progress>,
 }
 
@@ -56,21 +56,21 @@ impl StudyPlanSummary {
     }
 }
 
-/// Output of `tomcom plan SESSION --freeze FILE`.
+/// Result of freezing a study plan: the output of `tomcom plan SESSION --freeze FILE`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrozenSummary {
-    /// The plan's name.
+    /// Name of the study plan.
     pub plan: String,
-    /// SHA-256 of what was frozen.
+    /// SHA-256 digest of the frozen plan.
     pub digest: String,
-    /// Number of recordings of the plan that were there already.
+    /// Number of recordings of the plan that existed already.
     pub recordings_before: u64,
-    /// The file.
+    /// Path of the frozen plan's file.
     pub file: PathBuf,
 }
 
 impl FrozenSummary {
-    /// What was frozen, as text.
+    /// What was frozen, as text for the terminal.
     pub fn describe(&self) -> String {
         let (file, before) = (self.file.display(), count(self.recordings_before, "recording", "recordings"));
         let warning = match self.recordings_before {
@@ -84,10 +84,10 @@ impl FrozenSummary {
     }
 }
 
-/// Freezes a plan: writes it with definitions and analysis to a new file. `progress` is how far the study is.
+/// Freezes a plan: writes it with definitions and analysis to a new file. `progress`: progress of the study so far.
 ///
 /// # Errors
-/// A file of that name is there, or it cannot be written.
+/// The file exists already, or cannot be written.
 pub fn freeze(
     study: &Study,
     kitchen: &KitchenFiles,
@@ -101,7 +101,7 @@ pub fn freeze(
     Ok(FrozenSummary { plan: frozen.plan, digest, recordings_before, file: file.to_path_buf() })
 }
 
-/// The plan as text.
+/// Progress of the study as text for the terminal.
 pub fn describe(figures: &StudyPlanSummary) -> String {
     let mut sizes = BTreeMap::new();
     for one in &figures.participants {
@@ -129,7 +129,7 @@ pub fn describe(figures: &StudyPlanSummary) -> String {
     head + &figures.participants.iter().map(one).collect::<String>()
 }
 
-/// Remarks on a participant's recordings: invalid ones, and those of another version of the plan.
+/// Remarks on a participant's recordings: invalid ones, and those made with another version of the plan.
 fn attempts(progress: &Progress) -> String {
     let mut lines = String::new();
     for (slot, stand) in progress.steps.iter().enumerate() {

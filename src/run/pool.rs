@@ -1,5 +1,5 @@
-//! Simulates the participants of a pool in memory ([`crate::study::simulation_pool`]): every trial of the plan, and its unassisted twin.
-//! `tomcom power` and `tomcom arms` use it.
+//! Simulates the participants of a pool in memory ([`crate::study::simulation_pool`]): every trial of the plan, and its
+//! unassisted twin. The commands `tomcom power` and `tomcom arms` use it.
 
 use std::convert::Infallible;
 use std::path::Path;
@@ -22,22 +22,22 @@ use crate::session::study_arm::StudyArm;
 use crate::session::{SessionSpec, Stamped};
 use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, SimulationPool, TrialCounts};
 
-/// Request of a pool.
+/// Request to simulate a pool of participants.
 #[derive(Clone, Debug)]
 pub struct PoolRequest {
-    /// The plan with its settings and files.
+    /// Settings with the study plan and the files that they name.
     pub files: SessionFiles,
-    /// Number of participants of the whole pool, whatever the plan says.
+    /// Number of participants in the whole pool, instead of the plan's number.
     pub participants: u32,
-    /// The shard of these participants.
+    /// Shard of the pool that is simulated.
     pub shard: Shard,
     /// Whether trials are simulated in the arms of the plan.
     pub arms: bool,
-    /// Whether their unassisted twins are simulated.
+    /// Whether unassisted twins of the trials are simulated.
     pub unassisted: bool,
 }
 
-/// A trial to be simulated.
+/// A trial of a pool that is to be simulated.
 #[derive(Clone, Copy, Debug)]
 struct PoolItem {
     participant: u32,
@@ -45,16 +45,16 @@ struct PoolItem {
     is_twin: bool,
 }
 
-/// A request with the study that it makes of the plan.
+/// A pool request, with the study that the plan becomes for the pool's participants.
 struct PoolStudy<'a> {
     request: &'a PoolRequest,
-    /// The plan with the participants of the pool.
+    /// The study plan with the pool's participants.
     study: Study,
     header: PoolHeader,
 }
 
 impl PoolRequest {
-    /// The first line of the pool.
+    /// First line of the pool's file.
     ///
     /// # Errors
     /// The session has no plan.
@@ -85,10 +85,10 @@ impl PoolRequest {
         Ok(PoolStudy { request: self, study, header })
     }
 
-    /// Checks that the plan can be simulated as it is: `path` is its file.
+    /// Checks that the plan can be simulated; `path` is the plan's file.
     ///
     /// # Errors
-    /// It has fewer than two conditions, or one in which nobody but a person could send the signals.
+    /// The plan has fewer than two conditions, or a condition in which only a person could send signals.
     pub fn check(&self, path: &Path) -> FileResult<()> {
         let pool = self.study(path)?;
         let wrong = |found: String, remedy: &str| Err(FileError::from_finding(path, found, remedy.to_string()));
@@ -107,7 +107,7 @@ impl PoolRequest {
         Ok(())
     }
 
-    /// Number of trials to be simulated.
+    /// Number of trials to simulate.
     pub fn trials(&self, path: &Path) -> FileResult<u64> {
         Ok(self.study(path)?.items().len() as u64)
     }
@@ -123,7 +123,7 @@ impl PoolStudy<'_> {
             (1..=periods).flat_map(move |period| [false, true].map(|is_twin| PoolItem { participant, period, is_twin }))
         });
         let is_asked = |item: &PoolItem| match (self.planned(*item), item.is_twin) {
-            // An unassisted trial is its own twin.
+            // A trial that is unassisted anyway needs no twin.
             (StudyArm::None, is_twin) => !is_twin,
             (_, true) => self.request.unassisted,
             (_, false) => self.request.arms,
@@ -131,12 +131,12 @@ impl PoolStudy<'_> {
         items.filter(is_asked).collect()
     }
 
-    /// The arm that the plan gives to a trial.
+    /// Study arm that the plan gives to a trial.
     fn planned(&self, item: PoolItem) -> StudyArm {
         self.study.group(item.participant as usize).conditions[item.period as usize - 1]
     }
 
-    /// The settings and the number of a trial, with the arm by what is done in it between them.
+    /// Settings of a trial, its study arm by what will be done, and its number.
     fn settings(&self, item: PoolItem) -> (SessionSpec, StudyArm, u64) {
         let (mut spec, trial) = self.study.simulated(item.participant as usize, item.period);
         if item.is_twin {
@@ -147,7 +147,7 @@ impl PoolStudy<'_> {
             false => spec.step.as_ref().and_then(|step| step.arm).unwrap_or_default(),
         };
         if done != StudyArm::WizardWithAdvice {
-            // Recommendations that nobody sees would only take time.
+            // Recommendations that nobody sees would only cost computing time.
             spec.assistant.shadow = Shadow::Off;
         }
         (spec, done, trial)
@@ -165,7 +165,7 @@ impl PoolStudy<'_> {
         headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
         let follower = engine.into_follower();
         let summary = TrialSummary::from_follower(&follower);
-        // Simulated participants tell what they believed before every press.
+        // Simulated participants record their beliefs before every press, so beliefs are known.
         let beliefs = summary.beliefs.unwrap_or_default();
         let counts = TrialCounts {
             human_presses: summary.human_actions,
@@ -185,10 +185,11 @@ impl PoolStudy<'_> {
     }
 }
 
-/// Simulates the participants of a shard on all processors. `path` is the file of the plan; `done` is called after each trial.
+/// Simulates the participants of a shard on all processors. `path` is the file of the plan; `done` is called after each
+/// trial.
 ///
 /// # Errors
-/// Those of [`PoolRequest::check`], or a trial ends without a press of the human.
+/// The same as of [`PoolRequest::check`], or a trial ends without a press of the human.
 pub fn simulate(request: &PoolRequest, path: &Path, done: impl Fn() + Sync) -> FileResult<SimulationPool> {
     request.check(path)?;
     let pool = request.study(path)?;

@@ -1,5 +1,5 @@
-//! `tomcom power`: draws studies from a pool on all processors, and counts what their tests find. The same pool gives the same answer on any
-//! number of processors.
+//! Command `tomcom power`: draws studies from a pool on all processors, and counts in how many their tests find an
+//! effect. The same pool gives the same result on any number of processors.
 
 use std::ops::Range;
 use std::path::Path;
@@ -11,32 +11,32 @@ use crate::study::power::{POOLS, RejectionCount, STUDIES_OF_POOL, STUDIES_OF_RAT
 use crate::study::power_answer::{PowerSummary, SizeCounts};
 use crate::study::simulation_pool::SimulationPool;
 
-/// Number of studies that a thread draws at a time.
+/// Number of studies that a thread draws in one block.
 const BLOCK: u64 = 25;
 
-/// What is asked of a pool.
+/// Request of a power analysis: study sizes, number of drawn studies, and effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerRequest {
-    /// Numbers of participants, in order.
+    /// Numbers of participants, in ascending order.
     pub sizes: Vec<usize>,
-    /// Number of studies that are drawn for each.
+    /// Number of studies that are drawn for each number of participants.
     pub studies: u64,
-    /// The effect in them.
+    /// Effect in the drawn studies.
     pub effect: DrawnEffect,
 }
 
-/// What the studies of a block are drawn from.
+/// Source from which the studies of a block are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Drawn {
-    /// The pool, with the effect that was asked for.
+    /// The pool, with the requested effect.
     Pool,
-    /// The resampled pool of this number, from 1.
+    /// The bootstrap resample of the pool with this number, from 1.
     Resampled(u64),
-    /// The pool, with the ratio of this index.
+    /// The pool, with the ratio of rates at this index.
     Ratio(usize),
 }
 
-/// A block of studies.
+/// A block of studies that one thread draws.
 #[derive(Clone, Debug)]
 struct Block {
     size: usize,
@@ -44,12 +44,13 @@ struct Block {
     numbers: Range<u64>,
 }
 
-/// Number of blocks of studies, each of which `done` is called for.
+/// Number of blocks of studies; `done` of [`measure`] is called once for each.
 pub fn blocks(request: &PowerRequest, pool: &SimulationPool) -> u64 {
     all_blocks(request, pool).len() as u64
 }
 
-/// The least effect is looked for where unassisted twins are there to put one in.
+/// All blocks of studies. The least detectable effect is searched for only if the pool has unassisted twins, in which
+/// an effect can be simulated.
 fn all_blocks(request: &PowerRequest, pool: &SimulationPool) -> Vec<Block> {
     let split =
         |studies: u64| (0..studies.div_ceil(BLOCK)).map(move |block| block * BLOCK..((block + 1) * BLOCK).min(studies));
@@ -66,10 +67,10 @@ fn all_blocks(request: &PowerRequest, pool: &SimulationPool) -> Vec<Block> {
     blocks
 }
 
-/// Draws the studies and answers. `path` is where the pool is from; `done` is called after each block.
+/// Draws the studies and computes the power. `path`: the pool's file, for messages; `done` is called after each block.
 ///
 /// # Errors
-/// The pool has too few persons in an order of the conditions, or lacks the trials that the effect needs.
+/// The pool has too few participants in an order of the conditions, or lacks the trials that the effect needs.
 pub fn measure(
     request: &PowerRequest,
     pool: &SimulationPool,
@@ -120,7 +121,7 @@ pub fn measure(
     Ok(PowerSummary::new(header, request.effect, &sizes))
 }
 
-/// The counts of a block.
+/// Counts of rejections in the studies of a block.
 fn counts(
     source: &StudySource,
     tests: &[PowerTest],

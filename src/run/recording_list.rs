@@ -13,17 +13,17 @@ use crate::kitchen::{Agent, Change, Kitchen};
 use crate::measures::errors::PressJudge;
 use crate::session::apply;
 
-/// What is found out about each recording.
+/// Which information a list of recordings contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ListDepth {
-    /// All but the errors, which take the longest.
+    /// Everything but the number of errors, which takes longest to compute.
     Quick,
-    /// Also the errors.
+    /// Everything, including the number of errors.
     WithErrors,
 }
 
-/// The recordings that a path means, as [`recordings::of_folder`] finds them, in the order of their list. What cannot be read is listed as
-/// such. `done` is called after each.
+/// List of the recordings at a path, which [`recordings::of_folder`] finds. Recordings that cannot be read are listed
+/// as unreadable. `done` is called after each recording.
 ///
 /// # Errors
 /// The folder cannot be read, or there is no recording.
@@ -44,7 +44,7 @@ pub fn list(
     Ok((list, paths))
 }
 
-/// The last part of a recording's path.
+/// Name of a recording's folder: the last part of its path.
 fn name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
@@ -63,7 +63,7 @@ fn read_or_tell(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, 
     })
 }
 
-/// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen.
+/// Applies all events of a recording; `cost` is reused for the next recording of the same kitchen.
 fn read(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, CostToGo)>) -> FileResult<ListedRecording> {
     let mut log = LogReader::open(path)?;
     let mut session = log.session();

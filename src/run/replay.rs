@@ -16,16 +16,16 @@ use crate::session::{Event, Session, Stamped};
 #[derive(Debug)]
 pub struct Replay {
     log: LogReader,
-    /// The session up to here, with what follows from its events.
+    /// The session up to the present position, with what follows from its events: judged presses and the estimate.
     pub follower: Follower,
 }
 
-/// An applied event with its change of the kitchen.
+/// An event that a replay has just applied, with the change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReplayedEvent {
-    /// The event with its number and time.
+    /// The event with its sequence number and time.
     pub stamped: Stamped,
-    /// What it changed in the kitchen.
+    /// Change of the kitchen by the event.
     pub change: Change,
 }
 
@@ -40,13 +40,13 @@ impl Replay {
         Ok(Replay::over(log, cost))
     }
 
-    /// A replay of a log; `cost` must be for its kitchen and can be reused from other replays.
+    /// A replay of a log; `cost` must be for the log's kitchen and can come from another replay.
     pub fn over(log: LogReader, cost: CostToGo) -> Replay {
         let follower = Follower::new(log.session(), cost);
         Replay { log, follower }
     }
 
-    /// The same without attribution of errors.
+    /// This replay without attribution of errors to causes.
     pub fn without_causes(self) -> Replay {
         Replay { follower: self.follower.without_causes(), ..self }
     }
@@ -54,7 +54,7 @@ impl Replay {
     /// Applies and returns the next event; `None` at the present end of the log.
     ///
     /// # Errors
-    /// A line is not an event, or its event is not possible now.
+    /// A line is not an event, or the event is not possible in the session's present state.
     pub fn step(&mut self) -> FileResult<Option<ReplayedEvent>> {
         let Some(line) = self.log.next_line()? else { return Ok(None) };
         let applied = self
@@ -83,7 +83,8 @@ impl Replay {
             if change.press().is_some() {
                 pressed = Some(stamped.seq);
             }
-            // At the next gaze sample the robot has chosen its press.
+            // At the next gaze sample, the robot has chosen its next press, so that the request includes the robot's
+            // intent.
             if let (Event::Gaze(_), Some(seq)) = (stamped.event, pressed) {
                 return Ok(Some(AdviceRequest::from_follower(&mut self.follower, seq, stamped.time)));
             }
@@ -96,7 +97,7 @@ impl Replay {
         &self.follower.session
     }
 
-    /// The log that is replayed.
+    /// The log that is being replayed.
     pub fn log(&self) -> &LogReader {
         &self.log
     }
@@ -110,7 +111,7 @@ pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
     let mut known = BTreeSet::new();
     for recording in recordings {
         let log = if recording.is_dir() { recording.join(LOG_NAME) } else { recording.clone() };
-        // A missing recording is reported when it is opened.
+        // A recording that does not exist is reported later, when it is opened.
         if !known.insert(log.canonicalize().unwrap_or(log)) {
             let remedy = "each recording once".to_string();
             return Err(FileError::from_finding(recording, "the same recording twice".to_string(), remedy));
@@ -140,7 +141,7 @@ impl SameKitchen {
         Err(FileError::from_finding(recording, found, remedy))
     }
 
-    /// The kitchen of all of them.
+    /// The kitchen of all recordings.
     ///
     /// # Errors
     /// There was no recording.

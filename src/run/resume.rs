@@ -1,4 +1,5 @@
-//! Continues a recording that was cut off: the session is run again up to the cut and continues in a new part.
+//! Continues a recording that was cut off: the session is run again up to the cut, and continues in a new part beside
+//! the recording.
 
 use std::path::{Path, PathBuf};
 
@@ -21,21 +22,21 @@ pub enum ResumeError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
-    /// The session of this recording was brought to its end.
+    /// The session of this recording ended properly.
     #[error("{}: this session was brought to its end: there is nothing to continue", .0.display())]
     #[diagnostic(help("a recording that was cut; a new session: tomcom operate"))]
     Ended(PathBuf),
-    /// This recording is simulated.
+    /// The recording is of a simulated trial, which cannot be continued.
     #[error("{}: this recording is simulated", .0.display())]
     #[diagnostic(help("simulate it again with the same seed: tomcom simulate"))]
     Simulated(PathBuf),
-    /// An event does not come out the same again.
+    /// Running the session again gives another event than the recorded one.
     #[error("{}: event {seq} does not come out the same again, so nobody knows how the session stood", log.display())]
     #[diagnostic(help("the tomcom that wrote it; tomcom replay RECORDING --verify shows the difference"))]
     Differs {
-        /// The log.
+        /// Path of the log.
         log: PathBuf,
-        /// Sequence number of the event.
+        /// Sequence number of the differing event.
         seq: u64,
     },
 }
@@ -46,29 +47,30 @@ impl From<FileError> for ResumeError {
     }
 }
 
-/// A continued session.
+/// A session that continues a recording after its cut.
 #[derive(Debug)]
 pub struct ResumedSession {
-    /// The engine, in the state at the cut.
+    /// The engine, in the session's state at the cut.
     pub engine: Engine,
     /// First events of the new part: events lost by the cut, and the pause of a running trial.
     pub first: Vec<Stamped>,
     /// Header of the new part.
     pub header: Header,
-    /// Session time at which it continues.
+    /// Session time at which the session continues.
     pub time: SessionTime,
-    /// Lock on the folder of the previous part.
+    /// Folder of the previous part.
     pub folder: PathBuf,
-    /// Keeps the recording's folder locked.
+    /// Lock that keeps other programs from the previous part.
     pub lock: RecordingLock,
 }
 
-/// Runs a cut recording again to its end. A running trial, or the probe that is held in it, is paused there until the participant is back.
+/// Runs a cut recording again to its end. A running trial, or a freeze probe in it, is paused at the cut until the
+/// participant is back.
 ///
 /// # Errors
 /// The recording cannot be read, is being written, was not cut off, or does not verify.
 pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
-    // Resolved, since the new part is created beside it and refers to it by name.
+    // The path is made absolute, since the new part is created beside this one and refers to it by name.
     let there = recording.canonicalize();
     let there = there.map_err(|reason| FileError::unreadable(recording, reason, "the folder of a cut recording"))?;
     let folder = if there.is_dir() { there } else { there.parent().unwrap_or(Path::new("/")).to_path_buf() };
@@ -97,7 +99,7 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     let mut header = Header::new(old.session, old.trial, old.layout, old.recipes);
     header.continues = Some(continues);
     header.keys = old.keys;
-    // All parts of a recording have one format.
+    // All parts of a recording have the same version of the format.
     header.version = old.version;
     Ok(ResumedSession { engine: again.engine, first, header, time, folder, lock })
 }

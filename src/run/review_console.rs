@@ -1,4 +1,4 @@
-//! The review console over a recording or over a session that is still running: pause, step, seek, speed.
+//! The review console for a recording or for a session that is still running: pause, step, seek, speed.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -22,13 +22,13 @@ use crate::edge::terminal::TerminalScreen;
 use crate::history::landmark::ReplayLandmark;
 use crate::session::Event;
 
-/// Time per frame for applying events at full speed.
+/// Largest time per frame for applying events at full speed.
 const WORK: Duration = Duration::from_millis(20);
-/// Length of a seek step.
+/// Length of a seek step, 10 s.
 const SEEK: SessionTime = SessionTime(10_000_000_000);
 
-/// Opens the console over a recording; with `follow`, at the growing end of a running session; optionally with a comparison of
-/// wizard and assistants.
+/// Opens the console over a recording; with `follow`, at the growing end of a running session; optionally with a
+/// comparison of wizard and assistants.
 ///
 /// # Errors
 /// The recording cannot be read, or there is no terminal.
@@ -37,8 +37,8 @@ pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) 
     at_desk(film, recording, follow, compare, None)
 }
 
-/// Opens the console over a recording for a rater, who codes its errors without seeing estimates, signals or condition; codes are
-/// saved beside the log after every key.
+/// Opens the console over a recording for a rater, who codes its errors without seeing estimates, signals or condition;
+/// codes are saved beside the log after every key.
 ///
 /// # Errors
 /// The recording or its codes cannot be read, another program codes as this rater, or there is no terminal.
@@ -49,12 +49,12 @@ pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
     at_desk(film, recording, false, None, Some(coding))
 }
 
-/// Opens the console over a recording for two raters, who settle together what they coded differently; their consensus is saved
-/// beside the log after every key.
+/// Opens the console over a recording for two raters, who settle together what they coded differently; their consensus
+/// is saved beside the log after every key.
 ///
 /// # Errors
-/// The recording or its codes cannot be read, one of the raters has no codes, other raters settled the recording already, the
-/// consensus cannot be written, or there is no terminal.
+/// The recording or its codes cannot be read, one of the raters has no codes, other raters settled the recording
+/// already, the consensus cannot be written, or there is no terminal.
 pub fn settle(recording: &Path, raters: [&str; 2]) -> Result<(), ReviewError> {
     let film = SeekableReplay::open(recording)?.blinded();
     let _lock = RecordingLock::take_for_codes(film.replay.log().folder(), &raters)?;
@@ -62,7 +62,7 @@ pub fn settle(recording: &Path, raters: [&str; 2]) -> Result<(), ReviewError> {
     at_desk(film, recording, false, None, Some(coding))
 }
 
-/// Shows a recording at a desk without devices, until it is left.
+/// Shows a recording at an operator's desk without devices, until the wizard leaves it.
 fn at_desk(
     film: SeekableReplay,
     recording: &Path,
@@ -83,14 +83,14 @@ struct Review {
     film: SeekableReplay,
     model: ConsoleModel,
     opened: Instant,
-    /// Shown session time, and the instant at which it was reached.
+    /// Session time that is shown, and the instant at which that time was reached.
     now: SessionTime,
     at: Instant,
-    /// Instant at which the latest event of a growing recording was read.
+    /// Instant at which the newest event of a recording in progress was read.
     read_at: Instant,
     grows: bool,
     dirty: bool,
-    /// The comparison of wizard and assistants.
+    /// Comparison of wizard and assistants, if it was asked for.
     comparison: Option<ComparisonDesk>,
 }
 
@@ -141,7 +141,7 @@ impl Review {
         Ok(review)
     }
 
-    /// Handles a terminal message; returns whether the review is left.
+    /// Handles a message from the terminal; returns whether the review is left.
     fn take_message(&mut self, message: ConsoleMessage) -> bool {
         self.dirty = true;
         self.tick();
@@ -155,7 +155,7 @@ impl Review {
         false
     }
 
-    /// Saves the raters' codes, and shows the error of which one changed.
+    /// Saves the raters' codes, and goes to the error whose code changed.
     fn keep(&mut self, press: u64) {
         let present = self.model.coding.as_ref().and_then(|coding| coding.present(self.film.position));
         if present.map(|error| error.press) != Some(press) {
@@ -176,7 +176,7 @@ impl Review {
         }
     }
 
-    /// Begins at the first error without a code, and says so.
+    /// Goes to the first error without a code, and shows a message about it.
     fn begin_coding(&mut self) {
         let Some(coding) = &self.model.coding else { return };
         let said = coding_desk::greeting(coding);
@@ -187,7 +187,7 @@ impl Review {
         self.model.say(NoticeLevel::Done, said);
     }
 
-    /// Advances the clock that also runs while the replay is paused.
+    /// Advances the screen's clock, which also runs while the replay is paused.
     fn tick(&mut self) {
         self.model.clock = SessionTime(self.opened.elapsed().as_nanos() as u64);
     }
@@ -271,14 +271,14 @@ impl Review {
         self.film.wind(position);
     }
 
-    /// Passes events from this position on to the comparison.
+    /// Passes the events from this position on to the comparison of wizard and assistants.
     fn tell(&self, from: usize) {
         if let Some(comparison) = &self.comparison {
             self.film.events[from..].iter().for_each(|stamped| comparison.tell(stamped));
         }
     }
 
-    /// Reads new events of a growing recording.
+    /// Reads new events of a recording that is still being written.
     fn look(&mut self) -> Result<(), ReviewError> {
         let (_, known) = self.film.length();
         if self.film.read()? {
@@ -291,13 +291,13 @@ impl Review {
         Ok(())
     }
 
-    /// Advances the replay by the elapsed time.
+    /// Advances the replay by the time that has passed.
     fn play(&mut self) {
         let passed = self.at.elapsed();
         self.at = Instant::now();
         let (length, events) = self.film.length();
         if self.is(|playback| playback.follows) {
-            // The clock of a running session advances between events.
+            // In a session that is still running, the shown clock goes on between events.
             let ahead = if self.grows { self.read_at.elapsed().as_nanos() as u64 } else { 0 };
             self.now = self.now.max(length + SessionTime(ahead));
         } else if self.is(|playback| playback.playing) {

@@ -1,4 +1,4 @@
-//! `tomcom robustness`: simulates the cohorts of a battery in memory, for [`crate::analysis::cohort_table`].
+//! Command `tomcom robustness`: simulates the cohorts of a battery in memory, for [`crate::analysis::cohort_table`].
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
@@ -22,37 +22,38 @@ use crate::session::{Event, Session, Stamped, apply};
 /// Request of `tomcom robustness`.
 #[derive(Clone, Debug)]
 pub struct RobustnessRequest {
-    /// The cohorts with their session.
+    /// The battery file with the session file that it names.
     pub battery: BatteryFiles,
-    /// Number of judged trials of each cohort, and of trials on which its thresholds are chosen.
+    /// Number of judged trials of each cohort, and of trials on which the flags' thresholds are chosen.
     pub trials: u64,
     /// Seed of the judged trials.
     pub seed: u64,
-    /// Seed of the trials on which thresholds are chosen.
+    /// Seed of the trials on which the flags' thresholds are chosen.
     pub choose_seed: u64,
 }
 
 impl RobustnessRequest {
-    /// Number of trials in all.
+    /// Total number of simulated trials.
     pub fn all_trials(&self) -> u64 {
         PARTS.len() as u64 * self.trials * self.battery.cohorts.len() as u64
     }
 }
 
-/// What a trial is simulated for.
+/// Purpose for which a cohort's trial is simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum CohortPart {
-    /// Without signals, to choose thresholds on.
+    /// Without signals, to choose the thresholds for flagging false beliefs.
     ChosenOn,
-    /// Without signals.
+    /// Without signals, to judge the estimate.
     Unassisted,
-    /// With the assistant acting by itself.
+    /// With signals that the assistant sends by itself.
     Assisted,
 }
 
 const PARTS: [CohortPart; 3] = [CohortPart::Assisted, CohortPart::Unassisted, CohortPart::ChosenOn];
 
-/// Simulates all cohorts on all processors and judges them. `done` is called after each trial, `finished` after each cohort.
+/// Simulates all cohorts on all processors and judges them. `done` is called after each trial, `finished` after each
+/// cohort.
 pub fn measure(
     request: &RobustnessRequest,
     done: impl Fn() + Sync,
@@ -87,7 +88,7 @@ pub fn measure(
     RobustnessTable { seed: request.seed, choose_seed: request.choose_seed, cohorts }
 }
 
-/// The settings of a cohort's trials.
+/// Settings of a cohort's trials for this purpose.
 fn settings(request: &RobustnessRequest, cohort: &CohortSpec, part: CohortPart) -> SessionSpec {
     let (condition, seed) = match part {
         CohortPart::ChosenOn => (Condition::None, request.choose_seed),
@@ -97,7 +98,7 @@ fn settings(request: &RobustnessRequest, cohort: &CohortSpec, part: CohortPart) 
     SessionSpec { seed, ..cohort.settings(&request.battery.session.spec, condition) }
 }
 
-/// Simulates a trial. Returns the view of each press of the human, the trial's summary, and the cost to go for the next trial.
+/// Simulates a trial. Returns its human presses, its summary, and the cost to go, which the next trial reuses.
 fn simulate(
     kitchen: &Arc<Kitchen>,
     spec: SessionSpec,
@@ -120,7 +121,8 @@ fn simulate(
             _ => None,
         })
         .collect();
-    // The events are applied once more without the estimate, which is recorded.
+    // The session is run through once more to collect presses and baseline; the estimate comes from the recorded
+    // events.
     let (mut session, mut views) = (Session::new(kitchen.clone(), spec, trial), PressViews::default());
     let mut judged = follower.judged.iter().peekable();
     for stamped in &events {

@@ -1,5 +1,5 @@
-//! A seekable replay: the recording is read once with all presses judged; the shown session applies the same events. Snapshots
-//! make steps back cheap.
+//! A replay that can be moved to any time: the recording is read once and all its presses are judged; the shown session
+//! applies the same events. Snapshots of the session make steps back fast.
 
 use std::path::Path;
 
@@ -13,13 +13,13 @@ use crate::history::landmark::ReplayLandmark;
 use crate::session::settings::Visibility;
 use crate::session::{Event, Session, Stamped, apply};
 
-/// Number of events between snapshots.
+/// Number of events between two snapshots of the session.
 const KEEP_EVERY: usize = 4096;
 
-/// Stands in a blinded replay for what is hidden, so that the numbers of events stay; a witness without effect.
+/// Event without effect that replaces hidden events in a blinded replay, so that sequence numbers stay.
 const HIDDEN: Event = Event::ClockJumped { by_ms: 0 };
 
-/// Whether an event belongs to the assistance: a signal, an offer, a recommendation.
+/// Whether an event reveals the condition: a signal, an offer, or a recommendation.
 fn tells_condition(event: &Event) -> bool {
     matches!(
         event,
@@ -33,26 +33,26 @@ fn tells_condition(event: &Event) -> bool {
     )
 }
 
-/// Whether the replay stops at an event when it steps.
+/// Whether a step of the replay stops at this event.
 fn is_step(event: &Event) -> bool {
     !event.is_sample() && *event != HIDDEN
 }
 
-/// A recording that can be moved to any position.
+/// A recording that is shown at any position.
 #[derive(Debug)]
 pub struct SeekableReplay {
     pub(super) replay: Replay,
     pub(super) events: Vec<Stamped>,
-    /// Times of errors.
+    /// Session times of the errors.
     pub errors: Vec<SessionTime>,
     judged: usize,
     /// History of the belief estimate.
     pub beliefs: BeliefHistory,
     /// Session after the first `position` events.
     pub session: Session,
-    /// Number of events that are applied.
+    /// Number of events that have been applied to the shown session.
     pub position: usize,
-    /// Snapshots after every [`KEEP_EVERY`] events, starting before the first.
+    /// Snapshots of the session before the first event and after every [`KEEP_EVERY`] events.
     kept: Vec<Session>,
 }
 
@@ -79,8 +79,8 @@ impl SeekableReplay {
         Ok(film)
     }
 
-    /// Hides the estimate and all signals, for raters, who must not know whether the participant was assisted. Must be called before
-    /// the replay is moved.
+    /// Hides the estimate and all signals for raters, who must not know whether the participant was assisted. This must
+    /// be called before the replay is moved.
     pub fn blinded(mut self) -> SeekableReplay {
         for session in self.kept.iter_mut().chain([&mut self.session]) {
             session.spec.console.visibility = Visibility::State;
@@ -91,7 +91,7 @@ impl SeekableReplay {
         self
     }
 
-    /// Reads appended events; returns whether there were any.
+    /// Reads events that were appended to the log; returns whether there were any.
     ///
     /// # Errors
     /// Errors of [`Replay::step`].
@@ -116,12 +116,12 @@ impl SeekableReplay {
         Ok(self.events.len() > before)
     }
 
-    /// Whether the recording has no end event.
+    /// Whether the recording lacks its end event.
     pub fn is_cut(&self) -> bool {
         self.replay.log().is_cut()
     }
 
-    /// Whether the recording is excluded.
+    /// Whether the trial was aborted or excluded from the analysis.
     ///
     /// # Errors
     /// Errors of [`exclusion_status`].
@@ -129,7 +129,7 @@ impl SeekableReplay {
         exclusion_status(self.replay.session(), self.replay.log())
     }
 
-    /// The time of the last event, and the number of events.
+    /// Session time of the last event, and number of events.
     pub fn length(&self) -> (SessionTime, usize) {
         (self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time), self.events.len())
     }
@@ -145,7 +145,7 @@ impl SeekableReplay {
         Some(stamped)
     }
 
-    /// Moves to the position after the first `position` events.
+    /// Moves the replay to the position after the first `position` events.
     pub fn wind(&mut self, position: usize) {
         if position < self.position {
             let index = (position / KEEP_EVERY).min(self.kept.len() - 1);
@@ -155,18 +155,18 @@ impl SeekableReplay {
         while self.position < position && self.forward().is_some() {}
     }
 
-    /// Number of events up to and including a time.
+    /// Number of the recording's events up to and including a time.
     pub fn until(&self, time: SessionTime) -> usize {
         self.events.partition_point(|stamped| stamped.time <= time)
     }
 
-    /// Position after the next event that is neither a sample nor hidden.
+    /// Position after the next event that is neither a gaze or arm sample nor hidden.
     pub fn next_step(&self) -> usize {
         let rest = self.events[self.position..].iter();
         self.position + rest.take_while(|stamped| !is_step(&stamped.event)).count() + 1
     }
 
-    /// Position after the previous event that is neither a sample nor hidden.
+    /// Position after the previous event that is neither a gaze or arm sample nor hidden.
     pub fn last_step(&self) -> usize {
         let steps = |end: usize| self.events[..end].iter().rposition(|stamped| is_step(&stamped.event));
         let last = steps(self.position).unwrap_or(0);
@@ -195,7 +195,7 @@ impl SeekableReplay {
         found.map(|time| self.until(time))
     }
 
-    /// The time of the last applied event.
+    /// Session time of the last applied event.
     pub fn time(&self) -> SessionTime {
         self.session.time
     }

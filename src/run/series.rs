@@ -1,5 +1,5 @@
-//! The loop over recordings: each recording has at most one trial; the series of a participant is recorded without leaving the
-//! console.
+//! The series of a participant's recordings: each recording has at most one trial, and the wizard records one after
+//! another without leaving the console.
 
 use super::desk::OperatorDesk;
 use super::error::{LiveError, TerminalError};
@@ -15,23 +15,25 @@ use crate::edge::recordings;
 use crate::session::plan::{NextRecording, Progress, Study};
 use crate::session::wall_display::Answering;
 
-/// Result of a session or of a series.
+/// Result of a session, or of a participant's series of sessions.
 #[derive(Clone, Debug)]
 pub struct SeriesOutcome {
-    /// What came of each session, in order.
+    /// Result of each session, in order.
     pub done: Vec<LiveOutcome>,
     /// Progress of the participant, as text.
     pub remark: Option<String>,
 }
 
-/// Runs one session at the console, until the wizard leaves it; its trial again, where that is asked for. With `compare`,
-/// wizard and assistants stand side by side, which unblinds the wizard; a recording that is continued has none.
+/// Runs one session at the console until the wizard leaves it, and repeats its trial if the wizard asks for that. With
+/// `compare`, the comparison of wizard and assistants is shown, which unblinds the wizard; continued recordings have no
+/// comparison.
 ///
 /// # Errors
 /// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
 pub fn operate(beginning: SessionStart, compare: Option<CompareRequest>) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async {
-        // Checked before the terminal is taken and a recording is created, so that a session that cannot start leaves nothing behind.
+        // The start is checked before the terminal is taken over and a recording is created, so that a session that
+        // cannot start leaves nothing behind.
         let mut begun = PreparedSession::new(beginning)?.comparing(compare.clone());
         let mut desk = OperatorDesk::take(begun.spec(), begun.kitchen()).await?;
         let mut done = Vec::new();
@@ -47,35 +49,35 @@ pub fn operate(beginning: SessionStart, compare: Option<CompareRequest>) -> Resu
     })
 }
 
-/// Runs what is still to be done by a participant of a plan, one recording after another, until the wizard quits.
+/// Runs the remaining recordings of a participant in a study plan, one after another, until the wizard quits.
 ///
 /// # Errors
-/// Those of [`operate`], and recordings that cannot be read or do not fit the plan.
+/// Those of [`operate`]; recordings cannot be read or do not fit the plan.
 pub fn operate_series(series: RemainingTrials) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async { Planned::new(series)?.run().await })
 }
 
-/// Runs work in a tokio runtime, for signals and sockets.
+/// Runs a future in a tokio runtime, which signals and sockets need.
 fn in_runtime(work: impl Future<Output = Result<SeriesOutcome, LiveError>>) -> Result<SeriesOutcome, LiveError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
     runtime.block_on(work)
 }
 
-/// The result as text.
+/// The results of a participant's sessions as text.
 pub fn describe(sitting: &SeriesOutcome) -> String {
     let ends: String = sitting.done.iter().map(|end| format!("{}\n", end.describe())).collect();
     let remark = sitting.remark.as_ref().map_or(String::new(), |remark| format!("{remark}\n"));
     ends + &remark
 }
 
-/// Choice of the wizard before a recording.
+/// The wizard's choice before a recording.
 enum Choice {
     Begin(Box<PreparedSession>),
-    /// Quit the program, with this remark.
+    /// The wizard quits the program; with a remark to print.
     Leave(Option<String>),
 }
 
-/// The series of one participant of a plan. The next step is determined from the recordings each time.
+/// The series of one participant in a study plan. The next step is determined from the existing recordings each time.
 struct Planned {
     series: RemainingTrials,
     study: Study,
@@ -120,7 +122,7 @@ impl Planned {
         Ok(SeriesOutcome { done, remark: Some(stands(&progress)) })
     }
 
-    /// Prepares the next recording, after the questions that come first.
+    /// Prepares the next recording, after asking the wizard the questions that come before it.
     async fn choose(&self, progress: &Progress, desk: &mut OperatorDesk) -> Result<Choice, LiveError> {
         let (slot, attempt, open) = match &progress.next {
             NextRecording::Begin { slot, attempt } => (*slot, *attempt, None),
@@ -161,7 +163,7 @@ impl Planned {
     }
 }
 
-/// The question whether an unfinished recording is continued or repeated.
+/// The question to the wizard whether an unfinished recording is continued or repeated.
 fn which(progress: &Progress, recording: &str, slot: usize) -> QuestionPage {
     let name = slot_name(progress, slot);
     let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
@@ -176,7 +178,8 @@ fn which(progress: &Progress, recording: &str, slot: usize) -> QuestionPage {
     }
 }
 
-/// The question for consent, without which nothing is recorded. Where the display asks, the wizard can still confirm it by hand.
+/// The question for the participant's consent, without which nothing is recorded. If the display asks for it, the
+/// wizard can still confirm it at the console.
 fn consent(study: &Study, progress: &Progress, label: &str, on_display: bool) -> QuestionPage {
     let mut text = vec![study.plan.consent.clone()];
     if on_display {
@@ -194,7 +197,7 @@ fn consent(study: &Study, progress: &Progress, label: &str, on_display: bool) ->
     }
 }
 
-/// "familiarisation", "trial 1".
+/// Name of a step of the plan: "familiarisation", "trial 1".
 pub(super) fn slot_name(progress: &Progress, slot: usize) -> String {
     match progress.steps.get(slot).and_then(|stand| stand.slot.period) {
         Some(period) => format!("trial {period}"),

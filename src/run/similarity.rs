@@ -1,4 +1,4 @@
-//! `tomcom compare RECORDING...`: reads recordings for [`crate::analysis::comparison_summary`].
+//! Command `tomcom compare RECORDING...`: reads recordings for [`crate::analysis::comparison_summary`].
 
 use std::path::{Path, PathBuf};
 
@@ -11,13 +11,13 @@ use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogReader, at_line};
 
-/// Windows of `--sweep`, in presses of the human.
+/// Matching windows that `--sweep` tries, in presses of the human.
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
 
-/// Follows recordings on all processors. `done` is called after each recording.
+/// Compares wizard and assistants in recordings, on all processors. `done` is called after each recording.
 ///
 /// # Errors
-/// A recording cannot be read or applied, or one is named twice.
+/// A recording cannot be read or replayed, or is named twice.
 pub fn watch(
     recordings: &[PathBuf],
     request: &CompareRequest,
@@ -27,7 +27,7 @@ pub fn watch(
     parallel::each(recordings, |recording| follow(recording, request), done).into_iter().collect()
 }
 
-/// Follows a recording to its end.
+/// Compares wizard and assistants in one recording, from beginning to end.
 fn follow(recording: &Path, request: &CompareRequest) -> FileResult<ComparedRecording> {
     let mut log = LogReader::open(recording)?;
     let mut comparer = RecordingComparer::new(log.session(), request);
@@ -39,7 +39,7 @@ fn follow(recording: &Path, request: &CompareRequest) -> FileResult<ComparedReco
     Ok(comparer.finish(recording.display().to_string(), standing))
 }
 
-/// Details of a difference, by its number in the list, as text.
+/// Context of the difference with this number, as text.
 ///
 /// # Errors
 /// There is no difference with this number, or there are several recordings.

@@ -1,7 +1,8 @@
-//! `tomcom simulate`: whole trials in virtual time; a trial does not depend on the number of trials.
+//! Command `tomcom simulate`: whole trials in virtual time. A trial does not depend on the number of trials.
 //!
-//! Trials are simulated on all processors in blocks and summed up in their order, so no number depends on timing, and memory does not grow.
-//! A complete recording with the same header is read instead of simulated. A shard takes every n-th trial.
+//! Trials are simulated on all processors in blocks and summed up in their order, so that results do not depend on
+//! timing, and memory does not grow. A complete recording with the same header is read instead of simulated. A shard
+//! takes every n-th trial.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -29,35 +30,36 @@ use crate::session::{Header, Stamped};
 /// Request of `tomcom simulate`.
 #[derive(Clone, Debug)]
 pub struct SimulationRequest {
-    /// The settings with their files.
+    /// Settings with the files that they name.
     pub files: SessionFiles,
-    /// Number of trials in all, over all shards.
+    /// Total number of trials, over all shards.
     pub trials: u64,
-    /// The shard of the trials.
+    /// Shard of the trials that is simulated.
     pub shard: Shard,
     /// Folder of the recordings.
     pub out: PathBuf,
 }
 
 impl SimulationRequest {
-    /// The trials of the shard, in order.
+    /// Indices of the shard's trials, in order.
     pub fn own_trials(&self) -> impl Iterator<Item = u64> + Clone {
         let Shard { number, of } = self.shard;
         (number - 1..self.trials).step_by(of as usize)
     }
 }
 
-/// A shard of the trials: number `number` (from 1) of `of` disjoint parts.
+/// A shard of the trials, so that several computers can share a simulation: number `number` (from 1) of `of` disjoint
+/// parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
-    /// Which part it is; 1 is the first.
+    /// Number of this shard, from 1.
     pub number: u64,
-    /// Number of parts.
+    /// Number of shards.
     pub of: u64,
 }
 
 impl Shard {
-    /// The shard that contains all trials.
+    /// The only shard of an undivided simulation, with all trials.
     pub const WHOLE: Shard = Shard { number: 1, of: 1 };
 }
 
@@ -75,25 +77,25 @@ impl FromStr for Shard {
 
 /// Largest number of shards.
 const MAX_SHARDS: u64 = 100_000;
-/// Interval at which a trial that another program simulates is looked at.
+/// Period of polling a trial that another program is simulating.
 const LOOK: Duration = Duration::from_millis(50);
-/// Number of trials that are simulated before their results are summed up, which bounds memory.
+/// Number of trials whose results are held in memory before they are summed up.
 const BLOCK: usize = 256;
 
-/// The settings of a simulated trial without a plan. Without a scripted wizard the wizard condition is unassisted. Every trial has
-/// its own participant with its own code.
+/// Settings of a simulated trial without a study plan. Without a scripted wizard, the wizard condition becomes
+/// unassisted. Every trial has its own participant with its own code.
 pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     let mut spec = spec.clone();
     if spec.unattended(spec.trial.condition) != spec.trial.condition {
-        // Without a wizard there is nothing that the assistant could shadow.
+        // Without a wizard, the assistant has nobody to advise.
         (spec.trial.condition, spec.assistant.shadow) = (Condition::None, Shadow::Off);
     }
     spec.participant.code = format!("S{:03}", trial + 1);
     spec
 }
 
-/// Simulates the trials on all processors. Complete recordings that exist already are read instead. `done` is called after each
-/// trial.
+/// Simulates the trials on all processors. Complete recordings that exist already are read instead. `done` is called
+/// after each trial.
 ///
 /// # Errors
 /// A recording cannot be written, its folder holds another recording, or an exclusion file is damaged.
@@ -109,7 +111,7 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
         moved.extend(trial.moved.map(|log| log.display().to_string()));
         recordings.push(trial.folder.display().to_string());
         found += u64::from(trial.found);
-        // An existing recording can be excluded.
+        // An existing recording can have been excluded from the analysis.
         match ruling(&trial.folder).map_err(Box::new)?.is_some_and(|ruling| ruling.excluded) {
             true => excluded += 1,
             false => sums.add(trial.arm, &trial.figures, &plan_lengths),
@@ -120,22 +122,22 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
     Ok(SimulationSummary { excluded, found, recordings, moved, wall_s, ..sums.figures() })
 }
 
-/// A simulated trial.
+/// A simulated trial with its recording and summary.
 pub struct SimulatedTrial {
-    /// The recording's folder.
+    /// Folder of the recording.
     pub folder: PathBuf,
-    /// The arm by what was done.
+    /// Study arm of the trial, by what was done in it.
     pub arm: StudyArm,
-    /// The summary of the trial.
+    /// Summary of the trial.
     pub figures: TrialSummary,
-    /// Whether its recording existed already, or another program made it meanwhile.
+    /// Whether the recording existed before, or another program made it in the meantime.
     pub found: bool,
     /// New path of a log that ended before the end of its header.
     pub moved: Option<PathBuf>,
 }
 
-/// Simulates the trials on all processors and passes them on one by one, in order. Trials that another program simulates in
-/// this folder are waited for after all others.
+/// Simulates the trials on all processors and passes them to `take` one by one, in order. Trials that another program
+/// is simulating in this folder are waited for after all others.
 ///
 /// # Errors
 /// Errors of [`simulate`], and the first error of `take`.
@@ -144,7 +146,7 @@ pub fn each_trial(
     done: impl Fn() + Sync,
     mut take: impl FnMut(SimulatedTrial) -> Result<(), RunError>,
 ) -> Result<(), RunError> {
-    // Checked before the first trial is simulated.
+    // Existing folders are checked before the first trial is simulated.
     for trial in simulation.own_trials() {
         let header = header_of_trial(simulation, trial);
         check_simulated(&folder_of_trial(&simulation.out, &header.session), &header)?;
@@ -182,7 +184,7 @@ pub fn each_trial(
     }
 }
 
-/// Waits until at least one of these trials' recordings is not being written.
+/// Waits until another program has finished at least one of these trials.
 fn wait_for_any(simulation: &SimulationRequest, trials: &[u64]) {
     let folders: Vec<PathBuf> = trials.iter().map(|&trial| folder_of(simulation, trial)).collect();
     while folders.iter().all(|folder| RecordingLock::holder(folder).is_some()) {
@@ -190,7 +192,7 @@ fn wait_for_any(simulation: &SimulationRequest, trials: &[u64]) {
     }
 }
 
-/// Simulates a recording for wizard training: an unassisted trial of this length in the default kitchen.
+/// Simulates a recording for wizard training: an unassisted trial of `seconds` in the default kitchen.
 ///
 /// # Errors
 /// Errors of [`simulate`].
@@ -203,20 +205,21 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
     files.spec.check().map_err(|error| {
         Box::new(FileError::from_finding(Path::new("--seconds"), error.found, error.remedy.to_string()))
     })?;
-    // Recordings of another length get another name.
+    // The length is part of the path, since recordings of different length would have the same name.
     let out = out.join(format!("{seconds}s"));
     let figures = simulate(&SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out }, || ())?;
     Ok(figures.recordings.iter().map(PathBuf::from).collect())
 }
 
-/// Folder of a trial's recording; its name does not depend on the number of trials.
+/// Folder of a trial's recording; the folder's name does not depend on the number of trials.
 fn folder_of_trial(out: &Path, spec: &SessionSpec) -> PathBuf {
     let period = spec.step.as_ref().and_then(|step| step.period);
     let period = period.map_or(String::new(), |period| format!("-{period}"));
     out.join(format!("seed{}-{}{period}", spec.seed, spec.participant.code))
 }
 
-/// The header of a trial: in a plan, trials are ordered by participant; else each trial has its own participant.
+/// Header of a trial's recording. With a study plan, trials are ordered by participant; without one, each trial has its
+/// own participant.
 fn header_of_trial(simulation: &SimulationRequest, trial: u64) -> Header {
     let files = &simulation.files.kitchen;
     let (spec, trial) = match simulation.files.study() {
@@ -233,7 +236,8 @@ fn folder_of(simulation: &SimulationRequest, trial: u64) -> PathBuf {
     folder_of_trial(&simulation.out, &header_of_trial(simulation, trial).session)
 }
 
-/// Simulates a trial, or reads its complete recording. `own` is the cost to go of this thread's last trial, `unused` a new one.
+/// Simulates a trial, or reads its complete recording. `own`: cost to go of this thread's last trial; `unused`: a new
+/// one.
 fn simulate_trial(
     simulation: &SimulationRequest,
     kitchen: &Arc<Kitchen>,
@@ -262,7 +266,7 @@ fn simulate_trial(
     Ok(SimulatedTrial { folder, arm, figures, found, moved })
 }
 
-/// The summary as text.
+/// The summary of a simulation as text for the terminal.
 pub fn describe(figures: &SimulationSummary) -> String {
     let each = match (figures.presses_per_order, figures.optimal_presses_per_order) {
         (Some(presses), Some(best)) => format!(", {presses:.1} presses each in the median (at best {best:.1})"),
@@ -311,7 +315,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
     )
 }
 
-/// One line for each log that ended before the end of its header.
+/// One line of text for each log that was moved, since it ends before the end of its header.
 pub(super) fn describe_moved(moved: &[String]) -> String {
     let line = |log: &String| {
         format!("a log that ended before the end of its header was moved to {log}; its trial was simulated again\n")

@@ -1,4 +1,5 @@
-//! Whether a recording counts: it can be aborted, excluded at the console, or excluded later from the command line.
+//! Whether analyses count a recording: it can be aborted or excluded at the console, or excluded later from the command
+//! line.
 
 use std::path::Path;
 
@@ -7,7 +8,7 @@ use crate::edge::file_error::FileResult;
 use crate::edge::log::{ExclusionRecord, LogReader, ruling};
 use crate::session::{Event, Session};
 
-/// Reason for aborting the trial of a recording, if it was aborted.
+/// Reason for which the trial of a recording was aborted; `None` if it was not.
 ///
 /// # Errors
 /// Errors of reading a log.
@@ -21,7 +22,8 @@ pub fn aborted(recording: &Path) -> FileResult<Option<String>> {
     Ok(None)
 }
 
-/// Whether a recording that was read to its end is excluded. A later decision beside the log overrides the log.
+/// Whether the trial of a recording that was read to its end was aborted or excluded. A later decision in a file beside
+/// the log overrides the log.
 ///
 /// # Errors
 /// The file beside the log is damaged.

@@ -1,4 +1,4 @@
-//! `tomcom replay RECORDING... --offers`: replays recordings for [`crate::analysis::offer_steadiness`].
+//! Command `tomcom replay RECORDING... --offers`: replays recordings for [`crate::analysis::offer_steadiness`].
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::session::{Session, apply};
 /// Measures how steady the offers of recordings are. `done` is called after each recording.
 ///
 /// # Errors
-/// A recording that cannot be read or applied.
+/// A recording cannot be read or replayed.
 pub fn measure(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<SteadinessSummary> {
     each_once(recordings)?;
     let mut sums = SteadinessSums::default();
@@ -23,7 +23,8 @@ pub fn measure(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Ste
     Ok(sums.summary())
 }
 
-/// Follows one recording. Offers need the session's state only, so no estimate is computed.
+/// Measures the steadiness of offers in one recording. Since offers depend on the session's state only, no estimate is
+/// computed.
 fn tally(recording: &Path) -> FileResult<(SteadinessTally, Session)> {
     let mut log = LogReader::open(recording)?;
     let mut session = log.session();

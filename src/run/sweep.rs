@@ -1,5 +1,6 @@
-//! `tomcom simulate --sweep`: sensitivity of results to settings. The same trials are simulated for every value of a setting and
-//! without signals, with the same participants, orders and random streams, so that differences are paired.
+//! Command `tomcom simulate --sweep`: sensitivity of results to settings (parameter sweep). The same trials are
+//! simulated for every value of a setting and without signals, with the same participants, orders and random streams,
+//! so that differences are paired.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -21,34 +22,34 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::SessionSpec;
 use crate::session::settings::{Condition, GazeSource};
 
-/// Name of the table in the folder of the recordings, and name for a shard of the trials.
+/// Name of the table's file in the folder of the recordings; shards have names of their own.
 pub const TABLE_NAME: &str = "sweep.csv";
 const PART_NAME: &str = "sweep-part";
-/// Largest number of grid cells.
+/// Largest number of combinations of values.
 const MAX_CELLS: usize = 1000;
 
-/// A setting that can be swept.
+/// A setting whose values can be swept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Knob {
     /// Cost of communication, in presses.
     Cost,
-    /// Threshold of ToM.
+    /// Threshold of the concept ToM.
     Threshold,
-    /// Horizon and number of rollouts.
+    /// Horizon of the planner's rollouts, and their number.
     Horizon,
     Rollouts,
     /// Rationality tau and reading radius of the human model.
     Tau,
     Radius,
-    /// Whether the assistant uses the gaze.
+    /// Whether the assistant uses gaze to estimate beliefs.
     Gaze,
-    /// At which moments the assistant is asked besides presses and changes of the task.
+    /// When the assistant is asked for advice, besides after presses and changes of the task.
     Asks,
-    /// Whether waiting is evidence.
+    /// Whether waiting without a press counts as evidence about the human's belief.
     Waiting,
 }
 
-/// Names of the settings.
+/// The settings that can be swept, by name.
 const KNOBS: [(&str, Knob); 9] = [
     ("cost", Knob::Cost),
     ("threshold", Knob::Threshold),
@@ -61,16 +62,16 @@ const KNOBS: [(&str, Knob); 9] = [
     ("waiting", Knob::Waiting),
 ];
 
-/// The moments at which the assistant is asked: by name, whether also in silence, and whether also by gaze.
+/// Choices for when the assistant is asked: name, whether also in unusual silence, and whether also by gaze.
 const MOMENTS: [(&str, [bool; 2]); 4] =
     [("presses", [false, false]), ("silence", [true, false]), ("gaze", [false, true]), ("silence+gaze", [true, true])];
 
-/// One setting with its values: `cost=0.5,1,1.5`.
+/// A swept setting with its values, as in `cost=0.5,1,1.5`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweepAxis {
     name: &'static str,
     knob: Knob,
-    /// Values as typed, each valid for the setting.
+    /// Values as the user typed them; each is valid for the setting.
     values: Vec<String>,
 }
 
@@ -109,7 +110,7 @@ impl FromStr for SweepAxis {
 }
 
 impl SweepAxis {
-    /// Applies a value, which was validated when it was parsed.
+    /// Applies a value to the settings; the value was validated when it was parsed.
     fn set(&self, spec: &mut SessionSpec, value: &str) {
         let number = value.parse().unwrap_or_default();
         let whole = value.parse().unwrap_or_default();
@@ -135,28 +136,28 @@ impl SweepAxis {
     }
 }
 
-/// One cell of the grid: its settings by name, as typed.
+/// One combination of values: settings by name, with values as typed.
 type Cell = Vec<(&'static str, String)>;
 
-/// The table.
+/// Table of results for every combination of values of the swept settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweepSummary {
-    /// Rows; the first is without signals.
+    /// Rows of the table; the first is without signals.
     pub rows: Vec<SweepRow>,
-    /// The file with the table.
+    /// Path of the table's file.
     pub table: PathBuf,
     /// New paths of logs that ended before the end of their header; their trials were simulated again.
     pub moved: Vec<String>,
 }
 
-/// Total number of trials of a sweep.
+/// Total number of trials in a parameter sweep.
 pub fn trials(simulation: &SimulationRequest, axes: &[SweepAxis]) -> u64 {
     let cells: usize = axes.iter().map(|axis| axis.values.len()).product();
     (cells as u64 + 1) * simulation.own_trials().count() as u64
 }
 
-/// Simulates the trials for every combination of the values, each in a folder of its own, and writes the table beside them.
-/// `done` is called after each trial.
+/// Simulates the trials for every combination of the values, each in a folder of its own, and writes the table beside
+/// them. `done` is called after each trial.
 ///
 /// # Errors
 /// Errors of simulations, too many combinations, or an invalid value.
@@ -193,7 +194,7 @@ pub fn sweep(
     Ok(SweepSummary { rows, table, moved })
 }
 
-/// Each shard has its own table; the whole table is made from all recordings.
+/// File name of the table. Each shard has its own; the whole table is made from all recordings.
 fn table_name(shard: Shard) -> String {
     match shard {
         Shard::WHOLE => TABLE_NAME.to_string(),
@@ -201,7 +202,7 @@ fn table_name(shard: Shard) -> String {
     }
 }
 
-/// All combinations of the values; the last axis varies fastest.
+/// All combinations of the values; the values of the last setting vary fastest.
 fn grid(axes: &[SweepAxis]) -> Result<Vec<Cell>, RunError> {
     let wrong = |found: String, remedy: String| {
         Err(Box::new(FileError::from_finding(Path::new("--sweep"), found, remedy)).into())
@@ -226,7 +227,7 @@ fn grid(axes: &[SweepAxis]) -> Result<Vec<Cell>, RunError> {
     Ok(cells)
 }
 
-/// Refuses settings of a concept that is not in use.
+/// Refuses settings of a concept that the session does not use.
 fn check_axes(spec: &SessionSpec, axes: &[SweepAxis]) -> Result<(), RunError> {
     let decides = match spec.trial.condition {
         Condition::Assistant => Some(spec.assistant.concept),
@@ -261,18 +262,18 @@ fn spec_of(spec: &SessionSpec, axes: &[SweepAxis], cell: &Cell) -> Result<Sessio
     }
 }
 
-/// "cost-1.5_gaze-off".
+/// Folder name of a combination: "cost-1.5_gaze-off".
 fn folder_of(cell: &Cell) -> String {
     cell.iter().map(|(name, value)| format!("{name}-{value}")).collect::<Vec<_>>().join("_")
 }
 
-/// Simulates the trials of one cell and summarises them.
+/// Simulates and summarises the trials with one combination of values.
 fn of_cell(
     simulation: &SimulationRequest,
     done: &(impl Fn() + Sync),
 ) -> Result<(Vec<TrialErrors>, SimulationSummary), RunError> {
     let mut simulation = simulation.clone();
-    // Recommendations in trials without signals would only take time.
+    // Computing recommendations for trials without signals would only take time.
     simulation.files.spec.assistant.shadow = Shadow::Off;
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
     let plan_lengths = plan_lengths(&kitchen, &mut CostToGo::new(kitchen.clone()));
@@ -288,10 +289,10 @@ fn of_cell(
     Ok((trials, SimulationSummary { moved, ..sums.figures() }))
 }
 
-/// A column of numbers of the table: its name, and its value in a row.
+/// A numeric column of the table: its name, and its value in a row.
 type SweepColumn = (&'static str, fn(&SweepRow) -> Option<f64>);
 
-/// The columns of numbers; nothing stands where a value is not known.
+/// The numeric columns; unknown values become empty cells.
 const NUMBERS: [SweepColumn; 11] = [
     ("errors_per_100", |row| Some(row.errors_per_100)),
     ("signals_per_100", |row| Some(row.signals_per_100)),
@@ -324,7 +325,7 @@ fn write_table(path: &Path, axes: &[SweepAxis], rows: &[SweepRow]) -> std::io::R
     table.flush()
 }
 
-/// The table as text.
+/// The table of the parameter sweep as text.
 pub fn describe(figures: &SweepSummary, axes: &[SweepAxis]) -> String {
     let settings: String = axes.iter().map(|axis| format!("{:>13}", axis.name)).collect();
     let mut text = describe_moved(&figures.moved);

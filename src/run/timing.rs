@@ -1,4 +1,4 @@
-//! `tomcom replay RECORDING --timing`: computing times of inference and planning by event.
+//! Command `tomcom replay RECORDING --timing`: computing times of inference and planning, for each event.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -11,7 +11,7 @@ use crate::analysis::timing_summary::{DurationPercentiles, TimingSummary};
 use crate::edge::file_error::FileResult;
 use crate::kitchen::cost_to_go::CostToGo;
 
-/// Nanoseconds since the first call, on the monotonic clock.
+/// Nanoseconds on the monotonic clock since this function was first called.
 pub(super) fn monotonic_ns() -> u64 {
     static BEGAN: LazyLock<Instant> = LazyLock::new(Instant::now);
     BEGAN.elapsed().as_nanos() as u64

@@ -1,5 +1,6 @@
-//! `tomcom train`: a wizard watches recordings with known false beliefs, sends signals with the usual keys, and gets feedback on
-//! each signal and a score that is compared with a criterion. The recorded participant does not see the signals.
+//! Command `tomcom train`: a wizard watches recordings with known false beliefs, sends signals with the usual keys, and
+//! gets feedback on each signal and a score that is compared with a criterion. The recorded participant does not see
+//! the signals.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -24,13 +25,13 @@ use crate::session::settings::{Condition, Visibility};
 pub struct TrainingRequest {
     /// Recordings of simulated participants without signals.
     pub recordings: Vec<PathBuf>,
-    /// The wizard's code.
+    /// The wizard's pseudonymous code.
     pub wizard: String,
-    /// Folder of the result.
+    /// Folder for the training record.
     pub out: PathBuf,
-    /// When the training is passed.
+    /// Criterion for passing the training.
     pub criterion: TrainingCriterion,
-    /// An index into [`SPEEDS`].
+    /// Playback speed, as an index into [`SPEEDS`].
     pub speed: usize,
 }
 
@@ -56,7 +57,7 @@ pub fn train(lesson: &TrainingRequest) -> Result<(TrainingRecord, PathBuf), Revi
     Ok((record, path))
 }
 
-/// Opens a recording with its periods of false belief.
+/// Opens a recording, together with its periods of false belief.
 fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)> {
     let mut film = SeekableReplay::open(recording)?;
     let unfit = |found: &str| {
@@ -68,7 +69,7 @@ fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)
     }
     let spells =
         spells(&film.replay.follower).ok_or_else(|| unfit("a trial of which nobody knows what was believed"))?;
-    // As a wizard session with the information of the paper's wizard.
+    // The recording is shown as a wizard session with the information that the paper's wizard had.
     film.session.spec.trial.condition = Condition::Wizard;
     film.session.spec.console.visibility = Visibility::State;
     Ok((film, spells))
@@ -98,7 +99,7 @@ async fn watch(
     Ok(judged)
 }
 
-/// Name of a recording in training records; for recordings simulated for training it includes the length.
+/// Name of a recording in training records; if the recording was simulated for training, the name includes its length.
 fn name_of(recording: &Path, lesson: &TrainingRequest) -> String {
     let simulated = recording.strip_prefix(lesson.out.join("recordings")).ok();
     let name = simulated.or(recording.file_name().map(Path::new)).unwrap_or(recording);

@@ -1,4 +1,5 @@
-//! The training console over a recording: signals are compared with the known false beliefs, with immediate feedback.
+//! The training console: a wizard sends signals while a recording is played, and each signal is compared with the known
+//! false beliefs and gets immediate feedback.
 
 use std::time::Instant;
 
@@ -28,20 +29,20 @@ use crate::mind::BeliefWitness;
 use crate::session::event::SignalEnd;
 use crate::session::{Event, Stamped, apply};
 
-/// A recording in training.
+/// The training console for one recording.
 pub(super) struct TrainingShell {
     film: SeekableReplay,
     name: String,
     spells: Vec<FalseBeliefPeriod>,
-    /// Periods of false belief in the recording.
+    /// Periods of false belief in the recording that led to errors.
     beliefs: Vec<JudgedBelief>,
     criterion: TrainingCriterion,
     model: ConsoleModel,
     sent: Vec<WizardSignal>,
     signals: Vec<JudgedSignal>,
-    /// Whether the result has been shown.
+    /// Whether the final score of the recording has been shown.
     concluded: bool,
-    /// For each period, whether its omission has been reported.
+    /// For each period of false belief, whether the wizard was told that it was missed.
     told_missed: Vec<bool>,
     now: SessionTime,
     opened: Instant,
@@ -85,7 +86,7 @@ impl TrainingShell {
             opened: now,
             at: now,
         };
-        // The trial has started and is paused.
+        // At position 1 the trial has started; it is paused until the wizard begins.
         shell.film.wind(1);
         Ok(shell)
     }
@@ -94,12 +95,12 @@ impl TrainingShell {
         self.film.position == self.film.length().1
     }
 
-    /// Whether the recording is finished and its result has been closed.
+    /// Whether the recording is finished and the wizard has closed its score.
     fn is_done(&self) -> bool {
         self.concluded && self.model.dialog.is_none()
     }
 
-    /// Shows the result once.
+    /// Shows the final score of the recording once.
     fn conclude(&mut self) {
         if self.is_over() && !self.concluded {
             self.concluded = true;
@@ -109,7 +110,7 @@ impl TrainingShell {
         }
     }
 
-    /// Handles a terminal message; returns the way of leaving the recording, if any.
+    /// Handles a message from the terminal; returns how the wizard leaves the recording, if at all.
     fn take_message(&mut self, message: ConsoleMessage) -> Option<LeavingReason> {
         self.tick();
         self.model.now = self.now;
@@ -136,7 +137,7 @@ impl TrainingShell {
         }
     }
 
-    /// Adds feedback on a signal or on an omission.
+    /// Adds a line of feedback on a signal, or on a false belief that was missed.
     fn tell(&mut self, level: NoticeLevel, text: String) {
         let clock = self.film.session.trial_clock(self.now);
         if let Some(lesson) = &mut self.model.lesson {
@@ -145,13 +146,14 @@ impl TrainingShell {
         self.model.notice = None;
     }
 
-    /// Shows a signal on the timeline and as the participant would see it. Signals that are not possible are ignored.
+    /// Shows a signal of the wizard on the timeline and as the participant would see it. Impossible signals are
+    /// ignored.
     fn show(&mut self, event: Event) {
         let shown = Stamped { seq: self.film.position as u64, time: self.now.max(self.film.session.time), event };
         let _ = apply(&mut self.film.session, &shown);
     }
 
-    /// Judges a signal and gives feedback.
+    /// Judges a signal of the wizard and gives feedback.
     fn signal(&mut self, shown: Event) {
         let Event::SignalShown { signal, .. } = &shown else { return };
         if !self.model.playback.as_ref().is_some_and(|playback| playback.playing) {
@@ -182,7 +184,7 @@ impl TrainingShell {
         self.tell(level, format!("{words}: {text}"));
     }
 
-    /// The false beliefs at a time, as text.
+    /// The false beliefs at a time of the trial's clock, as text.
     fn wrong_now(&self, clock: SessionTime) -> String {
         let kitchen = &self.film.session.kitchen;
         let open = self.spells.iter().filter(|spell| spell.holds(clock));
@@ -194,7 +196,7 @@ impl TrainingShell {
         self.model.clock = SessionTime(self.opened.elapsed().as_nanos() as u64);
     }
 
-    /// Advances the replay by the elapsed time and reports omissions.
+    /// Advances the replay by the time that has passed, and reports false beliefs that were missed.
     fn play(&mut self) {
         let passed_s = self.at.elapsed().as_secs_f64();
         self.at = Instant::now();
@@ -221,7 +223,7 @@ impl TrainingShell {
         self.say_missed();
     }
 
-    /// Updates the present false beliefs.
+    /// Updates the present false beliefs from a recorded belief of the participant.
     fn hear(&mut self, witness: &BeliefWitness) {
         let session = &self.film.session;
         let clock = session.trial_clock(session.time);
@@ -249,20 +251,20 @@ impl TrainingShell {
         }
     }
 
-    /// Indices of the periods that were hit.
+    /// Indices of the periods of false belief that the wizard's signals hit.
     fn hits(&self) -> Vec<usize> {
         let hit = |worth: SignalVerdict| if let SignalVerdict::Hit { spell, .. } = worth { Some(spell) } else { None };
         worths(&self.sent, &self.spells).into_iter().filter_map(hit).collect()
     }
 
-    /// The wizard's performance on the periods that have begun.
+    /// The wizard's performance on the periods of false belief that have begun.
     fn measures(&self) -> WizardMeasures {
         let clock = self.film.session.trial_clock(self.now);
         let begun: Vec<FalseBeliefPeriod> = self.spells.iter().filter(|spell| spell.began <= clock).cloned().collect();
         WizardMeasures::from_signals(&self.sent, Some(&begun))
     }
 
-    /// The false beliefs that led to errors, as far as they have begun.
+    /// The false beliefs that led to errors and have begun so far.
     fn judged_beliefs(&self) -> Vec<JudgedBelief> {
         let clock = self.film.session.trial_clock(self.now);
         let worths = worths(&self.sent, &self.spells);
@@ -273,7 +275,7 @@ impl TrainingShell {
         begun.map(|(index, _)| JudgedBelief { hit_by: hit_by(index), ..self.beliefs[index].clone() }).collect()
     }
 
-    /// The training record of this recording.
+    /// The training record's entry for this recording; `before` are the wizard's earlier training records.
     pub fn judged(&self, before: &[TrainingRecord]) -> JudgedRecording {
         let mut judged = JudgedRecording {
             recording: self.name.clone(),

@@ -1,4 +1,4 @@
-//! A prepared session: new, repeated, or continued after a cut.
+//! Preparation of a session: new, repeated, or continued after a cut.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -19,21 +19,21 @@ use crate::session::{Header, SessionSpec, Stamped};
 pub(super) struct PreparedSession {
     pub engine: Engine,
     pub header: Header,
-    /// Events at the beginning of the recording.
+    /// First events of the recording.
     pub first: Vec<Stamped>,
-    /// The consent that the participant has just given.
+    /// The consent that the participant has just given, if it was asked for.
     pub consent: Option<ProtocolEvent>,
-    /// Session time at which it begins.
+    /// Session time at which the session begins.
     pub time: SessionTime,
-    /// Comparison of wizard and assistants, if it is shown.
+    /// Comparison of wizard and assistants, if the console shows it.
     pub compare: Option<CompareRequest>,
     pub place: RecordingPlace,
 }
 
-/// Place of the recording.
+/// Where the recording's folder is created.
 pub(super) enum RecordingPlace {
     In(PathBuf),
-    /// Beside the previous part, which stays locked.
+    /// Beside the previous part of the recording, which stays locked.
     After(PathBuf, RecordingLock),
 }
 
@@ -97,7 +97,7 @@ impl PreparedSession {
         &self.engine.session().kitchen
     }
 
-    /// Its settings.
+    /// Settings of the session.
     pub fn spec(&self) -> &SessionSpec {
         &self.engine.session().spec
     }

@@ -1,5 +1,5 @@
-//! Verification of a recording: the session is run again from the header with the external events only, and every line must equal
-//! the recorded line byte for byte. Applying the recorded events one by one must lead to the same state.
+//! Verification of a recording: the session is run again from its header and external events only, and every line must
+//! equal the recorded line byte for byte. Applying the recorded events one by one must lead to the same state.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -18,44 +18,45 @@ use crate::session::admit::is_external;
 use crate::session::header::PEOPLE_SINCE;
 use crate::session::{Event, Stamped};
 
-/// Result of `tomcom replay RECORDING --verify`.
+/// Whether a recording verifies: the result of `tomcom replay RECORDING --verify`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Verification {
-    /// The re-run gave the same events and states.
+    /// Whether running the session again gave the same events and states.
     pub verified: bool,
     /// Number of recorded events.
     pub events: u64,
     /// Whether the recording was cut off; it is verified up to the cut.
     pub cut: bool,
-    /// Whether its session is still running.
+    /// Whether the recording's session is still running.
     pub running: bool,
-    /// The version of the program since which simulated participants decide otherwise than in this recording.
+    /// Version of the program since which simulated participants decide differently than in this recording; null if
+    /// they do not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub people_changed: Option<&'static str>,
-    /// First difference between recording and re-run.
+    /// First difference between the recording and running it again; null without one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference: Option<VerificationDifference>,
 }
 
-/// The first difference between a recording and its re-run.
+/// First difference between a recording and running its session again.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VerificationDifference {
     /// Sequence number of the recorded event.
     pub seq: u64,
-    /// Path of the log (of the part, if there are several).
+    /// Path of the log; with several parts, of the part's log.
     pub log: PathBuf,
     /// Line number in the log, from 1.
     pub line: usize,
-    /// The recorded event, as in the log.
+    /// The recorded event, as a line of the log.
     pub recorded: String,
-    /// Line of the re-run; null if there is none.
+    /// Line from running the session again; null if it gives none.
     pub again: Option<String>,
 }
 
-/// Runs a recording again and compares.
+/// Runs the session of a recording again and compares the events.
 ///
 /// # Errors
-/// A recording that cannot be read, or whose events cannot be applied.
+/// The recording cannot be read, or its events cannot be applied.
 pub fn verify(recording: &Path) -> FileResult<Verification> {
     let RerunRecording { log, again, replayed, difference } = RerunRecording::from_log(LogReader::open(recording)?)?;
     let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
@@ -65,13 +66,13 @@ pub fn verify(recording: &Path) -> FileResult<Verification> {
     Ok(Verification { verified, events: log.events(), cut, running, people_changed, difference })
 }
 
-/// A recording that was run again to its end.
+/// A recording whose session was run again to the end.
 pub(super) struct RerunRecording {
     pub log: LogReader,
     pub again: RerunSession,
-    /// Result of applying the recorded events.
+    /// The session after applying the recorded events.
     replayed: Follower,
-    /// First difference.
+    /// First difference between recording and re-run, if any.
     pub difference: Option<VerificationDifference>,
 }
 
@@ -79,7 +80,7 @@ impl RerunRecording {
     /// Runs a recording again, from its first event to its last.
     ///
     /// # Errors
-    /// It cannot be read, or its events cannot be applied.
+    /// The recording cannot be read, or its events cannot be applied.
     pub fn from_log(mut log: LogReader) -> FileResult<RerunRecording> {
         let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
         header.session.require_built().map_err(|missing| FileError::not_built(log.path(), missing))?;
@@ -101,12 +102,13 @@ impl RerunRecording {
     }
 }
 
-/// The session of a re-run.
+/// A recorded session that is being run again.
 pub(super) struct RerunSession {
     pub engine: Engine,
-    /// Events of the re-run that have not been compared yet; at the end of a cut recording, the events that it lacks.
+    /// Events of the re-run that have not been compared yet; at the end of a cut recording, the events that the
+    /// recording lacks.
     pub produced: VecDeque<Stamped>,
-    /// The advisor with its open requests.
+    /// The assistant, which computes recommendations anew, if the session has one.
     advisor: Option<Advisor>,
     questions: VecDeque<AdviceRequest>,
 }
@@ -121,7 +123,7 @@ impl RerunSession {
                 let outcome = self.engine.input(recorded.time, event);
                 self.produced.extend(outcome.events);
             } else {
-                // A participant can act without an event.
+                // The participant can act without an event, so the next due action is tried until an event occurs.
                 while self.produced.is_empty() && self.engine.next_due().is_some_and(|due| due <= recorded.time) {
                     self.produced.extend(self.engine.fire());
                 }
@@ -140,18 +142,18 @@ impl RerunSession {
         })
     }
 
-    /// An external event; recommendations are computed again for the event to which they refer.
+    /// An external event for the re-run; a recommendation is computed again, for the request after the same event.
     fn computed_again(&mut self, event: &Event) -> Event {
         let (Event::Advised(advice), Some(advisor)) = (event, &mut self.advisor) else { return event.clone() };
         self.questions.retain(|question| question.seq >= advice.for_seq);
         match self.questions.front().filter(|question| question.seq == advice.for_seq) {
             Some(question) => Event::Advised(advisor.answer(question)),
-            // Without a request the recommendation stays as recorded.
+            // Without a matching request, a silent recommendation is expected.
             None => Event::Advised(Recommendation::silent(advice.for_seq, advice.for_ns)),
         }
     }
 
-    /// Whether the re-run ends in the same session state and belief estimate as the replay, without left-over events.
+    /// Whether the re-run ends with the same session state and estimate as the replay, without events left over.
     fn ends_like(&self, replayed: &Follower) -> bool {
         self.produced.is_empty()
             && *self.engine.session() == replayed.session
@@ -159,7 +161,7 @@ impl RerunSession {
     }
 }
 
-/// The result as text.
+/// The result of the verification as text.
 pub fn describe(found: &Verification) -> String {
     let until = match (found.running, found.cut) {
         (true, _) => "; the session is still running, and this is what was written so far",

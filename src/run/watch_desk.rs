@@ -1,4 +1,4 @@
-//! The comparison in a running session, on its own thread.
+//! Comparison of wizard and assistants in a running session, on a thread of its own.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
@@ -8,14 +8,15 @@ use crate::history::comparison::LaneComparison;
 use crate::session::{Event, Stamped};
 
 impl ComparisonFollower {
-    /// Starts the comparison's thread, which ends when the desk is dropped.
+    /// Starts the comparison's thread, which ends when the returned desk is dropped.
     pub fn on_thread(mut self) -> ComparisonDesk {
         let (tell, events) = channel::<Stamped>();
         let (show, views) = channel();
         thread::spawn(move || {
             while let Ok(stamped) = events.recv() {
                 let before = self.progress();
-                // The session accepted this event; if the follower does not, the comparison ends.
+                // The session has accepted this event. If the comparison's copy of the session refuses it, the
+                // comparison ends.
                 if self.apply(&stamped).is_err() {
                     return;
                 }
@@ -30,7 +31,7 @@ impl ComparisonFollower {
     }
 }
 
-/// The console's connection to the comparison's thread.
+/// The console's connection to the thread that compares wizard and assistants.
 #[derive(Debug)]
 pub struct ComparisonDesk {
     tell: Sender<Stamped>,
@@ -38,19 +39,19 @@ pub struct ComparisonDesk {
 }
 
 impl ComparisonDesk {
-    /// Passes an event.
+    /// Passes an event of the session to the comparison.
     pub fn tell(&self, stamped: &Stamped) {
-        // If the thread has ended, the session continues without a comparison.
+        // If the comparison's thread has ended, the session continues without a comparison.
         let _ = self.tell.send(stamped.clone());
     }
 
-    /// The final comparison after all passed events.
+    /// The final comparison, after all events that were passed.
     pub fn last(self) -> Option<LaneComparison> {
         drop(self.tell);
         self.views.into_iter().last()
     }
 
-    /// The latest comparison since the last call.
+    /// The latest comparison, if there is a new one since the last call.
     pub fn newest(&self) -> Option<LaneComparison> {
         self.views.try_iter().last()
     }

@@ -1,4 +1,4 @@
-//! A question to the wizard before a recording begins.
+//! Asks the wizard a question before a recording begins.
 
 use std::time::Duration;
 
@@ -10,22 +10,22 @@ use crate::console::question::{QuestionPage, QuestionReply};
 use crate::console::view::theme::Theme;
 use crate::session::wall_display::Answering;
 
-/// Period of redrawing a question.
+/// Period of redrawing a question on the screen.
 const REDRAW: Duration = Duration::from_millis(100);
 
 /// Asks a question; returns the index of the answer, or `None` to quit the program.
 ///
 /// # Errors
-/// The terminal is gone.
+/// The terminal was closed.
 pub(super) async fn ask(desk: &mut OperatorDesk, question: &QuestionPage) -> Result<Option<usize>, LiveError> {
     Ok(ask_consent(desk, question, false).await?.map(|(index, _)| index))
 }
 
-/// Asks a question that the participant's page may answer as well, where `on_display`: with its first answer. Returns also where it was
-/// answered.
+/// Asks a question that, with `on_display`, the participant's page can answer, too, by choosing the first answer.
+/// Returns the answer and where it was given.
 ///
 /// # Errors
-/// The terminal is gone.
+/// The terminal was closed.
 pub(super) async fn ask_consent(
     desk: &mut OperatorDesk,
     question: &QuestionPage,
@@ -39,13 +39,13 @@ pub(super) async fn ask_consent(
     })
 }
 
-/// A question without an answer yet.
+/// A question to the wizard that has not been answered.
 struct OpenQuestion<'a> {
     question: &'a QuestionPage,
-    /// The participant's page may answer.
+    /// Whether the participant's page can answer the question.
     on_display: bool,
     theme: Theme,
-    /// Whether the screen must be redrawn.
+    /// Whether the screen has to be redrawn.
     dirty: bool,
 }
 
@@ -57,7 +57,8 @@ impl ConsoleShell for OpenQuestion<'_> {
         ShellDeadlines { frame_after: if self.dirty { FRAME } else { REDRAW }, ..ShellDeadlines::default() }
     }
 
-    /// Gaze and other page inputs are consumed during a question; otherwise they would be processed later as if they were new.
+    /// Handles an event. Gaze and other page inputs are discarded during a question; otherwise they would be processed
+    /// later as if they were new.
     fn take(&mut self, event: LoopEvent) -> Result<Option<(QuestionReply, Answering)>, LiveError> {
         let message = match event {
             LoopEvent::Page(input) if self.on_display && is_consent(&input) => {

@@ -1,4 +1,4 @@
-//! Arm, table, buttons and hand in 3D.
+//! Robot arm, table, buttons and the participant's hand in 3D, for Rerun.
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
@@ -18,9 +18,9 @@ use crate::robot::safety::SafetyMode;
 use crate::session::settings::ArmKind;
 use crate::session::{Event, Session, Stamped};
 
-/// Period of updates of the moving arm, in nanoseconds.
+/// Period of updates of a moving arm, in nanoseconds.
 const EVERY_NS: u64 = 50_000_000;
-/// Margin of the table around the buttons and its thickness, in metres.
+/// Margin of the table around the buttons, and thickness of the table, in metres.
 const EDGE_M: f64 = 0.1;
 const THICK_M: f64 = 0.03;
 /// Radius of a button, and of the mark of a pressed button, in metres.
@@ -29,12 +29,12 @@ const MARK_M: f64 = 0.022;
 
 /// Height of a pressing hand above the table, in metres.
 const ABOVE_TABLE_M: f64 = 0.05;
-/// Least force that is shown at the tip, in newtons, and radius of its mark, in metres.
+/// Least contact force that is shown at the arm's tip, in newtons.
 const SHOWN_N: f64 = 0.5;
 const FELT_M: f64 = 0.015;
-/// Radius of the mark of a contact, in metres.
+/// Radius of the mark at a contact, in metres.
 const CONTACT_M: f64 = 0.05;
-/// Entities of the simulated arm: force, distance of the hand, safety mode, contact, hand.
+/// Paths of the entities of the simulated arm: force, distance of the hand, safety mode, contact, hand.
 const FORCE: &str = "robot/force";
 const AWAY: &str = "robot/hand_away";
 const SAFETY: &str = "robot/safety/mode";
@@ -42,7 +42,7 @@ const FELT: &str = "robot/felt";
 const CONTACT: &str = "robot/contact";
 const HAND: &str = "human/hand/shape";
 
-/// The joints of a UR5 from base to tool, each with the hue of its curve.
+/// The joints of a UR5 from base to tool, each with the colour of its curve.
 const JOINTS: [(&str, Colour); 6] = [
     ("base", colours::ROBOT),
     ("shoulder", colours::HUMAN),
@@ -52,21 +52,21 @@ const JOINTS: [(&str, Colour); 6] = [
     ("wrist 3", colours::FULL),
 ];
 
-/// State of the arm's entities.
+/// Arm, table, buttons and hand as the viewer shows them.
 #[derive(Clone, Debug)]
 pub struct ArmScene {
     arm: Arm,
-    /// Motion of the timed arm; `None` for the simulated arm, whose samples are in the session.
+    /// Motion of the timed arm; `None` for the physical arm, whose samples are part of the session.
     motion: Option<JointMotion>,
-    /// Time and joint angles of the last update.
+    /// Session time and joint angles of the last update.
     until: SessionTime,
     joints: JointAngles,
-    /// Whether a force is shown at the tip.
+    /// Whether a force is shown at the arm's tip at present.
     feels: bool,
 }
 
 impl ArmScene {
-    /// The arm as it stands in this session.
+    /// The arm's pose in this session.
     pub fn new(session: &Session) -> ArmScene {
         let arm = Arm::ur5();
         let motion = JointMotion::new(&session.kitchen, &arm);
@@ -76,7 +76,7 @@ impl ArmScene {
         ArmScene { arm, motion, until: session.time, joints, feels: false }
     }
 
-    /// Table, buttons, and the shapes of the links.
+    /// Entities that do not change: table, buttons, and the shapes of the arm's links.
     pub fn fixed(&self, kitchen: &Kitchen) -> Vec<EntityUpdate> {
         let mut rows = vec![EntityUpdate::new("robot/table", table(kitchen))];
         for (alone, name) in [(None, "shared"), (Some(Agent::Human), "human"), (Some(Agent::Robot), "robot")] {
@@ -101,7 +101,7 @@ impl ArmScene {
         rows
     }
 
-    /// Pose of the arm and of the hand.
+    /// Poses of the arm and of the hand at the beginning.
     pub fn opening(&self, session: &Session) -> Vec<EntityUpdate> {
         let mut rows = places(&self.arm, &self.joints);
         if self.motion.is_none() {
@@ -112,11 +112,11 @@ impl ArmScene {
         rows
     }
 
-    /// Updates of the arm's motion up to a time.
+    /// Entity updates of the arm's motion up to a time.
     pub fn until(&mut self, time: SessionTime) -> Vec<(SessionTime, Vec<EntityUpdate>)> {
         let mut moments = Vec::new();
         let Some(motion) = &self.motion else { return moments };
-        // A resting arm needs no update.
+        // The arm at rest needs no updates.
         let end = time.min(motion.rests_at() + SessionTime(EVERY_NS));
         let mut at = SessionTime((self.until.0 / EVERY_NS + 1) * EVERY_NS);
         while at <= end {
@@ -131,7 +131,7 @@ impl ArmScene {
         moments
     }
 
-    /// Updates by an event that has just been applied.
+    /// Entity updates of arm and hand from an event that has just been applied.
     pub fn follow(&mut self, session: &Session, stamped: &Stamped, change: &Change) -> Vec<EntityUpdate> {
         let now = stamped.time;
         let kitchen = &session.kitchen;
@@ -175,7 +175,7 @@ impl ArmScene {
         }
     }
 
-    /// Updates by a sample of the simulated arm: pose, force, hand.
+    /// Entity updates from a sample of the simulated arm: pose, force, hand.
     fn moves(&mut self, moment: &ArmSample) -> Vec<EntityUpdate> {
         self.joints = moment.joints;
         let mut rows = places(&self.arm, &self.joints);
@@ -204,7 +204,7 @@ impl ArmScene {
     }
 }
 
-/// Poses of the links, and the joint angles.
+/// Entity updates with the poses of the arm's links, and the joint angles.
 fn places(arm: &Arm, joints: &JointAngles) -> Vec<EntityUpdate> {
     let links = arm.links.iter().zip(arm.forward(joints)).skip(1);
     let links = links.map(|(link, place)| EntityUpdate::new(entity(&link.name), EntityData::Place(place)));
@@ -217,7 +217,7 @@ fn joint(name: &str) -> String {
     format!("robot/joints/{}", slug(name))
 }
 
-/// Shapes of hand and forearm as in the physics: the forearm points away from the robot and slightly up.
+/// Shapes of hand and forearm, as in the simulated physics: the forearm points away from the robot and slightly up.
 fn hand_shapes() -> Vec<EntityUpdate> {
     let place = HandPose::reaching(Point3::origin(), -ABOVE_TABLE_M);
     let [hand, forearm] = place.capsules();
@@ -232,7 +232,7 @@ fn hand_shapes() -> Vec<EntityUpdate> {
     vec![EntityUpdate::new(HAND, EntityData::Solids(vec![ball, forearm], colours::SKIN))]
 }
 
-/// A mark where the hand is, with these words.
+/// A mark at the position of the participant's hand, labelled with these words.
 fn touched(session: &Session, words: String) -> EntityUpdate {
     let at_m = session.robot.arm.last.map_or([0.0; 3], |(_, moment)| moment.hand_m);
     EntityUpdate::new(
@@ -245,7 +245,7 @@ fn entity(link: &str) -> String {
     format!("robot/arm/{link}")
 }
 
-/// A mark on the button that an agent presses, with its name.
+/// A mark on the button that an agent presses, labelled with the button's name.
 fn mark(kitchen: &Kitchen, agent: Agent, button: ButtonId) -> ScenePoint {
     let [x, y] = kitchen.button(agent, button).at_m;
     ScenePoint {
@@ -260,7 +260,7 @@ fn at(x: f64, y: f64, z: f64) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::identity())
 }
 
-/// A board below all buttons and the arm's base.
+/// A table top below all buttons and the arm's base.
 fn table(kitchen: &Kitchen) -> EntityData {
     let all = kitchen.buttons.iter().flatten().map(|button| button.at_m).chain([[-0.1, 0.0], [0.1, 0.0]]);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -278,7 +278,7 @@ fn table(kitchen: &Kitchen) -> EntityData {
     )
 }
 
-/// Buttons of one agent alone, or shared buttons for `None`.
+/// Buttons that only one agent can press, or with `None` those that both share.
 fn buttons(kitchen: &Kitchen, alone: Option<Agent>) -> EntityData {
     let of = |agent: Agent| &kitchen.buttons[agent.index()];
     let is_shared = |agent: Agent, button: &Button| of(agent.other()).iter().any(|other| other.at_m == button.at_m);

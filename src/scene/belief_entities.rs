@@ -1,4 +1,4 @@
-//! The participant's belief: the estimate, and for simulated participants the recorded belief.
+//! The participant's beliefs for Rerun: the estimate, and for simulated participants the recorded belief.
 
 use super::colours;
 use super::entity_content::{EntityData, EntityUpdate, MarkShape, SceneSeries, slug};
@@ -11,24 +11,24 @@ use crate::mind::recorded_estimate::EstimateWitness;
 use crate::mind::{AspectBelief, BeliefWitness};
 use crate::session::{Event, Session, Stamped};
 
-/// Period of updates of the estimate between presses, in nanoseconds.
+/// Period of updates of the belief estimate between presses, in nanoseconds.
 const EVERY_NS: u64 = 200_000_000;
-/// Aspects with at least this P(truth) are not listed on the page.
+/// Aspects with at least this P(truth), the estimated probability of the true value, are not listed on the page.
 const KNOWN: f64 = 0.95;
 
-/// Believed value of an aspect with its probability.
+/// Believed value of a state aspect with its probability.
 struct Held<'a> {
     believes: &'a str,
     p_truth: f64,
 }
 
-/// State of the belief entities.
+/// State of the entities that show beliefs.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefScene {
-    /// Time of the last update of the estimate, in units of [`EVERY_NS`].
+    /// Time of the last update of the belief estimate, in units of [`EVERY_NS`].
     tick: Option<u64>,
     page: String,
-    /// By aspect, the falsely believed value, if any.
+    /// For each state aspect, the falsely believed value; empty if the belief is right.
     taken_for: Vec<String>,
 }
 
@@ -40,17 +40,17 @@ fn held_truly(aspect: &str) -> String {
     format!("human/belief/true/{}", slug(aspect))
 }
 
-/// Marks of the estimate where it is false.
+/// Path of the marks at times when the estimated belief about an aspect is false.
 fn estimated_wrong(aspect: &str) -> String {
     format!("human/belief/estimated_wrong/{}", slug(aspect))
 }
 
-/// Marks of a simulated participant's belief where it is false.
+/// Path of the marks at times when a simulated participant's belief about an aspect is false.
 fn truly_wrong(aspect: &str) -> String {
     format!("human/belief/truly_wrong/{}", slug(aspect))
 }
 
-/// A value of P(truth) on its quiet curve, and on its marks if the belief is false.
+/// Updates that add a value of P(truth) to the aspect's thin curve, and to its marks if the belief is false.
 fn p_truth_rows(curve: String, marks: String, p_truth: f64) -> impl Iterator<Item = EntityUpdate> {
     let mark = (p_truth < FALSE_BELOW).then(|| EntityUpdate::new(marks, EntityData::Value(p_truth)));
     std::iter::once(EntityUpdate::new(curve, EntityData::Value(p_truth))).chain(mark)
@@ -64,13 +64,13 @@ fn wrong(aspect: &str) -> String {
     format!("human/belief/wrong/{}", slug(aspect))
 }
 
-/// Styles of the series.
+/// Names and colours of the curves and marks.
 pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let mut rows = Vec::new();
     for (nth, aspect) in kitchen.aspects.iter().enumerate() {
         let colour = colours::of_aspect(AspectId(nth as u8));
         let name = wording::location(&aspect.name);
-        // All curves are quiet; where a belief is false, marks in the aspect's colour stand out.
+        // All curves are grey; marks in the aspect's colour stand out where a belief is false.
         let quiet = EntityData::QuietLine(SceneSeries { name: name.clone(), colour: colours::QUIET });
         rows.push(EntityUpdate::new(estimated(&aspect.name), quiet.clone()));
         rows.push(EntityUpdate::new(held_truly(&aspect.name), quiet));
@@ -85,12 +85,12 @@ pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
 }
 
 impl BeliefScene {
-    /// Whether an update of the estimate is due.
+    /// Whether an update of the belief estimate is due.
     pub fn is_due(&self, now: SessionTime) -> bool {
         self.tick.is_none_or(|last| last < now.0 / EVERY_NS)
     }
 
-    /// Updates by an event that has just been applied; `belief` is the estimate after it.
+    /// Entity updates from an event that has just been applied; `belief` is the estimate after it.
     pub fn follow(
         &mut self,
         session: &Session,
@@ -136,7 +136,7 @@ impl BeliefScene {
         rows
     }
 
-    /// The page and the lanes, where their text has changed.
+    /// Updates of the page of beliefs and of the lanes whose text has changed.
     fn in_words(&mut self, session: &Session, held: &[Held]) -> Vec<EntityUpdate> {
         let kitchen = &session.kitchen;
         let mut rows = Vec::new();
@@ -158,13 +158,13 @@ impl BeliefScene {
     }
 }
 
-/// The recorded belief of a simulated participant.
+/// Entity updates from the recorded belief of a simulated participant.
 fn truly(witness: &BeliefWitness) -> Vec<EntityUpdate> {
     let rows = |told: &AspectBelief| p_truth_rows(held_truly(&told.aspect), truly_wrong(&told.aspect), told.p_truth);
     witness.aspects.iter().flat_map(rows).collect()
 }
 
-/// Page with the false beliefs (lowest P(truth) first) and the uncertain beliefs.
+/// A page in Markdown with the false beliefs (lowest P(truth) first) and the uncertain ones.
 fn page(session: &Session, held: &[Held]) -> String {
     let kitchen = &session.kitchen;
     let mut doubtful: Vec<usize> = (0..held.len()).filter(|&index| held[index].p_truth < KNOWN).collect();
@@ -191,7 +191,7 @@ fn page(session: &Session, held: &[Held]) -> String {
     text
 }
 
-/// The falsely believed value of an aspect, as shown in its lane.
+/// The falsely believed value of a state aspect, as its lane shows it.
 fn taken_for_what<'a>(session: &Session, aspect: usize, held: &Held<'a>) -> &'a str {
     if held.believes == truth(&session.kitchen, session.state, aspect) { "not sure" } else { held.believes }
 }

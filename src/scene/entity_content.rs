@@ -1,147 +1,147 @@
-//! Content of an entity: shapes, values, text. Lengths in the kitchen are in millimetres on the wall display from its top left
-//! corner, lengths of the arm in metres in the frame of the robot's base.
+//! Content of an entity in Rerun's scene: shapes, values, text. Lengths in the kitchen are in millimetres on the wall
+//! display from its top left corner, lengths of the arm in metres in the frame of the robot's base.
 
 use nalgebra::Isometry3;
 
 use super::colours::Colour;
 use crate::arm::link::CollisionSolid;
 
-/// New content of one entity.
+/// New content of one entity in Rerun's scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EntityUpdate {
-    /// The path of the entity, such as `kitchen/plate`.
+    /// Path of the entity in Rerun, such as `kitchen/plate`.
     pub entity: String,
-    /// What it shows from now on.
+    /// Content that the entity shows from now on.
     pub shown: EntityData,
 }
 
 impl EntityUpdate {
-    /// This entity shows this from now on.
+    /// An update by which the entity shows this content from now on.
     pub fn new(entity: impl Into<String>, shown: EntityData) -> EntityUpdate {
         EntityUpdate { entity: entity.into(), shown }
     }
 }
 
-/// Content of an entity.
+/// Content of an entity in Rerun's scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EntityData {
-    /// Outlines in the kitchen; an empty list clears the entity.
+    /// Outlines of rectangles in the kitchen; an empty list clears the entity.
     Areas(Vec<SceneArea>),
-    /// Discs and words in the kitchen.
+    /// Discs with labels in the kitchen.
     Discs(Vec<SceneDisc>),
-    /// A point with a circle around it, in the kitchen.
+    /// A point with a circle around it in the kitchen, for gaze.
     Sight {
-        /// The point, in millimetres from the display's upper left corner.
+        /// Position of the point, in millimetres from the display's upper left corner.
         at: [f64; 2],
-        /// The circle's radius, in millimetres.
+        /// Radius of the circle, in millimetres.
         around: f64,
-        /// The colour of both.
+        /// Colour of point and circle.
         colour: Colour,
     },
-    /// Points in space, with words.
+    /// Points in space, with labels.
     Points(Vec<ScenePoint>),
-    /// Shapes in the entity's own frame.
+    /// Solids in the entity's own coordinate frame.
     Solids(Vec<CollisionSolid>, Colour),
-    /// Pose of the entity's frame in the frame of the robot's base.
+    /// Pose of the entity's coordinate frame in the frame of the robot's base.
     Place(Isometry3<f64>),
-    /// A value of a series.
+    /// A value of a time series.
     Value(f64),
-    /// The values of a series are drawn as a line.
+    /// Style of a time series: a line.
     Line(SceneSeries),
-    /// The values of a series are drawn as a thin line, for series of which many are drawn at once.
+    /// Style of a time series: a thin line, for plots with many series.
     QuietLine(SceneSeries),
-    /// The values of a series are drawn as marks.
+    /// Style of a time series: marks.
     Marks(SceneSeries, MarkShape),
-    /// A line of the log.
+    /// A line of the text log.
     Words {
-        /// How much it matters.
+        /// Level of the line in the log.
         level: LogLevel,
-        /// The text.
+        /// Text of the line.
         text: String,
-        /// Its colour.
+        /// Colour of the line.
         colour: Colour,
     },
-    /// A page in Markdown, which replaces the previous one.
+    /// A page of text in Markdown, which replaces the previous page.
     Page(String),
-    /// Text of a lane of states; an empty text clears it.
+    /// Text of a lane that shows a state over time; an empty text clears the lane.
     State(String),
 }
 
 /// The outline of a rectangle in the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneArea {
-    /// Left edge, in millimetres.
+    /// Left edge of the rectangle, in millimetres.
     pub left: f64,
-    /// Upper edge, in millimetres.
+    /// Upper edge of the rectangle, in millimetres.
     pub top: f64,
-    /// Width, in millimetres.
+    /// Width of the rectangle, in millimetres.
     pub width: f64,
-    /// Height, in millimetres.
+    /// Height of the rectangle, in millimetres.
     pub height: f64,
-    /// The colour of the outline.
+    /// Colour of the outline.
     pub colour: Colour,
-    /// Half the width of its line, in millimetres.
+    /// Half the width of the outline, in millimetres.
     pub line: f64,
 }
 
-/// A disc in the kitchen with words below its centre, in millimetres; radius 0 for words only.
+/// A disc in the kitchen with a label below its centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneDisc {
-    /// Its centre, in millimetres from the display's upper left corner.
+    /// Centre of the disc, in millimetres from the display's upper left corner.
     pub at: [f64; 2],
-    /// Its radius in millimetres; 0: words alone.
+    /// Radius of the disc in millimetres; 0 shows the label only.
     pub radius: f64,
-    /// The words; empty: none.
+    /// Label below the disc's centre; empty for none.
     pub words: String,
-    /// The colour of the disc.
+    /// Colour of the disc.
     pub colour: Colour,
 }
 
-/// A point in space, in metres.
+/// A labelled point in space, in metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenePoint {
-    /// The point in the frame of the robot's base, in metres.
+    /// Position of the point in the frame of the robot's base, in metres.
     pub at_m: [f64; 3],
-    /// The radius with which it is drawn, in metres.
+    /// Radius with which the point is drawn, in metres.
     pub radius_m: f64,
-    /// The words beside it; empty: none.
+    /// Label beside the point; empty for none.
     pub words: String,
-    /// Its colour.
+    /// Colour of the point.
     pub colour: Colour,
 }
 
-/// Name and colour of a series.
+/// Name and colour of a time series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneSeries {
-    /// The name in the legend.
+    /// Name of the series in the legend.
     pub name: String,
-    /// The colour of line or marks.
+    /// Colour of the line or the marks.
     pub colour: Colour,
 }
 
-/// Shape of the marks of a series.
+/// Shape of the marks of a time series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MarkShape {
-    /// A cross.
+    /// Crosses as marks.
     Cross,
-    /// A filled circle.
+    /// Filled circles as marks.
     Circle,
-    /// A diamond.
+    /// Diamonds as marks.
     Diamond,
 }
 
-/// Level of a line of the text log.
+/// Severity of a line in the text log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogLevel {
-    /// Something happened as it should.
+    /// Something happened as intended.
     Info,
-    /// An ineffective press, or a signal that was taken back.
+    /// A press had no effect, or a signal was taken back.
     Warning,
-    /// An error of the human.
+    /// A press of the human was an error.
     Error,
 }
 
-/// A name as a part of an entity path.
+/// A name in the form in which it can be part of an entity's path.
 pub fn slug(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect()
 }

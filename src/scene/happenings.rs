@@ -1,4 +1,4 @@
-//! Text log of events, and the net benefit of signals, as Rerun shows them.
+//! Text log of events, and the net benefit of signals, for Rerun.
 
 use super::EntityUpdate;
 use super::colours::{self, Colour};
@@ -13,19 +13,19 @@ use crate::session::event::SignalEnd;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{Session, Stamped, TimelineEntry, TimelineEvent};
 
-/// Entity of the error marks below the belief curves.
+/// Path of the error marks below the belief curves.
 const ERROR_MARKS: &str = "human/errors/marks";
-/// Entity of the line at the cost of communication.
+/// Path of the line at the cost of communication, in the plot of net benefits.
 const COST_LINE: &str = "assistant/benefit/cost_line";
 
-/// Entity with all lines of the text log.
+/// Path of the entity with all lines of the text log.
 const HAPPENED: &str = "happened";
 
 fn benefit(signal: &Signal) -> String {
     format!("assistant/benefit/{}", slug(signal.target().unwrap_or_default()))
 }
 
-/// Styles of the series.
+/// Names and colours of curves and marks.
 pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     let (kitchen, assistant) = (&session.kitchen, &session.spec.assistant);
     let line = |entity: String, name: String, colour: Colour| {
@@ -56,7 +56,7 @@ pub fn in_order(rows: &[EntityUpdate]) -> Vec<EntityUpdate> {
     lines.map(|row| EntityUpdate::new(HAPPENED, row.shown.clone())).collect()
 }
 
-/// A new entry of the timeline; a press that was judged an error is marked.
+/// A line of the text log for a new entry of the timeline; presses that were judged errors are marked.
 pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPress>) -> EntityUpdate {
     let (who, text) = wording::happening(&session.kitchen, &entry.what);
     let text = if who.is_empty() { text } else { format!("{who}: {text}") };
@@ -88,23 +88,23 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPres
     }
 }
 
-/// An event of the study protocol.
+/// A line of the text log for an event of the study protocol.
 pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
     say("trial/events", LogLevel::Info, wording::protocol(event), colours::QUIET)
 }
 
-/// The press that this event made, if it was judged an error.
+/// The judgement of the press in this event, if the press was an error.
 pub fn error<'a>(stamped: &Stamped, judged: &'a [JudgedPress]) -> Option<&'a JudgedPress> {
     let press = judged.binary_search_by_key(&stamped.seq, |press| press.seq).ok().map(|index| &judged[index]);
     press.filter(|press| press.verdict.error)
 }
 
-/// Mark of an error below the belief curves.
+/// Update that marks an error below the belief curves.
 pub fn mark() -> EntityUpdate {
     EntityUpdate::new(ERROR_MARKS, EntityData::Value(0.0))
 }
 
-/// Expected saving of each signal before its cost, and the recommendation.
+/// Updates with the expected saving of each signal before its cost, and the recommendation.
 pub fn advice(kitchen: &Kitchen, advice: &Recommendation) -> Vec<EntityUpdate> {
     let mut rows: Vec<EntityUpdate> = advice
         .options
@@ -126,14 +126,14 @@ pub fn advice(kitchen: &Kitchen, advice: &Recommendation) -> Vec<EntityUpdate> {
     rows
 }
 
-/// The offer to the wizard opens.
+/// A line of the text log for the opening of an offer to the wizard.
 pub fn offer_opened(offer: &OfferedAdvice) -> EntityUpdate {
     let unseen = if offer.visible { "" } else { " (not visible to a wizard)" };
     let text = format!("offer to the wizard: {}{unseen}", wording::offered(&offer.what));
     say("assistant/offers", LogLevel::Info, text, colours::ASSISTANT)
 }
 
-/// The offer closes.
+/// A line of the text log for the closing of an offer.
 pub fn offer_closed(reason: OfferEnd) -> EntityUpdate {
     say("assistant/offers", LogLevel::Info, format!("offer closes: {}", reason.words()), colours::ASSISTANT)
 }

@@ -1,7 +1,8 @@
-//! A session as Rerun shows it, as plain data: updates of entities with their times. Entities are the kitchen, the arm, beliefs,
-//! net benefits of signals, probes, and a text log.
+//! A session as Rerun shows it, as plain data: updates of entities with their times. Entities are the kitchen, the arm,
+//! beliefs, net benefits of signals, probes, and a text log.
 //!
-//! A [`SessionScene`] follows a session event by event, live and from a recording. It does not depend on the viewer.
+//! A [`SessionScene`] follows a session event by event, live and from a recording. The scene does not depend on the
+//! viewer.
 
 mod arm;
 mod belief_entities;
@@ -27,35 +28,35 @@ pub const VERSION: u32 = 6;
 /// Updates of entities at one time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneUpdate {
-    /// Session time.
+    /// Session time of the updates.
     pub time: SessionTime,
     /// Time on the trial's clock, which starts with the trial and stops in pauses, as on the console.
     pub trial: SessionTime,
-    /// Sequence number of the newest event.
+    /// Sequence number of the newest event at that time.
     pub step: u64,
-    /// The entities that change, with what they show from now on.
+    /// The entities that change, with their new content.
     pub rows: Vec<EntityUpdate>,
 }
 
-/// Data derived from a session that the scene shows.
+/// What the scene shows beside the session itself: judged presses and the belief estimate.
 #[derive(Clone, Copy, Debug)]
 pub struct DerivedData<'a> {
-    /// Every press of the human so far.
+    /// Every press of the human so far, with its judgement.
     pub judged: &'a [JudgedPress],
-    /// The estimate after all events so far; `None` while further events have the same time.
+    /// The belief estimate after all events so far; `None` while further events have the same time.
     pub belief: Option<&'a DirichletBelief>,
 }
 
-/// The scene of a session.
+/// Converts the events of a session into entity updates for Rerun.
 #[derive(Clone, Debug)]
 pub struct SessionScene {
     session: Session,
     arm: ArmScene,
     belief: BeliefScene,
     probes: ProbeScene,
-    /// Sequence number of the first event that it has not seen.
+    /// Sequence number of the first event that the scene has not shown.
     next: u64,
-    /// Number of timeline entries that it has shown.
+    /// Number of timeline entries that the scene has shown.
     told: usize,
 }
 
@@ -72,7 +73,7 @@ impl SessionScene {
         }
     }
 
-    /// Static entities.
+    /// Entities that do not change during the session.
     pub fn fixed(&self) -> Vec<EntityUpdate> {
         let kitchen = &self.session.kitchen;
         let mut rows = place_entities::fixed(kitchen);
@@ -92,18 +93,18 @@ impl SessionScene {
         SceneUpdate { time, trial: self.session.trial_clock(time), step: self.step(), rows }
     }
 
-    /// Sequence number of the newest event.
+    /// Sequence number of the newest event that the scene has shown.
     fn step(&self) -> u64 {
         self.next.saturating_sub(1)
     }
 
-    /// Whether an update of the estimate is due.
+    /// Whether an update of the belief estimate is due.
     pub fn wants_belief(&self, time: SessionTime) -> bool {
         self.belief.is_due(time)
     }
 
-    /// Applies the next event and returns the updates in order of time. An event that is not valid here, or was seen before,
-    /// returns none.
+    /// Applies the next event and returns the entity updates in order of time. An event that is not valid in the
+    /// session's state, or was applied before, has none.
     pub fn see(&mut self, stamped: &Stamped, derived: DerivedData<'_>) -> Vec<SceneUpdate> {
         if stamped.seq < self.next {
             return Vec::new();
@@ -119,7 +120,7 @@ impl SessionScene {
         moments
     }
 
-    /// Updates between events, up to a time (the arm's motion).
+    /// Entity updates between events, up to a time, which show the arm's motion.
     pub fn until(&mut self, time: SessionTime) -> Vec<SceneUpdate> {
         let step = self.step();
         let session = &self.session;

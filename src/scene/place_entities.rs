@@ -1,4 +1,4 @@
-//! The kitchen as on the wall display: places with their contents, the present signal, and the gaze.
+//! The kitchen as on the wall display, for Rerun: locations with their contents, the present signal, and the gaze.
 
 use super::colours::{self, Colour};
 use super::entity_content::{EntityData, EntityUpdate, SceneArea, SceneDisc, slug};
@@ -10,10 +10,10 @@ use crate::kitchen::{
 };
 use crate::session::{Session, proposals};
 
-/// Half widths of lines, in millimetres.
+/// Half widths of outlines, in millimetres.
 const THIN: f64 = 2.0;
 const THICK: f64 = 6.0;
-/// Distance of a label's anchor above the edge of its place, in millimetres: text is drawn below its anchor.
+/// Distance of a label's anchor above the edge of its location, in millimetres; Rerun draws text below its anchor.
 const ABOVE_MM: f64 = 52.0;
 
 const MM: f64 = 1000.0;
@@ -34,11 +34,11 @@ fn words_at(at: [f64; 2], words: &str, colour: Colour) -> SceneDisc {
     SceneDisc { at, radius: 0.0, words: words.to_string(), colour }
 }
 
-/// The display's edge, the names of the places, and the storages.
+/// The display's edge, the names of the locations, and the storages.
 pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     let whole = kitchen::DisplayArea { x: 0.0, y: 0.0, w: 1.0, h: 1.0 };
     let name = |(index, location): (usize, &Location)| {
-        // In the colour of the place's curves, since the plots have no legend.
+        // The name has the colour of the location's curves, since the plots have no legend.
         let colour = colours::of_aspect(AspectId::of_location(LocationId(index as u8)));
         let SceneArea { left, top, width, .. } = area(kitchen, location.display, colour);
         words_at([left + width / 2.0, top - ABOVE_MM], &location.label(), colour)
@@ -64,7 +64,7 @@ fn dimmed([red, green, blue, opacity]: Colour) -> Colour {
     [red / 2, green / 2, blue / 2, opacity]
 }
 
-/// Contents of the places that differ from `before`, or of all places without `before`.
+/// Contents of the locations that differ from the state `before`, or of all locations without `before`.
 pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl Iterator<Item = EntityUpdate> {
     let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
     let changed = locations.filter(move |&id| before.is_none_or(|before| before.code(id) != state.code(id)));
@@ -87,7 +87,7 @@ pub fn contents(kitchen: &Kitchen, before: Option<State>, state: State) -> impl 
     })
 }
 
-/// Ingredient items at a location; at an order, those of its dish.
+/// Ingredient items at a location; for an order, those of its dish.
 fn items(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<ContentId> {
     let content = match kitchen.location(id).kind {
         LocationKind::Order => match state.order(id) {
@@ -99,7 +99,7 @@ fn items(kitchen: &Kitchen, state: State, id: LocationId) -> Vec<ContentId> {
     if content.is_empty() { Vec::new() } else { kitchen.content(content).items.clone() }
 }
 
-/// A disc for each item, side by side in an area, with words below.
+/// A disc for each item, side by side in an area, with a label below.
 fn content(
     kitchen: &Kitchen,
     on: kitchen::DisplayArea,
@@ -120,7 +120,7 @@ fn content(
     items.iter().enumerate().map(disc).chain((!words.is_empty()).then_some(below)).collect()
 }
 
-/// A storage's item above its name, both inside its area, since storages are adjacent.
+/// Discs for a storage: its item above its name, both inside its area, since storages are adjacent.
 fn stored(kitchen: &Kitchen, storage: &Storage) -> [SceneDisc; 2] {
     let SceneArea { left, top, width, height, .. } = area(kitchen, storage.display, colours::QUIET);
     let middle = left + width / 2.0;
@@ -133,7 +133,8 @@ fn stored(kitchen: &Kitchen, storage: &Storage) -> [SceneDisc; 2] {
     [disc, words_at([middle, top + height * 0.42], &storage.label, colours::QUIET)]
 }
 
-/// The present signal: a highlighted place, a recipe at its order, or proposed presses in the middle of the display.
+/// Entities for the present signal: a highlighted location, a recipe at its order, or proposed presses in the middle of
+/// the display.
 pub fn shown_signal(session: &Session) -> Vec<EntityUpdate> {
     let outline = |areas| EntityUpdate::new("kitchen/shown", EntityData::Areas(areas));
     let label = |words| EntityUpdate::new("kitchen/shown/words", EntityData::Discs(words));
@@ -164,7 +165,7 @@ pub fn shown_signal(session: &Session) -> Vec<EntityUpdate> {
     vec![outline(vec![outer]), label(vec![words_at(below, &words, colours::SIGNAL)])]
 }
 
-/// The gaze, with the area around it that can be read.
+/// The gaze point, with the area around it that can be read.
 pub fn gaze(session: &Session, sample: GazeSample) -> EntityUpdate {
     let [width_m, height_m] = session.kitchen.display_m;
     let at = [sample.x * width_m * MM, sample.y * height_m * MM];

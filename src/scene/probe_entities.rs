@@ -1,4 +1,4 @@
-//! Freeze probes: what is asked, and the participant's answers beside the estimate at that time.
+//! Freeze probes for Rerun: the question asked, and the participant's answers beside the estimate at that time.
 
 use super::EntityUpdate;
 use super::colours;
@@ -9,20 +9,21 @@ use crate::mind::dirichlet::DirichletBelief;
 use crate::session::probes::{ProbeEvent, ProbeQuestion, ProbeSubject};
 use crate::session::{Session, probe_sampling};
 
-/// Lane of the question that is asked.
+/// Path of the lane with the question that is being asked.
 const ASKED: &str = "human/probes/asked";
-/// Lines of the text log.
+/// Path of the text log of answers.
 const SAID: &str = "human/answers";
 
-/// The lanes of probes.
+/// State of the lanes that show freeze probes.
 #[derive(Clone, Debug, Default)]
 pub struct ProbeScene {
-    /// Lanes with a text. The answers stand until the next probe begins: during a probe the trial's clock stands still.
+    /// Lanes that contain text. Answers stay until the next probe begins, since the trial's clock stands still during a
+    /// probe.
     filled: Vec<String>,
 }
 
 impl ProbeScene {
-    /// Updates by an event that has just been applied; `belief` is the estimate after it.
+    /// Entity updates from an event that has just been applied; `belief` is the estimate after it.
     pub fn follow(
         &mut self,
         session: &Session,

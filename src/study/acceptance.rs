@@ -1,4 +1,4 @@
-//! The answers to questionnaires: each item by condition, and how participants take the assistance.
+//! Answers to questionnaires by condition, and how far participants accept the assistance.
 
 use std::collections::BTreeMap;
 
@@ -8,21 +8,21 @@ use super::trial_statistics::{QuestionnaireAnswer, Trial, mean};
 use crate::session::plan::ItemKind;
 use crate::session::study_arm::StudyArm;
 
-/// Acceptance of the assistance: each participant's mean answer to the items about acceptance after assisted trials, from 0 (none)
-/// to 1 (full). Answers to items in which agreement means rejection are reversed.
+/// Acceptance of the assistance: each participant's mean answer, after assisted trials, to the items about acceptance,
+/// from 0 (none) to 1 (full). Answers to items in which agreement means rejection are reversed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Acceptance {
-    /// Number of participants whose mean answer is above 2/3.
+    /// Number of participants with high acceptance: a mean answer above 2/3.
     pub high: u64,
-    /// Number of participants whose mean answer is above 7/12, up to 2/3.
+    /// Number of participants with medium acceptance: a mean answer above 7/12, up to 2/3.
     pub medium: u64,
-    /// Number of participants whose mean answer is within 1/12 of the middle (one point of a seven-point scale).
+    /// Number of undecided participants: a mean answer within 1/12 of the middle (one point of a seven-point scale).
     pub undecided: u64,
-    /// Number of participants whose mean answer is below 5/12.
+    /// Number of participants with low acceptance: a mean answer below 5/12.
     pub low: u64,
-    /// Participants without answers to such items.
+    /// Number of participants without answers to items about acceptance.
     pub not_reported: u64,
-    /// Mean acceptance over participants.
+    /// Mean acceptance over all participants, from 0 to 1.
     pub mean: Option<f64>,
 }
 
@@ -31,29 +31,29 @@ pub struct Acceptance {
 pub struct ItemSummary {
     /// The questionnaire's name.
     pub questionnaire: String,
-    /// The item's id.
+    /// Identifier of the item.
     pub item: String,
-    /// The statement.
+    /// Statement of the item.
     pub text: String,
-    /// What the item is about.
+    /// Construct that the item measures, such as acceptance.
     pub about: Option<String>,
-    /// Agreement speaks against what it is about.
+    /// Whether agreement with the statement counts against the construct.
     pub reversed: bool,
-    /// How the item is answered.
+    /// Kind of answer that the item takes.
     pub kind: ItemKind,
-    /// The condition of the trial before; `None` for items that were asked before the trials.
+    /// Condition of the trial after which the item was asked; `None` for items asked before the trials.
     pub condition: Option<StudyArm>,
-    /// Number of points of the scale, if it is one.
+    /// Number of points of the rating scale; `None` for other kinds of item.
     pub points: Option<u8>,
-    /// Number of answers at each scale point, from 1, or with each option in their order.
+    /// Number of answers at each scale point, from 1, or with each option, in the order of the options.
     pub counts: Vec<u64>,
-    /// The texts of the options, in their order.
+    /// Texts of the item's options, in their order.
     pub options: Vec<String>,
-    /// Number of answers.
+    /// Number of answers to the item.
     pub answers: u64,
-    /// How often the item was left without an answer.
+    /// Number of participants' questionnaires in which the item was left without an answer.
     pub left_out: u64,
-    /// Mean of the answers as given, of those that are numbers.
+    /// Mean of the answers that are numbers, not reversed.
     pub mean: Option<f64>,
 }
 
@@ -62,28 +62,28 @@ pub struct ItemSummary {
 pub struct ScoreSummary {
     /// The questionnaire's name.
     pub questionnaire: String,
-    /// The condition of the trial before; `None` if it was asked before the trials.
+    /// Condition of the trial after which the questionnaire was asked; `None` if it was asked before the trials.
     pub condition: Option<StudyArm>,
-    /// The score of each occasion on which every item was answered.
+    /// Scores of the occasions on which a participant answered every item.
     pub scores: Vec<f64>,
-    /// Mean of the scores.
+    /// Mean of the questionnaire's scores.
     pub mean: Option<f64>,
-    /// Standard deviation of the scores.
+    /// Standard deviation of the questionnaire's scores.
     pub sd: Option<f64>,
 }
 
-/// The condition after which an answer was given; `None` before the trials.
+/// Condition of the trial after which an answer was given; `None` for answers before the trials.
 fn asked_after(trial: &Trial, answered: &QuestionnaireAnswer) -> Option<StudyArm> {
     (!answered.before).then_some(trial.study_arm)
 }
 
-/// Scores of all questionnaires by condition, in order of occurrence.
+/// Scores of all questionnaires by condition, in the order in which they occur.
 pub(super) fn scores(trials: &[&Trial]) -> Vec<ScoreSummary> {
     let mut found: Vec<ScoreSummary> = Vec::new();
     for trial in trials {
         let mut occasions: Vec<(&str, bool)> = Vec::new();
         for answered in &trial.answers {
-            // The score stands at every item of the occasion.
+            // Every item of an occasion has the occasion's score, so that only one of them is taken.
             let occasion = (answered.questionnaire.as_str(), answered.before);
             let Some(score) = answered.score.filter(|_| !occasions.contains(&occasion)) else { continue };
             occasions.push(occasion);
@@ -116,7 +116,7 @@ fn sample_sd(values: &[f64]) -> Option<f64> {
     Some((sum / (values.len() - 1) as f64).sqrt())
 }
 
-/// Items of all questionnaires by condition, in order of occurrence.
+/// Answers to all questionnaires' items by condition, in the order in which they occur.
 pub(super) fn items(trials: &[&Trial]) -> Vec<ItemSummary> {
     let mut items: Vec<(ItemSummary, Vec<f64>)> = Vec::new();
     for trial in trials {
@@ -176,7 +176,7 @@ impl ItemSummary {
     }
 }
 
-/// Acceptance from the answers in assisted trials; `None` without any answer.
+/// Acceptance from the answers in assisted trials; `None` without answers.
 pub(super) fn acceptance(trials: &[&Trial]) -> Option<Acceptance> {
     let mut by_participant: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for trial in trials.iter().filter(|trial| trial.is_assisted()) {
@@ -189,7 +189,7 @@ pub(super) fn acceptance(trials: &[&Trial]) -> Option<Acceptance> {
         return None;
     }
     let means: Vec<Option<f64>> = by_participant.into_values().map(|shares| mean(shares.into_iter())).collect();
-    // Acceptance in twelfths, rounded so that means of whole scale points fall on the correct side of a limit.
+    // Twelfths are rounded so that means of whole scale points fall on the right side of a limit.
     let twelfths: Vec<f64> = means.iter().flatten().map(|mean| (12.0 * mean * 1e6).round() / 1e6).collect();
     let count = |is: fn(f64) -> bool| twelfths.iter().filter(|&&twelfths| is(twelfths)).count() as u64;
     Some(Acceptance {

@@ -1,14 +1,14 @@
-//! Chart of the ratios of rates between the arms of a study.
+//! Chart of the ratios of rates between study arms.
 
 use maud::Markup;
 
 use super::arm_comparison::ArmContrast;
 use super::svg::{PlotAxis, SvgChart};
 
-/// Ratios up to this size are drawn to scale; longer intervals end at the border.
+/// Ratios up to this value are drawn to scale; longer intervals end at the border of the chart.
 const LARGEST: f64 = 4.0;
 
-/// Chart of ratios with their intervals; a line marks equal rates.
+/// Chart of ratios of rates with their confidence intervals; a line marks equal rates.
 pub fn ratios(contrasts: &[ArmContrast]) -> Option<Markup> {
     if contrasts.is_empty() {
         return None;

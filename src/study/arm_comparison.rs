@@ -1,9 +1,11 @@
-//! Comparison of any number of arms by one primary outcome: a count of a trial, as a rate per press of the human.
+//! Comparison of any number of study arms by one primary outcome: the count of an event in a trial, as a rate per press
+//! of the human.
 //!
-//! The primary model is a linear mixed model of log((count + 0.5) / presses), with the participant as random, arm and period as fixed effects
-//! ([`super::linear_mixed_model`]); a mixed negative binomial model with log presses as offset stands beside it. A mixed Poisson model would
-//! take errors for independent events, which they are not: they come in runs. Contrasts are ratios of rates; their p values are corrected
-//! together (Holm 1979). From three arms on, a model with the effect of the arm before (carry-over) is a sensitivity analysis.
+//! The primary model is a linear mixed model of log((count + 0.5) / presses), with the participant as random effect,
+//! and arm and period as fixed effects ([`super::linear_mixed_model`]). A mixed negative binomial model with log
+//! presses as offset is reported beside it. A mixed Poisson model would assume that errors are independent, but they
+//! come in runs. Contrasts are ratios of rates; their p values are corrected together (Holm 1979). With three or more
+//! arms, a model with the effect of the previous arm (carry-over) is a sensitivity analysis.
 
 use serde::Serialize;
 
@@ -16,116 +18,118 @@ use super::trial_statistics::Trial;
 use crate::session::plan::{PrimaryOutcome, StudyAims};
 use crate::session::study_arm::StudyArm;
 
-/// Comparison of the arms of a study.
+/// Comparison of the arms of a study by the primary outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmComparison {
-    /// What is counted.
+    /// Primary outcome: the event whose rate is compared between arms.
     pub outcome: PrimaryOutcome,
-    /// Number of participants in it.
+    /// Number of participants in the comparison.
     pub participants: usize,
-    /// Number of their trials.
+    /// Number of trials in the comparison.
     pub trials: usize,
-    /// The arms, in the order of tables.
+    /// Numbers of trials, events and presses of each arm, in the order of tables.
     pub arms: Vec<ArmOutcome>,
-    /// Standard deviation between participants, and of what is left, of the logarithms of rates.
+    /// Standard deviations of log rates: between participants, and residual.
     pub standard_deviations: [f64; 2],
-    /// Contrasts against the arm without signals and against the wizard, of the primary model.
+    /// Contrasts of the primary model: arms against the arm without signals and against the wizard.
     pub contrasts: Vec<ArmContrast>,
-    /// The same with the effect of the arm before; empty below three arms, or where it cannot be estimated.
+    /// Contrasts of the model that includes the effect of the previous arm (carry-over); empty with fewer than three
+    /// arms, or where the model cannot be estimated.
     pub with_carry_over: Vec<ArmContrast>,
-    /// The mixed negative binomial model; null where it cannot be estimated.
+    /// Comparison by the mixed negative binomial model; null where the model cannot be estimated.
     pub negative_binomial: Option<CountComparison>,
-    /// Whether arms of the assistant are not worse than the wizard.
+    /// Non-inferiority of the assistant's arms to the wizard's.
     pub non_inferiority: Vec<NonInferiority>,
-    /// The starting groups with their orders of conditions.
+    /// Starting groups with their orders of conditions.
     pub groups: Vec<GroupOrder>,
 }
 
-/// The trials of an arm.
+/// Counts over the trials of one study arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ArmOutcome {
-    /// The arm.
+    /// Study arm of the counts.
     pub arm: StudyArm,
-    /// Number of trials.
+    /// Number of trials of the arm.
     pub trials: usize,
-    /// Counted events.
+    /// Number of events of the primary outcome.
     pub events: u64,
-    /// Presses of the human.
+    /// Number of the human's presses.
     pub presses: u64,
 }
 
 impl ArmOutcome {
-    /// Events per 100 presses of the human, all trials pooled.
+    /// Events per 100 presses of the human, over all trials together.
     pub fn per_100(&self) -> f64 {
         100.0 * self.events as f64 / self.presses as f64
     }
 }
 
-/// One arm against another one in the primary model.
+/// Comparison of one arm with another in the primary model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ArmContrast {
-    /// The arm.
+    /// Study arm that is compared.
     pub arm: StudyArm,
-    /// The arm that it is compared with.
+    /// Study arm that it is compared with.
     pub against: StudyArm,
-    /// Ratio of their rates.
+    /// Ratio of the rate in `arm` to the rate in `against`.
     pub ratio: f64,
-    /// Its interval of 95 %.
+    /// 95 % confidence interval of the ratio.
     pub interval: [f64; 2],
-    /// p after Holm's correction over all contrasts.
+    /// p value after Holm's correction over all contrasts.
     pub p_holm: f64,
-    /// The contrast of logarithms.
+    /// Contrast of the log rates.
     #[serde(flatten)]
     pub contrast: Contrast,
 }
 
-/// The mixed negative binomial model.
+/// Comparison of study arms by the mixed negative binomial model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CountComparison {
-    /// Standard deviation between participants, of the logarithms of rates.
+    /// Standard deviation of log rates between participants.
     pub between_sd: f64,
-    /// Size: the variance of a count is mu + mu^2 / size; null where counts vary no more than Poisson's.
+    /// Size parameter of the negative binomial distribution: the variance of a count is mu + mu^2 / size; null where
+    /// counts vary no more than under a Poisson distribution.
     pub size: Option<f64>,
-    /// The same contrasts.
+    /// Contrasts between the same arms as in the primary model.
     pub contrasts: Vec<CountContrast>,
 }
 
-/// One arm against another one in the negative binomial model.
+/// Comparison of one arm with another in the negative binomial model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct CountContrast {
-    /// The arm.
+    /// Study arm that is compared.
     pub arm: StudyArm,
-    /// The arm that it is compared with.
+    /// Study arm that it is compared with.
     pub against: StudyArm,
-    /// Ratio of their rates.
+    /// Ratio of the rate in `arm` to the rate in `against`.
     pub ratio: f64,
-    /// p after Holm's correction over all contrasts.
+    /// p value after Holm's correction over all contrasts.
     pub p_holm: f64,
-    /// The contrast of logarithms.
+    /// Contrast of the log rates.
     #[serde(flatten)]
     pub contrast: WaldContrast,
 }
 
-/// Whether an arm of the assistant is not worse than the wizard.
+/// Test whether an arm of the assistant is not worse than the wizard (non-inferiority).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NonInferiority {
-    /// The assistant's arm.
+    /// Study arm of the assistant.
     pub arm: StudyArm,
-    /// The wizard's arm.
+    /// Study arm of the wizard.
     pub against: StudyArm,
-    /// The ratio of rates that would be too much.
+    /// Largest ratio of rates that is acceptable (non-inferiority margin).
     pub margin: f64,
-    /// Ratio of their rates.
+    /// Ratio of the assistant's rate to the wizard's.
     pub ratio: f64,
-    /// Upper end of the one-sided interval of 97.5 %.
+    /// Upper end of the one-sided 97.5 % confidence interval of the ratio.
     pub upper: f64,
-    /// One-sided p that the ratio is below the margin.
+    /// One-sided p value of the hypothesis that the ratio is at or above the margin.
     pub p: f64,
-    /// Whether the upper end is below the margin.
+    /// Whether non-inferiority is shown: the upper end of the interval is below the margin.
     pub holds: bool,
 }
 
-/// Number of the outcome's events in a trial; `None` if it is not known there.
+/// Number of events of the outcome in a trial; `None` if that is unknown for the trial.
 fn events(outcome: PrimaryOutcome, trial: &Trial) -> Option<u64> {
     match outcome {
         PrimaryOutcome::Errors => Some(trial.errors),
@@ -134,7 +138,7 @@ fn events(outcome: PrimaryOutcome, trial: &Trial) -> Option<u64> {
     }
 }
 
-/// The trials that have a period and the outcome. A repeated period counts once, by its last trial.
+/// The trials that have a period and the outcome. If a participant repeated a period, the last trial counts.
 fn counted(trials: &[&Trial], outcome: PrimaryOutcome) -> Vec<ArmTrial> {
     let mut rows: Vec<(&Trial, ArmTrial)> = Vec::new();
     for trial in trials.iter().copied().filter(|trial| trial.human_presses > 0) {
@@ -152,7 +156,7 @@ fn counted(trials: &[&Trial], outcome: PrimaryOutcome) -> Vec<ArmTrial> {
     rows.into_iter().map(|(_, row)| row).collect()
 }
 
-/// Contrasts of the primary model with Holm's correction.
+/// Contrasts of the primary model, with Holm's correction.
 fn contrasts(design: &ArmDesign, model: &LinearMixedModel) -> Vec<ArmContrast> {
     let contrast = |pair: (StudyArm, StudyArm)| {
         let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
@@ -180,7 +184,8 @@ fn count_comparison(design: &ArmDesign) -> Option<CountComparison> {
     Some(CountComparison { between_sd: model.between_sd, size, contrasts })
 }
 
-/// Holm's correction: the p values, multiplied from the least on by the number of those that are not smaller.
+/// Holm's correction of p values for multiple tests: each p value is multiplied by the number of those that are not
+/// smaller, and made no smaller than the corrected one before.
 pub fn holm(p: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..p.len()).collect();
     order.sort_by(|a, b| p[*a].total_cmp(&p[*b]));
@@ -192,22 +197,23 @@ pub fn holm(p: &[f64]) -> Vec<f64> {
     corrected
 }
 
-/// Contrasts of the primary model alone, of trials ordered by participant and period; none where it cannot be estimated.
+/// Contrasts of the primary model alone, for trials ordered by participant and period; empty where the model cannot be
+/// estimated.
 pub fn primary_contrasts(trials: Vec<ArmTrial>) -> Vec<ArmContrast> {
     let design = ArmDesign::new(trials);
     let model = if design.is_within() { design.linear(false) } else { None };
     model.map_or_else(Vec::new, |model| contrasts(&design, &model))
 }
 
-/// Compares the arms of these trials, which must be ordered by participant and period; `None` unless participants have trials in different
-/// arms, or where the model cannot be estimated. Outcome and margin are those of the plan.
+/// Compares the arms of these trials, which must be ordered by participant and period; `None` unless participants have
+/// trials in different arms, or where the model cannot be estimated. Outcome and margin are set by the plan.
 pub fn compare_arms(trials: &[&Trial]) -> Option<ArmComparison> {
     let aims = trials.iter().find_map(|trial| trial.aims).unwrap_or_default();
     let compared = compare_counts(counted(trials, aims.outcome), aims)?;
     Some(ArmComparison { groups: group_orders(trials), ..compared })
 }
 
-/// The same of counts of the primary outcome of these aims; without starting groups.
+/// Compares arms by counts of the primary outcome that these aims set; without starting groups.
 pub fn compare_counts(trials: Vec<ArmTrial>, aims: StudyAims) -> Option<ArmComparison> {
     let design = ArmDesign::new(trials);
     if !design.is_within() {

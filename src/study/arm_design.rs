@@ -1,32 +1,32 @@
-//! The design of a comparison of arms: for each trial the effects of its arm, its period and the arm before, as the models take them.
+//! Design matrix of a comparison of study arms: the effects of arm, period and previous arm for each trial.
 
 use super::linear_mixed_model::{LinearMixedModel, Measurement};
 use super::negative_binomial_model::{NegativeBinomialModel, TrialCount};
 use crate::session::study_arm::StudyArm;
 
-/// What the comparison of arms takes of a trial.
+/// A trial in the comparison of arms: participant, period, arm, and counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ArmTrial {
     /// Index of the participant.
     pub participant: usize,
-    /// The number of the trial in the participant's series; 1 is the first.
+    /// Number of the trial in the participant's series, from 1.
     pub period: u32,
-    /// The arm.
+    /// Study arm of the trial.
     pub arm: StudyArm,
-    /// Events of the primary outcome.
+    /// Number of events of the primary outcome.
     pub events: u64,
-    /// Presses of the human; above 0.
+    /// Number of the human's presses; above 0.
     pub presses: u64,
 }
 
 impl ArmTrial {
-    /// The value of the primary model: log((events + 0.5) / presses).
+    /// Dependent variable of the primary model: log((events + 0.5) / presses).
     pub fn log_rate(&self) -> f64 {
         ((self.events as f64 + 0.5) / self.presses as f64).ln()
     }
 }
 
-/// The design of a comparison: one row of effects per trial.
+/// Design of a comparison of arms: one row of effects per trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmDesign {
     trials: Vec<ArmTrial>,
@@ -34,8 +34,8 @@ pub struct ArmDesign {
     periods: Vec<u32>,
 }
 
-/// The pairs of arms that are compared: every arm with the one without signals, and every other one with the wizard. Where neither is
-/// there, the first arm is what the others are compared with.
+/// The pairs of arms that are compared: every arm with the one without signals, and every other one with the wizard. If
+/// neither exists, all others are compared with the first arm.
 pub fn pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
     let mut pairs = Vec::new();
     for against in [StudyArm::None, StudyArm::Wizard] {
@@ -49,7 +49,7 @@ pub fn pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
 }
 
 impl ArmDesign {
-    /// The design of these trials, which must be ordered by participant and period.
+    /// The design for these trials, which must be ordered by participant and period.
     pub fn new(trials: Vec<ArmTrial>) -> ArmDesign {
         let has = |arm: &StudyArm| trials.iter().any(|trial| trial.arm == *arm);
         let arms = StudyArm::ALL.into_iter().filter(has).collect();
@@ -59,28 +59,29 @@ impl ArmDesign {
         ArmDesign { trials, arms, periods }
     }
 
-    /// The trials.
+    /// The trials of the comparison, ordered by participant and period.
     pub fn trials(&self) -> &[ArmTrial] {
         &self.trials
     }
 
-    /// The arms that occur, in the order of tables.
+    /// The arms that occur in the trials, in the order of tables.
     pub fn arms(&self) -> &[StudyArm] {
         &self.arms
     }
 
-    /// Whether participants can be compared with themselves.
+    /// Whether a participant has trials in different arms, so that arms can be compared within participants.
     pub fn is_within(&self) -> bool {
         self.arms.len() > 1 && self.trials.windows(2).any(|pair| pair[0].participant == pair[1].participant)
     }
 
-    /// The arm of the participant's trial before the one with this index.
+    /// The study arm of the participant's trial before the one with this index.
     fn before(&self, index: usize) -> Option<StudyArm> {
         let before = self.trials.get(index.checked_sub(1)?)?;
         (before.participant == self.trials[index].participant).then_some(before.arm)
     }
 
-    /// Intercept, arms without the first, periods without the first, and the arms before without the first, if asked.
+    /// Row of fixed effects of a trial: intercept, arms without the first, periods without the first and, with
+    /// `carry_over`, previous arms without the first.
     fn effects(&self, index: usize, carry_over: bool) -> Vec<f64> {
         let (trial, before) = (&self.trials[index], self.before(index));
         let is = |holds: bool| f64::from(u8::from(holds));
@@ -90,7 +91,8 @@ impl ArmDesign {
         std::iter::once(1.0).chain(arms).chain(periods).chain(carried).collect()
     }
 
-    /// The primary model, with the effect of the arm before if asked; `None` where it cannot be estimated.
+    /// The primary model, with `carry_over` including the effect of the previous arm; `None` where it cannot be
+    /// estimated.
     pub fn linear(&self, carry_over: bool) -> Option<LinearMixedModel> {
         let measurement = |(index, trial): (usize, &ArmTrial)| Measurement {
             participant: trial.participant,
@@ -100,7 +102,7 @@ impl ArmDesign {
         LinearMixedModel::fit(&self.trials.iter().enumerate().map(measurement).collect::<Vec<_>>())
     }
 
-    /// The model of counts; `None` where it cannot be estimated.
+    /// The negative binomial model of counts; `None` where it cannot be estimated.
     pub fn counts(&self) -> Option<NegativeBinomialModel> {
         let count = |(index, trial): (usize, &ArmTrial)| TrialCount {
             participant: trial.participant,
@@ -111,7 +113,7 @@ impl ArmDesign {
         NegativeBinomialModel::fit(&self.trials.iter().enumerate().map(count).collect::<Vec<_>>())
     }
 
-    /// Weights of the fixed effects of a model with so many of them, for the difference of two arms.
+    /// Weights of the fixed effects for the difference between two arms, in a model with `size` effects.
     pub fn weights(&self, (arm, against): (StudyArm, StudyArm), size: usize) -> Vec<f64> {
         let mut weights = vec![0.0; size];
         for (place, other) in self.arms.iter().enumerate().skip(1) {

@@ -6,14 +6,14 @@ use super::robot_tally::RobotSummary;
 use super::trial_statistics::Trial;
 use crate::session::settings::ArmKind;
 
-/// Sums of robot statistics over the trials with one kind of arm.
+/// Robot statistics summed over the trials with one kind of robot arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmGroup {
-    /// The kind of arm.
+    /// Kind of the robot's arm: timed or physical.
     pub kind: ArmKind,
     /// Number of trials.
     pub trials: u64,
-    /// Sums over these trials.
+    /// Sums of the robot statistics over the trials.
     #[serde(flatten)]
     pub robot: RobotSummary,
 }

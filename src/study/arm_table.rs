@@ -1,4 +1,5 @@
-//! The comparison of all arms of a plan in simulated trials: what each arm's participants did, with intervals, and the contrasts between arms.
+//! Table of all arms of a plan in simulated trials: rates of each arm with confidence intervals, and contrasts between
+//! arms.
 
 use serde::Serialize;
 
@@ -9,30 +10,30 @@ use crate::analysis::trial_bootstrap::interval_where_known;
 use crate::session::plan::{PrimaryOutcome, StudyAims};
 use crate::session::study_arm::StudyArm;
 
-/// The seed of the bootstrap: the same trials give the same interval.
+/// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;
 
-/// A figure with its interval of 95 %, by a bootstrap over participants.
+/// A statistic of one arm with its 95 % confidence interval, by a bootstrap over participants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ArmFigure {
-    /// The figure of all trials together; null where there is nothing to compute it from.
+    /// The statistic over all trials of the arm; null where it cannot be computed.
     pub value: Option<f64>,
-    /// Its interval; null with fewer than five participants.
+    /// Confidence interval of the statistic; null with fewer than five participants.
     pub interval: Option<[f64; 2]>,
 }
 
-/// A row of the table: one arm.
+/// Row of the table of arms: rates of one study arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmRow {
-    /// The arm.
+    /// Study arm of the row.
     pub arm: StudyArm,
-    /// Number of trials.
+    /// Number of trials of the arm.
     pub trials: u64,
     /// Errors per 100 presses of the human.
     pub errors_per_100: ArmFigure,
-    /// Belief related errors per 100 presses of the human.
+    /// Errors that follow from false beliefs, per 100 presses of the human.
     pub related_per_100: ArmFigure,
-    /// Mean number of errors in a sequence of related errors.
+    /// Mean number of errors in a sequence that follows from the same false belief.
     pub sequence_length: ArmFigure,
     /// Orders served per minute.
     pub orders_per_minute: ArmFigure,
@@ -42,22 +43,22 @@ pub struct ArmRow {
     pub signal_time: ArmFigure,
 }
 
-/// The output of `tomcom arms`.
+/// Comparison of all study arms in simulated trials: the output of `tomcom arms`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ArmTable {
-    /// The plan's name.
+    /// Name of the study plan.
     pub plan: String,
     /// Checksum of plan and settings with this seed.
     pub digest: String,
     /// Version of the program that simulated the trials.
     pub program: String,
-    /// The seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
     /// Number of participants.
     pub participants: u32,
-    /// The arms, in the order of tables.
+    /// One row per arm, in the order of tables.
     pub arms: Vec<ArmRow>,
-    /// Comparisons by errors and by belief related errors; without those that cannot be estimated.
+    /// Comparisons of arms by errors and by errors from false beliefs; those that cannot be estimated are left out.
     pub comparisons: Vec<ArmComparison>,
 }
 
@@ -99,7 +100,7 @@ fn per_100(trials: &[&TrialCounts], number: fn(&TrialCounts) -> u64) -> Option<f
 }
 
 impl ArmTable {
-    /// The table of a pool whose trials were simulated in the arms of its plan.
+    /// The table for a pool whose trials were simulated in the arms of its plan.
     pub fn from_pool(pool: &SimulationPool) -> ArmTable {
         let header = &pool.header;
         let row = |arm: StudyArm| {
@@ -121,7 +122,7 @@ impl ArmTable {
     }
 }
 
-/// The trials of a pool in its arms, as the comparison of arms takes them.
+/// The pool's trials in their arms, with counts of the outcome, for the comparison of arms.
 fn counted(pool: &SimulationPool, outcome: PrimaryOutcome) -> Vec<ArmTrial> {
     let persons = pool.persons.iter().enumerate();
     let trials = persons.flat_map(|(participant, person)| {
@@ -134,7 +135,7 @@ fn counted(pool: &SimulationPool, outcome: PrimaryOutcome) -> Vec<ArmTrial> {
     trials.collect()
 }
 
-/// The table as text, in Markdown.
+/// The table of arms as text, in Markdown.
 pub fn describe(table: &ArmTable) -> String {
     let mut text = format!(
         "plan {} ({}), seed {}: {} simulated participants, each with a trial in every condition\n\n",

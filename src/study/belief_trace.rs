@@ -1,5 +1,5 @@
-//! What can change or show the participant's beliefs in a trial: changes, looks, signals and the participant's presses, in order.
-//! Neither estimates nor recorded beliefs are part of it.
+//! Everything in a trial that can change or show the participant's beliefs, in order: changes of the kitchen, looks,
+//! signals and the participant's presses. Neither estimates nor recorded beliefs are part of it.
 
 use crate::analysis::looks::Looks;
 use crate::base::time::SessionTime;
@@ -8,47 +8,47 @@ use crate::gaze::MIN_CONFIDENCE;
 use crate::kitchen::{Agent, AspectId, Change, LocationId, Press, State};
 use crate::session::{Event, Session, Stamped};
 
-/// Something that can change or show a belief.
+/// Event of a trial that can change or show the participant's belief.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TraceEvent {
-    /// The trial starts in this state, which the participant sees.
+    /// The trial starts in a state that the participant knows.
     Started {
-        /// The empty kitchen.
+        /// State at the start: the empty kitchen.
         state: State,
     },
-    /// The kitchen changes by somebody other than the participant: the robot, an order, the wizard's correction.
+    /// Somebody other than the participant changes the kitchen: the robot, a new order, or the wizard's correction.
     Changed {
-        /// The state before the change.
+        /// State of the kitchen before the change.
         before: State,
-        /// The state after the change.
+        /// State of the kitchen after the change.
         after: State,
     },
-    /// The gaze has rested on a location long enough to read its present content; once for each look and content.
+    /// The gaze has rested on a location long enough to read its present content; noted once for each look and content.
     Looked {
-        /// The location.
+        /// The location that was looked at.
         location: LocationId,
     },
-    /// A signal makes these aspects certain.
+    /// A signal tells the true value of these state aspects.
     Told {
-        /// The aspects.
+        /// The state aspects that the signal is about.
         aspects: Vec<AspectId>,
     },
-    /// The participant presses.
+    /// The participant presses a button.
     Pressed {
-        /// Log number of the press.
+        /// Sequence number of the press in the log.
         seq: u64,
-        /// The press.
+        /// The press with the states before and after it.
         press: Press,
     },
 }
 
-/// The trace of a trial, collected event by event.
+/// The belief-related events of a trial, collected event by event.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefTrace {
-    /// The events with their session times, in order.
+    /// The trial's events with their session times, in order.
     pub events: Vec<(SessionTime, TraceEvent)>,
     looks: Looks,
-    /// For each location, whether the present look at its present content is in `events` already.
+    /// For each location, whether the present look at its present content is already in `events`.
     is_noted: Vec<bool>,
 }
 
@@ -56,7 +56,7 @@ impl BeliefTrace {
     /// Adds an event that has just been applied to the session.
     pub fn note(&mut self, stamped: &Stamped, change: &Change, session: &Session) {
         if !session.is_running() && change.states().is_none() {
-            // The display is not read in a pause.
+            // Participants do not read the display in a pause.
             self.looks.interrupted();
             return;
         }
@@ -96,7 +96,7 @@ impl BeliefTrace {
         }
     }
 
-    /// Whether there was any look. Without gaze nobody knows what was seen.
+    /// Whether the trial has any look; without gaze data it is unknown what the participant saw.
     pub fn has_looks(&self) -> bool {
         self.events.iter().any(|(_, event)| matches!(event, TraceEvent::Looked { .. }))
     }

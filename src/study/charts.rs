@@ -13,7 +13,8 @@ use crate::communication::concept::ConceptName;
 use crate::measures::detection::CalibrationBin;
 use crate::session::study_arm::StudyArm;
 
-/// Chart of errors by condition and participant (paper's figure, top left); lines join a participant's two trials, means are black.
+/// Chart of errors by condition and participant (after the paper's figure, top left); lines join a participant's two
+/// trials, means are black.
 pub fn errors_by_condition(trials: &[Trial]) -> Option<Markup> {
     let pairs = pairs(trials, HEADLINE);
     let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
@@ -42,8 +43,8 @@ pub fn errors_by_condition(trials: &[Trial]) -> Option<Markup> {
     Some(chart.finish("Errors by condition and participant"))
 }
 
-/// Chart of improvements from the first to the second trial by starting group (paper's figure, top right); the difference of the
-/// means is twice the effect of assistance.
+/// Chart of improvements from the first to the second trial by starting group (after the paper's figure, top right);
+/// the difference of the means is twice the effect of assistance.
 pub fn improvements(trials: &[Trial]) -> Option<Markup> {
     let pairs = pairs(trials, HEADLINE);
     if pairs.is_empty() {
@@ -61,7 +62,7 @@ pub fn improvements(trials: &[Trial]) -> Option<Markup> {
         }
         if let Some(mean) = mean(of_group.iter().map(|pair| percent(pair.improvement()))) {
             chart.line("mean", &[(x - 0.25, mean), (x + 0.25, mean)]);
-            // A mean that rounds to 0.0 is written without a sign.
+            // A mean that rounds to 0.0 has no sign.
             let words = if mean.abs() < 0.05 { "0.0".to_string() } else { minus(&format!("{mean:+.1}")) };
             chart.words("strong", x + 0.25, mean, true, &words);
         }
@@ -69,7 +70,8 @@ pub fn improvements(trials: &[Trial]) -> Option<Markup> {
     Some(chart.finish("Difference between the first and the second trial by starting group"))
 }
 
-/// Chart of seconds between human presses by trial and condition (paper's figure, bottom); they indicate experience.
+/// Chart of the time between presses of the human, in seconds, by trial and condition (after the paper's figure,
+/// bottom), which indicates experience.
 pub fn press_durations(trials: &[Trial]) -> Option<Markup> {
     let cells: Vec<(u32, bool)> = vec![(1, false), (1, true), (2, false), (2, true)];
     let of = |&(period, assisted): &(u32, bool)| -> Vec<(&str, f64)> {
@@ -168,7 +170,7 @@ pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {
     Some(chart.finish("Errors prevented by number of signals"))
 }
 
-/// Draws the points of a concept up to `to` on the x axis, and the line through them.
+/// Draws the points of a concept with x up to `to`, and the line through them.
 fn curve(chart: &mut SvgChart, roc: &Roc, to: f64, of: fn(&RocPoint) -> (f64, f64)) {
     let class = class_of(roc.concept);
     let is_drawn = |point: &&RocPoint| of(point).0 <= to;
@@ -182,7 +184,8 @@ fn curve(chart: &mut SvgChart, roc: &Roc, to: f64, of: fn(&RocPoint) -> (f64, f6
     }
 }
 
-/// Chart of the estimate's calibration by answers to probes; `None` without a prediction in the range.
+/// Calibration chart of the belief estimate, by answers to freeze probes; `None` if no prediction is in the calibrated
+/// range.
 pub fn probe_calibration(found: &ProbeFigures) -> Option<Markup> {
     let filled: Vec<&CalibrationBin> = found.detection.calibration.bins.iter().filter(|bin| bin.n > 0).collect();
     filled.first()?;
@@ -217,7 +220,7 @@ fn percent(rate: f64) -> f64 {
     100.0 * rate
 }
 
-/// Horizontal offset by index, so that points of equal height do not cover each other.
+/// Horizontal offset of the point with this index, so that points of equal height do not cover each other.
 fn aside(index: usize) -> f64 {
     [0.0, -0.06, 0.06, -0.12, 0.12, -0.18, 0.18][index % 7]
 }

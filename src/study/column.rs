@@ -1,5 +1,6 @@
-//! Tables for other programs: one row per observation, one column per variable (Wickham 2014, "Tidy Data"). Each column is declared
-//! once, with name, unit, meaning and value; the header line, the rows and the dictionary are generated from the declaration.
+//! Columns of tables for other programs: one row per observation, one column per variable (Wickham 2014, "Tidy Data").
+//! Each column is declared once with name, unit, meaning and value; header line, rows and data dictionary are generated
+//! from the declaration.
 
 use std::borrow::Cow;
 
@@ -12,13 +13,13 @@ pub enum Table {
     Participants,
     /// A row for each trial.
     Trials,
-    /// A row for each answer.
+    /// A row for each answer to a questionnaire's item.
     Questionnaires,
     /// A row for each question of a tutorial.
     Tutorial,
     /// A row for each unassisted trial, concept and value of its parameter.
     Concepts,
-    /// A row for each press.
+    /// A row for each press of the human or the robot.
     Actions,
     /// A row for each signal that was sent, or would have been.
     Communications,
@@ -35,7 +36,7 @@ pub enum Table {
 }
 
 impl Table {
-    /// Every table.
+    /// All tables.
     pub const ALL: [Table; 12] = [
         Table::Participants,
         Table::Trials,
@@ -73,15 +74,15 @@ impl Table {
     }
 }
 
-/// Source of one row of a table.
+/// Type from which the rows of a table are made.
 pub trait TableRow: Sized {
-    /// The table that the row belongs to.
+    /// Table that the row belongs to.
     const TABLE: Table;
 
     /// Columns of the table, in file order.
     fn columns() -> Vec<Column<Self>>;
 
-    /// Declares a column: name, unit (empty: none), meaning, and value for a row.
+    /// Declares a column with its name, unit (empty for none), meaning, and function from row to value.
     fn column(
         name: impl Into<Cow<'static, str>>,
         unit: &'static str,
@@ -97,39 +98,39 @@ pub trait TableRow: Sized {
     }
 }
 
-/// Declaration of a column; `Row` is the source of a row.
+/// Declaration of a table's column; `Row` is the type from which rows are made.
 pub struct Column<Row> {
-    /// The column's name.
+    /// Name of the column.
     pub name: Cow<'static, str>,
-    /// Unit; empty for columns without a unit.
+    /// Unit of the column; empty for none.
     pub unit: &'static str,
-    /// What the column says.
+    /// Meaning of the column, for the data dictionary.
     pub meaning: Cow<'static, str>,
     value: Box<dyn Fn(&Row) -> TableCell<'_>>,
 }
 
 impl<Row> Column<Row> {
-    /// Value of this column in a row.
+    /// Value of the column in a row.
     pub fn cell<'a>(&self, row: &'a Row) -> TableCell<'a> {
         (self.value)(row)
     }
 }
 
-/// Value of one column in one row.
+/// Value of one table column in one row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum TableCell<'a> {
-    /// Unknown or missing value: an empty field.
+    /// Unknown or missing value, written as an empty field.
     Unknown,
-    /// True or false.
+    /// A truth value in a table's cell.
     Flag(bool),
-    /// A number of things.
+    /// A count of events or items in a table's cell.
     Count(u64),
-    /// A whole number with a sign.
+    /// A signed integer in a table's cell.
     Whole(i64),
-    /// A number with a fraction.
+    /// A number with decimals in a table's cell.
     Number(f64),
-    /// Words.
+    /// Text in a table's cell.
     Text(Cow<'a, str>),
 }
 

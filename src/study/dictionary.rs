@@ -1,4 +1,4 @@
-//! Dictionary of all table columns, generated from their declarations.
+//! Data dictionary of all table columns, generated from their declarations.
 
 use std::borrow::Cow;
 
@@ -15,16 +15,16 @@ use super::tables::questionnaires::AnswerRow;
 use super::tables::tutorial_answers::TutorialAnswer;
 use super::trial_statistics::Trial;
 
-/// Dictionary entry of one table column.
+/// Data dictionary entry of one table column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DictionaryRow {
-    /// The table's name, which is its file's without `.csv`.
+    /// Table of the column.
     pub table: Table,
-    /// The column's name.
+    /// Name of the column.
     pub column: Cow<'static, str>,
-    /// The column's unit; empty: none.
+    /// Unit of the column; empty for none.
     pub unit: &'static str,
-    /// What the column says.
+    /// Meaning of the column.
     pub meaning: Cow<'static, str>,
 }
 
@@ -41,7 +41,7 @@ impl TableRow for DictionaryRow {
     }
 }
 
-/// Dictionary entries of a table, in the order of its columns.
+/// Data dictionary entries of a table, in the order of its columns.
 pub fn columns(table: Table) -> Vec<DictionaryRow> {
     match table {
         Table::Participants => declared::<ParticipantRow>(),
@@ -69,7 +69,7 @@ fn declared<Row: TableRow>() -> Vec<DictionaryRow> {
     Row::columns().into_iter().map(row).collect()
 }
 
-/// Dictionary entries of all tables, by table and column.
+/// Data dictionary entries of all tables, by table and column.
 pub fn dictionary() -> impl Iterator<Item = DictionaryRow> {
     Table::ALL.into_iter().flat_map(columns)
 }

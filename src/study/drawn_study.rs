@@ -1,12 +1,14 @@
-//! Studies drawn from a pool of simulated participants: whole persons, with replacement, each with all of its trials.
+//! Studies drawn from a pool of simulated participants: each participant is drawn with replacement, with all of their
+//! trials.
 //!
-//! Two kinds of study are drawn. *As simulated*: persons are drawn within their order of arms, with what they did in these arms. *With a
-//! ratio*: persons are drawn from the whole pool with what they did without signals, and get the orders of the study, so that arms can be
-//! exchanged within every person; then each event in an arm other than the reference is kept with the probability of the ratio (binomial
-//! thinning), and presses stay. With the ratio 1 the null hypothesis holds exactly, also in a small pool.
+//! Two kinds of study are drawn. *As simulated*: participants are drawn within their order of arms, with what they did
+//! in these arms. *With a ratio*: participants are drawn from the whole pool with what they did without signals, and
+//! are assigned to the study's orders, so that arms are exchangeable within every participant; each event in an arm
+//! other than the reference is then kept with a probability equal to the ratio (binomial thinning), and presses stay.
+//! With the ratio 1, the null hypothesis holds exactly, even in a small pool.
 //!
-//! The random stream is named by size, pool and number of the study, not by the ratio: with a smaller ratio the same persons have the same
-//! events or fewer.
+//! The random stream is named by size, pool and number of the study, not by the ratio: with a smaller ratio, the same
+//! participants have a subset of the same events.
 
 use rand::RngExt;
 use rand::seq::SliceRandom;
@@ -20,55 +22,57 @@ use crate::base::rng::{Stream, stream};
 use crate::session::plan::orders;
 use crate::session::study_arm::StudyArm;
 
-/// Least number of persons in each order of arms: from one alone a study has no differences between persons.
+/// Least number of participants in each order of arms: drawing from a single one would give no variance between
+/// participants.
 const FEWEST: usize = 2;
 
-/// The effect in the studies that are drawn.
+/// Effect of the arms in the studies that are drawn from a pool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DrawnEffect {
-    /// What the arms did in the simulation.
+    /// The effect that the arms had in the simulation.
     AsSimulated,
-    /// Rate of events in every arm but the reference, as a share of the unassisted rate: above 0, at most 1.
+    /// Ratio of the rate of events in every arm but the reference to the unassisted rate: above 0, at most 1.
     Ratio(f64),
 }
 
-/// How a test is computed.
+/// Statistical method of a test in a power analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TestMethod {
-    /// The paper's test of two conditions: mixed ANOVA of rates, interaction of period and starting group.
+    /// The paper's test of two conditions: the interaction of period and starting group in a mixed ANOVA of rates.
     MixedAnova,
     /// Contrast of the linear mixed model of log rates, with Holm's correction.
     LinearMixedModel,
 }
 
-/// A test of a study: of one arm against another one.
+/// A statistical test of one study arm against another, whose power is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PowerTest {
-    /// How it is computed.
+    /// Statistical method by which the test is computed.
     pub method: TestMethod,
-    /// The arm.
+    /// Study arm that is tested.
     pub arm: StudyArm,
-    /// The arm that it is compared with.
+    /// Study arm that it is tested against.
     pub against: StudyArm,
 }
 
-/// The result of a test.
+/// Result of one test in one drawn study.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TestResult {
-    /// Two-sided p, corrected for the number of contrasts.
+    /// Two-sided p value, corrected for the number of contrasts.
     pub p: f64,
-    /// The same without the correction.
+    /// Two-sided p value without the correction.
     pub p_uncorrected: f64,
 }
 
-/// The arm that all others are compared with: the one without signals, or else the first in the order of tables.
+/// The reference arm that all others are compared with: the one without signals, or else the first in the order of
+/// tables.
 pub fn reference(conditions: &[StudyArm]) -> StudyArm {
     StudyArm::ALL.into_iter().find(|arm| conditions.contains(arm)).unwrap_or_default()
 }
 
-/// The tests of a study with these conditions, the primary one first: where one of two is unassisted, the paper's test, and the contrast
-/// of the mixed model beside it; else the contrasts of the mixed model.
+/// Tests of a study with these conditions, the primary one first. With two conditions of which one is unassisted: the
+/// paper's test, then the contrast of the mixed model; otherwise the contrasts of the mixed model.
 pub fn tests(conditions: &[StudyArm]) -> Vec<PowerTest> {
     let arms: Vec<StudyArm> = StudyArm::ALL.into_iter().filter(|arm| conditions.contains(arm)).collect();
     let test = |method: TestMethod| move |(arm, against): (StudyArm, StudyArm)| PowerTest { method, arm, against };
@@ -80,7 +84,7 @@ pub fn tests(conditions: &[StudyArm]) -> Vec<PowerTest> {
         .collect()
 }
 
-/// The results of these tests of a study; `None` where a test cannot be computed.
+/// Results of these tests for one drawn study; `None` where a test cannot be computed.
 pub fn results(tests: &[PowerTest], study: &[ArmTrial]) -> Vec<Option<TestResult>> {
     let contrasts = primary_contrasts(study.to_vec());
     let result = |test: &PowerTest| match test.method {
@@ -96,7 +100,7 @@ pub fn results(tests: &[PowerTest], study: &[ArmTrial]) -> Vec<Option<TestResult
     tests.iter().map(result).map(|found| found.filter(|one| one.p.is_finite())).collect()
 }
 
-/// The p of the paper's test: persons have two trials, one of them unassisted.
+/// p value of the paper's test, in which each participant has two trials, one of them unassisted.
 fn papers_p(study: &[ArmTrial]) -> Option<f64> {
     let rate = |trial: &ArmTrial| trial.events as f64 / trial.presses as f64;
     let row = |trials: &[ArmTrial]| match trials {
@@ -107,23 +111,23 @@ fn papers_p(study: &[ArmTrial]) -> Option<f64> {
     mixed_anova(&rows?).interaction.map(|test| test.p)
 }
 
-/// The persons that studies are drawn from.
+/// Pool of participants from which studies are drawn.
 #[derive(Clone, Debug)]
 pub struct StudySource<'a> {
     pool: &'a SimulationPool,
-    /// The orders of arms of the plan's design.
+    /// Orders of arms in the plan's design.
     orders: Vec<Vec<StudyArm>>,
-    /// Indices of persons, by order.
+    /// Indices of participants, for each order.
     by_order: Vec<Vec<usize>>,
-    /// Number of the resampled pool; 0 is the pool itself.
+    /// Number of the bootstrap resample of the pool; 0 is the pool itself.
     number: u64,
 }
 
 impl<'a> StudySource<'a> {
-    /// The persons of a whole pool.
+    /// All participants of a pool.
     ///
     /// # Errors
-    /// An order of the conditions has too few persons: what was found.
+    /// An order of the conditions has too few participants; the error says how many.
     pub fn new(pool: &'a SimulationPool) -> Result<StudySource<'a>, String> {
         let conditions = &pool.header.conditions;
         let order = |order: &Vec<usize>| order.iter().map(|&index| conditions[index]).collect::<Vec<_>>();
@@ -140,15 +144,16 @@ impl<'a> StudySource<'a> {
         Ok(StudySource { pool, orders, by_order, number: 0 })
     }
 
-    /// A pool of as many persons drawn from this one within their orders, by which the error of the pool is found.
+    /// Bootstrap resample of the pool within its orders of arms, which shows the uncertainty due to the size of the
+    /// pool.
     pub fn resampled(&self, number: u64) -> StudySource<'a> {
         let mut random = stream(self.pool.header.seed, "resampled pool", number);
         let again = |persons: &Vec<usize>| persons.iter().map(|_| drawn(persons, &mut random)).collect();
         StudySource { by_order: self.by_order.iter().map(again).collect(), number, ..self.clone() }
     }
 
-    /// Study `number` of so many participants: one row per trial, ordered by participant and period. Orders of arms are as equally frequent
-    /// as the size allows. Empty where the pool was not simulated for this effect.
+    /// Study `number` with `size` participants: one row per trial, ordered by participant and period. Orders of arms
+    /// are as equally frequent as the size allows. Empty if the pool was not simulated for this effect.
     pub fn study(&self, size: usize, effect: DrawnEffect, number: u64) -> Vec<ArmTrial> {
         let name = format!("study of {size} from pool {}", self.number);
         let mut random = stream(self.pool.header.seed, &name, number);
@@ -167,7 +172,7 @@ impl<'a> StudySource<'a> {
         study
     }
 
-    /// The trial with this index of a participant who is this person, in this order of arms.
+    /// Trial with this index of a drawn participant, in this order of arms.
     fn trial(
         &self,
         (participant, person): (usize, usize),
@@ -184,7 +189,8 @@ impl<'a> StudySource<'a> {
         let all = counts.events(header.aims.outcome);
         let events = match effect {
             DrawnEffect::Ratio(ratio) => {
-                // Draws of the reference's events are discarded, so that all streams stay in step.
+                // Random numbers are drawn for the reference arm too and discarded, so that all random streams stay in
+                // step.
                 let kept = (0..all).filter(|_| random.random::<f64>() < ratio).count() as u64;
                 if arm == reference(&header.conditions) { all } else { kept }
             }
@@ -194,7 +200,7 @@ impl<'a> StudySource<'a> {
     }
 }
 
-/// One of these persons.
+/// Draws one of these simulated participants.
 fn drawn(persons: &[usize], random: &mut Stream) -> usize {
     persons[random.random_range(0..persons.len())]
 }

@@ -1,8 +1,9 @@
-//! Effect of assistance in a cross-over design: each participant has one assisted and one unassisted trial, in either order.
+//! Effect of assistance in a cross-over design: each participant has one assisted and one unassisted trial, in either
+//! order.
 //!
-//! The second trial also profits from practice. The analysis therefore compares the improvement from the first to the second trial
-//! between the two starting groups. The additional improvement of the group whose second trial is assisted is the effect of
-//! assistance (the interaction of period and starting group; Senn 2002, Cross-over Trials, chapter 3).
+//! The second trial also profits from practice. The analysis therefore compares the improvement from the first to the
+//! second trial between the two starting groups. The additional improvement of the group whose second trial is assisted
+//! is the effect of assistance (the interaction of period and starting group; Senn 2002, Cross-over Trials, chapter 3).
 
 use serde::{Serialize, Serializer};
 
@@ -12,53 +13,54 @@ use super::statistics::{
 use super::trial_statistics::Trial;
 use crate::session::study_arm::StudyArm;
 
-/// Confidence level of intervals.
+/// Confidence level of the report's intervals.
 pub const LEVEL: f64 = 0.95;
 
-/// A participant's two trials, one assisted and one unassisted.
+/// The two trials of a participant, one assisted and one unassisted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialPair {
     /// The participant's code.
     pub participant: String,
     /// Whether the second trial is the assisted one.
     pub assisted_second: bool,
-    /// Value of the measure in the first and in the second trial; lower is better.
+    /// Values of the measure in the first and in the second trial; lower is better.
     pub values: [f64; 2],
 }
 
 impl TrialPair {
-    /// First value minus second value.
+    /// Improvement from the first to the second trial: first value minus second value.
     pub fn improvement(&self) -> f64 {
         self.values[0] - self.values[1]
     }
 
-    /// Values of the unassisted and of the assisted trial.
+    /// Values of the unassisted and of the assisted trial, in this order.
     pub fn by_condition(&self) -> [f64; 2] {
         if self.assisted_second { self.values } else { [self.values[1], self.values[0]] }
     }
 }
 
-/// A statistic of a trial that is compared between assisted and unassisted trials; lower is better. It is a column of the table of
-/// trials, two columns of the table of participants, and a line of the report's tests.
+/// A statistic of a trial that is compared between assisted and unassisted trials; lower is better. It is a column of
+/// the table of trials, two columns of the table of participants, and a line of the report's tests.
 #[derive(Clone, Copy, Debug)]
 pub struct StudyMeasure {
-    /// Column name in the table of trials, and key in the summary; the table of participants adds the suffixes `_1` and `_2`.
+    /// Column name in the table of trials, and key in the summary; the table of participants adds the suffixes `_1` and
+    /// `_2`.
     pub name: &'static str,
-    /// Unit of the columns.
+    /// Unit of the measure's columns.
     pub unit: &'static str,
-    /// Definition for the dictionary; empty if the unit suffices.
+    /// Definition of the measure for the data dictionary; empty if the unit suffices.
     pub meaning: &'static str,
-    /// Definition for one of a participant's trials; `{}` stands for "first" or "second".
+    /// Meaning of the columns `_1` and `_2` in the table of participants; `{}` stands for "first" or "second".
     pub meaning_in: &'static str,
-    /// Title in the report.
+    /// Title of the measure in the report.
     pub title: &'static str,
-    /// Number of decimals in the report.
+    /// Number of decimals of the measure in the report.
     pub digits: usize,
-    /// Value for a trial; `None` if the trial does not have it.
+    /// Value of the measure for a trial; `None` if the trial does not have it.
     pub value: fn(&Trial) -> Option<f64>,
 }
 
-/// Measures are compared by name; names are unique, as columns of one table.
+/// Measures are equal if their names are; names are unique, since they are columns of one table.
 impl PartialEq for StudyMeasure {
     fn eq(&self, other: &StudyMeasure) -> bool {
         self.name == other.name
@@ -74,21 +76,22 @@ impl Serialize for StudyMeasure {
 /// Estimates and tests of the effect of assistance on one measure.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AssistanceEffect {
-    /// What is compared.
+    /// Measure that is compared between assisted and unassisted trials.
     pub measure: StudyMeasure,
-    /// Number of participants whose second trial was assisted, and whose first was.
+    /// Number of participants whose second trial was assisted, and number of those whose first trial was.
     pub groups: [usize; 2],
     /// Mean improvement of each starting group from the first to the second trial.
     pub improvements: [Option<f64>; 2],
     /// Mixed analysis of variance: period within, starting group between; assistance is the interaction.
     pub by_period: MixedAnova,
-    /// Mixed analysis of variance in the paper's coding: condition within, starting group between; assistance is the within factor.
+    /// Mixed analysis of variance in the paper's coding: condition within, starting group between; assistance is the
+    /// within factor.
     pub by_condition: MixedAnova,
     /// Correlation of starting group (1: assisted second) and improvement; positive if assistance helps.
     pub pearson: Option<Correlation>,
-    /// Two-sided p of the permutation test on the groups' improvements.
+    /// Two-sided p value of the permutation test on the groups' improvements.
     pub permutation_p: Option<f64>,
-    /// Reduction by assistance: half the Hodges-Lehmann shift between the groups' improvements.
+    /// Reduction of the measure by assistance: half the Hodges-Lehmann shift between the groups' improvements.
     pub reduction: Option<Interval>,
     /// Hedges' g: the difference of the groups' mean improvements in pooled standard deviations.
     pub hedges_g: Option<f64>,
@@ -106,9 +109,9 @@ impl AssistanceEffect {
     }
 }
 
-/// Pairs of one assisted and one unassisted trial that count and have this measure, in the order of participant codes. If a
-/// participant repeated a period, its last trial counts. None where the trials have more than two arms: those are compared as a whole
-/// ([`super::arm_comparison`]).
+/// Pairs of one assisted and one unassisted trial that the analysis includes and that have this measure, in the order
+/// of participant codes. If a participant repeated a period, its last trial counts. Empty where the trials have more
+/// than two arms, which are compared together ([`super::arm_comparison`]).
 pub fn pairs(trials: &[Trial], measure: StudyMeasure) -> Vec<TrialPair> {
     let mut arms: Vec<StudyArm> = trials.iter().filter(|trial| trial.counts()).map(|trial| trial.study_arm).collect();
     arms.sort_unstable();
@@ -135,7 +138,7 @@ fn pair(code: &str, trials: &[Trial], measure: StudyMeasure) -> Option<TrialPair
     Some(TrialPair { participant: code.to_string(), assisted_second: second.is_assisted(), values })
 }
 
-/// Computes the effect of assistance on a measure; `seed` seeds sampled permutations.
+/// Computes the effect of assistance on a measure; `seed` seeds the sampled permutations.
 pub fn effect(measure: StudyMeasure, pairs: &[TrialPair], seed: u64) -> AssistanceEffect {
     let group = |pair: &TrialPair| usize::from(pair.assisted_second);
     let improvements = |assisted_second: bool| -> Vec<f64> {

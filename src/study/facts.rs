@@ -9,14 +9,14 @@ use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, 
 use crate::session::{Header, Session};
 use crate::wizard::settings::{WizardKind, WizardSpec};
 
-/// Facts by key, from one or several recordings; every value that occurred is kept.
+/// Settings and circumstances by key, from one or several recordings; every value that occurred is kept.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
     found: BTreeMap<&'static str, BTreeSet<String>>,
 }
 
 impl Facts {
-    /// Facts of a replayed recording.
+    /// Settings and circumstances of a replayed recording.
     pub fn from_session(header: &Header, session: &Session) -> Facts {
         let spec = &header.session;
         let mut facts = Facts::default();
@@ -67,14 +67,14 @@ impl Facts {
         facts
     }
 
-    /// Adds the facts of another recording.
+    /// Adds the settings and circumstances of another recording.
     pub fn add(&mut self, other: Facts) {
         for (key, values) in other.found {
             self.found.entry(key).or_default().extend(values);
         }
     }
 
-    /// All values of a fact as text; `None` if it has none.
+    /// All values of a key as text; `None` if it has none.
     pub fn all(&self, key: &str) -> Option<String> {
         let values: Vec<&str> = self.found.get(key)?.iter().map(String::as_str).collect();
         let (last, others) = values.split_last()?;
@@ -84,7 +84,7 @@ impl Facts {
         })
     }
 
-    /// Whether a fact has a value.
+    /// Whether a key has a value.
     pub fn has(&self, key: &str) -> bool {
         self.found.contains_key(key)
     }
@@ -93,7 +93,7 @@ impl Facts {
 /// Parameters as text, by their names in session files.
 fn parameters(of: &impl Serialize) -> String {
     let mut all = Vec::new();
-    // Parameters are numbers, lists and tables of them, which serialise.
+    // Parameters are numbers, and lists and tables of numbers, which can always be serialised.
     flatten("", &serde_json::to_value(of).unwrap_or_default(), &mut all);
     all.join(", ")
 }
@@ -114,7 +114,7 @@ fn flatten(name: &str, value: &Value, all: &mut Vec<String>) {
     }
 }
 
-/// Duration of the robot's presses as text.
+/// Distribution of the durations of the robot's presses, as text.
 fn presses_of(robot: &RobotSpec) -> String {
     match robot.arm {
         ArmKind::Timed => format!("{} s in the median (spread {})", robot.press_s, robot.press_spread),

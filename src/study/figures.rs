@@ -34,109 +34,114 @@ use crate::session::study_arm::StudyArm;
 /// Seed of sampled permutations and bootstrap resamples; fixed, so that the same recordings give the same statistics.
 const SEED: u64 = 1;
 
-/// Summary of a study. Unknown values are null.
+/// Summary of a study, as `tomcom study` prints it. Unknown values are null.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudySummary {
-    /// The title of the report.
+    /// Title of the report.
     pub title: String,
     /// Whether any participant was simulated.
     pub simulated_participants: bool,
-    /// Number of trials that count.
+    /// Number of trials in the analysis.
     pub trials: u64,
-    /// Number of participants with at least one of them.
+    /// Number of participants with at least one trial in the analysis.
     pub participants: u64,
-    /// Sums and means over these trials.
+    /// Sums and means over all trials in the analysis.
     #[serde(flatten)]
     pub totals: TrialTotals,
-    /// Number of trials by the reason of their end.
+    /// Number of trials by the reason why they ended.
     pub ended: BTreeMap<EndReason, u64>,
-    /// Robot statistics by kind of arm.
+    /// Counts of robot events by kind of robot arm.
     pub robot: Vec<ArmGroup>,
-    /// How the study stands to its frozen plan; absent if none was given.
+    /// Agreement of the study with its frozen plan; absent if none was given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preregistration: Option<Preregistration>,
-    /// The trials by condition.
+    /// Summary of the trials in each condition.
     pub conditions: Vec<StudyConditionSummary>,
     /// Effect of assistance on errors per human press: the interaction of period and starting group.
     pub anova: Option<FTest>,
-    /// Correlation of the starting group and the improvement in errors per press of the human.
+    /// Correlation of the starting group with the improvement in errors per press of the human.
     pub pearson: Option<Correlation>,
-    /// Two-sided p of a permutation test of that improvement between the groups.
+    /// Two-sided p value of a permutation test comparing that improvement between the starting groups.
     pub permutation_p: Option<f64>,
-    /// Effects of assistance on all compared measures, the first of them in full.
+    /// Effects of assistance on all compared measures, starting with errors per press.
     pub effects: Vec<AssistanceEffect>,
-    /// Comparison of the arms by the plan's primary outcome; null unless participants have trials in different arms.
+    /// Comparison of the study arms by the plan's primary outcome; null unless participants have trials in different
+    /// arms.
     pub arms: Option<ArmComparison>,
     /// The receiver operating characteristic of each concept.
     pub roc: Vec<Roc>,
-    /// Concepts that acted by themselves on the same simulated trials; empty unless several arms share trials.
+    /// Results of concepts that sent signals by themselves in the same simulated trials; empty unless several arms
+    /// share trials.
     pub live: Vec<LiveArm>,
-    /// How it is known what participants believed in the trials that the comparison of concepts rests on; the least reliable source.
+    /// Source of what participants believed in the trials for the comparison of concepts; with several, the least
+    /// reliable.
     pub roc_beliefs_from: Option<BeliefBasis>,
-    /// Number of participants that the comparison of concepts rests on.
+    /// Number of participants in the comparison of concepts.
     pub roc_participants: u64,
-    /// Number of their unassisted trials.
+    /// Number of unassisted trials in the comparison of concepts.
     pub roc_trials: u64,
-    /// The largest false positive rate that all concepts reach.
+    /// Largest false positive rate that all concepts reach.
     pub roc_common_fpr: Option<f64>,
-    /// Similarity of the wizard's signals (first lane) and the assistant's hypothetical ones, over trials in which the wizard did not
-    /// see the assistant's recommendations; null without such trials.
+    /// Similarity of the wizard's signals (first lane) and the assistant's hypothetical ones, over trials in which the
+    /// wizard did not see the assistant's recommendations; null without such trials.
     pub similarity: Option<Similarity>,
-    /// The same over trials in which the wizard saw the assistant's recommendations, which are not part of `similarity`; null without.
+    /// Similarity over trials in which the wizard saw the assistant's recommendations, which are not part of
+    /// `similarity`; null without such trials.
     pub similarity_with_advice: Option<Similarity>,
     /// Similarity of wizard and assistant in each trial.
     pub similarity_by_trial: Vec<TrialSimilarity>,
-    /// How well wizards did, over all trials with a wizard.
+    /// Performance of the wizards, over all trials with a wizard.
     pub wizard: Option<WizardMeasures>,
-    /// How it is known what participants believed in these trials; the least reliable source. Null where `wizard` has no hits.
+    /// Source of what participants believed in the trials with a wizard; with several, the least reliable. Null where
+    /// `wizard` has no hits.
     pub wizard_beliefs_from: Option<BeliefBasis>,
     /// Offers that wizards could see in trials in which they could send signals; null without such offers.
     pub offers: Option<OfferSummary>,
-    /// How participants take the assistance.
+    /// Acceptance of the assistance by participants.
     pub acceptance: Option<Acceptance>,
-    /// The answers, by item and condition.
+    /// Answers to questionnaires, by item and condition.
     pub questionnaires: Vec<ItemSummary>,
-    /// The scores of questionnaires that have one, by condition.
+    /// Scores of those questionnaires that define one, by condition.
     pub questionnaire_scores: Vec<ScoreSummary>,
     /// Answers to the questions of tutorials; absent if none was answered.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tutorial: Option<TutorialSummary>,
-    /// What participants knew, by their answers to probes, and the estimate against it; absent without answers.
+    /// Results of freeze probes: what participants knew, and the accuracy of the estimate; absent without answers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probes: Option<ProbeFigures>,
     /// Agreement of two raters, where causes of errors are known from their codes.
     pub raters: Option<Agreement>,
-    /// How far these raters agree on the false beliefs from which episodes follow.
+    /// Agreement of the two raters about the false beliefs from which episodes follow.
     pub shared_beliefs: Option<SharedBeliefs>,
-    /// Trials whose causes of errors are the consensus of two raters, by the raters ("R1+R2").
+    /// Number of trials whose causes of errors are the consensus of two raters, by pair of raters ("R1+R2").
     pub consensus: BTreeMap<String, u64>,
-    /// Consensus codes that are not used, since a rater's code changed afterwards.
+    /// Consensus codes that are ignored, since a rater changed a code afterwards.
     pub stale_consensus: Vec<StaleConsensus>,
-    /// The trials that do not count, with the reasons.
+    /// Trials that are excluded from the analysis, with the reasons.
     pub left_out: Vec<ExcludedTrial>,
     /// Number of practice recordings, which are not analysed as trials.
     pub practice: u64,
 }
 
-/// Summary of the trials in one condition.
+/// Summary of the trials of a study in one condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StudyConditionSummary {
-    /// Who sends signals, by which concept, and whether a wizard sees advice.
+    /// The condition: who sends signals, by which concept, and whether a wizard sees recommendations.
     pub condition: StudyArm,
     /// Number of trials.
     pub trials: u64,
-    /// Sums and means over these trials.
+    /// Sums and means over the trials.
     #[serde(flatten)]
     pub totals: TrialTotals,
-    /// Mean errors per trial.
+    /// Mean number of errors per trial.
     pub mean_errors: Option<f64>,
     /// Mean over trials of the median time from an order's appearance to its serving, in seconds.
     pub mean_order_s: Option<f64>,
     /// Mean over trials of the summed regret of both agents per served order.
     pub mean_additional_presses_per_order: Option<f64>,
-    /// Mean over trials of the median time from press to press of the human, in seconds.
+    /// Mean over trials of the median time between presses of the human, in seconds.
     pub mean_press_s: Option<f64>,
-    /// Number of error sequences with 1, 2, 3, … errors.
+    /// Number of error sequences by their length: with 1, 2, 3, … errors.
     pub sequence_lengths: Vec<u64>,
 }
 
@@ -149,36 +154,36 @@ pub struct TrialSimilarity {
     pub wizard_saw_advice: bool,
     /// Number of signals of the wizard.
     pub of_n: u64,
-    /// Number of communications of the assistant.
+    /// Number of the assistant's hypothetical communications.
     pub with_n: u64,
-    /// Number of pairs with the same signal and target.
+    /// Number of communications of both with the same signal and target (matches).
     pub matched: u64,
     /// The share of the wizard's signals that have a match.
     pub recall: Option<f64>,
 }
 
-/// A consensus of two raters that no longer holds.
+/// A consensus of two raters that no longer holds, since a code changed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StaleConsensus {
-    /// The recording's folder.
+    /// Folder of the recording.
     pub recording: String,
-    /// Which code changed.
+    /// Which rater's code changed, in words.
     pub reason: String,
 }
 
-/// A trial that is excluded from the analysis.
+/// A trial that is excluded from the analysis, with the reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ExcludedTrial {
     /// The recording's folder.
     pub recording: String,
     /// The participant's code.
     pub participant: String,
-    /// Why it is left out.
+    /// Reason for the exclusion.
     pub reason: String,
 }
 
 impl StudySummary {
-    /// Summarizes trials, which must be ordered by participant.
+    /// Summarises the trials of a study, which must be ordered by participant.
     pub fn from_trials(trials: &[Trial], facts: &Facts, practice: u64) -> StudySummary {
         let counting: Vec<&Trial> = trials.iter().filter(|trial| trial.counts()).collect();
         let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);
@@ -242,7 +247,7 @@ impl StudySummary {
         }
     }
 
-    /// Adds how the study stands to its frozen plan, if one was given.
+    /// Adds the study's agreement with its frozen plan, if one was given.
     pub fn with_preregistration(self, preregistration: Option<Preregistration>) -> StudySummary {
         StudySummary { preregistration, ..self }
     }
@@ -253,13 +258,13 @@ impl StudySummary {
     }
 }
 
-/// The measures that are compared in these trials: that of probes only where there are any.
+/// The measures that are compared in these trials; those of freeze probes only if there are probes.
 fn compared(trials: &[Trial]) -> impl Iterator<Item = StudyMeasure> {
     let has_probes = trials.iter().any(|trial| trial.probes.is_some());
     measures().into_iter().filter(move |measure| *measure != PROBES_WRONG || has_probes)
 }
 
-/// The probes of trials, each with its participant.
+/// Freeze probes of these trials, each with its participant's code.
 fn probed<'a>(trials: &[&'a Trial]) -> impl Iterator<Item = (&'a str, &'a ProbedTrial)> {
     trials.iter().filter_map(|trial| Some((trial.participant.as_str(), trial.probes.as_ref()?)))
 }
@@ -306,7 +311,7 @@ fn conditions(trials: &[&Trial]) -> Vec<StudyConditionSummary> {
     StudyArm::ALL.into_iter().filter_map(of).collect()
 }
 
-/// Compares concepts over the trials in which they were evaluated; trials are grouped by participant.
+/// Compares concepts over the trials in which they were evaluated; the trials are ordered by participant.
 fn concepts(trials: &[&Trial]) -> ConceptComparison {
     let tried: Vec<&Trial> = trials.iter().copied().filter(|trial| !trial.swept.is_empty()).collect();
     let of_participant = |of_one: &[&Trial]| {
@@ -323,7 +328,7 @@ fn concepts(trials: &[&Trial]) -> ConceptComparison {
     compare(&participants, tried.len() as u64, SEED)
 }
 
-/// Similarity over these trials; `None` if the wizard's signals were compared in none of them.
+/// Similarity of wizard and assistant over these trials; `None` if the wizard's signals were compared in none of them.
 fn similarity(trials: &[&Trial]) -> Option<Similarity> {
     let mut all = MatchCounts::default();
     let compared: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.lanes.is_some()).collect();
@@ -346,7 +351,7 @@ fn similarity_of_trial(trial: &Trial) -> Option<TrialSimilarity> {
     Some(TrialSimilarity { recording, wizard_saw_advice, of_n, with_n, matched, recall: signal.recall })
 }
 
-/// Number of trials with the consensus of two raters, by the raters.
+/// Number of trials with the consensus of two raters, by pair of raters.
 fn consensus(trials: &[&Trial]) -> BTreeMap<String, u64> {
     let mut settled = BTreeMap::new();
     for raters in trials.iter().filter_map(|trial| trial.settled_by.as_ref()) {

@@ -1,4 +1,5 @@
-//! What is frozen before a study begins (preregistration): its plan, the definitions of the measures, and the analysis.
+//! The frozen plan of a study (preregistration): study plan, definitions of the measures, and analysis, as written
+//! before the study begins.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -9,10 +10,10 @@ use super::effect::LEVEL;
 use crate::session::plan::{PrimaryOutcome, Study};
 use crate::session::study_arm::StudyArm;
 
-/// Version of the format.
+/// Version of the frozen plan's file format.
 pub const FROZEN_FORMAT: u32 = 1;
 
-/// Why a trial is left out of the analysis, in the words of the frozen plan.
+/// Reasons for excluding a trial from the analysis, in the words of the frozen plan.
 const EXCLUSIONS: [&str; 5] = [
     "Trials that were aborted, with their reason.",
     "Trials that were excluded by the experimenter (tomcom exclude, or at the console), with their reason.",
@@ -21,7 +22,7 @@ const EXCLUSIONS: [&str; 5] = [
     "Of a trial that was repeated, all attempts but the last; practice is no trial.",
 ];
 
-/// How the conditions are compared.
+/// Statistical methods that compare the conditions, in the words of the frozen plan.
 const METHODS: [&str; 5] = [
     "Primary: linear mixed model of log((events + 0.5) / presses of the human); participant random, condition and number of the trial fixed; \
      REML, Satterthwaite's degrees of freedom; Holm's correction over all contrasts.",
@@ -32,64 +33,64 @@ const METHODS: [&str; 5] = [
     "Non-inferiority of an assistant to the wizard: the upper end of the one-sided interval of 97.5 % of the ratio of rates is below the margin.",
 ];
 
-/// A definition of the report.
+/// A term of the report with its definition, as it is frozen.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenDefinition {
-    /// The term.
+    /// The term that the report defines.
     pub term: String,
-    /// What it means.
+    /// Definition of the term, as the report prints it.
     pub meaning: String,
 }
 
-/// The analysis of a study, as it is frozen.
+/// The analysis of a study as its frozen plan states it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenAnalysis {
-    /// Version of the program that computes it.
+    /// Version of the program that does the analysis.
     pub program: String,
-    /// What the analysis compares first.
+    /// Primary outcome of the study.
     pub outcome: PrimaryOutcome,
-    /// The contrasts: an arm, and the arm that it is compared with.
+    /// Contrasts: each an arm, and the arm that it is compared with.
     pub contrasts: Vec<[StudyArm; 2]>,
     /// Margin of non-inferiority, as a ratio of rates.
     pub margin: f64,
-    /// Level of intervals.
+    /// Confidence level of the analysis's intervals.
     pub level: f64,
-    /// How the conditions are compared.
+    /// Statistical methods that compare the conditions.
     pub methods: Vec<String>,
-    /// Which trials are left out.
+    /// Reasons for which trials are excluded.
     pub exclusions: Vec<String>,
 }
 
-/// A plan with definitions and analysis, as it stands in the frozen file.
+/// Content of a frozen plan's file: study plan, definitions and analysis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrozenPlan {
-    /// Version of the format.
+    /// Version of the file format.
     pub frozen_plan: u32,
-    /// The plan's name.
+    /// Name of the study plan.
     pub plan: String,
-    /// Checksum of plan and settings that every recording of the plan has.
+    /// Checksum of plan and settings, which every recording of the plan contains.
     pub plan_digest: String,
-    /// The seed that groups and trials follow from.
+    /// Seed from which starting groups and trials follow.
     pub seed: u64,
-    /// Codes of the participants.
+    /// Pseudonymous codes of the participants.
     pub participants: Vec<String>,
-    /// The starting group of each participant, in the same order.
+    /// Starting group of each participant, in the order of `participants`.
     pub groups: Vec<String>,
-    /// Number of recordings of the plan that were there when it was frozen.
+    /// Number of recordings of the plan that existed when the plan was frozen.
     pub recordings_before: u64,
-    /// The analysis.
+    /// The analysis, as frozen.
     pub analysis: FrozenAnalysis,
-    /// The definitions of the report.
+    /// Definitions of the report's terms, as frozen.
     pub definitions: Vec<FrozenDefinition>,
-    /// The table `[plan]`, the settings of its trials, questionnaires, tutorial and kitchen files.
+    /// The table `[plan]`, the settings of its trials, and the questionnaires, tutorial and kitchen files.
     pub settings: Value,
 }
 
 impl FrozenAnalysis {
-    /// The analysis that this version of the program makes of a study.
+    /// The analysis that this version of the program does for a study.
     pub fn from_study(study: &Study) -> FrozenAnalysis {
         let conditions = &study.plan.conditions;
         let arms: Vec<StudyArm> = StudyArm::ALL.into_iter().filter(|arm| conditions.contains(arm)).collect();
@@ -106,7 +107,7 @@ impl FrozenAnalysis {
 }
 
 impl FrozenPlan {
-    /// The plan as it is now. `kitchen` are the texts of the layout and of the recipes.
+    /// Freezes a study's present plan. `kitchen`: the texts of the layout file and of the recipe file.
     pub fn new(study: &Study, kitchen: [&str; 2], recordings_before: u64) -> FrozenPlan {
         let participants = study.plan.codes();
         let [layout, recipes] = kitchen;
@@ -131,7 +132,7 @@ impl FrozenPlan {
         }
     }
 
-    /// What this version of the program defines or computes otherwise, in words.
+    /// Definitions and methods in which this version of the program differs from the frozen plan, in words.
     pub fn differs_from_program(&self) -> Vec<String> {
         let mut found = Vec::new();
         let (own, program) = (&self.analysis, env!("CARGO_PKG_VERSION"));

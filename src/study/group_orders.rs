@@ -1,4 +1,4 @@
-//! The starting groups of a study with their orders of conditions: what the letters of a group's name stand for.
+//! Starting groups of a study with their orders of conditions, which the letters of a group's name stand for.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,18 +7,19 @@ use serde::Serialize;
 use super::trial_statistics::Trial;
 use crate::session::study_arm::StudyArm;
 
-/// A starting group as its trials show it.
+/// A starting group with its order of conditions, as its trials show it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct GroupOrder {
-    /// The group's name, a letter for each trial: "BAC".
+    /// Name of the group, with a letter for each trial: "BAC".
     pub group: String,
-    /// The condition of each trial, by the plan where there is one, else by what was done; `None` for a trial that is missing.
+    /// Condition of each trial, from the plan if there is one, otherwise from what was done; `None` for a missing
+    /// trial.
     pub order: Vec<Option<StudyArm>>,
-    /// Number of its participants.
+    /// Number of participants in the group.
     pub participants: usize,
 }
 
-/// The groups of these trials, by their names.
+/// The starting groups of these trials, sorted by name.
 pub fn group_orders(trials: &[&Trial]) -> Vec<GroupOrder> {
     let mut groups: BTreeMap<&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>)> = BTreeMap::new();
     for trial in trials {
@@ -36,7 +37,7 @@ pub fn group_orders(trials: &[&Trial]) -> Vec<GroupOrder> {
 }
 
 impl GroupOrder {
-    /// The group in words: "BAC: wizard, unassisted, ToM-Com (2)".
+    /// The group as text: "BAC: wizard, unassisted, ToM-Com (2)".
     pub fn describe(&self) -> String {
         let order: Vec<&str> = self.order.iter().map(|arm| arm.map_or("?", StudyArm::title)).collect();
         format!("{}: {} ({})", self.group, order.join(", "), self.participants)

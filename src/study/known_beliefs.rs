@@ -1,4 +1,5 @@
-//! What is known of the participant's false beliefs in a trial: from recorded beliefs of simulated participants, or from raters.
+//! Known false beliefs of the participant in a trial: from recorded beliefs of simulated participants, or from raters'
+//! codes.
 
 use std::collections::BTreeMap;
 
@@ -14,30 +15,30 @@ use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::cause_codes::Codes;
 use crate::measures::sequences::Episode;
 
-/// The false beliefs of a trial.
+/// Known false beliefs of a participant in one trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownBeliefs {
-    /// How they are known.
+    /// Source of the false beliefs: recorded beliefs, or raters.
     pub basis: BeliefBasis,
-    /// The target of the false belief behind each belief related error, by log number of the press.
+    /// Target of the false belief behind each error that follows from one, by sequence number of the press.
     pub targets: BTreeMap<u64, Target>,
-    /// The periods of false belief. Of people only those that led to errors.
+    /// False belief episodes; for people, only those that led to errors.
     pub episodes: Vec<Episode>,
 }
 
-/// How far two raters agree on the false beliefs behind the errors of a trial, by their own codes.
+/// Agreement of two raters about the false beliefs behind the errors of a trial, by the codes of each alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct SharedBeliefs {
-    /// Errors that both put down to the same false belief.
+    /// Number of errors that both raters attribute to the same false belief.
     pub same: u64,
-    /// Errors that both put down to a false belief, each to another one.
+    /// Number of errors that the raters attribute to different false beliefs.
     pub differing: u64,
-    /// Errors that one of them alone puts down to a false belief.
+    /// Number of errors that only one of the raters attributes to a false belief.
     pub of_one: u64,
 }
 
 impl KnownBeliefs {
-    /// The false beliefs that a simulated participant recorded; `judged` are its presses.
+    /// The false beliefs that a simulated participant recorded; `judged` are the participant's presses.
     pub fn recorded(judged: &[JudgedPress], episodes: Vec<Episode>) -> KnownBeliefs {
         let target = |press: &JudgedPress| match press.cause {
             Some(Cause::Belief { target, .. }) => Some((press.seq, target)),
@@ -65,7 +66,7 @@ impl KnownBeliefs {
 }
 
 impl KnownBeliefs {
-    /// The period of false belief to which a belief related error belongs.
+    /// The false belief episode to which an error belongs.
     pub fn episode(&self, kitchen: &Kitchen, press: &JudgedPress) -> Option<&Episode> {
         let target = self.targets.get(&press.seq)?;
         let is_in = |one: &Episode| one.began <= press.time && one.corrected.is_none_or(|end| press.time <= end);
@@ -76,7 +77,7 @@ impl KnownBeliefs {
 }
 
 impl SharedBeliefs {
-    /// Counts the errors that both raters coded.
+    /// Counts the agreement over errors that both raters coded.
     pub fn count([one, other]: &[Codes; 2]) -> SharedBeliefs {
         let mut shared = SharedBeliefs::default();
         for (press, code) in &one.0 {
@@ -91,7 +92,7 @@ impl SharedBeliefs {
         shared
     }
 
-    /// Sum of two counts.
+    /// Sum of two counts of agreement about false beliefs.
     pub fn plus(self, other: SharedBeliefs) -> SharedBeliefs {
         SharedBeliefs {
             same: self.same + other.same,

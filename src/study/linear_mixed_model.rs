@@ -1,101 +1,102 @@
-//! A linear mixed model with one random intercept per participant, by restricted maximum likelihood (REML), with Satterthwaite's degrees
-//! of freedom: y = X beta + Z b + e, b ~ N(0, v_b), e ~ N(0, v).
+//! A linear mixed model with one random intercept per participant, by restricted maximum likelihood (REML), with
+//! Satterthwaite's degrees of freedom: y = X beta + Z b + e, b ~ N(0, v_b), e ~ N(0, v).
 //!
-//! The criterion is profiled over the ratio of the variances (Bates et al. 2015, Journal of Statistical Software 67, section 3), so that the
-//! search has one dimension. Degrees of freedom follow from the observed information of the two variances (Kuznetsova, Brockhoff and
-//! Christensen 2017, Journal of Statistical Software 82, section 2); where the participants' variance is estimated as zero, they are those of the
-//! residuals. `tests/outside/arms.py` compares everything with statsmodels and, where they are installed, with lme4 and lmerTest.
+//! The criterion is profiled over the ratio of the variances (Bates et al. 2015, Journal of Statistical Software 67,
+//! section 3), so that the search is one-dimensional. Degrees of freedom follow from the observed information of the
+//! two variances (Kuznetsova, Brockhoff and Christensen 2017, Journal of Statistical Software 82, section 2); where the
+//! participants' variance is estimated as zero, they are those of the residuals. `tests/outside/arms.py` compares
+//! everything with statsmodels and, where they are installed, with lme4 and lmerTest.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// Ratios of variances, as logarithms, between which the minimum is searched; below, participants do not differ.
+/// Range of the logarithm of the variance ratio in which the minimum is searched; below it, participants do not differ.
 const LOG_RATIO: [f64; 2] = [-14.0, 14.0];
-/// Number of places at which the criterion is looked at before the search.
+/// Number of grid points at which the REML criterion is evaluated before the search.
 const GRID: usize = 57;
-/// The search ends when the logarithm of the ratio is known this well.
+/// Precision of the logarithm of the variance ratio at which the search ends.
 const PRECISION: f64 = 1e-11;
 
-/// One measurement: whose it is, its fixed effects, and its value.
+/// One measurement for the mixed model: participant, fixed effects, and value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
     /// Index of the participant.
     pub participant: usize,
-    /// The row of the design matrix.
+    /// Row of fixed effects in the design matrix.
     pub effects: Vec<f64>,
     /// The measured value.
     pub value: f64,
 }
 
-/// A fitted model.
+/// A fitted linear mixed model with a random intercept per participant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearMixedModel {
-    /// Estimates of the fixed effects.
+    /// Estimates of the model's fixed effects.
     pub estimates: DVector<f64>,
-    /// Their covariance.
+    /// Covariance of the estimates of the fixed effects.
     pub covariance: DMatrix<f64>,
-    /// Variance between participants.
+    /// Variance of the random intercept between participants.
     pub between: f64,
-    /// Variance of the residuals.
+    /// Variance of the residuals within participants.
     pub within: f64,
-    /// V^-1 X, of one row per measurement.
+    /// V^-1 X, with one row per measurement.
     weighted: DMatrix<f64>,
-    /// Participants' indices, by measurement.
+    /// Index of the participant, for each measurement.
     participants: Vec<usize>,
     /// Covariance of the estimates of the two variances; `None` where the variance between participants is zero.
     variances: Option<[[f64; 2]; 2]>,
 }
 
-/// A linear combination of fixed effects, with its test against zero.
+/// A linear combination of fixed effects, with its t test against zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Contrast {
-    /// The estimate.
+    /// Estimate of the linear combination.
     pub estimate: f64,
-    /// Its standard error.
+    /// Standard error of the estimate.
     pub standard_error: f64,
-    /// Satterthwaite's degrees of freedom.
+    /// Satterthwaite's degrees of freedom of the t test.
     pub df: f64,
-    /// The estimate in standard errors.
+    /// Estimate divided by its standard error.
     pub t: f64,
-    /// Two-sided p.
+    /// Two-sided p value of the t test.
     pub p: f64,
 }
 
 impl Contrast {
-    /// The interval of this level, 0 to 1.
+    /// Confidence interval of the estimate; `level` is between 0 and 1.
     pub fn interval(&self, level: f64) -> [f64; 2] {
         let quantile = StudentsT::new(0.0, 1.0, self.df).map_or(f64::NAN, |t| t.inverse_cdf(0.5 + level / 2.0));
         let half = quantile * self.standard_error;
         [self.estimate - half, self.estimate + half]
     }
 
-    /// One-sided p that the estimate is below `bound`.
+    /// One-sided p value for the estimate being below `bound`.
     pub fn p_below(&self, bound: f64) -> f64 {
         let t = (self.estimate - bound) / self.standard_error;
         StudentsT::new(0.0, 1.0, self.df).map_or(f64::NAN, |distribution| distribution.cdf(t))
     }
 }
 
-/// Sums over the measurements, from which the criterion follows for every ratio of variances.
+/// Sums over the measurements, from which the REML criterion follows for every ratio of variances.
 struct Sums {
     /// Number of measurements.
     n: f64,
     xx: DMatrix<f64>,
     xy: DVector<f64>,
     yy: f64,
-    /// Of each participant: number of measurements, and sums of effects and values.
+    /// For each participant: number of measurements, and sums of effects and values.
     groups: Vec<(f64, DVector<f64>, f64)>,
 }
 
-/// The generalised least squares for one ratio of variances.
+/// Solution of the generalised least squares problem for one ratio of variances.
 struct Solution {
     estimates: DVector<f64>,
-    /// (X' W^-1 X)^-1, W = V / v.
+    /// Unscaled covariance of the fixed effects: (X' W^-1 X)^-1, with W = V / v.
     inverse: DMatrix<f64>,
     /// Variance of the residuals.
     within: f64,
-    /// The REML criterion, up to a constant.
+    /// REML criterion, up to a constant.
     deviance: f64,
 }
 
@@ -123,7 +124,8 @@ impl Sums {
         sums
     }
 
-    /// W^-1 takes from each participant's block gamma / (1 + n gamma) times its sums.
+    /// Solves for one ratio gamma of variances: W^-1 subtracts, from each participant's block, gamma / (1 + n gamma)
+    /// times its sums.
     fn solve(&self, ratio: f64) -> Option<Solution> {
         let (mut xx, mut xy, mut yy, mut log_det) = (self.xx.clone(), self.xy.clone(), self.yy, 0.0);
         for (n, x, y) in &self.groups {
@@ -137,13 +139,13 @@ impl Sums {
         let estimates = factor.solve(&xy);
         let df = self.n - xy.len() as f64;
         let within = (yy - estimates.dot(&xy)) / df;
-        // Values that the fixed effects explain wholly have no variance to compare with.
+        // Without residual variance the criterion is undefined: the fixed effects explain the values completely.
         let is_noise = within > 1e-12 * (self.yy / self.n).max(f64::MIN_POSITIVE);
         let deviance = df * within.ln() + log_det + 2.0 * factor.l().diagonal().map(f64::ln).sum();
         is_noise.then(|| Solution { estimates, inverse: factor.inverse(), within, deviance })
     }
 
-    /// The ratio of variances with the least criterion; zero at the border.
+    /// The ratio of variances that minimises the REML criterion; zero at the lower end of the range.
     fn best_ratio(&self) -> Option<f64> {
         let at = |log_ratio: f64| self.solve(log_ratio.exp()).map_or(f64::INFINITY, |found| found.deviance);
         let step = (LOG_RATIO[1] - LOG_RATIO[0]) / (GRID - 1) as f64;
@@ -155,7 +157,7 @@ impl Sums {
     }
 }
 
-/// The least value of a function with one minimum between `low` and `high`.
+/// Minimum between `low` and `high` of a function with a single minimum, by golden-section search.
 fn golden_section(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let share = (5.0_f64.sqrt() - 1.0) / 2.0;
     let (mut a, mut b) = (high - share * (high - low), low + share * (high - low));
@@ -175,7 +177,8 @@ fn golden_section(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f6
 }
 
 impl LinearMixedModel {
-    /// Fits the model; `None` if the fixed effects cannot be told apart, or nothing is left to estimate the variances from.
+    /// Fits the model by REML; `None` if the fixed effects are collinear, or no degrees of freedom are left for the
+    /// variances.
     pub fn fit(measurements: &[Measurement]) -> Option<LinearMixedModel> {
         let effects = measurements.first()?.effects.len();
         let sums = Sums::new(measurements);
@@ -213,7 +216,7 @@ impl LinearMixedModel {
         })
     }
 
-    /// The linear combination of fixed effects with these weights.
+    /// Linear combination of the fixed effects with these weights.
     pub fn contrast(&self, weights: &[f64]) -> Option<Contrast> {
         let weights = DVector::from_column_slice(weights);
         let estimate = weights.dot(&self.estimates);
@@ -225,7 +228,7 @@ impl LinearMixedModel {
         Some(Contrast { estimate, standard_error, df, t, p })
     }
 
-    /// 2 v^2 / Var(v), with the variance of v by the delta method.
+    /// Satterthwaite's degrees of freedom 2 v^2 / Var(v), with the variance of v by the delta method.
     fn degrees_of_freedom(&self, weights: &DVector<f64>, variance: f64) -> f64 {
         let Some(variances) = self.variances else {
             return (self.participants.len() - weights.len()) as f64;
@@ -238,7 +241,7 @@ impl LinearMixedModel {
     }
 }
 
-/// W^-1 times a matrix.
+/// W^-1 times a matrix, where W is the covariance of the measurements divided by the residual variance.
 fn weigh(matrix: &DMatrix<f64>, participants: &[usize], sums: &Sums, ratio: f64) -> DMatrix<f64> {
     let mut totals = DMatrix::<f64>::zeros(sums.groups.len(), matrix.ncols());
     for (row, &participant) in participants.iter().enumerate() {

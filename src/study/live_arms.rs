@@ -1,9 +1,9 @@
-//! Concepts that acted by themselves in simulated trials, beside each other and beside what the analysis of unassisted trials says
-//! of them (offline).
+//! Concepts that sent signals by themselves in simulated trials, compared with each other and with what the analysis of
+//! unassisted trials (offline) predicts for them.
 //!
-//! Arms are compared over the trials that all of them have: the same seed, participant and period. In such trials orders,
-//! participants and random streams are the same, so the differences are within a trial. Offline, a signal changes nothing that
-//! follows; live, the trial goes on differently after it, so the two columns differ.
+//! Arms are compared over the trials that all of them have: the same seed, participant and period. In such trials
+//! orders, participants and random streams are the same, so the differences are within a trial. Offline, a signal
+//! changes nothing that follows; live, the trial continues differently after a signal, so the two columns differ.
 
 use std::collections::BTreeSet;
 
@@ -14,48 +14,51 @@ use super::roc::Roc;
 use super::trial_statistics::{Trial, mean_length};
 use crate::session::settings::ParticipantKind;
 
-/// An arm of simulated trials over the trials that all arms have.
+/// Results of one sender of signals over the simulated trials that all arms have.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LiveArm {
-    /// Who sent the signals.
+    /// Sender of the signals, with the parameter of its concept.
     #[serde(flatten)]
     pub arm: ActingArm,
     /// Number of trials.
     pub trials: u64,
-    /// Belief related errors per 100 presses of the human.
+    /// Errors that follow from false beliefs, per 100 presses of the human.
     pub belief_related_per_100: Option<f64>,
-    /// Sequences of related errors per 100 presses of the human.
+    /// Sequences of such errors per 100 presses of the human.
     pub sequences_per_100: Option<f64>,
-    /// Mean number of errors in a sequence.
+    /// Mean number of errors in a sequence of errors from the same false belief.
     pub mean_sequence_length: Option<f64>,
-    /// Orders served.
+    /// Number of orders served.
     pub orders: u64,
     /// Orders served per minute.
     pub orders_per_minute: Option<f64>,
-    /// Signals per 100 presses of the human.
+    /// Interruptions by signals per 100 presses of the human; a proposal of several presses is one interruption.
     pub interruptions_per_100: Option<f64>,
-    /// Contents of signals per 100 presses of the human: a proposal of k presses is one interruption with k contents.
+    /// Contents of signals per 100 presses of the human; a proposal of k presses has k contents.
     pub contents_per_100: Option<f64>,
-    /// Useless signals per 100 presses of the human, judged by twins without the signal; null where a trial was not judged.
+    /// Useless signals per 100 presses of the human, judged by simulating each trial without the signal; null where a
+    /// trial was not judged.
     pub useless_per_100: Option<f64>,
-    /// The share of useless ones among the signals; null without signals, or where a trial was not judged.
+    /// Share of useless signals; null without signals, or where a trial was not judged.
     pub useless_share: Option<f64>,
-    /// The share by which belief related errors per press are fewer than in the arm without signals; null without that arm.
+    /// Share by which errors from false beliefs per press are fewer than in the arm without signals; null without that
+    /// arm.
     pub prevented: Option<f64>,
-    /// The share that the analysis of unassisted trials says would be prevented with the same parameter; null where it was not swept.
+    /// Share of errors that the analysis of unassisted trials predicts to be prevented with the same parameter; null
+    /// where that parameter value was not analysed.
     pub prevented_offline: Option<f64>,
-    /// Signals per 100 presses by that analysis.
+    /// Interruptions per 100 presses of the human that the analysis of unassisted trials predicts.
     pub interruptions_per_100_offline: Option<f64>,
 }
 
-/// Identifies a simulated trial in every arm.
+/// Identifies a simulated trial across arms: seed, participant's code and period.
 type TrialKey = (u64, String, Option<u32>);
 
 fn key(trial: &Trial) -> TrialKey {
     (trial.seed, trial.participant.clone(), trial.period)
 }
 
-/// The arms over the trials that all of them have; empty unless at least two arms share trials.
+/// Results of all arms over the trials that all of them have; empty unless at least two arms share trials.
 pub fn live_arms(trials: &[&Trial], roc: &[Roc]) -> Vec<LiveArm> {
     let simulated = |trial: &&Trial| trial.kind == ParticipantKind::Simulated && trial.beliefs.is_some();
     let mut groups: Vec<(ActingArm, Vec<&Trial>)> = Vec::new();

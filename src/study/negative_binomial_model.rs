@@ -1,69 +1,71 @@
-//! A mixed negative binomial model of counts: y ~ NB(mu, size), log mu = log exposure + X beta + b, b ~ N(0, v_b) per participant; variance
-//! mu + mu^2 / size. Errors come in runs, so that their variance exceeds the mean.
+//! A mixed negative binomial model of counts: y ~ NB(mu, size), log mu = log exposure + X beta + b, b ~ N(0, v_b) per
+//! participant; variance mu + mu^2 / size. Errors come in runs, so that their variance exceeds the mean.
 //!
-//! Maximum likelihood with Laplace's approximation of the integral over b (Brooks et al. 2017, The R Journal 9, section 2), by Newton's method
-//! with numeric derivatives. Tests are Wald's z tests. `tests/outside/arms.py` compares it with glmmTMB where that is installed, and the
-//! likelihood with numeric integration.
+//! Maximum likelihood with Laplace's approximation of the integral over b (Brooks et al. 2017, The R Journal 9, section
+//! 2), by Newton's method with numeric derivatives. Tests are Wald's z tests. `tests/outside/arms.py` compares it with
+//! glmmTMB where that is installed, and the likelihood with numeric integration.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 use statrs::function::gamma::ln_gamma;
 
-/// Bounds of the logarithms of the participants' standard deviation, and of the size; at them participants do not differ, or counts are
-/// Poisson's.
+/// Bounds of the logarithms of the participants' standard deviation and of the size parameter; at the bounds,
+/// participants do not differ, or counts follow a Poisson distribution.
 const LOG_SD: [f64; 2] = [-7.0, 3.0];
 const LOG_SIZE: [f64; 2] = [-5.0, 12.0];
 /// Step of numeric derivatives.
 const STEP: f64 = 1e-4;
 /// Newton's method ends when a step gains less than this, in nats.
 const GAIN: f64 = 1e-10;
-/// Largest number of its steps.
+/// Largest number of Newton steps.
 const MOST_STEPS: usize = 200;
 
-/// The count of one trial.
+/// The count of events in one trial, for the negative binomial model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrialCount {
     /// Index of the participant.
     pub participant: usize,
-    /// The row of the design matrix.
+    /// Row of fixed effects in the design matrix.
     pub effects: Vec<f64>,
-    /// The counted events.
+    /// Number of counted events.
     pub count: u64,
-    /// What the events are counted over, such as presses; above 0.
+    /// Exposure: the amount over which events are counted, such as presses; above 0.
     pub exposure: f64,
 }
 
-/// A fitted model.
+/// A fitted mixed negative binomial model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NegativeBinomialModel {
-    /// Estimates of the fixed effects, on the scale of logarithms.
+    /// Estimates of the fixed effects, on the log scale.
     pub estimates: Vec<f64>,
-    /// Their covariance.
+    /// Covariance of the estimates.
     pub covariance: DMatrix<f64>,
-    /// Standard deviation between participants, on the scale of logarithms; 0 where they do not differ.
+    /// Standard deviation between participants, on the log scale; 0 where participants do not differ.
     pub between_sd: f64,
-    /// The size: variance is mu + mu^2 / size; infinite where counts are Poisson's.
+    /// Size parameter: the variance of a count is mu + mu^2 / size; infinite where counts follow a Poisson
+    /// distribution.
     pub size: f64,
-    /// The log likelihood, in nats.
+    /// Log likelihood of the fitted model, in nats.
     pub log_likelihood: f64,
 }
 
-/// A linear combination of fixed effects, with Wald's test against zero.
+/// A linear combination of fixed effects, with Wald's z test against zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WaldContrast {
-    /// The estimate, on the scale of logarithms.
+    /// Estimate of the linear combination, on the log scale.
     pub estimate: f64,
-    /// Its standard error.
+    /// Standard error of the estimate.
     pub standard_error: f64,
-    /// The estimate in standard errors.
+    /// Estimate divided by its standard error.
     pub z: f64,
-    /// Two-sided p.
+    /// Two-sided p value of Wald's test.
     pub p: f64,
 }
 
 impl NegativeBinomialModel {
-    /// Fits the model; `None` if the fixed effects cannot be told apart, or the search does not converge.
+    /// Fits the model by maximum likelihood; `None` if the fixed effects are collinear, or the search does not
+    /// converge.
     pub fn fit(trials: &[TrialCount]) -> Option<NegativeBinomialModel> {
         let effects = trials.first()?.effects.len();
         let rows: Vec<f64> = trials.iter().flat_map(|one| one.effects.iter().copied()).collect();
@@ -73,7 +75,7 @@ impl NegativeBinomialModel {
         if trials.len() <= effects || !is_determined || total == 0 {
             return None;
         }
-        // Least squares of the logarithms are near enough to start from.
+        // Least squares on the logarithms are close enough as starting values.
         let logs = trials.iter().map(|one| ((one.count as f64 + 0.5) / one.exposure).ln());
         let logs = DVector::from_iterator(trials.len(), logs);
         let start = (x.transpose() * &x).cholesky()?.solve(&(x.transpose() * logs));
@@ -81,7 +83,7 @@ impl NegativeBinomialModel {
         let likelihood = |at: &[f64]| log_likelihood(trials, effects, at);
         let free = climb(&likelihood, &mut at)?;
         let (_, hessian) = derivatives(&likelihood, &at, &free);
-        // What lies at a bound is held there.
+        // Variables at a bound are treated as known.
         let covariance = (-hessian).cholesky()?.inverse().view((0, 0), (effects, effects)).into_owned();
         let [log_sd, log_size] = [at[effects], at[effects + 1]];
         Some(NegativeBinomialModel {
@@ -93,7 +95,7 @@ impl NegativeBinomialModel {
         })
     }
 
-    /// The linear combination of fixed effects with these weights.
+    /// Linear combination of the fixed effects with these weights.
     pub fn contrast(&self, weights: &[f64]) -> Option<WaldContrast> {
         let weights = DVector::from_column_slice(weights);
         let estimate = weights.iter().zip(&self.estimates).map(|(weight, effect)| weight * effect).sum::<f64>();
@@ -104,7 +106,8 @@ impl NegativeBinomialModel {
     }
 }
 
-/// The log likelihood of fixed effects, log standard deviation and log size; participants are integrated out by Laplace's method.
+/// The log likelihood of fixed effects, log standard deviation and log size; participants are integrated out by
+/// Laplace's method.
 fn log_likelihood(trials: &[TrialCount], effects: usize, at: &[f64]) -> f64 {
     let (beta, sd, size) = (&at[..effects], at[effects].exp(), at[effects + 1].exp());
     let participants = trials.iter().map(|one| one.participant + 1).max().unwrap_or(0);
@@ -148,7 +151,8 @@ fn log_pmf(y: f64, log_mu: f64, size: f64) -> f64 {
     ln_gamma(y + size) - ln_gamma(size) - ln_gamma(y + 1.0) - size * (mu / size).ln_1p() + y * log_share
 }
 
-/// Climbs to the maximum within bounds; the indices of the variables that are not at a bound, `None` without convergence.
+/// Climbs to the maximum within bounds; returns the indices of the variables that are not at a bound, or `None` without
+/// convergence.
 fn climb(value: &impl Fn(&[f64]) -> f64, at: &mut [f64]) -> Option<Vec<usize>> {
     let effects = at.len() - 2;
     let bounds = [LOG_SD, LOG_SIZE];
@@ -177,7 +181,8 @@ fn climb(value: &impl Fn(&[f64]) -> f64, at: &mut [f64]) -> Option<Vec<usize>> {
     None
 }
 
-/// Newton's step; where the function is not concave, one with its diagonal raised until it is.
+/// Newton step; where the function is not concave, the diagonal of its second derivatives is raised until the step
+/// ascends.
 fn ascent_step(curvature: DMatrix<f64>, slope: &DVector<f64>) -> Option<DVector<f64>> {
     let size = curvature.nrows();
     let mut raise = 0.0;
@@ -191,7 +196,7 @@ fn ascent_step(curvature: DMatrix<f64>, slope: &DVector<f64>) -> Option<DVector<
     None
 }
 
-/// The longest of the step's halves that gains something: how much, and where it ends.
+/// Halves the step until it increases the function; returns the gain and the end point.
 fn longest_gain(
     value: &impl Fn(&[f64]) -> f64,
     at: &[f64],
@@ -219,7 +224,7 @@ fn longest_gain(
     (0.0, at.to_vec())
 }
 
-/// Gradient and matrix of second derivatives in these variables, by central differences.
+/// Gradient and Hessian in these variables, by central differences.
 fn derivatives(value: &impl Fn(&[f64]) -> f64, at: &[f64], free: &[usize]) -> (DVector<f64>, DMatrix<f64>) {
     let moved = |moves: &[(usize, f64)]| {
         let mut next = at.to_vec();

@@ -1,9 +1,10 @@
-//! How often the tests of drawn studies find an effect: counts of studies, and the share with an interval that includes the error of the
-//! pool.
+//! Power of the tests of a study: share of drawn studies in which a test finds an effect, with an interval that
+//! includes the error of the pool.
 //!
-//! The pool's error follows from a bootstrap over its persons: studies are drawn from resampled pools, too. The variance of their shares
-//! between pools, less what comes from the number of studies of each (a one-way analysis of variance), is added to the binomial variance of
-//! the share; the interval is Wilson's with as many studies as would have that variance.
+//! The pool's error follows from a bootstrap over its participants: studies are drawn from resampled pools, too. The
+//! variance of the shares between pools, minus the part due to the number of studies of each pool (a one-way analysis
+//! of variance), is added to the binomial variance of the share; the interval is Wilson's, for the number of studies
+//! that would have the total variance.
 
 use std::ops::Range;
 
@@ -14,34 +15,34 @@ use super::drawn_study::{DrawnEffect, PowerTest, StudySource, TestMethod, TestRe
 use super::effect::LEVEL;
 use super::statistics::wilson;
 
-/// Level of the tests.
+/// Significance level of the tests in a power analysis.
 pub const ALPHA: f64 = 0.05;
-/// The power that is asked for.
+/// Power that the answer aims at.
 pub const WANTED: f64 = 0.8;
-/// Number of resampled pools.
+/// Number of bootstrap resamples of the pool.
 pub const POOLS: u64 = 40;
-/// Number of studies that are drawn from each of them.
+/// Number of studies that are drawn from each resampled pool.
 pub const STUDIES_OF_POOL: u64 = 25;
-/// Number of studies for each ratio when the least effect is looked for.
+/// Number of studies that are drawn for each ratio of rates in the search for the least detectable effect.
 pub const STUDIES_OF_RATIO: u64 = 400;
-/// Number of ratios that are tried.
+/// Number of ratios of rates in that search.
 const RATIOS: u32 = 17;
 
-/// The ratios of rates that are tried for the least effect, the weakest effect first: 0.95, 0.90, …, 0.15.
+/// Ratios of rates that are tried for the least detectable effect, from the weakest effect on: 0.95, 0.90, …, 0.15.
 pub fn ratios() -> Vec<f64> {
     (1..=RATIOS).map(|step| f64::from(20 - step) / 20.0).collect()
 }
 
-/// How many of some drawn studies reject the null hypothesis of a test.
+/// Number of drawn studies in which a test rejects the null hypothesis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RejectionCount {
     /// Number of studies in which the test can be computed.
     pub studies: u64,
-    /// Of these, with p below the level.
+    /// Number of these studies with a corrected p value below the significance level.
     pub rejected: u64,
-    /// The same without correction for the number of contrasts.
+    /// Number of these studies with an uncorrected p value below the significance level.
     pub uncorrected: u64,
-    /// Studies in which the test cannot be computed.
+    /// Number of studies in which the test cannot be computed.
     pub unknown: u64,
 }
 
@@ -56,7 +57,7 @@ impl RejectionCount {
         self.uncorrected += u64::from(result.p_uncorrected < ALPHA);
     }
 
-    /// The sum of two counts.
+    /// Sum of two counts of rejections.
     pub fn plus(self, other: RejectionCount) -> RejectionCount {
         RejectionCount {
             studies: self.studies + other.studies,
@@ -66,14 +67,14 @@ impl RejectionCount {
         }
     }
 
-    /// Share of the studies that reject. A study whose test cannot be computed finds nothing.
+    /// Share of studies in which the test rejects; a study in which it cannot be computed counts as not rejecting.
     pub fn share(&self) -> f64 {
         self.rejected as f64 / (self.studies + self.unknown).max(1) as f64
     }
 }
 
-/// Counts of the rejections of each test in the studies with these numbers, and last the studies in which any contrast of the mixed model
-/// rejects after the correction.
+/// Counts of rejections of each test over the studies with these numbers; the last element counts studies in which any
+/// contrast of the mixed model rejects after correction.
 pub fn count(
     source: &StudySource,
     tests: &[PowerTest],
@@ -97,32 +98,32 @@ pub fn count(
     counts
 }
 
-/// The share of studies that find an effect.
+/// Share of drawn studies in which a test finds an effect: the power or, without an effect, the type I error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RejectionShare {
-    /// Number of studies.
+    /// Number of drawn studies.
     pub studies: u64,
-    /// Studies that reject the null hypothesis, with p corrected for the number of contrasts.
+    /// Number of studies that reject the null hypothesis, with p corrected for the number of contrasts.
     pub rejected: u64,
-    /// The same without that correction.
+    /// Number of studies that reject the null hypothesis, with uncorrected p.
     pub rejected_uncorrected: u64,
-    /// Studies in which the test cannot be computed; they count as not rejecting.
+    /// Number of studies in which the test cannot be computed; they count as not rejecting.
     pub unknown: u64,
-    /// Their share: the power, or without an effect the type I error.
+    /// Share of studies that reject: the power or, without an effect, the type I error.
     pub share: f64,
-    /// Its interval of 95 %, with the error of the pool.
+    /// 95 % interval of the share, including the error of the pool.
     pub interval: [f64; 2],
-    /// Standard deviation of the share that comes from the pool.
+    /// Standard deviation of the share that is due to the finite pool.
     pub pool_sd: f64,
 }
 
 impl RejectionShare {
-    /// The share in studies from the pool; `of_pools` are the counts of studies from resampled pools.
+    /// The share for studies from the pool; `of_pools` are the counts for studies from resampled pools.
     pub fn new(count: RejectionCount, of_pools: &[RejectionCount]) -> RejectionShare {
         let (share, studies) = (count.share(), count.studies + count.unknown);
         let pool_variance = variance_between(of_pools);
         let binomial = share * (1.0 - share) / studies.max(1) as f64;
-        // As many studies as would have the whole variance by themselves.
+        // Number of independent studies that would have the total variance.
         let worth = match binomial > 0.0 {
             true => share * (1.0 - share) / (binomial + pool_variance),
             false => studies as f64,
@@ -140,7 +141,8 @@ impl RejectionShare {
     }
 }
 
-/// Variance of the share between pools, without what the numbers of studies bring in; 0 with fewer than two pools.
+/// Variance of the share between pools, without the part due to the finite numbers of studies; 0 with fewer than two
+/// pools.
 fn variance_between(pools: &[RejectionCount]) -> f64 {
     let n = pools.len() as f64;
     if pools.len() < 2 {
@@ -155,8 +157,8 @@ fn variance_between(pools: &[RejectionCount]) -> f64 {
     (all - pools.iter().map(own).sum::<f64>() / n).max(0.0)
 }
 
-/// The largest ratio of rates that is found with the wanted power, interpolated between the tried ones; `None` if none is. `shares` are
-/// those of [`ratios`], the weakest effect first.
+/// Least detectable effect: the ratio of rates closest to 1 that is found with the wanted power, interpolated between
+/// the tried ratios; `None` if no ratio reaches the power. `shares` belong to [`ratios`], the weakest effect first.
 pub fn least_ratio(shares: &[f64]) -> Option<f64> {
     let ratios = ratios();
     let first = shares.len() - shares.iter().rev().take_while(|share| **share >= WANTED).count();

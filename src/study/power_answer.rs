@@ -1,5 +1,5 @@
-//! The answer of `tomcom power`: for each number of participants the power of each test and the least effect that it finds, and how many
-//! participants are needed.
+//! Output of `tomcom power`: the power of each test and the least effect that it detects, for each number of
+//! participants, and the number of participants needed.
 
 use serde::Serialize;
 
@@ -10,82 +10,86 @@ use crate::base::words::count;
 use crate::session::plan::PrimaryOutcome;
 use crate::session::study_arm::StudyArm;
 
-/// The counts of rejections for one number of participants, each with an entry per test and a last one for any contrast.
+/// Counts of rejections for one number of participants; each list has an entry per test and a last one for any
+/// contrast.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizeCounts {
     /// Number of participants.
     pub participants: usize,
-    /// In studies from the pool.
+    /// Counts over studies drawn from the pool.
     pub counts: Vec<RejectionCount>,
-    /// In studies from each resampled pool.
+    /// Counts over studies drawn from each resampled pool.
     pub of_pools: Vec<Vec<RejectionCount>>,
-    /// In studies with each tried ratio, the weakest effect first; empty if the least effect was not looked for.
+    /// Counts over studies with each tried ratio of rates, the weakest effect first; empty if the least effect was not
+    /// searched for.
     pub of_ratios: Vec<Vec<RejectionCount>>,
 }
 
-/// The output of `tomcom power`.
+/// Power of a study for several numbers of participants: the output of `tomcom power`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PowerSummary {
-    /// The plan's name.
+    /// Name of the study plan.
     pub plan: String,
     /// Checksum of plan and settings with the pool's seed.
     pub digest: String,
     /// Version of the program that simulated the pool.
     pub program: String,
-    /// The seed of pool and studies.
+    /// Seed of pool and drawn studies.
     pub seed: u64,
-    /// Number of participants in the pool.
+    /// Number of simulated participants in the pool.
     pub pool: u32,
-    /// What is counted.
+    /// Primary outcome whose rates are compared.
     pub outcome: PrimaryOutcome,
     /// The conditions of the plan.
     pub conditions: Vec<StudyArm>,
-    /// The ratio that was put in; null: the effect is that of the simulated arms.
+    /// Ratio of rates that was imposed on the studies; null if the effect is that of the simulated arms.
     pub ratio: Option<f64>,
-    /// The answer for each number of participants.
+    /// Power for each number of participants.
     pub sizes: Vec<SizePower>,
-    /// The answer for each test.
+    /// Number of participants that each test needs.
     pub needed: Vec<NeededParticipants>,
 }
 
-/// Power for one number of participants.
+/// Power of all tests for one number of participants.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SizePower {
     /// Number of participants.
     pub participants: usize,
-    /// Each test; the primary one is the first.
+    /// Power of each test; the primary test is the first.
     pub tests: Vec<TestPower>,
-    /// Studies in which at least one contrast rejects, corrected for their number; null with one contrast.
+    /// Share of studies in which at least one contrast rejects after correction; null with one contrast.
     pub any: Option<RejectionShare>,
 }
 
-/// Power of a test for one number of participants.
+/// Power of one statistical test for one number of participants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TestPower {
-    /// The test.
+    /// Statistical test whose power is given.
     #[serde(flatten)]
     pub test: PowerTest,
-    /// How often it finds an effect.
+    /// Share of studies in which the test finds an effect.
     #[serde(flatten)]
     pub found: RejectionShare,
-    /// The ratio of rates nearest to 1 that is found with a power of 0.8; null where it was not looked for, or none is.
+    /// Least detectable effect: the ratio of rates closest to 1 that is found with a power of 0.8; null where it was
+    /// not searched for, or no ratio is.
     pub least_ratio: Option<f64>,
 }
 
-/// How many participants a test needs for a power of 0.8.
+/// Number of participants that a test needs for a power of 0.8.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NeededParticipants {
-    /// The test.
+    /// Statistical test for which the number is given.
     #[serde(flatten)]
     pub test: PowerTest,
-    /// The least of the tried numbers from which on the power is reached; null if it is not.
+    /// Least of the tried numbers from which on the power is at least 0.8; null if it is not reached.
     pub participants: Option<usize>,
-    /// The same for the lower end of the interval of the power.
+    /// Least of the tried numbers from which on the lower end of the power's interval is at least 0.8; null if it is
+    /// not reached.
     pub surely: Option<usize>,
 }
 
 impl PowerSummary {
-    /// The answer from the counts of each number of participants, the least first.
+    /// The summary from the counts for each number of participants, the least number first.
     pub fn new(header: &PoolHeader, effect: DrawnEffect, sizes: &[SizeCounts]) -> PowerSummary {
         let tests = tests(&header.conditions);
         let sizes: Vec<SizePower> = sizes.iter().map(|size| SizePower::new(size, &tests, &header.conditions)).collect();
@@ -117,7 +121,7 @@ impl PowerSummary {
         }
     }
 
-    /// Whether no effect was put in, so that what is found is an error of type I.
+    /// Whether the simulated effect is zero, so that each rejection is a type I error.
     pub fn is_null(&self) -> bool {
         self.ratio == Some(1.0)
     }
@@ -131,7 +135,7 @@ impl SizePower {
         };
         let test_power = |(index, test): (usize, &PowerTest)| {
             let shares: Vec<f64> = size.of_ratios.iter().map(|counts| counts[index].share()).collect();
-            // The ratio is put in between all arms and the reference, and not between others.
+            // The ratio is imposed between each arm and the reference arm, not between other arms.
             let is_put_in = test.against == reference(conditions) && !shares.is_empty();
             TestPower {
                 test: *test,
@@ -149,7 +153,7 @@ impl SizePower {
 }
 
 impl PowerTest {
-    /// The test in words: "wizard to none, mixed ANOVA (the paper's test)".
+    /// The test as text: "wizard to none, mixed ANOVA (the paper's test)".
     pub fn title(&self) -> String {
         let method = match self.method {
             TestMethod::MixedAnova => "mixed ANOVA (the paper's test)",
@@ -159,7 +163,7 @@ impl PowerTest {
     }
 }
 
-/// The answer in words, with a table for each test.
+/// The power as text, with a table for each test.
 pub fn describe(found: &PowerSummary) -> String {
     let effect = match found.ratio {
         None => "the effect is that of the simulated conditions".to_string(),
@@ -212,7 +216,8 @@ fn describe_test(found: &PowerSummary, index: usize) -> String {
     text
 }
 
-/// How many participants are needed, and which effect the middle number of participants finds.
+/// Sentences on how many participants are needed, and which effect the middle one of the tried numbers of participants
+/// detects.
 fn power_in_words(found: &PowerSummary, needed: &NeededParticipants, index: usize) -> String {
     let largest = found.sizes.last().map_or(0, |size| size.participants);
     let mut text = match (needed.participants, needed.surely) {

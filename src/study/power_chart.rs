@@ -1,4 +1,4 @@
-//! Picture of the power of a study over its number of participants, as an SVG file of its own.
+//! Chart of the power of a study over its number of participants, as an SVG file.
 
 use super::drawn_study::{TestMethod, reference};
 use super::power::{ALPHA, WANTED};
@@ -7,12 +7,12 @@ use super::report::STYLE;
 use super::svg::{PlotAxis, SvgChart, document};
 use crate::session::study_arm::StudyArm;
 
-/// Size of the picture, in pixels.
+/// Size of the chart, in pixels.
 const SIZE: [f64; 2] = [720.0, 420.0];
-/// Least distance of names at the ends of lines, as a share of the picture's height.
+/// Least distance between names at the ends of lines, as a share of the chart's height.
 const APART: f64 = 0.05;
 
-/// The picture: a line with its band for each test against the arm that all others are compared with.
+/// The chart of power: a line with a confidence band for each test against the reference arm.
 pub fn power(found: &PowerSummary) -> String {
     let sizes: Vec<f64> = found.sizes.iter().map(|size| size.participants as f64).collect();
     let (first, last) = (sizes.first().copied().unwrap_or(0.0), sizes.last().copied().unwrap_or(1.0));
@@ -57,7 +57,7 @@ pub fn power(found: &PowerSummary) -> String {
     document(&chart.finish(title), STYLE)
 }
 
-/// Names at the ends of lines, at least `gap` apart and at most `most` high.
+/// Heights of the names at the ends of lines, moved at least `gap` apart and at most `most` high.
 fn apart(mut names: Vec<(f64, &str)>, gap: f64, most: f64) -> Vec<(f64, &str)> {
     names.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut highest = most;
@@ -68,7 +68,7 @@ fn apart(mut names: Vec<(f64, &str)>, gap: f64, most: f64) -> Vec<(f64, &str)> {
     names
 }
 
-/// The class of a test's colour: the paper's test and the mixed model differ, and so do arms.
+/// CSS class that gives a test its colour; the paper's test and the mixed model differ, and so do arms.
 fn class(arm: StudyArm, method: TestMethod) -> &'static str {
     match (method, arm) {
         (TestMethod::MixedAnova, _) | (_, StudyArm::WizardWithAdvice) => "first",

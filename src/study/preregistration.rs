@@ -1,4 +1,4 @@
-//! Whether a study is the one that was frozen before it began, and what differs.
+//! Comparison of a study with the plan that was frozen before it began.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,30 +7,31 @@ use serde::Serialize;
 use super::frozen_plan::FrozenPlan;
 use crate::base::words::count;
 
-/// The plan that a recording belongs to.
+/// The study plan that a recording belongs to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordedPlan {
     /// The participant's code.
     pub participant: String,
-    /// Name and digest of the plan; `None` without a plan.
+    /// Name and digest of the study plan; `None` for a recording without a plan.
     pub plan: Option<(String, String)>,
 }
 
-/// How a study stands to its frozen plan.
+/// Result of comparing a study with its frozen plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Preregistration {
-    /// SHA-256 of what was frozen, in hexadecimal digits.
+    /// SHA-256 digest of the frozen plan, in hexadecimal.
     pub digest: String,
-    /// The plan's name.
+    /// Name of the study plan.
     pub plan: String,
-    /// Number of recordings of the plan that were there when it was frozen.
+    /// Number of recordings of the plan that existed when the plan was frozen.
     pub recordings_before: u64,
-    /// What differs, in words; empty if nothing does.
+    /// Differences between study and frozen plan, in words; empty if there are none.
     pub differences: Vec<String>,
 }
 
 impl Preregistration {
-    /// Holds the recordings of an analysis, and what this version of the program defines, against a frozen plan with this digest.
+    /// Compares the recordings of an analysis, and the definitions of this version of the program, with a frozen plan
+    /// that has this digest.
     pub fn new(digest: String, frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> Preregistration {
         let mut differences = frozen.differs_from_program();
         let mut others: BTreeMap<String, u64> = BTreeMap::new();
@@ -59,7 +60,7 @@ impl Preregistration {
         Preregistration { digest, plan, recordings_before, differences }
     }
 
-    /// In words: that it is preregistered, or what differs.
+    /// The result in words: that the study is preregistered, or what differs.
     pub fn words(&self) -> String {
         let before = match self.recordings_before {
             0 => "when no recording of it was there".to_string(),
@@ -73,7 +74,7 @@ impl Preregistration {
     }
 }
 
-/// Participants in words; `None` without any.
+/// List of participants in words; `None` if it is empty.
 fn named(who: &str, codes: &[&str]) -> Option<String> {
     let number = count(codes.len() as u64, "participant is", "participants are");
     (!codes.is_empty()).then(|| format!("{number} {who}: {}", codes.join(", ")))

@@ -1,12 +1,13 @@
 //! Errors that signals and proposals would have prevented in an unassisted trial, and useless signals.
 //!
-//! A signal is useful if it is the first about the target of a false belief episode and at least one belief related error of that
-//! target follows in the same episode. All other signals are useless: about a right belief, about a false but harmless one, repeated,
-//! or after the last error, inside of episodes as well as outside. A signal prevents the later errors of its own aspect in the same
-//! episode and no others; replayed signals do not change the belief.
+//! A signal is useful if it is the first about the target of a false belief episode, and at least one error that
+//! follows from this false belief comes after the signal in the same episode. All other signals are useless: about a
+//! right belief, about a false but harmless one, repeated, or after the last error, inside of episodes as well as
+//! outside. A signal prevents the later errors of its own aspect in the same episode and no others; replayed signals do
+//! not change the belief.
 //!
-//! A proposal of k presses is one interruption with k contents. It spares the errors of the next k presses, and is useless if none of
-//! them is an error, belief related or not.
+//! A proposal of k presses is one interruption with k contents. The proposal prevents the errors of the next k presses,
+//! and is useless if none of them is an error, whatever its cause.
 
 use serde::Serialize;
 
@@ -17,53 +18,53 @@ use crate::measures::JudgedPress;
 use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::sequences::Episode;
 
-/// Session time is in nanoseconds.
+/// Number of nanoseconds in a millisecond; session time is in nanoseconds.
 const NANOS_PER_MS: u64 = 1_000_000;
 
-/// True errors and false beliefs of a trial.
+/// Errors and false beliefs of a trial, as known from recorded beliefs or raters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialTruth {
-    /// The human's presses, in order.
+    /// Presses of the human in the trial, in order.
     pub presses: Vec<PressTruth>,
-    /// The times in which an aspect was believed wrong.
+    /// Periods in which the participant held a false belief about an aspect.
     pub spells: Vec<FalseBeliefTruth>,
-    /// Whether the false beliefs that led to no error are among them.
+    /// Whether `spells` includes false beliefs that led to no error.
     pub knows_harmless: bool,
 }
 
-/// Truth about one human press.
+/// Whether a press of the human was an error, and which false belief caused it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PressTruth {
     /// Session time of the press.
     pub time: SessionTime,
-    /// It was an error.
+    /// Whether the press was an error.
     pub error: bool,
-    /// Aspects of the false belief behind a belief related error; empty for all other presses. An order and the recipe of its dish
-    /// are one target with two aspects.
+    /// State aspects of the false belief that caused the error; empty for all other presses. An order and the recipe of
+    /// its dish are one target with two aspects.
     pub aspects: Vec<AspectId>,
 }
 
 /// Period in which the participant held a false belief about one aspect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FalseBeliefTruth {
-    /// What was believed wrong.
+    /// State aspect about which the belief was false.
     pub aspect: AspectId,
-    /// Session time from which it was believed wrong.
+    /// Session time at which the false belief began.
     pub began: SessionTime,
-    /// Until when; none: until the end of the trial.
+    /// Session time at which the false belief ended; `None` if it lasted until the end of the trial.
     pub ended: Option<SessionTime>,
     /// Whether the false belief led to an error, which makes it an episode.
     pub harmful: bool,
 }
 
-/// A signal that a concept would have sent.
+/// A signal that a concept would have sent in an unassisted trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConceptSignal {
     /// Session time of the signal.
     pub time: SessionTime,
     /// Number of human presses before the signal.
     pub press: usize,
-    /// Aspects that the signal communicates.
+    /// State aspects whose true values the signal tells.
     pub aspects: Vec<AspectId>,
 }
 
@@ -72,25 +73,27 @@ pub struct ConceptSignal {
 pub struct PreventionCounts {
     /// Number of human presses.
     pub presses: u64,
-    /// Number of signals or proposals: interruptions.
+    /// Number of interruptions: signals or proposals.
     pub signals: u64,
-    /// Number of contents: of a signal 1, of a proposal the proposed presses.
+    /// Number of contents: 1 for a signal, the number of proposed presses for a proposal.
     pub contents: u64,
-    /// Number of belief related errors.
+    /// Number of errors that follow from false beliefs.
     pub related: u64,
-    /// Number of belief related errors that were prevented.
+    /// Number of those errors that were prevented.
     pub prevented: u64,
     /// Number of useless signals or proposals.
     pub useless: u64,
-    /// Sum over the useful signals of the time from the signal to the first error that it prevents, in milliseconds; 0 for proposals.
+    /// Sum over useful signals of the time from the signal to the first error that it prevents, in milliseconds; 0 for
+    /// proposals.
     pub lead_ms: u64,
     /// Number of human presses outside of false belief episodes.
     pub outside: u64,
-    /// Number of human presses with a useless signal right before them.
+    /// Number of human presses directly preceded by a useless signal.
     pub false_presses: u64,
-    /// Number of useless signals during an episode.
+    /// Number of useless signals during a false belief episode.
     pub false_inside: u64,
-    /// Number of signals about a false but harmless belief; they are useless, too. Null where such beliefs are not known.
+    /// Number of signals about a false belief that led to no error; they count as useless, too. Null where such beliefs
+    /// are not known.
     pub harmless: Option<u64>,
 }
 
@@ -112,19 +115,19 @@ impl Default for PreventionCounts {
     }
 }
 
-/// A concept's rates at one parameter value.
+/// True and false positive rate of a concept at one value of its parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreventionRates {
     /// False positive rate: useless signals per human press.
     pub fpr: f64,
-    /// True positive rate: the share of the belief related errors that are prevented.
+    /// True positive rate: share of the errors from false beliefs that are prevented.
     pub tpr: f64,
     /// Signals or proposals per 100 human presses.
     pub signals_per_100: f64,
 }
 
 impl PreventionCounts {
-    /// Sum of two counts.
+    /// Sum of two prevention counts.
     pub fn plus(self, other: &PreventionCounts) -> PreventionCounts {
         PreventionCounts {
             presses: self.presses + other.presses,
@@ -141,7 +144,7 @@ impl PreventionCounts {
         }
     }
 
-    /// The rates; `None` without presses or without belief related errors.
+    /// The rates; `None` without presses or without errors from false beliefs.
     pub fn rates(&self) -> Option<PreventionRates> {
         let presses = self.presses as f64;
         (self.presses > 0 && self.related > 0).then(|| PreventionRates {
@@ -157,7 +160,7 @@ impl PreventionCounts {
         (useful > 0).then(|| self.lead_ms as f64 / 1000.0 / useful as f64)
     }
 
-    /// The share of useless ones among all signals; `None` without signals.
+    /// Share of useless signals among all signals; `None` without signals.
     pub fn useless_share(&self) -> Option<f64> {
         (self.signals > 0).then(|| self.useless as f64 / self.signals as f64)
     }
@@ -168,7 +171,8 @@ impl FalseBeliefTruth {
         self.began <= time && self.ended.is_none_or(|end| time < end)
     }
 
-    /// Whether an error is one of this false belief. A press at the time of the correction was decided before it.
+    /// Whether this false belief caused the error. A press at the time of the correction was decided before the
+    /// correction.
     fn caused(&self, press: &PressTruth) -> bool {
         let is_inside = self.began <= press.time && self.ended.is_none_or(|end| press.time <= end);
         is_inside && press.aspects.contains(&self.aspect)
@@ -176,7 +180,7 @@ impl FalseBeliefTruth {
 }
 
 impl TrialTruth {
-    /// The truth about all presses of a trial, from what is known of the participant's beliefs.
+    /// Errors and false beliefs of a trial, from the participant's known beliefs.
     pub fn new(kitchen: &Kitchen, judged: &[JudgedPress], known: &KnownBeliefs) -> TrialTruth {
         let press = |press: &JudgedPress| PressTruth {
             time: press.time,
@@ -212,7 +216,7 @@ impl TrialTruth {
         }
     }
 
-    /// Counts of a concept that sends these signals, in order of time.
+    /// Counts for a concept that sends these signals, which are ordered by time.
     pub fn count_signals(&self, sent: &[ConceptSignal]) -> PreventionCounts {
         let mut count = self.empty_count(sent.len() as u64);
         let mut is_prevented = vec![false; self.presses.len()];
@@ -255,7 +259,7 @@ impl TrialTruth {
         count.false_inside += u64::from(self.is_in_episode(time));
     }
 
-    /// Counts of a concept that proposes `k` presses after every error that no proposal prevents.
+    /// Counts for a concept that proposes `k` presses after every error that no earlier proposal prevents.
     pub fn count_proposals(&self, k: usize) -> PreventionCounts {
         let mut count = self.empty_count(0);
         let mut after = 0;

@@ -1,7 +1,8 @@
-//! False belief episodes of people, by the causes that raters gave to errors. [`RULE`] says how; it is printed in the report.
+//! False belief episodes of people, derived from the causes that raters gave to errors. [`RULE`] states the rule and is
+//! printed in the report.
 //!
-//! Presses are judged by the rules of the kitchen and the cost to go, as errors are. The assistant's estimate has no part in it, so
-//! that it can be judged by these episodes.
+//! Presses are judged by the rules of the kitchen and the cost to go, as errors are. The assistant's estimate is not
+//! used, so that it can be evaluated against these episodes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,7 +17,7 @@ use crate::measures::JudgedPress;
 use crate::measures::attribution::Target;
 use crate::measures::sequences::Episode;
 
-/// The rule by which the codes of raters give false belief episodes.
+/// The rule by which false belief episodes follow from raters' codes, as printed in the report.
 pub const RULE: &str = "Of people, from the codes of two raters: their consensus, else only the false beliefs that both gave to an error \
      alike; what one of them coded alone is counted beside it. The aspect of an error about a place is its content. An error about an order is \
      about what the order shows, if it had changed and not been looked at since, else about the recipe of its dish (without any gaze always \
@@ -29,8 +30,8 @@ pub const RULE: &str = "Of people, from the codes of two raters: their consensus
      explains a coded error, and only a press tells them apart that serves or holds what they differ in (if none does, any press that is no error and brings an order of the dish nearer shows it right). An error \
      coded after the belief was shown right begins another episode. False beliefs without an error are not known.";
 
-/// False belief episodes from an error's coded target, by log number of the press; each led to at least one error. `judged` are all
-/// presses of the participant. In order of their beginnings.
+/// False belief episodes that caused the errors with these coded targets (by sequence number of the press), ordered by
+/// their beginnings. `judged` are all presses of the participant.
 pub fn rater_episodes(
     kitchen: &Kitchen,
     cost: &mut CostToGo,
@@ -49,25 +50,26 @@ pub fn rater_episodes(
     episodes
 }
 
-/// The rule, applied to one trial.
+/// The rule for false belief episodes, applied to one trial.
 struct EpisodeRule<'a> {
     kitchen: &'a Kitchen,
     cost: &'a mut CostToGo,
     trace: &'a BeliefTrace,
-    /// Log numbers of the presses that are neither errors nor races.
+    /// Sequence numbers of the presses that are neither errors nor races.
     correct: BTreeSet<u64>,
 }
 
-/// The belief about one aspect, followed over the trial.
+/// The participant's belief about one state aspect, followed through a trial.
 struct BeliefCourse {
     aspect: AspectId,
-    /// When the belief was last shown right.
+    /// Session time at which the belief was last shown to be right.
     since: SessionTime,
-    /// The value of the location at that time; for recipes without meaning.
+    /// The location's value at that time; unused for recipes.
     value: usize,
-    /// When somebody else first changed the location after that.
+    /// Session time at which somebody else first changed the location after that.
     changed: Option<SessionTime>,
-    /// The first look or signal since the last error, change or press that tells whether it did.
+    /// First look or signal, since the last error, change or press, that can have corrected the belief; later events
+    /// decide whether it did.
     mended: Option<(SessionTime, usize)>,
     open: Option<Episode>,
     done: Vec<Episode>,
@@ -79,18 +81,19 @@ impl BeliefCourse {
         BeliefCourse { aspect, since, value, changed: None, mended: None, open: None, done }
     }
 
-    /// The belief is right at this time, about this value.
+    /// Notes that the belief is right at this time, about this value.
     fn right(&mut self, time: SessionTime, value: usize) {
         (self.since, self.value, self.changed, self.mended) = (time, value, None, None);
         self.done.extend(self.open.take().map(|episode| Episode { corrected: Some(time), ..episode }));
     }
 
-    /// A look or signal has shown this value. Whether it was understood, the next error or press tells.
+    /// Notes that a look or signal has shown this value. The next error or press tells whether the participant
+    /// understood it.
     fn told(&mut self, time: SessionTime, value: usize) {
         self.mended = self.mended.or(Some((time, value)));
     }
 
-    /// No error has contradicted the last look or signal.
+    /// Accepts the noted look or signal as a correction, since no error has contradicted it.
     fn uphold(&mut self) {
         if let Some((time, value)) = self.mended {
             self.right(time, value);
@@ -111,8 +114,9 @@ impl BeliefCourse {
     }
 }
 
-/// Whether a press serves, or has in hand before or after it, what a recipe and its confusion with this value differ in. Other presses can
-/// help with the one and not with the other only because of what lies elsewhere, which the participant need not have seen.
+/// Whether a press concerns the difference between a recipe and its confusion with this value: the press serves the
+/// difference, or has it in hand before or after. Other presses can help with one recipe and not the other only because
+/// of contents elsewhere, which the participant need not have seen.
 fn is_about_difference(kitchen: &Kitchen, press: &Press, recipe: AspectId, value: usize) -> bool {
     let values = &kitchen.aspects[recipe.index()].values;
     let items = |content: ContentId| match kitchen.content(content).is_stack() {
@@ -133,13 +137,13 @@ fn is_about_difference(kitchen: &Kitchen, press: &Press, recipe: AspectId, value
         || in_hand.into_iter().flatten().any(|item| !item.is_empty() && differs(item))
 }
 
-/// The time right after a signal, which itself still falls into the false belief that it mends.
+/// The time directly after a signal; the signal itself still counts as within the false belief that it corrects.
 fn after(signal: SessionTime) -> SessionTime {
     signal + SessionTime(1)
 }
 
 impl EpisodeRule<'_> {
-    /// The coded errors by the aspect that they are about.
+    /// Coded errors, grouped by the state aspect that they are about.
     fn by_aspect(&mut self, targets: &BTreeMap<u64, Target>) -> BTreeMap<AspectId, BTreeSet<u64>> {
         let (trace, has_looks) = (self.trace, self.trace.has_looks());
         let mut unseen: BTreeSet<LocationId> = BTreeSet::new();
@@ -172,7 +176,7 @@ impl EpisodeRule<'_> {
         errors
     }
 
-    /// The orders that a press brings nearer.
+    /// Orders to which a press reduces the cost to go.
     fn nearer(&mut self, press: &Press) -> Vec<LocationId> {
         let recipes = self.kitchen.true_recipes();
         let wanted: Vec<LocationId> = self.kitchen.wanted(press.before).map(|(order, _)| order).collect();
@@ -180,7 +184,7 @@ impl EpisodeRule<'_> {
         wanted.into_iter().filter(|&order| costs(press.after, order) < costs(press.before, order)).collect()
     }
 
-    /// The episodes of one aspect that caused the errors with these log numbers.
+    /// Episodes about one state aspect that caused the errors with these sequence numbers.
     fn episodes(&mut self, aspect: AspectId, errors: &BTreeSet<u64>) -> Vec<Episode> {
         let (kitchen, trace, wrong) = (self.kitchen, self.trace, self.confusions(aspect, errors));
         let value = |state: State| kitchen.true_value(state, aspect);
@@ -222,7 +226,7 @@ impl EpisodeRule<'_> {
         course.done
     }
 
-    /// Whether a press that is no error shows that the aspect is believed right.
+    /// Whether a press that is no error shows that the participant's belief about the aspect is right.
     fn shows(&mut self, press: &Press, known: &BeliefCourse, wrong: &[usize]) -> bool {
         let (kitchen, aspect) = (self.kitchen, known.aspect);
         match kitchen.aspects[aspect.index()].kind {
@@ -242,7 +246,8 @@ impl EpisodeRule<'_> {
         }
     }
 
-    /// The confusions of a recipe that explain any of these errors; none for other aspects. A press tells only if it goes with none of them.
+    /// The recipes whose confusion with this one explains any of these errors; empty for other aspects. A press shows a
+    /// right belief only if it fits none of these confusions.
     fn confusions(&mut self, aspect: AspectId, errors: &BTreeSet<u64>) -> Vec<usize> {
         let (kitchen, trace) = (self.kitchen, self.trace);
         let one = &kitchen.aspects[aspect.index()];
@@ -257,7 +262,8 @@ impl EpisodeRule<'_> {
         (1..one.values.len()).filter(|value| explains(value)).collect()
     }
 
-    /// Whether a press of the participant brings all orders together nearer, in the true state with this aspect believed otherwise.
+    /// Whether a press of the participant reduces the cost to go of all orders together, in the true state with this
+    /// aspect believed otherwise.
     fn helps(&mut self, state: State, button: ButtonId, otherwise: Option<(AspectId, usize)>) -> bool {
         let kitchen = self.kitchen;
         let mut world = World::with_true_recipes(kitchen, state);

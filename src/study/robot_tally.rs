@@ -1,4 +1,5 @@
-//! Counts robot events besides presses, and the wizard's interventions in the robot, during the replay of a trial.
+//! Counts of robot events other than presses, and of the wizard's interventions in the robot, while a trial is
+//! replayed.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +13,7 @@ use crate::session::Event;
 use crate::session::event::EndReason;
 use crate::session::settings::ArmKind;
 
-/// Robot statistics of a trial from start to end, pauses included.
+/// Robot statistics of a trial from its start to its end, pauses included.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RobotSummary {
     /// Contact statistics of a simulated physical arm; `None` for a timed arm, which has no contacts.
@@ -21,35 +22,35 @@ pub struct RobotSummary {
     pub emergency_stops: u64,
     /// Number of aborted robot presses by reason; reasons that did not occur are absent.
     pub given_up: BTreeMap<AbortReason, u64>,
-    /// Times that the wizard held the robot before its next press.
+    /// Number of times that the wizard held the robot before its next press.
     pub held: u64,
-    /// Times that the wizard skipped a press of the robot.
+    /// Number of times that the wizard skipped a press of the robot.
     pub skipped: u64,
-    /// Times that the wizard chose the robot's next press.
+    /// Number of times that the wizard chose the robot's next press.
     pub driven: u64,
-    /// Times that the wizard corrected what lies at a location.
+    /// Number of times that the wizard corrected the content of a location.
     pub corrected: u64,
 }
 
 /// Safety and contact statistics of a simulated physical arm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ArmSummary {
-    /// Times that the arm stopped because it felt somebody.
+    /// Number of protective stops: the arm stopped because of a contact force.
     pub protective_stops: u64,
-    /// Times that the arm stopped because a joint did not follow.
+    /// Number of stops because a joint did not follow its commanded motion.
     pub faults: u64,
-    /// Times that somebody touched the arm, those that stopped it among them.
+    /// Number of times that somebody touched the arm, including those that stopped it.
     pub contacts: u64,
-    /// The largest force of these contacts, in newtons; none without any.
+    /// Largest contact force, in newtons; null without contacts.
     pub peak_force_n: Option<f64>,
-    /// Time on the trial's clock in which a hand near the arm slowed it, in seconds.
+    /// Time on the trial's clock during which the arm moved more slowly because of a hand nearby, in seconds.
     pub reduced_s: f64,
-    /// Time on the trial's clock in which the arm waited for a hand in its way, in seconds.
+    /// Time on the trial's clock during which the arm waited for a hand in its way, in seconds.
     pub safeguard_s: f64,
 }
 
 impl ArmSummary {
-    /// Records a contact with this force in newtons, if the log has it.
+    /// Counts a contact, with its force in newtons if the log has it.
     fn felt(&mut self, force_n: Option<f64>) {
         self.peak_force_n = self.peak_force_n.into_iter().chain(force_n).reduce(f64::max);
     }
@@ -62,7 +63,7 @@ impl RobotSummary {
         (self.arm.is_some() || !reason.is_of_physics()).then(|| count.unwrap_or(0))
     }
 
-    /// Adds the statistics of another trial.
+    /// Adds the robot statistics of another trial.
     pub fn add(&mut self, other: &RobotSummary) {
         self.emergency_stops += other.emergency_stops;
         for (&reason, count) in &other.given_up {
@@ -84,26 +85,27 @@ impl RobotSummary {
     }
 }
 
-/// Counts robot events during the replay of a recording.
+/// Counts robot events while a recording is replayed.
 #[derive(Clone, Debug)]
 pub struct RobotTally {
     figures: RobotSummary,
-    /// Reason of the trial's end; `None` before.
+    /// Reason why the trial ended; `None` before its end.
     pub ended: Option<EndReason>,
     mode: SafetyMode,
-    /// Trial clock up to which the seconds of the safety modes are counted.
+    /// Time on the trial's clock up to which the durations of safety modes have been counted.
     clock: SessionTime,
 }
 
 impl RobotTally {
-    /// A tally at the beginning of a trial with this kind of arm.
+    /// An empty tally for a trial with this kind of arm.
     pub fn new(arm: ArmKind) -> RobotTally {
         let arm = (arm == ArmKind::Physics).then(ArmSummary::default);
         let figures = RobotSummary { arm, ..RobotSummary::default() };
         RobotTally { figures, ended: None, mode: SafetyMode::Normal, clock: SessionTime::ZERO }
     }
 
-    /// Records an event at this time of the trial clock; `was_on`: the trial had started and not ended before the event.
+    /// Counts an event at this time of the trial's clock; `was_on`: the trial had started and not ended before the
+    /// event.
     pub fn note(&mut self, event: &Event, clock: SessionTime, was_on: bool) {
         self.pass_time(clock);
         if let Event::RobotSafety { mode, .. } = event {
@@ -114,7 +116,7 @@ impl RobotTally {
         }
     }
 
-    /// Adds the time since the last event to the current safety mode.
+    /// Adds the time since the last event to the duration of the present safety mode.
     fn pass_time(&mut self, clock: SessionTime) {
         let seconds = clock.secs_since(self.clock);
         self.clock = clock;
@@ -152,7 +154,7 @@ impl RobotTally {
         }
     }
 
-    /// What was counted.
+    /// The statistics counted so far.
     pub fn into_figures(self) -> RobotSummary {
         self.figures
     }

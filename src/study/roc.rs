@@ -1,9 +1,9 @@
-//! Receiver operating characteristics of communication concepts in unassisted trials, and their comparison at equal numbers of
-//! signals (paper, "Concept comparisons").
+//! Receiver operating characteristics of communication concepts in unassisted trials, and their comparison at equal
+//! numbers of signals (paper, "Concept comparisons").
 //!
-//! The unit is the human press. True positive rate: share of belief related errors that are prevented. False positive rate: useless
-//! signals per human press. [`super::prevention`] defines prevented errors and useless signals. Signals are interruptions: a proposal
-//! of k presses is one.
+//! The unit is the human press. True positive rate: share of the errors from false beliefs that are prevented. False
+//! positive rate: useless signals per human press. [`super::prevention`] defines prevented errors and useless signals.
+//! Signals are interruptions: a proposal of k presses is one.
 
 use rand::RngExt;
 use serde::Serialize;
@@ -17,15 +17,15 @@ pub const LEAST_COST: f64 = 0.5;
 
 /// Signals per 100 human presses at which concepts are compared.
 pub const EQUAL_SIGNALS: [f64; 4] = [2.0, 4.0, 6.0, 8.0];
-/// Number of bootstrap resamples over participants.
+/// Number of bootstrap resamples over participants, for confidence intervals.
 const RESAMPLES: u32 = 1000;
-/// Number of points of a confidence band over the common range.
+/// Number of points of a confidence band over the range of false positive rates that all concepts reach.
 const BAND_STEPS: usize = 40;
 /// Confidence level of bootstrap intervals and bands.
 const COVERED: f64 = 0.95;
 
-/// Swept values of a concept's parameter: cost of communication, threshold, or number of proposed presses. They extend beyond the
-/// paper's 0.5 to 2.4 and 0.4 to 0.99, so that all concepts cover the compared numbers of signals.
+/// Swept values of a concept's parameter: cost of communication, threshold, or number of proposed presses. They extend
+/// beyond the paper's 0.5 to 2.4 and 0.4 to 0.99, so that all concepts cover the compared numbers of signals.
 pub fn parameters(concept: ConceptName) -> Vec<f64> {
     match concept {
         ConceptName::TomCom => {
@@ -41,91 +41,93 @@ pub fn parameters(concept: ConceptName) -> Vec<f64> {
     }
 }
 
-/// The concepts that are compared.
+/// Communication concepts that the analysis compares with each other.
 pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev];
 
-/// Prevention counts of a concept with one parameter value in a trial.
+/// Prevention counts of a concept with one parameter value in one unassisted trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SweptTrial {
-    /// The concept.
+    /// Communication concept that would have sent the signals.
     pub concept: ConceptName,
-    /// The value of its parameter.
+    /// Value of the concept's parameter, such as the cost of communication.
     pub parameter: f64,
-    /// What it would have done.
+    /// Errors that the concept would have prevented, and signals that it would have sent.
     pub count: PreventionCounts,
 }
 
-/// A point of a receiver operating characteristic.
+/// A point of a concept's receiver operating characteristic.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RocPoint {
-    /// The value of the concept's parameter.
+    /// Value of the concept's parameter at this point.
     pub parameter: f64,
     /// False positive rate: useless signals per press of the human.
     pub fpr: f64,
-    /// True positive rate: the share of the belief related errors that would have been prevented.
+    /// True positive rate: share of the errors from false beliefs that would have been prevented.
     pub tpr: f64,
     /// Signals per 100 presses of the human.
     pub signals_per_100_actions: f64,
     /// Useless signals per 100 presses of the human.
     pub useless_per_100_actions: f64,
-    /// The share of useless ones among all signals; null without signals.
+    /// Share of useless signals among all signals; null without signals.
     pub useless_share: Option<f64>,
-    /// What the concept would have done, over all trials.
+    /// Counts over all trials, from which the rates follow.
     #[serde(flatten)]
     pub count: PreventionCounts,
 }
 
-/// A value with its bootstrap interval over participants.
+/// A value with its 95 % bootstrap interval over participants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BootstrapInterval {
-    /// The value; none where it cannot be told.
+    /// The value; null where it cannot be computed.
     pub value: Option<f64>,
-    /// The lower end of the 95 % interval.
+    /// Lower end of the 95 % interval.
     pub low: Option<f64>,
-    /// The upper end of the 95 % interval.
+    /// Upper end of the 95 % interval.
     pub high: Option<f64>,
 }
 
 /// The receiver operating characteristic of a concept.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Roc {
-    /// The concept.
+    /// Communication concept whose curve this is.
     pub concept: ConceptName,
-    /// Mean true positive rate over the false positive rates that all concepts reach: partial area divided by the range's width.
+    /// Mean true positive rate over the false positive rates that all concepts reach: partial area divided by the
+    /// range's width.
     pub auc: Option<f64>,
-    /// The lower end of its 95 % interval.
+    /// Lower end of the 95 % interval of `auc`.
     pub auc_low: Option<f64>,
-    /// The upper end of its 95 % interval.
+    /// Upper end of the 95 % interval of `auc`.
     pub auc_high: Option<f64>,
-    /// The points, in the order of the parameter.
+    /// Points of the curve, in the order of the parameter.
     pub points: Vec<RocPoint>,
-    /// Confidence band: false positive rate, lower and upper true positive rate.
+    /// Confidence band, as false positive rate with lower and upper true positive rate.
     pub band: Vec<[f64; 3]>,
-    /// True positive rates at [`EQUAL_SIGNALS`].
+    /// True positive rates at the numbers of signals in [`EQUAL_SIGNALS`].
     pub at_equal_signals: Vec<BootstrapInterval>,
-    /// Share of useless ones among the signals at [`EQUAL_SIGNALS`].
+    /// Shares of useless signals at the numbers of signals in [`EQUAL_SIGNALS`].
     pub useless_at_equal_signals: Vec<BootstrapInterval>,
-    /// Advantage of the first concept's true positive rate at [`EQUAL_SIGNALS`] over this concept's.
+    /// Difference between the first concept's true positive rate and this concept's, at the numbers of signals in
+    /// [`EQUAL_SIGNALS`].
     pub behind_first: Vec<BootstrapInterval>,
 }
 
-/// Comparison of the concepts.
+/// Comparison of communication concepts by their receiver operating characteristics.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ConceptComparison {
     /// Number of participants with unassisted trials.
     pub participants: u64,
-    /// Number of these trials.
+    /// Number of unassisted trials.
     pub trials: u64,
-    /// The largest false positive rate that all concepts reach.
+    /// Largest false positive rate that all concepts reach.
     pub common_fpr: Option<f64>,
-    /// The concepts, in the order in which they are compared.
+    /// The concepts' curves, in the order in which concepts are compared.
     pub concepts: Vec<Roc>,
 }
 
-/// Curves of all concepts for one sample of participants.
+/// Curves of all concepts for one bootstrap sample of participants.
 struct Curves {
-    /// For each concept: true positive rate against false positive rate, true positive rate against signals per 100 human presses,
-    /// and useless signals against signals, both per 100 human presses.
+    /// For each concept: true positive rate against false positive rate, true positive rate against signals per 100
+    /// human presses, and useless signals against signals, both per 100 human presses.
     of: Vec<[Vec<(f64, f64)>; 3]>,
 }
 
@@ -148,7 +150,7 @@ impl Curves {
     fn from_counts(sum: &[SweptTrial]) -> Curves {
         let curve = |concept: ConceptName, point: fn(&PreventionRates) -> (f64, f64)| {
             let points = sum.iter().filter(|one| one.concept == concept).filter_map(|one| one.count.rates());
-            // A concept that sends no signal has the point (0, 0).
+            // A concept that sends no signals is at the point (0, 0), where every curve begins.
             let mut curve: Vec<(f64, f64)> = points.map(|rates| point(&rates)).chain([(0.0, 0.0)]).collect();
             curve.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
             curve
@@ -163,7 +165,7 @@ impl Curves {
         Curves { of: CONCEPTS.iter().map(curves).collect() }
     }
 
-    /// The largest false positive rate that all concepts reach; `None` if a concept has no points.
+    /// Largest false positive rate that all concepts reach; `None` if a concept has no points.
     fn common(&self) -> Option<f64> {
         let reach = |curve: &Vec<(f64, f64)>| curve.last().map(|last| last.0).filter(|_| curve.len() > 1);
         let reached: Option<Vec<f64>> = self.of.iter().map(|[curve, ..]| reach(curve)).collect();
@@ -175,12 +177,12 @@ impl Curves {
     }
 }
 
-/// Height of a curve at `x` by linear interpolation; `None` outside of its range.
+/// Height of a curve at `x` by linear interpolation; `None` outside of the curve's range.
 fn height(curve: &[(f64, f64)], x: f64) -> Option<f64> {
     let after = curve.iter().position(|point| point.0 >= x)?;
     let (x1, y1) = curve[after];
     if x1 == x {
-        // Of several points with the same x, the highest counts.
+        // If several points have the same x, the highest is taken.
         return curve[after..].iter().take_while(|point| point.0 == x).last().map(|point| point.1);
     }
     let (x0, y0) = *curve.get(after.checked_sub(1)?)?;
@@ -196,8 +198,9 @@ fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
     (to > 0.0).then(|| area / to)
 }
 
-/// Compares the concepts. Each participant has the sums of its trials for every concept and parameter value, in the same order. The
-/// percentile bootstrap (Efron 1979) resamples participants; its random stream is seeded by `seed`.
+/// Compares the concepts. `participants` has, for each participant, the sums over their trials for every concept and
+/// parameter value, in the same order. The percentile bootstrap (Efron 1979) resamples participants; its random stream
+/// is seeded by `seed`.
 pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> ConceptComparison {
     let once = vec![1; participants.len()];
     let sum = summed(participants, &once);
@@ -249,7 +252,7 @@ pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> Conc
     }
 }
 
-/// Number of draws of each participant in each bootstrap resample; no resamples of fewer than two participants.
+/// Number of draws of each participant in each bootstrap resample; no resamples with fewer than two participants.
 fn resamples(participants: usize, seed: u64) -> impl Iterator<Item = Vec<u32>> {
     let mut random = stream(seed, "bootstrap", 0);
     let number = if participants < 2 { 0 } else { RESAMPLES };
@@ -266,7 +269,7 @@ fn resamples(participants: usize, seed: u64) -> impl Iterator<Item = Vec<u32>> {
 fn banded(curves: &Curves, resampled: &[Curves], of: impl Fn(&Curves) -> Option<f64>) -> BootstrapInterval {
     let value = of(curves);
     let mut drawn: Vec<f64> = resampled.iter().filter_map(&of).collect();
-    // Without a value in half of the resamples, the rest would give a biased interval.
+    // If fewer than half of the resamples have a value, the others would give a biased interval.
     if value.is_none() || drawn.len() * 2 < resampled.len() || drawn.is_empty() {
         return BootstrapInterval { value, low: None, high: None };
     }

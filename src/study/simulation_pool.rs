@@ -1,93 +1,95 @@
-//! A pool of simulated participants, from which studies are drawn ([`super::drawn_study`]): of every trial only what an analysis counts.
+//! Pool of simulated participants, from which studies are drawn ([`super::drawn_study`]); of every trial, it contains
+//! only the counts that an analysis needs.
 //!
-//! Each participant has its starting group and one trial in each arm of the plan. Beside each trial there can be its unassisted twin: the
-//! same participant, orders and random streams without signals. Twins tell how large an effect has to be to be found, and how often a test
-//! finds one where there is none.
+//! Each participant has a starting group and one trial in each arm of the plan. Each trial can have an unassisted twin:
+//! the same participant, orders and random streams, without signals. Twins tell how large an effect has to be to be
+//! detected, and how often a test rejects without an effect.
 //!
-//! A pool is a file of JSON Lines: a [`PoolHeader`], then one [`PoolTrial`] a line. Parts of a pool, simulated as shards, are joined.
+//! A pool is a file of JSON Lines: a [`PoolHeader`], then one [`PoolTrial`] per line. Parts of a pool, simulated as
+//! shards, are joined.
 
 use serde::{Deserialize, Serialize};
 
 use crate::session::plan::{PrimaryOutcome, StudyAims};
 use crate::session::study_arm::StudyArm;
 
-/// Version of the format.
+/// Version of the pool's file format.
 pub const POOL_FORMAT: u32 = 1;
 
-/// The first line of a pool: what its participants have in common.
+/// First line of a pool's file: what its participants have in common.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PoolHeader {
-    /// Version of the format.
+    /// Version of the file format.
     pub pool: u32,
-    /// Version of the program that simulated it.
+    /// Version of the program that simulated the pool.
     pub program: String,
-    /// The plan's name.
+    /// Name of the study plan.
     pub plan: String,
     /// Checksum of plan and settings, as recordings have it, with the pool's seed.
     pub digest: String,
-    /// The seed of everything random.
+    /// Seed of all random numbers.
     pub seed: u64,
-    /// Number of participants of the whole pool.
+    /// Number of participants in the whole pool.
     pub participants: u32,
-    /// Which part this is; 1 is the first.
+    /// Number of this shard, from 1.
     pub shard: u64,
-    /// Number of parts.
+    /// Number of shards of the pool.
     pub shards: u64,
-    /// The conditions of the plan.
+    /// Conditions of the study plan.
     pub conditions: Vec<StudyArm>,
-    /// What the plan asks.
+    /// Primary outcome and margin that the plan sets.
     pub aims: StudyAims,
-    /// Whether trials were simulated in the arms of the plan.
+    /// Whether trials were simulated in the study arms of the plan.
     pub arms: bool,
     /// Whether the unassisted twins of these trials were simulated.
     pub unassisted: bool,
 }
 
-/// A line of a pool: a simulated trial.
+/// A line of a pool's file: one simulated trial.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PoolTrial {
-    /// The participant's place in the plan, from 0.
+    /// Index of the participant in the plan, from 0.
     pub participant: u32,
-    /// The starting group, as in "AB".
+    /// Starting group of the participant, such as "AB".
     pub group: String,
-    /// Number of the trial, from 1.
+    /// Number of the trial in the participant's series, from 1.
     pub period: u32,
-    /// The arm that the plan gives to it.
+    /// Study arm that the plan gives to the trial.
     pub planned: StudyArm,
-    /// The arm by what was done; `none` in an unassisted twin.
+    /// Study arm by what was done in the trial; `none` in an unassisted twin.
     pub arm: StudyArm,
-    /// What was counted.
+    /// Counts of presses, errors, signals and orders in the trial.
     #[serde(flatten)]
     pub counts: TrialCounts,
 }
 
-/// What is counted in a simulated trial.
+/// Counts of presses, errors, signals and orders in a simulated trial of a pool.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TrialCounts {
-    /// Presses of the human.
+    /// Number of the human's presses.
     pub human_presses: u64,
-    /// Presses of the robot.
+    /// Number of the robot's presses.
     pub robot_presses: u64,
-    /// Errors of the human.
+    /// Number of the human's errors.
     pub errors: u64,
-    /// Belief related errors.
+    /// Number of errors that follow from false beliefs.
     pub belief_related_errors: u64,
-    /// Number of errors of each sequence of related errors.
+    /// Length of each sequence of errors from the same false belief, in errors.
     pub lengths: Vec<u32>,
-    /// Orders served.
+    /// Number of orders served.
     pub orders: u64,
-    /// Signals that were shown.
+    /// Number of signals shown to the participant.
     pub signals: u64,
-    /// Time with a signal on the display, in seconds.
+    /// Time during which a signal was on the display, in seconds.
     pub signal_s: f64,
     /// Length of the trial on its own clock, in seconds.
     pub seconds: f64,
 }
 
 impl TrialCounts {
-    /// Number of the outcome's events.
+    /// Number of events of the primary outcome.
     pub fn events(&self, outcome: PrimaryOutcome) -> u64 {
         match outcome {
             PrimaryOutcome::Errors => self.errors,
@@ -97,45 +99,45 @@ impl TrialCounts {
     }
 }
 
-/// A participant of a pool.
+/// A participant of a pool with all of their trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoolPerson {
-    /// The participant's place in the plan, from 0.
+    /// Index of the participant in the plan, from 0.
     pub participant: u32,
-    /// The starting group.
+    /// Starting group of the participant.
     pub group: String,
-    /// The trials, the first period first.
+    /// Trials of the participant, in the order of periods.
     pub trials: Vec<PersonTrial>,
 }
 
-/// A period of a participant of a pool.
+/// A period of a pool's participant, with its counts in the planned arm and without signals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PersonTrial {
-    /// The arm that the plan gives to it.
+    /// Study arm that the plan gives to the period.
     pub arm: StudyArm,
-    /// What was counted in that arm, if it was simulated.
+    /// Counts in the planned arm, if that trial was simulated.
     pub own: Option<TrialCounts>,
-    /// What was counted without signals, if it was simulated.
+    /// Counts in the trial without signals, if it was simulated.
     pub unassisted: Option<TrialCounts>,
 }
 
-/// A pool, or a part of one.
+/// A pool of simulated participants, or a shard of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationPool {
-    /// What the participants have in common.
+    /// Plan, settings and seed that the participants have in common.
     pub header: PoolHeader,
     /// The participants, in the order of the plan.
     pub persons: Vec<PoolPerson>,
 }
 
-/// What is wrong with the lines of a pool, or with parts that are joined.
+/// Mismatch in the lines of a pool's file, or between shards that are joined.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PoolMismatch {
-    /// Index of the line among the trials, or of the part.
+    /// Index of the line among the trials, or of the shard.
     pub index: usize,
-    /// What was found.
+    /// Description of what was found.
     pub found: String,
-    /// What would be right.
+    /// Advice on how to remedy the mismatch.
     pub remedy: String,
 }
 
@@ -149,7 +151,7 @@ impl SimulationPool {
     /// The pool of these lines, which are ordered by participant and period.
     ///
     /// # Errors
-    /// A trial is missing, is there twice, or does not belong to the header.
+    /// A trial is missing, occurs twice, or does not fit the header.
     pub fn from_trials(header: PoolHeader, trials: Vec<PoolTrial>) -> Result<SimulationPool, PoolMismatch> {
         let mut persons: Vec<PoolPerson> = Vec::new();
         let count = trials.len();
@@ -198,7 +200,7 @@ impl SimulationPool {
         }
     }
 
-    /// The trials as lines, in order.
+    /// The trials as lines of a pool's file, in order.
     pub fn trials(&self) -> impl Iterator<Item = PoolTrial> + '_ {
         self.persons.iter().flat_map(|person| {
             person.trials.iter().zip(1..).flat_map(move |(trial, period)| {
@@ -217,10 +219,10 @@ impl SimulationPool {
         })
     }
 
-    /// The whole pool of these parts.
+    /// The whole pool, joined from these shards.
     ///
     /// # Errors
-    /// Parts are of different pools, are there twice, or do not make the whole.
+    /// Shards are of different pools, occur twice, or are not complete.
     pub fn joined(parts: Vec<SimulationPool>) -> Result<SimulationPool, PoolMismatch> {
         let Some(first) = parts.first().map(|part| part.header.clone()) else {
             return Err(PoolMismatch::new(0, "no part".to_string(), "at least one"));

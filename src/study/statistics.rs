@@ -1,4 +1,4 @@
-//! Textbook statistics for small samples: a study with some tens of participants.
+//! Textbook statistics for small samples, such as a study with some tens of participants.
 //!
 //! Distributions come from the crate `statrs`. `tests/outside/study.py` compares every result with SciPy, pingouin and
 //! scikit-learn.
@@ -12,13 +12,13 @@ use crate::base::rng::stream;
 /// Result of an F test.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FTest {
-    /// The value of F.
+    /// Value of the F statistic.
     pub f: f64,
     /// Degrees of freedom of the effect and of the residuals.
     pub df: [f64; 2],
-    /// The probability of at least this value without an effect.
+    /// p value: probability, without an effect, of an F statistic at least this large.
     pub p: f64,
-    /// Partial eta squared: the effect's share of its own and the residual sum of squares.
+    /// Partial eta squared: the effect's sum of squares divided by its sum with the residual one.
     pub partial_eta_sq: f64,
 }
 
@@ -37,16 +37,16 @@ impl FTest {
 /// Mixed analysis of variance with two measurements per person (within) and any number of groups (between).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MixedAnova {
-    /// The factor within participants.
+    /// F test of the factor within participants.
     pub within: Option<FTest>,
-    /// The factor between groups.
+    /// F test of the factor between groups.
     pub between: Option<FTest>,
-    /// The interaction of both.
+    /// F test of the interaction of both factors.
     pub interaction: Option<FTest>,
 }
 
-/// Mixed analysis of variance; each row holds a person's group and its two measurements. The within factor's sums of squares are
-/// those over all persons, as in pingouin's `mixed_anova`.
+/// Mixed analysis of variance; each row holds a person's group and its two measurements. The within factor's sums of
+/// squares are those over all persons, as in pingouin's `mixed_anova`.
 pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
     let groups = rows.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
     let in_group = |group: usize| rows.iter().filter(move |(other, _)| *other == group).map(|(_, values)| *values);
@@ -76,11 +76,11 @@ pub fn mixed_anova(rows: &[(usize, [f64; 2])]) -> MixedAnova {
 /// A correlation coefficient with its two-sided p value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Correlation {
-    /// Pearson's r.
+    /// Pearson's correlation coefficient r.
     pub r: f64,
-    /// The two-sided p.
+    /// Two-sided p value of the correlation.
     pub p: f64,
-    /// Number of pairs.
+    /// Number of pairs of values.
     pub n: usize,
 }
 
@@ -103,16 +103,16 @@ pub fn pearson(x: &[f64], y: &[f64]) -> Option<Correlation> {
     Some(Correlation { r, p, n })
 }
 
-/// Largest number of permutations that are enumerated; beyond it they are sampled.
+/// Largest number of permutations that are enumerated; with more, permutations are sampled.
 const MAX_ENUMERATED: f64 = 200_000.0;
 /// Number of sampled permutations.
 const SAMPLED_PERMUTATIONS: u32 = 100_000;
 /// Relative tolerance within which differences count as equal.
 const EQUALITY_TOLERANCE: f64 = 1e-12;
 
-/// Two-sided permutation test of the difference between two groups' means (Fisher 1935): the share of assignments to groups with
-/// at least the observed difference. Exact up to 200,000 assignments, else from 100,000 random ones and the observed one, with a
-/// random stream seeded by `seed`. `None` with an empty group.
+/// Two-sided permutation test of the difference between two groups' means (Fisher 1935): the share of assignments to
+/// groups with at least the observed difference. Exact up to 200,000 assignments, else from 100,000 random ones and the
+/// observed one, with a random stream seeded by `seed`. `None` with an empty group.
 pub fn permutation_p(a: &[f64], b: &[f64], seed: u64) -> Option<f64> {
     if a.is_empty() || b.is_empty() {
         return None;
@@ -159,10 +159,10 @@ fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
     }
 }
 
-/// An estimate with its confidence interval.
+/// An estimate with its confidence interval and level.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Interval {
-    /// The estimate.
+    /// Point estimate, such as a mean or a share.
     pub estimate: f64,
     /// The lower end of the interval.
     pub low: f64,
@@ -172,8 +172,9 @@ pub struct Interval {
     pub level: f64,
 }
 
-/// Hodges-Lehmann estimate of the shift from `b` to `a` (median of all differences) with the Mann-Whitney test's confidence
-/// interval (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` with an empty group.
+/// Hodges-Lehmann estimate of the shift from `b` to `a` (median of all differences) with the Mann-Whitney test's
+/// confidence interval (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` with an
+/// empty group.
 pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<Interval> {
     let mut differences: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
     differences.sort_by(f64::total_cmp);
@@ -251,8 +252,8 @@ pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<Interval> {
     wilson(part as f64 / whole as f64, whole as f64, level)
 }
 
-/// The proportion `p` of `n` observations with its Wilson score interval; `n` may be the fractional number of independent observations
-/// with the same variance. `None` if it is 0.
+/// The proportion `p` of `n` observations with its Wilson score interval; `n` may be the fractional number of
+/// independent observations with the same variance. `None` if `n` is 0.
 pub fn wilson(p: f64, n: f64, level: f64) -> Option<Interval> {
     if n <= 0.0 {
         return None;

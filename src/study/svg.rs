@@ -1,5 +1,5 @@
-//! SVG charts: axes with round ticks, points, lines, bands, bars. CSS classes in the page's style sheet set the colours for light
-//! and dark screens and for print.
+//! SVG charts: axes with round ticks, points, lines, bands, bars. CSS classes in the page's style sheet set the colours
+//! for light and dark screens and for print.
 
 use std::fmt::Write;
 
@@ -8,21 +8,21 @@ use maud::{Markup, PreEscaped, html};
 /// Margins around the plot area, in pixels: left, right, top, bottom.
 const MARGIN: [f64; 4] = [54.0, 14.0, 14.0, 44.0];
 
-/// Axis of a chart.
+/// Axis of a chart: label, range and ticks.
 #[derive(Clone, Debug)]
 pub struct PlotAxis {
-    /// What it shows, with the unit.
+    /// Quantity that the axis shows, with its unit.
     pub label: &'static str,
-    /// The value at its beginning.
+    /// Value at the beginning of the axis.
     pub from: f64,
-    /// The value at its end.
+    /// Value at the end of the axis.
     pub to: f64,
-    /// Ticks: position and label.
+    /// Ticks of the axis: position and label.
     pub ticks: Vec<(f64, String)>,
 }
 
 impl PlotAxis {
-    /// Axis over these values and 0, with round ticks.
+    /// Axis whose range includes these values and 0, with round ticks.
     pub fn over(label: &'static str, values: impl Iterator<Item = f64>) -> PlotAxis {
         let (low, high) = values
             .filter(|value| value.is_finite())
@@ -63,7 +63,7 @@ fn digits(step: f64) -> usize {
     (0..12).find(is_exact).unwrap_or(12)
 }
 
-/// Builder of a chart.
+/// Builder of an SVG chart.
 #[derive(Clone, Debug)]
 pub struct SvgChart {
     width: f64,
@@ -74,7 +74,7 @@ pub struct SvgChart {
 }
 
 impl SvgChart {
-    /// Creates a chart of this size in pixels, with axes and grid.
+    /// Creates a chart of this size in pixels, with axes and grid lines.
     pub fn new(width: f64, height: f64, x: PlotAxis, y: PlotAxis) -> SvgChart {
         let mut chart = SvgChart { width, height, x, y, body: String::new() };
         chart.frame();
@@ -129,7 +129,7 @@ impl SvgChart {
         self.add(html! { circle class=(class) cx=(x) cy=(y) r="4" { title { (title) } } });
     }
 
-    /// Adds a line through points.
+    /// Adds a line through points to the chart.
     pub fn line(&mut self, class: &str, points: &[(f64, f64)]) {
         let path = self.path(points);
         self.add(html! { path class={ "line " (class) } d=(path) {} });

@@ -20,117 +20,119 @@ use crate::session::settings::{ArmKind, Condition, ParticipantKind, Visibility};
 use crate::session::study_arm::StudyArm;
 use crate::session::wall_display::DisplayedArm;
 
-/// Statistics of one trial.
+/// Statistics of one trial of a study: conditions, counts, medians, answers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
     /// Path of the recording's folder, relative to the folder given by the user.
     pub recording: String,
     /// Participant code; prefixed by the seed if several seeds have simulated participants with the same codes.
     pub participant: String,
-    /// The seed of everything random.
+    /// Seed of the trial's random numbers.
     pub seed: u64,
-    /// Who played the human's part.
+    /// Kind of participant: a person or a simulation.
     pub kind: ParticipantKind,
-    /// Start by the wall clock; `None` for simulated trials.
+    /// Wall clock time at which the trial started; `None` for simulated trials.
     pub started: Option<String>,
-    /// The starting group of a plan.
+    /// Starting group of the participant, if there is a study plan.
     pub group: Option<String>,
-    /// The number of the trial in the participant's series; 1 is the first.
+    /// Number of the trial in the participant's series, from 1.
     pub period: Option<u32>,
     /// Whether the trial belongs to a study plan, which then defines its period.
     pub is_planned: bool,
-    /// Who could send signals.
+    /// Condition of the trial: who could send signals.
     pub condition: Condition,
-    /// The arm of the trial, by what was done in it.
+    /// Study arm of the trial, by what was done in it.
     pub study_arm: StudyArm,
-    /// The arm that the plan gave to it, if it belongs to a plan that has arms.
+    /// Study arm that the plan gave to the trial, if it belongs to a plan with arms.
     pub planned_arm: Option<StudyArm>,
-    /// What the study asks, by its plan.
+    /// Primary outcome and margin that the study's plan sets.
     pub aims: Option<StudyAims>,
-    /// What the wizard was allowed to see.
+    /// Information that the wizard was allowed to see.
     pub wizard_sees: Visibility,
-    /// Who sent the signals by itself.
+    /// Sender of the signals in a trial without a person as wizard.
     pub acting: ActingArm,
-    /// Reason for excluding the trial; `None` if it counts.
+    /// Reason for excluding the trial from the analysis; `None` if the trial is included.
     pub left_out: Option<String>,
-    /// Reason of the trial's end; `None` if the recording is incomplete.
+    /// Reason why the trial ended; `None` if the recording is incomplete.
     pub ended: Option<EndReason>,
-    /// The robot's arm.
+    /// Kind of the robot's arm.
     pub arm: ArmKind,
-    /// What was counted of the robot.
+    /// Counts of robot events and of interventions in the robot.
     pub robot: RobotSummary,
-    /// Presses of the human.
+    /// Number of the human's presses.
     pub human_presses: u64,
-    /// Presses of the robot.
+    /// Number of the robot's presses.
     pub robot_presses: u64,
-    /// Number of human errors, without races.
+    /// Number of the human's errors; races with the robot do not count.
     pub errors: u64,
     /// Number of human presses that the robot may have overtaken (races).
     pub races: u64,
-    /// Statistics of false beliefs; `None` if the human's beliefs are unknown.
+    /// Statistics of errors from false beliefs; `None` if the human's beliefs are unknown.
     pub beliefs: Option<BeliefErrors>,
-    /// Orders served.
+    /// Number of orders served.
     pub orders: u64,
-    /// The median time from the appearance of an order to its serving, in seconds.
+    /// Median time from the appearance of an order to its serving, in seconds.
     pub order_s: Option<f64>,
-    /// Median presses of both agents per order.
+    /// Median number of presses of both agents per order.
     pub presses_per_order: Option<f64>,
     /// Summed regret of both agents' presses per served order; `None` if no order was served.
     pub additional_presses_per_order: Option<f64>,
-    /// Median seconds between successive human presses.
+    /// Median time between successive presses of the human, in seconds.
     pub press_s: Option<f64>,
-    /// Number of signals shown.
+    /// Number of signals shown to the participant.
     pub signals: u64,
-    /// Number of their contents: a proposal of k presses has k.
+    /// Number of contents of the signals: 1 for a signal, k for a proposal of k presses.
     pub signal_contents: u64,
-    /// Number of these that were useful, judged by twins of simulated trials; `None` where there are none.
+    /// Number of useful signals, judged by simulating the trial without the signal; `None` where that was not done.
     pub useful_signals: Option<u64>,
-    /// How the participant's display showed the robot; `None` without a display, and in recordings from before it could.
+    /// How the participant's display showed the robot; `None` without a display, and in older recordings, which do not
+    /// say.
     pub display_arm: Option<DisplayedArm>,
     /// Offers that a wizard could see; `None` in recordings without offers.
     pub offers: Option<Vec<TimedOffer>>,
-    /// Length of the trial without pauses, in seconds.
+    /// Duration of the trial without pauses, in seconds.
     pub seconds: f64,
-    /// The answers to questionnaires after the trial.
+    /// Answers to the questionnaires after the trial.
     pub answers: Vec<QuestionnaireAnswer>,
-    /// Measures of the wizard; `None` in other conditions.
+    /// Measures of the wizard's performance; `None` in trials without a wizard.
     pub wizard: Option<WizardMeasures>,
-    /// Whether a wizard saw the assistant's recommendations, by the settings or from some time on.
+    /// Whether the wizard saw the assistant's recommendations, by the settings or from some time on.
     pub wizard_saw_advice: bool,
-    /// In wizard trials: sent communications, and hypothetical ones of the assistant.
+    /// In wizard trials: the communications sent, and the hypothetical ones of the assistant.
     pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
-    /// In unassisted trials with known beliefs: prevention counts of the concepts.
+    /// In unassisted trials with known beliefs: what each concept would have prevented, by parameter value.
     pub swept: Vec<SweptTrial>,
-    /// Codes of two raters, if they or their consensus define the causes of errors.
+    /// Codes of two raters, if these codes or the raters' consensus determine the causes of errors.
     pub raters: Option<[Codes; 2]>,
-    /// How far these two agree on false beliefs.
+    /// Agreement of the two raters about false beliefs.
     pub shared_beliefs: Option<SharedBeliefs>,
-    /// The two raters whose consensus defines the causes of errors.
+    /// The two raters whose consensus determines the causes of errors.
     pub settled_by: Option<[String; 2]>,
-    /// Why a consensus is not used: a rater's code that changed after it was settled.
+    /// Why a consensus is not used: a rater's code changed after the raters settled it.
     pub stale_consensus: Option<String>,
-    /// The questions of probes and their answers; `None` without probes.
+    /// Freeze probes with their questions and answers; `None` without probes.
     pub probes: Option<ProbedTrial>,
 }
 
-/// Errors that false beliefs caused in a trial.
+/// Errors of a trial that follow from false beliefs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeliefErrors {
-    /// How it is known what the human believed.
+    /// Source of what the human believed: recorded beliefs, raters or the estimate.
     pub basis: BeliefBasis,
-    /// Number of belief related errors.
+    /// Number of errors that follow from false beliefs.
     pub errors: u64,
-    /// Number of belief related errors that need two false beliefs as explanation.
+    /// Number of errors that only two false beliefs together explain.
     pub of_two: u64,
-    /// Belief related errors by kind of aspect.
+    /// Errors from false beliefs, by kind of state aspect.
     pub causes: CauseKindCounts,
-    /// Number of errors of each sequence of related errors.
+    /// Length, in errors, of each sequence of errors from the same false belief.
     pub lengths: Vec<u32>,
-    /// Number of errors of each sequence whatever the aspect.
+    /// Length, in errors, of each error sequence, whichever false beliefs it follows from.
     pub lengths_any_aspect: Vec<u32>,
-    /// Seconds from the first error of each sequence to the first correct press after its last error, where there is one.
+    /// For each sequence that has ended, the time from its first error to the first correct press after its last error,
+    /// in seconds.
     pub recovery_s: Vec<f64>,
-    /// Number of false belief episodes with at least one error; `None` if beliefs are known by the estimate alone.
+    /// Number of false belief episodes with at least one error; `None` if beliefs are known from the estimate alone.
     pub episodes: Option<u64>,
 }
 
@@ -139,27 +141,27 @@ pub struct BeliefErrors {
 pub struct QuestionnaireAnswer {
     /// The questionnaire's name.
     pub questionnaire: String,
-    /// The item's id.
+    /// Identifier of the item.
     pub item: String,
-    /// The statement.
+    /// Statement of the item.
     pub text: String,
-    /// What the item is about.
+    /// Construct that the item measures, such as acceptance.
     pub about: Option<String>,
-    /// Agreement speaks against what it is about.
+    /// Whether agreement with the statement counts against the construct.
     pub reversed: bool,
-    /// How the item is answered.
+    /// Kind of answer that the item takes.
     pub kind: ItemKind,
     /// The answer; `None` if the participant skipped the item.
     pub answer: Option<AnswerValue>,
-    /// Number of points of the item's scale; `None` if it is answered in another way.
+    /// Number of points of the item's rating scale; `None` for other kinds of item.
     pub points: Option<u8>,
     /// The options of the item: id and text.
     pub options: Vec<ItemOption>,
-    /// The answer from 0 to 1 on a scale or slider, turned round if the item is reversed.
+    /// The answer on a scale or slider as a number from 0 to 1, reversed if the item is.
     pub share: Option<f64>,
-    /// Whether it was asked before the first trial, rather than after the trial.
+    /// Whether the item was asked before the first trial, rather than after this trial.
     pub before: bool,
-    /// Score of the whole questionnaire at this occasion, if it has one.
+    /// Score of the whole questionnaire on this occasion, if it has one.
     pub score: Option<f64>,
 }
 
@@ -169,7 +171,7 @@ impl Trial {
         self.offers.as_ref().map(OfferSummary::from_offers)
     }
 
-    /// Whether the trial counts in the analysis.
+    /// Whether the analysis includes the trial.
     pub fn counts(&self) -> bool {
         self.left_out.is_none()
     }
@@ -183,7 +185,7 @@ impl Trial {
         }
     }
 
-    /// Number of presses of both agents.
+    /// Number of presses of both agents together.
     pub fn presses(&self) -> u64 {
         self.human_presses + self.robot_presses
     }
@@ -198,30 +200,30 @@ impl Trial {
         (self.presses() > 0).then(|| self.errors as f64 / self.presses() as f64)
     }
 
-    /// Mean number of errors per sequence of related errors.
+    /// Mean number of errors in a sequence of errors from the same false belief.
     pub fn sequence_length(&self) -> Option<f64> {
         mean_length(&self.beliefs.as_ref()?.lengths)
     }
 
-    /// Mean seconds to recover from an error sequence.
+    /// Mean time to recover from an error sequence, in seconds.
     pub fn recovery_s(&self) -> Option<f64> {
         mean(self.beliefs.as_ref()?.recovery_s.iter().copied())
     }
 
-    /// Why the trial is not of the arm that the plan gave to it, in words; `None` if it is.
+    /// Why the trial does not fit the study arm that the plan gave to it, in words; `None` if it fits.
     pub fn misfit(&self) -> Option<String> {
         let planned = self.planned_arm.filter(|planned| *planned != self.study_arm)?;
         let (planned, done) = (planned.title(), self.study_arm.title());
         Some(format!("planned: {planned}; done: {done}, in which the wizard saw {}", self.wizard_sees.title()))
     }
 
-    /// Whether signals are sent in the trial.
+    /// Whether signals could be sent in the trial.
     pub fn is_assisted(&self) -> bool {
         self.condition != Condition::None
     }
 }
 
-/// Mean of lengths; `None` without values.
+/// Mean of sequence lengths; `None` without sequences.
 pub fn mean_length(lengths: &[u32]) -> Option<f64> {
     mean(lengths.iter().map(|&length| f64::from(length)))
 }
@@ -232,8 +234,9 @@ pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// Sets participant names, and periods where no study plan defines them, and sorts the trials by participant and period. Without a
-/// plan, a live trial is the participant's first or second by wall clock, if exactly two of its trials count.
+/// Sets participant names, and periods where no study plan defines them, and sorts the trials by participant and
+/// period. Without a plan, a live trial is the participant's first or second by wall clock, if exactly two of the
+/// participant's trials count.
 pub fn arrange(trials: &mut [Trial]) {
     let mut seeds: Vec<u64> = simulated(trials).map(|trial| trial.seed).collect();
     seeds.sort_unstable();

@@ -8,16 +8,16 @@ use super::trial_statistics::{BeliefErrors, Trial, mean, mean_length};
 use crate::measures::belief_basis::BeliefBasis;
 use crate::measures::cause_kinds::CauseKindCounts;
 
-/// Sums over trials.
+/// Sums and rates over trials of a study: presses, errors, sequences, signals, orders.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TrialTotals {
     /// Number of presses of both agents.
     pub actions: u64,
-    /// Presses of the human.
+    /// Number of presses of the human.
     pub human_actions: u64,
-    /// Presses of the robot.
+    /// Number of presses of the robot.
     pub robot_actions: u64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
     /// Presses of the human that the robot may have overtaken; they are not counted as errors.
     pub races: u64,
@@ -27,33 +27,33 @@ pub struct TrialTotals {
     pub error_rate_human: Option<f64>,
     /// Source of the participants' beliefs; null if beliefs are unknown in some trial.
     pub beliefs_from: Option<BeliefBasis>,
-    /// Errors that are put down to a false belief.
+    /// Number of errors that are attributed to a false belief.
     pub belief_related_errors: Option<u64>,
-    /// These errors by kind of aspect.
+    /// Errors from false beliefs, by kind of state aspect.
     pub belief_related_by_kind: Option<CauseKindCounts>,
-    /// Their share of all errors, 0 to 1.
+    /// Share of the errors that follow from false beliefs, from 0 to 1.
     pub belief_related_share: Option<f64>,
-    /// 95 % interval of that share.
+    /// 95 % interval of `belief_related_share`.
     pub belief_related_interval: Option<Interval>,
-    /// Number of sequences of related errors.
+    /// Number of sequences of errors from the same false belief.
     pub sequences: Option<u64>,
-    /// Mean number of errors in a sequence of related errors.
+    /// Mean number of errors in a sequence of errors from the same false belief.
     pub mean_sequence_length: Option<f64>,
-    /// Sequences of related errors per 100 presses of the human.
+    /// Sequences of errors from the same false belief, per 100 presses of the human.
     pub sequences_per_100: Option<f64>,
-    /// Belief related errors per 100 presses of the human.
+    /// Errors that follow from false beliefs, per 100 presses of the human.
     pub belief_related_per_100: Option<f64>,
-    /// Number of sequences whatever the aspect.
+    /// Number of error sequences, whichever false beliefs they follow from.
     pub sequences_any_aspect: Option<u64>,
-    /// Mean number of errors in a sequence whatever the aspect.
+    /// Mean number of errors in an error sequence, whichever false beliefs it follows from.
     pub mean_sequence_length_any_aspect: Option<f64>,
     /// Mean time from a sequence's first error to the first correct press after its last, in seconds.
     pub mean_recovery_s: Option<f64>,
-    /// False belief episodes that caused at least one error.
+    /// Number of false belief episodes that caused at least one error.
     pub false_belief_episodes: Option<u64>,
-    /// Signals that were shown.
+    /// Number of signals shown to participants.
     pub signals: u64,
-    /// Orders served.
+    /// Number of orders served.
     pub orders_served: u64,
 }
 
@@ -83,7 +83,7 @@ impl TrialTotals {
         let per_100 = |number: u64| (human_actions > 0).then(|| 100.0 * number as f64 / human_actions as f64);
         let interval = share_interval(related, errors, LEVEL);
         TrialTotals {
-            // The least reliable source among the trials.
+            // If trials have different sources of beliefs, the least reliable one is reported.
             beliefs_from: beliefs.iter().map(|one| one.basis).max(),
             belief_related_errors: Some(related),
             belief_related_by_kind: Some(

@@ -1,17 +1,17 @@
-//! Summary of the checks of understanding in tutorials.
+//! Summary of the comprehension questions in tutorials.
 
 use serde::Serialize;
 
 use super::tables::tutorial_answers::TutorialAnswer;
 
-/// Answers to the questions of tutorials.
+/// Summary of the answers to the tutorials' comprehension questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct TutorialSummary {
-    /// Number of participants who answered a question.
+    /// Number of participants who answered a tutorial question.
     pub participants: u64,
-    /// Number of answered questions.
+    /// Number of tutorial questions that were answered.
     pub questions: u64,
-    /// Of these, answered rightly at once.
+    /// Number of tutorial questions whose first answer was right.
     pub right_at_once: u64,
 }
 

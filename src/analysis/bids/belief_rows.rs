@@ -1,4 +1,4 @@
-//! Beliefs: those that simulated participants had, and the estimates.
+//! Tables of beliefs for the BIDS export: beliefs that simulated participants had, and the assistant's estimates.
 
 use super::tsv::{self, BidsColumn, BidsFile, TaskFacts};
 use crate::session::Stamped;
@@ -23,7 +23,7 @@ const COLUMNS: [BidsColumn; 7] = [
     ),
 ];
 
-/// The table of beliefs of a recording.
+/// Rows of a recording's table of beliefs.
 #[derive(Debug, Default)]
 pub(super) struct BeliefRows {
     rows: String,
@@ -63,7 +63,7 @@ impl BeliefRows {
         self.count += 1;
     }
 
-    /// The table with its sidecar; nothing without a belief.
+    /// The table of beliefs with its sidecar file; no files if the recording has no beliefs.
     pub(super) fn into_files(self, task: &TaskFacts) -> Vec<BidsFile> {
         if self.count == 0 {
             return Vec::new();

@@ -1,18 +1,18 @@
-//! The files at the root of the tree.
+//! Files at the root of a BIDS data set.
 
 use serde_json::json;
 
 use super::tsv::{self, BidsColumn, BidsFile, or_nothing};
 
-/// The file that says what the data set is.
+/// Name of the file that describes the data set.
 pub const DESCRIPTION_NAME: &str = "dataset_description.json";
-/// The table of participants.
+/// Name of the table of participants.
 pub const PARTICIPANTS_NAME: &str = "participants.tsv";
-/// The column of participants with their codes.
+/// Name of the column with the participants' codes.
 pub const CODE_COLUMN: &str = "code";
-/// What the description says made the data set.
+/// Program that the data set's description names as its generator.
 pub const PROGRAM_NAME: &str = "tomcom";
-/// The version of BIDS that the tree follows: the first with eye-tracking is 1.10.
+/// Version of BIDS that the data set follows; eye-tracking exists in BIDS since 1.10.
 const BIDS_VERSION: &str = "1.10.1";
 
 const KINDS: &[(&str, &str)] = &[
@@ -29,22 +29,23 @@ const COLUMNS: [BidsColumn; 5] = [
     BidsColumn::new("recordings", "Number of recordings"),
 ];
 
-/// A participant.
+/// A participant of a BIDS data set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BidsParticipant {
-    /// The label in the tree.
+    /// The participant's label in file and folder names of the data set.
     pub label: String,
-    /// The code in the recordings.
+    /// The participant's code in the recordings.
     pub code: String,
-    /// Who took part, as the log names it.
+    /// Kind of participant (person or simulation), as the log names it.
     pub kind: String,
-    /// The starting group, if there is a plan.
+    /// The participant's starting group, if there is a study plan.
     pub group: Option<String>,
-    /// Number of recordings.
+    /// Number of the participant's recordings.
     pub recordings: usize,
 }
 
-/// The files at the root: the description of the data set, its participants, a text to begin with. `plans`: the names of the studies.
+/// The files at the root of the data set: its description, the table of participants, a README. `plans`: the names of
+/// the studies.
 pub fn dataset_files(plans: &[String], participants: &[BidsParticipant], with_words: bool) -> Vec<BidsFile> {
     let name = if plans.is_empty() { "tomcom recordings".to_string() } else { plans.join(", ") };
     let description = json!({

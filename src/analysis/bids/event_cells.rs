@@ -1,4 +1,4 @@
-//! What the log tells of an event, by columns.
+//! The cells of the BIDS table of events that follow from a logged event.
 
 use serde::Serialize;
 
@@ -15,7 +15,7 @@ use crate::session::tracker::TrackerEvent;
 use crate::session::tutorial::TutorialEvent;
 use crate::session::wall_display::DisplayEvent;
 
-/// The cells of an event that follow from it alone; empty where it tells nothing.
+/// The cells of one event's row that follow from the event alone; empty where the event says nothing about a column.
 #[derive(Debug, Default)]
 pub(super) struct EventCells {
     pub what: String,
@@ -32,12 +32,12 @@ pub(super) struct EventCells {
     pub answer: String,
     pub value: Option<f64>,
     pub reason: String,
-    /// What somebody typed.
+    /// Text that somebody typed.
     pub words: String,
 }
 
 impl EventCells {
-    /// What an event tells. `is_words`: whether an answer is in the participant's own words.
+    /// The cells of an event. `is_words`: whether the event is an answer in the participant's own words.
     pub(super) fn from_event(event: &Event, is_words: bool) -> EventCells {
         let mut cells = EventCells::default();
         match event {
@@ -66,7 +66,7 @@ impl EventCells {
         cells
     }
 
-    /// What a question of a probe is about.
+    /// Fills in the state aspect that a question of a freeze probe is about.
     pub(super) fn ask_about(&mut self, about: &ProbeSubject) {
         match about {
             ProbeSubject::Location { location } => self.location = location.clone(),
@@ -75,7 +75,7 @@ impl EventCells {
         }
     }
 
-    /// The cells from `location` on, in the order of the columns.
+    /// The cells of the row from the column `location` on, in the order of the columns.
     pub(super) fn rest(&self) -> [String; 11] {
         [
             self.location.clone(),
@@ -200,7 +200,7 @@ impl EventCells {
     }
 
     fn take_protocol(&mut self, event: &ProtocolEvent, is_words: bool) {
-        // Its name in the log; of the tutorial the step's.
+        // The name of the event in the log; for the tutorial, the name of its step.
         self.what = tag(event, "what");
         match event {
             ProtocolEvent::ConsentGiven { on, digest, .. } => {
@@ -319,12 +319,12 @@ impl EventCells {
     }
 }
 
-/// The name of a value in the log.
+/// The name under which the log writes a value.
 pub(super) fn name(value: &impl Serialize) -> String {
     serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_string)).unwrap_or_default()
 }
 
-/// The field of an event's record that says which one it is.
+/// The value of the field that tells the variants of an event's record apart.
 fn tag(event: &impl Serialize, key: &str) -> String {
     let record = serde_json::to_value(event).unwrap_or_default();
     record.get(key).and_then(|value| value.as_str()).unwrap_or_default().to_string()

@@ -1,9 +1,9 @@
-//! The columns of events.
+//! The columns of the BIDS table of events.
 
 use super::event_levels::LEVELS;
 use super::tsv::BidsColumn;
 
-/// Who did something.
+/// Values of the column that names who did something, with their meanings.
 const AGENTS: &[(&str, &str)] = &[
     ("human", "The participant"),
     ("participant", "The participant, in the tutorial"),
@@ -18,7 +18,7 @@ const SIGNALS: &[(&str, &str)] = &[
     ("propose", "Proposes the next presses of the participant"),
 ];
 
-/// The columns of events, in their order.
+/// The columns of the table of events, in their order.
 pub(super) const EVENTS: [BidsColumn; 21] = [
     BidsColumn::of_unit("onset", "s", "Session time: since the beginning of the recording, by a monotonic clock"),
     BidsColumn::of_unit(
@@ -71,6 +71,6 @@ pub(super) const EVENTS: [BidsColumn; 21] = [
     BidsColumn::new("reason", "Why, as the log names it"),
 ];
 
-/// What somebody typed, where it is exported.
+/// Column with text that somebody typed, for exports that include it.
 pub(super) const WORDS: BidsColumn =
     BidsColumn::new("words", "Words that somebody typed, or that a device calls itself by");

@@ -1,22 +1,23 @@
-//! Labels of participants, sessions and tasks: letters and digits only, and no two alike.
+//! Labels of participants, sessions and tasks for BIDS file names: letters and digits only, and no two alike.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::session::plan::StepSpec;
 
-/// What is left of a name in a label.
+/// The letters and digits of a name, which are all that a label may contain.
 pub fn letters_and_digits(name: &str) -> String {
     let kept: String = name.chars().filter(char::is_ascii_alphanumeric).collect();
     if kept.is_empty() { "x".to_string() } else { kept }
 }
 
-/// The labels of names. Labels that differ only in capitals count as alike, since they would be one folder on some disks.
+/// BIDS labels by name. Labels that differ only in capitals count as alike, since they would be one folder on some
+/// disks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Labels(BTreeMap<String, String>);
 
 impl Labels {
-    /// The labels of these names: the name itself where it is one, otherwise its letters and digits. Where another name has that label,
-    /// `x2`, `x3` and so on follow.
+    /// The labels of these names: a name of letters and digits is its own label, otherwise its letters and digits are.
+    /// A label that another name has already is followed by `x2`, `x3` and so on.
     pub fn from_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Labels {
         let all: BTreeSet<&str> = names.into_iter().collect();
         let (plain, others): (Vec<&str>, Vec<&str>) =
@@ -29,18 +30,18 @@ impl Labels {
         Labels(labels)
     }
 
-    /// The label of a name.
+    /// The BIDS label that a name got.
     pub fn label(&self, name: &str) -> Option<&str> {
         self.0.get(name).map(String::as_str)
     }
 
-    /// Names whose label is another text, with the label.
+    /// Names that differ from their label, together with the label.
     pub fn changed(&self) -> Vec<(String, String)> {
         self.0.iter().filter(|(name, label)| name != label).map(|(name, label)| (name.clone(), label.clone())).collect()
     }
 }
 
-/// The label, or the first of its continuations that nobody has yet; takes it.
+/// The label, with a number behind it if it is taken already; the returned label counts as taken.
 pub(super) fn free(label: &str, between: &str, taken: &mut BTreeSet<String>) -> String {
     let tried = |number: usize| match number {
         1 => label.to_string(),
@@ -53,8 +54,8 @@ pub(super) fn free(label: &str, between: &str, taken: &mut BTreeSet<String>) -> 
     tried(number)
 }
 
-/// The label of a recording among those of its participant: the place in the plan, or else its number. `taken` are the labels of the
-/// recordings before it.
+/// The label of a recording within its participant: its place in the study plan, or else its number. `taken` are the
+/// labels of the participant's recordings before it.
 pub fn session_label(step: Option<&StepSpec>, taken: &mut BTreeSet<String>) -> String {
     let attempt = |step: &StepSpec| match step.attempt {
         0 | 1 => String::new(),

@@ -1,8 +1,8 @@
-//! Recordings as the tables of the Brain Imaging Data Structure (BIDS): behaviour of one recording a session, gaze as eye-tracking
-//! recording, questionnaires as phenotype.
+//! Recordings as the tables of the Brain Imaging Data Structure (BIDS): a recording becomes a session with behaviour,
+//! gaze becomes an eye-tracking recording, and questionnaires become phenotype tables.
 //!
-//! Column names and required fields are those of BIDS 1.10 and later (behavioral experiments, physiological recordings, phenotypic
-//! data). Files have their content here; the caller writes them.
+//! Column names and required fields are those of BIDS 1.10 and later (behavioral experiments, physiological recordings,
+//! phenotypic data). This module makes the content of the files; the caller writes them.
 
 mod belief_rows;
 mod dataset;

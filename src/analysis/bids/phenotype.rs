@@ -1,4 +1,5 @@
-//! Questionnaires as phenotype: a table for each questionnaire and each time that a participant answered it, a participant a row.
+//! Questionnaires as BIDS phenotype tables: a table for each questionnaire and each time that it was answered, with a
+//! row for each participant.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,22 +11,23 @@ use crate::session::Session;
 use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{Item, ItemForm, Questionnaire};
 
-/// A filled-in questionnaire.
+/// A questionnaire that a participant has filled in.
 #[derive(Clone, Debug, PartialEq)]
 struct FilledIn {
     participant: String,
     session: String,
     asked: Questionnaire,
-    /// Items with their answers.
+    /// Answers by the name of the item.
     answers: BTreeMap<String, AnswerValue>,
 }
 
-/// All questionnaires that were filled in, in the order of the recordings.
+/// All questionnaires that were filled in, in the order of the recordings, for BIDS phenotype tables.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Phenotypes(Vec<FilledIn>);
 
 impl Phenotypes {
-    /// Adds the questionnaire that was just confirmed, of the participant and the session with these labels.
+    /// Adds the questionnaire that was just confirmed. `participant`, `session_label`: BIDS labels of the participant
+    /// and the session.
     pub fn note(&mut self, participant: &str, session_label: &str, session: &Session) {
         let (Some(asked), Some(protocol)) = (session.questionnaire(), &session.protocol) else { return };
         let given = |(index, item): (usize, &Item)| Some((item.id.clone(), protocol.given(index)?.clone()));
@@ -37,7 +39,8 @@ impl Phenotypes {
         });
     }
 
-    /// The tables with their sidecars. `with_words`: answers in the participants' own words are exported, too.
+    /// The phenotype tables with their sidecar files. `with_words`: answers in the participants' own words are
+    /// exported, too.
     pub fn files(&self, with_words: bool) -> Vec<BidsFile> {
         let mut tables: BTreeMap<(&str, usize), Vec<&FilledIn>> = BTreeMap::new();
         for (index, filled) in self.0.iter().enumerate() {
@@ -55,7 +58,8 @@ impl Phenotypes {
     }
 }
 
-/// One table: the `time`th time that participants answered a questionnaire.
+/// One phenotype table with its sidecar file: the answers when participants answered the questionnaire for the `time`th
+/// time.
 fn table(name: &str, time: usize, filled: &[&FilledIn], with_words: bool) -> [BidsFile; 2] {
     let mut columns: Vec<&str> = Vec::new();
     let mut about = Map::new();
@@ -85,7 +89,7 @@ fn table(name: &str, time: usize, filled: &[&FilledIn], with_words: bool) -> [Bi
     [BidsFile::new(format!("{path}.tsv"), text), BidsFile::json(format!("{path}.json"), &about.into())]
 }
 
-/// An item, as a sidecar describes it.
+/// The description of a questionnaire's item in a sidecar file.
 fn described(item: &Item, form: &ItemForm) -> Value {
     let mut about = json!({ "Description": item.text });
     match form {
@@ -95,7 +99,7 @@ fn described(item: &Item, form: &ItemForm) -> Value {
                 point if point == scale.points => scale.high.clone(),
                 point => format!("{point} of {}", scale.points),
             };
-            // Every point has to be there: other answers would be none.
+            // Every point of the scale is listed, since a value that is not listed would count as invalid.
             let levels: Map<String, Value> =
                 (1..=scale.points).map(|point| (point.to_string(), json!(meaning(point)))).collect();
             about["Levels"] = Value::Object(levels);

@@ -1,4 +1,4 @@
-//! The tables of one recording.
+//! The BIDS tables of one recording.
 
 use super::belief_rows::BeliefRows;
 use super::event_cells::EventCells;
@@ -16,44 +16,45 @@ use crate::session::settings::GazeSource;
 use crate::session::wall_display::DisplayEvent;
 use crate::session::{Phase, Session, Stamped};
 
-/// What a press did.
+/// Whether a press had an effect, and whether it was an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PressOutcome {
-    /// Whether the button did anything.
+    /// Whether the press changed the kitchen.
     pub effective: bool,
-    /// Whether it was an error; only presses of the human in the trial are judged.
+    /// Whether the press was an error; `None` for presses that are not judged: those of the robot, and those outside
+    /// the trial.
     pub error: Option<bool>,
 }
 
-/// How many rows the tables of a recording have; together as many as the log has events.
+/// Number of rows in each BIDS table of a recording; together as many as the log has events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct TableCounts {
-    /// Events.
+    /// Number of rows in the table of events.
     pub events: u64,
-    /// Gaze samples.
+    /// Number of rows in the table of gaze samples.
     pub gaze: u64,
-    /// Fixations and blinks beside gaze.
+    /// Number of rows of fixations and blinks, in the table beside the gaze samples.
     pub eye_events: u64,
-    /// Samples of the arm.
+    /// Number of rows in the table of the robot arm's motion.
     pub arm: u64,
-    /// Rows about single aspects of beliefs, of which one event has many.
+    /// Number of rows in the table of beliefs, of which one logged event has one per state aspect.
     pub beliefs: u64,
-    /// Events with words that somebody typed, which were left out.
+    /// Events that were left out because they contain words that somebody typed.
     pub words_left_out: u64,
 }
 
-/// A row of the events.
+/// A row of the table of events.
 #[derive(Debug)]
 struct EventRow {
     onset: SessionTime,
     duration: Option<SessionTime>,
-    /// What follows the duration.
+    /// Cells of the columns that follow the duration.
     rest: String,
-    /// It stands among the events of the tracker, where there is gaze.
+    /// The row belongs into the eye tracker's table of events instead, if the recording has gaze.
     is_of_eyes: bool,
 }
 
-/// The tables of one recording, which grow event by event.
+/// The BIDS tables of one recording, which grow event by event.
 #[derive(Debug)]
 pub struct RecordingTables {
     with_words: bool,
@@ -67,7 +68,7 @@ pub struct RecordingTables {
 }
 
 impl RecordingTables {
-    /// The tables before the first event. `with_words`: what somebody typed is exported, too.
+    /// Tables without rows, before the first event. `with_words`: text that somebody typed is exported, too.
     pub fn new(session: &Session, with_words: bool) -> RecordingTables {
         let is_pointer = session.spec.participant.gaze == GazeSource::Mouse;
         RecordingTables {
@@ -82,12 +83,12 @@ impl RecordingTables {
         }
     }
 
-    /// Why the trial ended, if it did.
+    /// Why the trial ended; `None` if it did not end.
     pub fn ended(&self) -> Option<EndReason> {
         self.ended
     }
 
-    /// Adds an event that was applied to the session. `outcome`: of presses.
+    /// Adds an event that was applied to the session. `outcome`: effect and judgement, for presses only.
     pub fn note(&mut self, stamped: &Stamped, session: &Session, outcome: Option<PressOutcome>) {
         let mut is_of_eyes = false;
         match &stamped.event {
@@ -134,7 +135,7 @@ impl RecordingTables {
         tsv::line(all)
     }
 
-    /// The files, after the last event, with the numbers of their rows.
+    /// The files of the recording, after the last event, with the numbers of their rows.
     pub fn into_files(self, session: &Session) -> (Vec<BidsFile>, TableCounts) {
         let task = TaskFacts { name: session.kitchen.name.clone(), title: session.kitchen.title.clone() };
         let has_gaze = self.samples.has_gaze();

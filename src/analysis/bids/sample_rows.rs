@@ -1,4 +1,4 @@
-//! Gaze as eye-tracking recording with what the tracker found in it, and the motion of the arm.
+//! BIDS tables of gaze samples, of fixations and blinks that the eye tracker found, and of the robot arm's motion.
 
 use serde_json::{Map, Value, json};
 
@@ -11,7 +11,7 @@ use crate::session::settings::GazeSource;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{Session, Stamped};
 
-/// Samples further apart than this do not count for the rate, in seconds.
+/// Longer intervals between samples count as gaps and are left out of the sampling rate, in seconds.
 const GAP_S: f64 = 0.5;
 
 const GAZE: [BidsColumn; 7] = [
@@ -79,7 +79,7 @@ const ARM: [BidsColumn; 14] = [
     BidsColumn::new("seq", "Number of the sample in the log"),
 ];
 
-/// The samples of gaze and arm, and what the tracker found.
+/// Rows of gaze samples, of fixations and blinks, and of arm samples.
 #[derive(Debug, Default)]
 pub(super) struct SampleRows {
     gaze: Vec<(SessionTime, String)>,
@@ -105,7 +105,7 @@ impl SampleRows {
         self.arm.push((stamped.time, tsv::line(cells)));
     }
 
-    /// Notes what the tracker found; `false` for everything else that it tells.
+    /// Adds a fixation or a blink that the eye tracker found; returns `false` for every other event of the tracker.
     pub(super) fn note_found(&mut self, stamped: &Stamped, event: &TrackerEvent) -> bool {
         let (onset, cells) = match event {
             TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, began_ns, .. } => {
@@ -131,12 +131,12 @@ impl SampleRows {
         !self.gaze.is_empty()
     }
 
-    /// Numbers of samples of gaze, of what the tracker found, and of samples of the arm.
+    /// Numbers of gaze samples, of fixations and blinks, and of arm samples.
     pub(super) fn counts(&self) -> [u64; 3] {
         [&self.gaze, &self.eye_events, &self.arm].map(|rows| rows.len() as u64)
     }
 
-    /// The tables with their sidecars. What the tracker found stands in the events where there is no gaze.
+    /// The tables with their sidecar files. Without gaze samples, fixations and blinks stand in the table of events.
     pub(super) fn into_files(mut self, session: &Session, about: &ViewingFacts, task: &TaskFacts) -> Vec<BidsFile> {
         self.gaze.sort_by_key(|(time, _)| *time);
         self.eye_events.sort_by_key(|(time, _)| *time);
@@ -168,19 +168,19 @@ impl SampleRows {
     }
 }
 
-/// What is known of the participant's view of the display, and of its gaze.
+/// What is known of the participant's view of the display, and of the gaze data.
 #[derive(Clone, Debug)]
 pub(super) struct ViewingFacts {
-    /// Gaze is the place of a mouse pointer, not of an eye.
+    /// Gaze stands for the position of a mouse pointer, not of an eye.
     pub is_pointer: bool,
     /// Size of the display's page in pixels.
     pub resolution: Option<[u32; 2]>,
-    /// How often the accuracy of gaze was measured.
+    /// Number of checks of the gaze's accuracy.
     pub gaze_checks: u64,
 }
 
 impl ViewingFacts {
-    /// The display, as the sidecar of events describes it.
+    /// Description of the display for the sidecar file of the table of events.
     pub(super) fn presentation(&self, session: &Session) -> Value {
         let mut display = json!({
             "ScreenDistance": session.spec.tracker.distance_m,
@@ -204,7 +204,7 @@ impl ViewingFacts {
         }
         tell("PhysioType", json!("eyetrack"));
         tell("RecordedEye", json!("cyclopean"));
-        // Coordinates on a screen take its size in pixels, which only a connected display tells.
+        // BIDS asks for the display's size in pixels, which only a connected display tells.
         if self.resolution.is_some() {
             tell("SampleCoordinateSystem", json!("gaze-on-screen"));
         } else {
@@ -232,7 +232,7 @@ impl ViewingFacts {
     }
 }
 
-/// What a sidecar says of the samples: rate, first time, columns.
+/// Adds sampling rate, first time and columns of a table of samples to its sidecar file.
 fn add_table(sidecar: &mut Map<String, Value>, rows: &[(SessionTime, String)], columns: &[BidsColumn]) {
     sidecar.insert("SamplingFrequency".to_string(), json!(rate_hz(rows)));
     sidecar.insert("StartTime".to_string(), json!(rows.first().map_or(0.0, |(time, _)| time.as_secs_f64())));
@@ -240,14 +240,14 @@ fn add_table(sidecar: &mut Map<String, Value>, rows: &[(SessionTime, String)], c
     sidecar.extend(tsv::described(columns));
 }
 
-/// Samples a second, where they follow each other; 0 where no two do.
+/// Sampling rate in Hz over intervals without gaps; 0 if there is none.
 fn rate_hz(rows: &[(SessionTime, String)]) -> f64 {
     let gaps = rows.windows(2).map(|pair| pair[1].0.secs_since(pair[0].0)).filter(|gap| *gap < GAP_S);
     let (count, sum) = gaps.fold((0.0, 0.0), |(count, sum), gap| (count + 1.0, sum + gap));
     if sum > 0.0 { (1000.0 * count / sum).round() / 1000.0 } else { 0.0 }
 }
 
-/// A compressed table, which has no line with the names of columns, and its sidecar.
+/// A table to be compressed, without a header line as BIDS wants it, and its sidecar file.
 fn pair(name: &str, sidecar: Map<String, Value>, rows: &[(SessionTime, String)]) -> [BidsFile; 2] {
     let text: String = rows.iter().map(|(_, line)| line.as_str()).collect();
     [BidsFile::new(format!("{name}.tsv.gz"), text), BidsFile::json(format!("{name}.json"), &sidecar.into())]

@@ -1,4 +1,4 @@
-//! The table of a participant's sessions, one for each recording.
+//! The BIDS table of a participant's sessions, with a row for each recording.
 
 use super::event_cells;
 use super::tsv::{self, BidsColumn, BidsFile, or_nothing, seconds, yes};
@@ -52,13 +52,13 @@ const COLUMNS: [BidsColumn; 21] = [
     BidsColumn::new("program", "Version of tomcom that made the recording"),
 ];
 
-/// A session of a participant.
+/// Row of a recording in the BIDS table of sessions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SessionRow(String);
 
 impl SessionRow {
-    /// The row of a recording that was read to its end. `label`: its session; `ended`: why the trial ended; `is_complete`: it has its end;
-    /// `counts`: the analysis takes it.
+    /// The row of a recording that was read to its end. `label`: BIDS label of its session; `ended`: why the trial
+    /// ended; `is_complete`: the log is complete; `counts`: analyses include the trial.
     pub fn new(
         (label, recording): (&str, &str),
         header: &Header,
@@ -94,7 +94,7 @@ impl SessionRow {
     }
 }
 
-/// The table of the sessions of the participant with this label, and its sidecar.
+/// The table of sessions of the participant with this label, with its sidecar file.
 pub fn sessions_files(participant: &str, rows: &[SessionRow]) -> [BidsFile; 2] {
     let path = format!("sub-{participant}/sub-{participant}_sessions");
     let text: String = rows.iter().map(|row| row.0.as_str()).collect();

@@ -1,4 +1,4 @@
-//! How long events last: what one event begins, a later one ends.
+//! Durations of events in the BIDS export: an event such as a pause begins a span of time that a later event ends.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
 use crate::session::wall_display::DisplayEvent;
 
-/// Something that goes on for a time.
+/// Something that lasts from one event to another, such as a pause or a signal.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Span {
     Trial,
@@ -34,13 +34,13 @@ enum Span {
     EyesClosed,
 }
 
-/// What goes on now, by the rows of the events that began it.
+/// Spans that have begun and not ended, with the table row and time of the event that began each.
 #[derive(Debug, Default)]
 pub(super) struct OpenSpans(BTreeMap<Span, (usize, SessionTime)>);
 
 impl OpenSpans {
-    /// Notes an event that stands in this row: its duration so far (nothing for what is not over), and what it ends, by the row that
-    /// began it, with how long it lasted.
+    /// Notes an event that stands in row `row` of the table: returns its duration so far (`None` for a span that goes
+    /// on), and the spans that it ends, each as the row of the event that began it and its duration.
     pub(super) fn note(
         &mut self,
         row: usize,
@@ -66,7 +66,7 @@ impl OpenSpans {
     }
 }
 
-/// Whether it cannot go on when the trial is over.
+/// Whether the end of the trial ends this span, too.
 fn is_of_trial(span: &Span) -> bool {
     matches!(
         span,
@@ -83,7 +83,7 @@ fn is_of_trial(span: &Span) -> bool {
     )
 }
 
-/// What an event begins.
+/// The span that an event begins.
 fn begun(event: &Event) -> Option<Span> {
     Some(match event {
         Event::TrialStarted => Span::Trial,
@@ -108,7 +108,8 @@ fn begun(event: &Event) -> Option<Span> {
     })
 }
 
-/// What an event ends, besides what of the same kind goes on when it begins something.
+/// The spans that an event ends. (An event that begins a span also ends an earlier one of the same kind; that one is
+/// not listed here.)
 fn ended(event: &Event) -> Vec<Span> {
     match event {
         Event::TrialResumed => vec![Span::Pause],

@@ -1,4 +1,4 @@
-//! Tab separated tables, and the sidecars that describe their columns.
+//! Tab-separated tables, and the JSON sidecar files that describe their columns, as BIDS wants them.
 
 use std::borrow::Cow;
 
@@ -6,16 +6,16 @@ use serde_json::{Map, Value, json};
 
 use crate::base::time::SessionTime;
 
-/// What BIDS writes where there is no value.
+/// Cell of a BIDS table that has no value.
 pub(super) const NOTHING: &str = "n/a";
 
-/// A file of the tree.
+/// A file of a BIDS data set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BidsFile {
-    /// Its path below the tree, or what follows the entities of a recording in its name, as in `events.tsv`. What ends with `.gz` is to
-    /// be compressed.
+    /// Path of the file below the data set's root, or the end of a recording's file name, as in `events.tsv`. Files
+    /// that end with `.gz` are to be compressed by the caller.
     pub name: String,
-    /// Its text, not compressed.
+    /// Text of the file, not compressed.
     pub text: String,
 }
 
@@ -25,12 +25,12 @@ impl BidsFile {
     }
 
     pub(super) fn json(name: impl Into<String>, value: &Value) -> BidsFile {
-        // A value of strings and finite numbers is always written.
+        // JSON of strings and finite numbers can always be written.
         BidsFile::new(name, format!("{value:#}\n"))
     }
 }
 
-/// The task, as sidecars name it.
+/// The experimental task, as BIDS sidecar files describe it.
 #[derive(Clone, Debug)]
 pub(super) struct TaskFacts {
     pub name: String,
@@ -38,7 +38,7 @@ pub(super) struct TaskFacts {
 }
 
 impl TaskFacts {
-    /// Adds the task to a sidecar.
+    /// Adds the task's fields to a sidecar file.
     pub(super) fn tell(&self, sidecar: &mut Map<String, Value>) {
         sidecar.insert("TaskName".to_string(), json!(self.name));
         let told = format!("A person and a robot cook together what is ordered, by pressing buttons: {}", self.title);
@@ -46,14 +46,14 @@ impl TaskFacts {
     }
 }
 
-/// A column, as a sidecar describes it.
+/// A column of a BIDS table, as a sidecar file describes it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BidsColumn {
     pub name: &'static str,
     pub description: &'static str,
-    /// Empty: no unit.
+    /// Unit of the column's values; empty for none.
     pub units: &'static str,
-    /// Values with their meanings; none: not a list of values.
+    /// Possible values with their meanings; empty if values are not from a list.
     pub levels: &'static [(&'static str, &'static str)],
 }
 
@@ -89,23 +89,23 @@ impl BidsColumn {
     }
 }
 
-/// Descriptions of columns as the fields of a sidecar.
+/// Columns with their descriptions, as the fields of a sidecar file.
 pub(super) fn described(columns: &[BidsColumn]) -> Map<String, Value> {
     columns.iter().map(|column| (column.name.to_string(), column.described())).collect()
 }
 
-/// The names of columns.
+/// The names of a BIDS table's columns.
 pub(super) fn names(columns: &[BidsColumn]) -> Vec<&'static str> {
     columns.iter().map(|column| column.name).collect()
 }
 
-/// A line of a table with its end.
+/// A line of a tab-separated table, with the line end.
 pub(super) fn line<'a>(cells: impl IntoIterator<Item = impl Into<Cow<'a, str>>>) -> String {
     let cells: Vec<String> = cells.into_iter().map(|one| cell(&one.into())).collect();
     cells.join("\t") + "\n"
 }
 
-/// A cell: without tabs and line ends, which would end it, and in quotes where it has quotes.
+/// Text of one cell: tabs and line ends become spaces, and text that contains quotation marks is quoted.
 fn cell(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     match plain.trim() {
@@ -115,17 +115,17 @@ fn cell(text: &str) -> String {
     }
 }
 
-/// A time in seconds, to the nanosecond.
+/// Session time in seconds with nine decimals (nanoseconds), for a table cell.
 pub(super) fn seconds(time: SessionTime) -> String {
     format!("{}.{:09}", time.0 / 1_000_000_000, time.0 % 1_000_000_000)
 }
 
-/// A value, or nothing.
+/// A value as text, or "n/a" for `None`.
 pub(super) fn or_nothing<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(|| NOTHING.to_string(), |value| value.to_string())
 }
 
-/// 1 for yes, 0 for no.
+/// Cell of a truth value: 1 for yes, 0 for no.
 pub(super) fn yes(is: bool) -> String {
     u8::from(is).to_string()
 }

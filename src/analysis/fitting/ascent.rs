@@ -1,12 +1,13 @@
-//! Maximises a noisy log likelihood within bounds by a sequence of response surfaces (Box and Wilson 1951). Single comparisons
-//! are unreliable under noise; a surface averages the noise over its points and estimates its size.
+//! Maximises a noisy log likelihood within bounds by a sequence of response surfaces (Box and Wilson 1951). Single
+//! comparisons are unreliable under noise; a surface averages the noise over its points and estimates its size.
 //!
-//! A variable whose maximum lies at a bound, or whose bound is not significantly worse than the maximum, is held at that bound.
-//! It gets one end of a profile likelihood interval instead of a standard error (Venzon and Moolgavkar 1988).
+//! A variable whose maximum lies at a bound, or whose bound is not significantly worse than the maximum, is held at
+//! that bound. It gets one end of a profile likelihood interval instead of a standard error (Venzon and Moolgavkar
+//! 1988).
 
 use super::response_surface::{QuadraticSurface, REACH, points, surface};
 
-/// Step size of the first surface.
+/// Step size of the first response surface.
 const FIRST_STEP: f64 = 0.4;
 /// Steps are chosen so that one step lowers the log likelihood by this much: least and most in nats, and in standard
 /// deviations of the noise.
@@ -15,12 +16,13 @@ const STEP_NOISE: f64 = 0.5;
 /// Bounds of a step, and the largest factor between successive steps.
 const STEPS: [f64; 2] = [0.02, 1.6];
 const STEP_CHANGE: f64 = 2.5;
-/// Difference of log likelihoods that is significant at 5 %: half the 95 % quantile of chi squared with one degree of freedom.
+/// Difference of log likelihoods that is significant at 5 %: half the 95 % quantile of chi squared with one degree of
+/// freedom.
 const REJECTED_NATS: f64 = 1.92;
 /// First step of the search for the end of a profile interval; the end is found to within a quarter of it.
 const PROFILE_STEP: f64 = 0.3;
-/// A bound that lowers the log likelihood by more than this (plus the noise), with the other variables at the maximum, is rejected
-/// without optimising the other variables.
+/// A bound that lowers the log likelihood by more than this (plus the noise), with the other variables at the maximum,
+/// is rejected without optimising the other variables.
 const HOPELESS_NATS: f64 = 30.0;
 /// Distance to a bound below which a variable is at the bound.
 const CLOSE: f64 = 1e-9;
@@ -28,29 +30,29 @@ const CLOSE: f64 = 1e-9;
 /// The bound at which a variable has its maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoundReached {
-    /// The lower bound.
+    /// The maximum lies at the lower bound.
     Low,
-    /// The upper bound.
+    /// The maximum lies at the upper bound.
     High,
 }
 
-/// Estimate of one variable with its uncertainty.
+/// Estimate of one variable of a likelihood, with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedVariable {
-    /// Its best value.
+    /// Best value of the variable.
     pub at: f64,
-    /// `None` at a bound, and where the log likelihood is not concave.
+    /// Standard error of the variable; `None` at a bound, and where the log likelihood is not concave.
     pub standard_error: Option<f64>,
     /// The bound at which the variable has its maximum, if any.
     pub end: Option<BoundReached>,
-    /// Other end of the 95 % profile interval of a variable at a bound; `None` if it was not found.
+    /// Other end of the 95 % profile likelihood interval of a variable at a bound; `None` if that end was not found.
     pub limit: Option<f64>,
 }
 
-/// Result of a search.
+/// Result of a search for the maximum of a log likelihood.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Maximum {
-    /// The variables, in the order in which they were given.
+    /// Estimates of the variables, in the order in which they were passed.
     pub variables: Vec<FittedVariable>,
     /// Number of evaluations of the log likelihood.
     pub evaluations: usize,
@@ -58,7 +60,8 @@ pub struct Maximum {
     pub converged: bool,
 }
 
-/// Maximises a log likelihood within bounds; `loss` is its negative in nats. Uses about `most` evaluations at most.
+/// Maximises a log likelihood within bounds; `loss` is its negative in nats. Stops after about `most` evaluations of
+/// `loss`.
 pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> Maximum {
     let inside = |(at, [low, high]): (&f64, &[f64; 2])| at.clamp(*low, *high);
     let at: Vec<f64> = start.iter().zip(bounds).map(inside).collect();
@@ -105,7 +108,7 @@ pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]
 struct Search<'a, F> {
     loss: F,
     bounds: &'a [[f64; 2]],
-    /// Best point so far.
+    /// Best point that the search has found so far.
     at: Vec<f64>,
     steps: Vec<f64>,
     evaluations: usize,
@@ -113,8 +116,8 @@ struct Search<'a, F> {
 }
 
 impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
-    /// Maximises over the free variables. Returns the surface around the maximum (`Some(None)` without free variables), or `None` if
-    /// the search did not converge.
+    /// Maximises over the free variables. Returns the surface around the maximum (`Some(None)` without free variables),
+    /// or `None` if the search did not converge.
     fn climb(&mut self, free: &[usize]) -> Option<Option<QuadraticSurface>> {
         if free.is_empty() {
             return Some(None);
@@ -142,8 +145,8 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         }
     }
 
-    /// A surface over the free variables around the best point, inside the bounds, with its centre; `None` if too few evaluations
-    /// are left.
+    /// A surface over the free variables around the best point, inside the bounds, with its centre; `None` if too few
+    /// evaluations are left.
     fn survey(&mut self, free: &[usize]) -> Option<(Vec<f64>, QuadraticSurface)> {
         if self.evaluations + points(free.len()) > self.most {
             return None;
@@ -197,7 +200,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         free.iter().enumerate().map(wanted).collect()
     }
 
-    /// The bound at which a variable is, if any.
+    /// The bound at which a variable lies, if any.
     fn end(&self, index: usize) -> Option<BoundReached> {
         let [low, high] = self.bounds[index];
         match self.at[index] {
@@ -231,8 +234,8 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         None
     }
 
-    /// End of the profile interval of a variable at a bound: where the profile log likelihood is significantly below that at the
-    /// bound, beyond the noise.
+    /// End of the profile interval of a variable at a bound: where the profile log likelihood is significantly below
+    /// that at the bound, beyond the noise.
     fn limit(&mut self, index: usize, end: BoundReached, held: &[Option<BoundReached>]) -> Option<f64> {
         let others: Vec<usize> = (0..held.len()).filter(|&other| other != index && held[other].is_none()).collect();
         let best = self.at.clone();
@@ -259,7 +262,8 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
         found
     }
 
-    /// Least loss over these variables near the best point, and the standard deviation of a difference of two such values.
+    /// Least loss over the variables `others` near the best point, and the standard deviation of a difference between
+    /// two such minima.
     fn profile(&mut self, others: &[usize]) -> Option<(f64, f64)> {
         if others.is_empty() {
             self.evaluations += 1;
@@ -271,7 +275,7 @@ impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
     }
 }
 
-/// Standard deviation of a difference between the minima of two surfaces, as a share of that of single values.
+/// Standard deviation of a difference between the minima of two surfaces, as a multiple of the noise of single values.
 fn share_of_noise(variables: usize) -> f64 {
     let count = variables as f64;
     let terms = 1.0 + count + count * (count + 1.0) / 2.0;
@@ -285,7 +289,7 @@ mod tests {
     use super::*;
     use crate::base::rng::stream;
 
-    /// Of 2 variables: known with standard errors of 0.1 and 0.2.
+    /// Loss with its minimum at a point of 2 variables, which it determines with standard errors of 0.1 and 0.2.
     fn bowl(at: &[f64]) -> f64 {
         50.0 * (at[0] - 0.7).powi(2) + 12.5 * (at[1] + 1.2).powi(2)
     }

@@ -3,30 +3,30 @@
 
 use std::cell::Cell;
 
-/// Reflection, expansion, contraction and shrinking, as in the original.
+/// Coefficients of reflection, expansion, contraction and shrinking, as in the original paper.
 const REFLECT: f64 = 1.0;
 const EXPAND: f64 = 2.0;
 const CONTRACT: f64 = 0.5;
 const SHRINK: f64 = 0.5;
 
-/// A corner of the simplex: the function's value and the point.
+/// A corner of the simplex: the function's value there, and the point.
 type Corner = (f64, Vec<f64>);
 
-/// The smallest value that was found, and where.
+/// The smallest value of a function that a search found, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {
     /// The point of the minimum, one value per argument of the function.
     pub at: Vec<f64>,
-    /// The function's value there.
+    /// Value of the function at the minimum.
     pub value: f64,
     /// Number of function evaluations.
     pub evaluations: usize,
-    /// The values at the corners of the last simplex are within the tolerance.
+    /// Whether the function's values at the corners of the last simplex are within the tolerance.
     pub converged: bool,
 }
 
 /// Looks for the minimum of `function` from `start`, with first steps of these sizes along each variable, until the
-/// values at the corners differ by at most `tolerance`, or the function was asked `most` times. Values that are not
+/// values at the corners differ by at most `tolerance`, or the function was evaluated `most` times. Values that are not
 /// finite count as infinitely bad.
 pub fn minimise(
     mut function: impl FnMut(&[f64]) -> f64,
@@ -59,7 +59,7 @@ pub fn minimise(
     Minimum { at, value, evaluations: asked.get(), converged }
 }
 
-/// Replaces the worst of the sorted corners by a better one, or draws all of them towards the best.
+/// Replaces the worst corner of a sorted simplex by a better one, or shrinks the simplex towards its best corner.
 fn improve(corners: &mut [Corner], ask: &mut impl FnMut(Vec<f64>) -> Corner) {
     let worst = corners.len() - 1;
     let centre = centre(&corners[..worst]);
@@ -88,7 +88,7 @@ fn improve(corners: &mut [Corner], ask: &mut impl FnMut(Vec<f64>) -> Corner) {
     }
 }
 
-/// The centre of corners.
+/// Centroid of corners of the simplex.
 fn centre(corners: &[Corner]) -> Vec<f64> {
     let variables = corners[0].1.len();
     (0..variables).map(|index| corners.iter().map(|(_, at)| at[index]).sum::<f64>() / corners.len() as f64).collect()

@@ -1,39 +1,39 @@
-//! What answers to probes add to a fit.
+//! Answers to freeze probes as additional evidence in a fit of the human model.
 
 use serde::Serialize;
 
 use crate::base::words::count;
 use crate::mind::fitting::{Likelihood, Parameter};
 
-/// Answers to probes in a fit, and what they add to the presses.
+/// Effect of the answers to freeze probes on a fit of the human model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedAnswers {
-    /// Number of answers.
+    /// Number of answers to freeze probes.
     pub answers: u64,
-    /// Log likelihood per answer with the parameters from before, in nats.
+    /// Log likelihood per answer with the parameters before the fit, in nats.
     pub log_likelihood_before: f64,
-    /// Log likelihood per answer with the parameters that were found, in nats.
+    /// Log likelihood per answer with the fitted parameters, in nats.
     pub log_likelihood: f64,
-    /// The parameters as presses alone tell them, beside this fit.
+    /// For each parameter, its fit to presses alone beside the fit to presses and answers.
     pub shrinkage: Vec<IntervalShrinkage>,
 }
 
-/// A parameter fitted to presses alone, beside the fit to presses and answers.
+/// How far the answers to freeze probes narrow a parameter's interval, compared with presses alone.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct IntervalShrinkage {
     /// The parameter's name in a parameter file.
     pub name: &'static str,
-    /// Its value by presses alone.
+    /// Value of the parameter when fitted to presses alone.
     pub value: f64,
-    /// Its 95 % interval by presses alone, as in the fit.
+    /// 95 % interval of the parameter when fitted to presses alone, computed as in the fit.
     pub interval: Option<[Option<f64>; 2]>,
-    /// Width of the interval by presses and answers divided by that by presses alone, on the scale of the fit; below 1 answers have
-    /// narrowed it. Null where one of the two does not have both ends.
+    /// Width of the interval from presses and answers divided by the width from presses alone, on the scale of the fit;
+    /// below 1 if answers have narrowed the interval. Null where one of the two intervals lacks an end.
     pub ratio: Option<f64>,
 }
 
 impl FittedAnswers {
-    /// Answers under the parameters from before and those that were found.
+    /// The answers under the parameters before the fit and under the fitted ones.
     pub fn from_likelihoods(before: Likelihood, after: Likelihood) -> FittedAnswers {
         let answers = before.answers.max(1) as f64;
         FittedAnswers {
@@ -46,7 +46,8 @@ impl FittedAnswers {
 }
 
 impl IntervalShrinkage {
-    /// Compares the intervals of a parameter: by presses alone with its value there, and by presses and answers.
+    /// Compares two intervals of a parameter: from presses alone (with the value of that fit), and from presses and
+    /// answers.
     pub fn between(
         parameter: Parameter,
         value: f64,
@@ -62,7 +63,7 @@ impl IntervalShrinkage {
     }
 }
 
-/// The answers as text.
+/// What the answers to freeze probes add to the fit, as text.
 pub(super) fn describe(answers: &FittedAnswers) -> String {
     let mut text = format!(
         "\n{} to probes: log likelihood per answer {:.4}, before {:.4}\n{:<24}{:>16}{:>24}\n",

@@ -1,10 +1,11 @@
 //! Maximum likelihood fits of the human model to recorded presses.
 //!
-//! The log likelihood is the sum over all presses of ln p(press | estimate before the press), and, if probes are used, over all
-//! answers of ln p(answer | estimate at the freeze). Parameters are transformed to an
-//! unbounded scale and searched within bounds. The filter's random numbers make the log likelihood noisy by some nats, so the
-//! search uses a sequence of quadratic surfaces ([`ascent`]). Standard errors follow from the curvature of the last surface (the
-//! observed information) and from the noise. A parameter whose maximum lies at a bound is not identified; its interval is one-sided.
+//! The log likelihood is the sum over all presses of ln p(press | estimate before the press), and, if probes are used,
+//! over all answers of ln p(answer | estimate at the freeze). Parameters are transformed to an unbounded scale and
+//! searched within bounds. The filter's random numbers make the log likelihood noisy by some nats, so the search uses a
+//! sequence of quadratic surfaces ([`ascent`]). Standard errors follow from the curvature of the last surface (the
+//! observed information) and from the noise. A parameter whose maximum lies at a bound is not identified; its interval
+//! is one-sided.
 
 pub mod ascent;
 pub mod downhill_simplex;
@@ -23,42 +24,42 @@ use crate::session::ranges;
 /// Half width of a 95 % interval, in standard errors.
 const HALF_WIDTH: f64 = 1.96;
 
-/// Facts about the recordings of a fit, apart from their observations.
+/// Number, human model and homogeneity of the recordings in a fit.
 #[derive(Clone, Copy, Debug)]
 pub struct FittedRecordings<'a> {
-    /// Number of recordings.
+    /// Number of recordings in the fit.
     pub number: u64,
     /// Human model in the header of the first recording.
     pub model: &'a HumanModel,
-    /// Whether another recording has different parameters.
+    /// Whether the header of another recording has different parameters.
     pub differ: bool,
 }
 
-/// Which parameters to fit, and how.
+/// Which parameters of the human model to fit, from which start, and with how many evaluations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitPlan {
-    /// The parameters to fit.
+    /// The parameters of the human model to fit.
     pub parameters: Vec<Parameter>,
     /// Start of the search, and value of parameters that are not fitted. `None` for the parameters in the recordings.
     pub start: Option<HumanModel>,
-    /// Largest number of evaluations.
+    /// Largest number of evaluations of the likelihood.
     pub most_tries: usize,
 }
 
-/// The output of `tomcom fit`.
+/// Result of fitting the human model: the output of `tomcom fit`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FitSummary {
-    /// Number of recordings.
+    /// Number of recordings in the fit.
     pub recordings: u64,
-    /// Presses of the human.
+    /// Number of presses of the human in these recordings.
     pub human_actions: u64,
-    /// Log likelihood per press with the parameters from before, in nats.
+    /// Log likelihood per press with the parameters before the fit, in nats.
     pub log_likelihood_before: f64,
-    /// Log likelihood per press with the parameters that were found, in nats.
+    /// Log likelihood per press with the fitted parameters, in nats.
     pub log_likelihood: f64,
-    /// Number of parameter sets tried.
+    /// Number of parameter sets whose likelihood was evaluated.
     pub tries: u64,
-    /// Largest number of evaluations that was allowed.
+    /// Largest number of evaluations of the likelihood that was allowed.
     pub most_tries: u64,
     /// Whether the search began with the parameters in the recordings rather than those of a file.
     pub begins_with_recordings: bool,
@@ -66,34 +67,34 @@ pub struct FitSummary {
     pub recordings_differ: bool,
     /// Whether the search converged within the allowed evaluations.
     pub converged: bool,
-    /// The parameters that were fitted.
+    /// Results for the parameters that were fitted.
     pub parameters: Vec<FittedParameter>,
     /// The human model with the fitted values.
     #[serde(skip)]
     pub model: HumanModel,
-    /// Answers to probes, if they were used.
+    /// Effect of the answers to freeze probes on the fit, if they were used.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub answers: Option<FittedAnswers>,
 }
 
-/// Result for one fitted parameter.
+/// Result of a fit for one parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedParameter {
     /// The parameter's name in a parameter file: "tau".
     pub name: &'static str,
-    /// Its unit.
+    /// Unit of the parameter.
     pub unit: &'static str,
-    /// Its value before.
+    /// Value of the parameter before the fit.
     pub before: f64,
-    /// The value that was found.
+    /// Fitted value of the parameter.
     pub value: f64,
     /// Whether the interval is finite on both sides within the bounds of the search.
     pub identified: bool,
-    /// Null where the parameter is not identified, where the log likelihood is not concave (parameters cannot be distinguished), and
-    /// where the search did not converge.
+    /// Standard error of the parameter; null where the parameter is not identified, where the log likelihood is not
+    /// concave (parameters cannot be distinguished), and where the search did not converge.
     pub standard_error: Option<f64>,
-    /// 95 % interval, symmetric on the scale of the fit; for a parameter at a bound, its profile likelihood interval. An end beyond
-    /// the bounds of the search is null.
+    /// 95 % interval of the parameter, symmetric on the scale of the fit; for a parameter at a bound, its profile
+    /// likelihood interval. An end beyond the bounds of the search is null.
     pub interval: Option<[Option<f64>; 2]>,
 }
 
@@ -123,7 +124,7 @@ impl FittedParameter {
         }
     }
 
-    /// The interval in words.
+    /// The parameter's interval in words.
     fn span(&self) -> String {
         match self.interval {
             None => "-".to_string(),
@@ -135,7 +136,8 @@ impl FittedParameter {
     }
 }
 
-/// Fits parameters. `likelihood` returns the likelihood of all trials under a model; `tried` is called after each evaluation.
+/// Fits parameters of the human model. `likelihood` returns the likelihood of all trials under a model; `tried` is
+/// called after each evaluation.
 pub fn fit(
     trials: FittedRecordings<'_>,
     plan: &FitPlan,
@@ -188,7 +190,7 @@ pub fn fit(
     }
 }
 
-/// What the comment of a file of fitted parameters begins with.
+/// Beginning of the comment at the top of a file of fitted parameters.
 pub const FITTED: &str = "Parameters of the human model, fitted to";
 
 /// Comment at the top of a file with fitted parameters.
@@ -217,7 +219,7 @@ pub fn comment(fit: &FitSummary) -> String {
     )
 }
 
-/// The fit as text.
+/// The fit as text for the terminal.
 pub fn describe(fit: &FitSummary) -> String {
     let lost = fit.log_likelihood_before - fit.log_likelihood;
     let end = match fit.converged {

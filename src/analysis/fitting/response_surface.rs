@@ -1,27 +1,27 @@
-//! Quadratic response surfaces: least squares fits to the values of a noisy function over a central composite design (Box and
-//! Wilson 1951), with their minimum and curvature.
+//! Quadratic response surfaces: least squares fits to the values of a noisy function over a central composite design
+//! (Box and Wilson 1951), with their minimum and curvature.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Range in which a surface is trusted, in steps from its centre.
+/// Distance from the centre up to which a quadratic surface is trusted, in steps.
 pub const REACH: f64 = 1.5;
 /// Number of coordinate descent sweeps to the minimum.
 const SWEEPS: usize = 60;
 /// A matrix counts as singular if its smallest pivot is at most this share of its largest.
 const SINGULAR: f64 = 1e-12;
 
-/// A quadratic surface; variables are in steps from its centre.
+/// A quadratic surface that approximates a noisy function; variables are in steps from its centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuadraticSurface {
-    /// Value at the centre.
+    /// Value of the surface at its centre.
     pub value: f64,
-    /// First derivatives at the centre.
+    /// First derivatives of the surface at its centre.
     pub slope: DVector<f64>,
-    /// Second derivatives.
+    /// Second derivatives of the surface.
     pub curvature: DMatrix<f64>,
     /// Standard deviation of the residuals.
     pub noise: f64,
-    /// Covariance of the slope that follows from the residuals.
+    /// Covariance of the first derivatives that follows from the residuals.
     slope_covariance: DMatrix<f64>,
 }
 
@@ -30,8 +30,8 @@ pub fn points(variables: usize) -> usize {
     design(variables).len()
 }
 
-/// Fits a surface around `centre`, with steps of the given sizes along each variable and each pair of variables. Values that
-/// are not finite are ignored; `None` if too few remain.
+/// Fits a surface around `centre`, with steps of the given sizes along each variable and each pair of variables. Values
+/// that are not finite are ignored; `None` if too few remain.
 pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<QuadraticSurface> {
     let n = centre.len();
     let (mut rows, mut values) = (Vec::new(), Vec::new());
@@ -72,14 +72,14 @@ fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
 }
 
 impl QuadraticSurface {
-    /// Value at a distance from the centre, in steps.
+    /// Value of the surface at a distance `by` from its centre, in steps.
     pub fn at(&self, by: &[f64]) -> f64 {
         let by = DVector::from_column_slice(by);
         self.value + self.slope.dot(&by) + by.dot(&(&self.curvature * &by)) / 2.0
     }
 
-    /// Minimum within bounds, in steps from the centre: the best result of coordinate descents from the centre and from the ends of
-    /// each axis.
+    /// Minimum of the surface within bounds, in steps from its centre: the best result of coordinate descents from the
+    /// centre and from the ends of each axis.
     pub fn least(&self, low: &[f64], high: &[f64]) -> Vec<f64> {
         let n = self.slope.len();
         let mut starts = vec![vec![0.0; n]];
@@ -112,15 +112,15 @@ impl QuadraticSurface {
         by
     }
 
-    /// Covariance of the minimum: the inverse of the curvature (the observed information, if values are negative log likelihoods)
-    /// plus the part due to noise. `None` if the surface is not convex.
+    /// Covariance of the position of the minimum: the inverse of the curvature (the observed information, if values are
+    /// negative log likelihoods) plus the part due to noise. `None` if the surface is not convex.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let inverse = inverse(self.curvature.clone())?;
         Some(&inverse * &self.slope_covariance * &inverse + &inverse)
     }
 }
 
-/// Points of the design, in steps from its centre.
+/// Points of the central composite design for `n` variables, in steps from the centre.
 fn design(n: usize) -> Vec<Vec<f64>> {
     let at = |moves: &[(usize, f64)]| {
         let mut by = vec![0.0; n];
@@ -131,7 +131,7 @@ fn design(n: usize) -> Vec<Vec<f64>> {
     for index in 0..n {
         points.extend([-1.0, -0.5, 0.5, 1.0].map(|step| at(&[(index, step)])));
         for other in 0..index {
-            // Half of the corners; the diagonals alternate.
+            // Only half of the corners are used; they alternate between the two diagonals.
             let turned = if (index + other) % 2 == 0 { 1.0 } else { -1.0 };
             points.extend([-1.0, 1.0].map(|step| at(&[(index, step), (other, turned * step)])));
         }
@@ -143,7 +143,7 @@ fn pairs(n: usize) -> Vec<(usize, usize)> {
     (0..n).flat_map(|one| (0..=one).map(move |other| (one, other))).collect()
 }
 
-/// Terms of the quadratic model: 1, every variable, every product of two variables.
+/// Terms of the quadratic model at a point: 1, every variable, every product of two variables.
 fn terms(by: &[f64]) -> Vec<f64> {
     let products = pairs(by.len()).into_iter().map(|(one, other)| by[one] * by[other]);
     std::iter::once(1.0).chain(by.iter().copied()).chain(products).collect()

@@ -1,30 +1,30 @@
-//! The channels of an export.
+//! Channels of messages in an export to MCAP files.
 
 use serde_json::Value;
 
 use super::schemas;
 
-/// A channel of messages.
+/// Channel of messages in an MCAP file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MessageChannel {
     /// Joint angles of the arm.
     Joints,
     /// Poses of the arm's links and of the participant's hand.
     Frames,
-    /// Force on the arm, distance of the hand, what the arm does.
+    /// Force on the arm, distance of the participant's hand, and what the arm does.
     Arm,
-    /// The recording in words.
+    /// Events of the recording in words.
     Log,
-    /// Events as the log has them, but samples.
+    /// Events as in the log, without gaze and arm samples.
     Events,
     /// Gaze samples.
     Gaze,
-    /// Beliefs: those of simulated participants, and estimates.
+    /// Beliefs of simulated participants, and the assistant's estimates.
     Beliefs,
 }
 
 impl MessageChannel {
-    /// All channels, in their order.
+    /// All channels of an MCAP file, in their order.
     pub const ALL: [MessageChannel; 7] = [
         MessageChannel::Joints,
         MessageChannel::Frames,
@@ -35,7 +35,7 @@ impl MessageChannel {
         MessageChannel::Beliefs,
     ];
 
-    /// Name of the channel.
+    /// Name of the channel, called its topic.
     pub fn topic(self) -> &'static str {
         match self {
             MessageChannel::Joints => "/robot/joints",
@@ -48,7 +48,7 @@ impl MessageChannel {
         }
     }
 
-    /// Name of its type.
+    /// Name of the type of the channel's messages.
     pub fn schema_name(self) -> &'static str {
         match self {
             MessageChannel::Joints => "foxglove.JointStates",
@@ -61,7 +61,7 @@ impl MessageChannel {
         }
     }
 
-    /// The JSON Schema of its type.
+    /// JSON Schema of the channel's messages.
     pub fn schema(self) -> Value {
         let mut schema = match self {
             MessageChannel::Joints => schemas::joints(),

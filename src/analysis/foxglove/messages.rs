@@ -1,4 +1,4 @@
-//! The messages of an event.
+//! Messages that an event of the log becomes in an export to MCAP files.
 
 use std::collections::BTreeMap;
 
@@ -13,26 +13,26 @@ use crate::robot::moment::{ArmSample, JOINT_NAMES};
 use crate::session::Stamped;
 use crate::session::event::Event;
 
-/// The frame of the arm's base.
+/// Name of the coordinate frame of the arm's base.
 const BASE: &str = "base_link";
-/// Levels of Foxglove's log.
+/// Severity in Foxglove's type `Log`.
 const INFO: u8 = 2;
 const WARNING: u8 = 3;
 
-/// A message on a channel.
+/// A message on a channel of an MCAP file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelMessage {
-    /// The channel.
+    /// The channel on which the message is sent.
     pub channel: MessageChannel,
     /// Session time at which the event was recorded.
     pub logged: SessionTime,
-    /// Session time at which it happened: of gaze, when the sample was taken.
+    /// Session time at which the event happened; for gaze, the time at which the sample was taken.
     pub published: SessionTime,
-    /// The message.
+    /// Content of the message, as JSON.
     pub content: Value,
 }
 
-/// Makes messages from events.
+/// Converts the events of a session into messages.
 #[derive(Debug)]
 pub struct MessageMaker {
     arm: Arm,
@@ -73,7 +73,7 @@ impl MessageMaker {
         }
     }
 
-    /// Joints, frames and the arm's work of a sample.
+    /// The messages of an arm sample: joint angles, coordinate frames, and what the arm does.
     fn moves(&self, now: SessionTime, sample: &ArmSample) -> [(MessageChannel, Value); 3] {
         let joint = |(name, angle): (&&str, &f64)| json!({ "name": name, "position": angle });
         let joints: Vec<Value> = JOINT_NAMES.iter().zip(&sample.joints).map(joint).collect();
@@ -110,7 +110,7 @@ fn time(time: SessionTime) -> Value {
     json!({ "sec": time.0 / 1_000_000_000, "nsec": time.0 % 1_000_000_000 })
 }
 
-/// An event as the log has it.
+/// The message with an event as in the log.
 fn event(stamped: &Stamped) -> Value {
     let mut fields = match serde_json::to_value(&stamped.event) {
         Ok(Value::Object(fields)) => fields,
@@ -120,7 +120,7 @@ fn event(stamped: &Stamped) -> Value {
     json!({ "timestamp": time(stamped.time), "seq": stamped.seq, "kind": stamped.event.kind(), "event": fields })
 }
 
-/// What was believed, of the two kinds of events that tell it.
+/// The message about beliefs, for the two kinds of events that record beliefs.
 fn beliefs(stamped: &Stamped) -> Option<Value> {
     let values = |values: &BTreeMap<String, f64>| -> Vec<Value> {
         values.iter().map(|(value, p)| json!({ "value": value, "p": p })).collect()
@@ -153,7 +153,7 @@ fn beliefs(stamped: &Stamped) -> Option<Value> {
     Some(content)
 }
 
-/// What happened, in words.
+/// The message that says in words what happened.
 fn words(stamped: &Stamped, follower: &Follower) -> Option<Value> {
     let line = event_lines::line(stamped, follower)?;
     let is_error = || follower.judged.last().is_some_and(|press| press.seq == stamped.seq && press.verdict.error);

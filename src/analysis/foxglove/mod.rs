@@ -1,5 +1,6 @@
-//! Recordings as messages on channels, as robotics tools read them: joints, frames and log in Foxglove's well-known types, gaze, beliefs
-//! and events in types of this program. All are JSON, and each has its JSON Schema.
+//! Recordings as messages on channels, which robotics tools such as Foxglove read from MCAP files: joints, frames and
+//! log in Foxglove's own types; gaze, beliefs and events in types of this program. All messages are JSON, and each type
+//! has a JSON Schema.
 
 mod channels;
 mod messages;

@@ -1,4 +1,5 @@
-//! JSON Schemas of the messages. Joints, frames and log are Foxglove's types of these names, with the fields that are used.
+//! JSON Schemas of the messages. Joints, frames and log are Foxglove's types of these names, with the fields that are
+//! used.
 
 use serde_json::{Value, json};
 
@@ -27,7 +28,7 @@ fn whole(description: &str) -> Value {
     json!({ "type": "integer", "description": description })
 }
 
-/// An object all of whose fields are there, unless they are named.
+/// Schema of an object; its fields are required unless `optional` names them.
 fn object(description: &str, properties: Value, optional: &[&str]) -> Value {
     let fields = properties.as_object().into_iter().flatten().map(|(name, _)| name.as_str());
     let required: Vec<&str> = fields.filter(|name| !optional.contains(name)).collect();

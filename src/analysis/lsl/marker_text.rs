@@ -1,4 +1,4 @@
-//! An event as text: its short code, and its JSON.
+//! An event as text for the Lab Streaming Layer: a short code, or the event's JSON.
 
 use serde_json::{Map, Value, json};
 
@@ -8,24 +8,24 @@ use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
 
-/// Fields of an event whose values are parts of its code, in this order.
+/// Names of the fields whose values are parts of an event's code, in this order.
 const PARTS: [&str; 14] = [
     "what", "did", "phase", "agent", "by", "button", "location", "order", "dish", "signal", "best", "mode", "item",
     "reason",
 ];
-/// Name of the field that lists which fields were left out.
+/// Name of the field that lists the fields that were left out to protect privacy.
 const LEFT_OUT: &str = "left_out";
 
-/// Code of an event: its kind and what it is about, with a slash between: `press/human/take rice`. Tools such as MNE select events by
-/// such parts.
+/// Code of an event: its kind and what it is about, with slashes between: `press/human/take rice`. Tools such as MNE
+/// select events by parts of such codes.
 pub fn code(stamped: &Stamped) -> String {
     let fields = fields(&stamped.event);
     let parts = PARTS.iter().filter_map(|part| part_text(fields.get(*part)?));
     std::iter::once(stamped.event.kind().to_string()).chain(parts).collect::<Vec<_>>().join("/")
 }
 
-/// The event as the log has it, without what people typed or answered and without names of devices; `left_out` lists the fields
-/// that are missing.
+/// The event as in the log, without text that people typed or answered and without names of devices; `left_out` lists
+/// the missing fields.
 pub fn event_text(stamped: &Stamped) -> String {
     let mut text = json!({ "seq": stamped.seq, "t_ns": stamped.time });
     if let Value::Object(text) = &mut text {
@@ -38,7 +38,7 @@ pub fn event_text(stamped: &Stamped) -> String {
     text.to_string()
 }
 
-/// The fields of an event in the log, but those that are left out.
+/// The fields of an event in the log, without those that are left out for privacy.
 fn fields(event: &Event) -> Map<String, Value> {
     let mut fields = match serde_json::to_value(event) {
         Ok(Value::Object(fields)) => fields,
@@ -48,8 +48,8 @@ fn fields(event: &Event) -> Map<String, Value> {
     fields
 }
 
-/// A value as a part of a code: a word, several of them, or the name and content of a variant (`highlight/cooking_pot`); `None` for
-/// anything else.
+/// A value as part of an event's code: a word, several words, or name and content of a variant
+/// (`highlight/cooking_pot`); `None` for any other value.
 fn part_text(value: &Value) -> Option<String> {
     match value {
         Value::String(word) => Some(word.clone()),
@@ -62,7 +62,8 @@ fn part_text(value: &Value) -> Option<String> {
     }
 }
 
-/// Fields that may name a person, a person's computer or its folders: whoever is in the network can read a stream.
+/// Fields that can identify a person, their computer or its folders; they are left out, since everybody in the network
+/// can read a stream.
 fn private_fields(event: &Event) -> &'static [&'static str] {
     match event {
         Event::Marker { .. } => &["note"],

@@ -1,5 +1,5 @@
-//! A session as streams of the Lab Streaming Layer (LSL): the name, channels and metadata of each stream, and its samples. How they are
-//! sent does not concern this module.
+//! A session as streams of the Lab Streaming Layer (LSL): name, channels, metadata and samples of each stream. Sending
+//! the samples is left to the caller.
 
 mod marker_text;
 mod stream_description;

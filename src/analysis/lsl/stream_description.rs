@@ -1,4 +1,4 @@
-//! What each stream is called, what its channels are, and what its metadata say.
+//! Descriptions of the LSL streams: names, channels and metadata.
 
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
@@ -8,45 +8,46 @@ use crate::robot::moment::JOINT_NAMES;
 use crate::session::SessionSpec;
 use crate::session::settings::LslOutlet;
 
-/// How the names and sources of all streams of this program begin.
+/// Beginning of the names and source identifiers of all streams of this program.
 pub const SOURCE: &str = "tomcom";
 
-/// A stream that is sent.
+/// Description of a stream of the Lab Streaming Layer (LSL).
 #[derive(Clone, Debug, PartialEq)]
 pub struct StreamDescription {
-    /// Which stream.
+    /// Which of the program's streams this is.
     pub outlet: LslOutlet,
-    /// Its name, with the participant's code: `tomcom-markers-P07`.
+    /// Name of the stream, with the participant's code: `tomcom-markers-P07`.
     pub name: String,
-    /// Its content type.
+    /// Content type of the stream, in LSL's terms.
     pub content: &'static str,
-    /// Its source, by which a recorder finds it again: with the name of the study, if there is one.
+    /// Source identifier, by which a recorder finds the stream again after an interruption; contains the name of the
+    /// study, if there is one.
     pub source: String,
-    /// Its channels.
+    /// Channels of the stream.
     pub channels: Vec<StreamChannel>,
-    /// Whether samples are texts; else they are numbers.
+    /// Whether the stream's samples are texts; otherwise they are numbers.
     pub is_text: bool,
-    /// Metadata beside the channels.
+    /// Metadata of the stream apart from the channels.
     pub about: Vec<MetadataNode>,
 }
 
-/// A channel of a stream.
+/// A channel of an LSL stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StreamChannel {
-    /// Its name.
+    /// Name of the channel.
     pub label: String,
-    /// Its unit; empty for texts.
+    /// Unit of the channel's values; empty for texts.
     pub unit: &'static str,
 }
 
-/// An element of a stream's metadata (LSL has them as XML).
+/// An element of an LSL stream's metadata, which LSL keeps as XML.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MetadataNode {
-    /// Name of the element.
+    /// Name of the metadata element.
     pub name: &'static str,
-    /// Its text; empty if it has elements.
+    /// Text of the element; empty if the element contains others.
     pub text: String,
-    /// The elements inside.
+    /// Elements inside this element.
     pub inside: Vec<MetadataNode>,
 }
 
@@ -61,7 +62,7 @@ impl MetadataNode {
 }
 
 impl StreamDescription {
-    /// All metadata: channels as LSL's conventions want them, then the rest.
+    /// All metadata of the stream: channels in the form of LSL's conventions, then the rest.
     pub fn metadata(&self) -> Vec<MetadataNode> {
         let channel = |channel: &StreamChannel| {
             let text = |name, text: &str| MetadataNode::text(name, text);
@@ -73,7 +74,8 @@ impl StreamDescription {
     }
 }
 
-/// The streams that a session sends, in the order of its file. They are the same for all trials of a participant.
+/// The streams that a session sends, in the order of the session file. They are the same for all trials of a
+/// participant.
 pub fn describe(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<StreamDescription> {
     let outlets = spec.lsl.iter().flat_map(|lsl| &lsl.outlets);
     outlets.map(|&outlet| description(outlet, spec, kitchen)).collect()
@@ -115,7 +117,7 @@ fn channel(label: impl ToString, unit: &'static str) -> StreamChannel {
     StreamChannel { label: label.to_string(), unit }
 }
 
-/// All signals of a session, in the order of their channels.
+/// All signals that can be sent in a session, in the order of their channels.
 pub(super) fn session_signals(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<Signal> {
     signals(kitchen, spec.signals.own_hand).into_iter().map(|(_, signal)| signal).collect()
 }
@@ -129,12 +131,12 @@ fn signal_labels(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<String> {
     session_signals(spec, kitchen).into_iter().map(label).collect()
 }
 
-/// Unit of net benefit: the concept ToM knows deviations of beliefs only.
+/// Unit of the net benefit of a signal; for the concept ToM, which computes deviations of beliefs only, another one.
 fn net_benefit_unit(spec: &SessionSpec) -> &'static str {
     if spec.assistant.concept == ConceptName::Tom { "probability" } else { "presses" }
 }
 
-/// Metadata that all streams have: program, participant, study, and the layout.
+/// Metadata that all streams have: program, participant, study, and layout of the kitchen.
 fn about(code: &str, study: Option<&str>, kitchen: &Kitchen) -> Vec<MetadataNode> {
     let text = |name, value: &str| MetadataNode::text(name, value);
     let mut about = vec![

@@ -1,4 +1,4 @@
-//! The samples of a session's streams.
+//! Samples of a session's LSL streams.
 
 use serde_json::json;
 
@@ -14,43 +14,43 @@ use crate::session::event::Event;
 use crate::session::settings::LslOutlet;
 use crate::session::{Session, Stamped, TimelineEvent};
 
-/// Least time between samples of beliefs that only gaze changed, in seconds.
+/// Least time between two belief samples if only gaze has changed the beliefs, in seconds.
 const BELIEF_STEP_S: f64 = 0.1;
 
-/// A sample of a stream.
+/// A sample of an LSL stream.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StreamSample {
-    /// The stream.
+    /// The stream to which the sample belongs.
     pub outlet: LslOutlet,
-    /// Session time of what it tells.
+    /// Session time of what the sample reports.
     pub time: SessionTime,
-    /// A value for each channel.
+    /// Values of the sample, one for each channel.
     pub values: SampleValues,
 }
 
-/// The values of a sample.
+/// The values of an LSL sample, one for each channel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SampleValues {
-    /// Of a stream of numbers; NaN is none.
+    /// Values in a stream of numbers; NaN stands for a missing value.
     Numbers(Vec<f64>),
-    /// Of a stream of texts.
+    /// Values in a stream of texts.
     Texts(Vec<String>),
 }
 
-/// Makes samples from events.
+/// Converts the events of a session into samples of its LSL streams.
 #[derive(Clone, Debug)]
 pub struct SampleMaker {
     outlets: Vec<LslOutlet>,
-    /// Name of the recording.
+    /// Name of the recording to which the samples belong.
     recording: String,
-    /// The signals by channel.
+    /// The signals, in the order of their channels.
     signals: Vec<Signal>,
-    /// The last sample of beliefs, and its time.
+    /// The last sample of beliefs, with its time.
     believed: Option<(SessionTime, Vec<f32>)>,
 }
 
 impl SampleMaker {
-    /// A maker of the samples of the streams that the session sends, in a recording with this name.
+    /// A converter for the streams that the session sends; `recording` is the name of the recording.
     pub fn new(session: &Session, recording: &str) -> SampleMaker {
         let outlets = session.spec.lsl.as_ref().map_or(Vec::new(), |lsl| lsl.outlets.clone());
         SampleMaker {
@@ -61,8 +61,9 @@ impl SampleMaker {
         }
     }
 
-    /// Samples that say which recording the following events belong to; they are no events. They open a recording, and come again with
-    /// its trial, since a recorder may have been started between.
+    /// Samples that name the recording to which the following events belong; they stand for no event. They are sent at
+    /// the beginning of a recording and again at the beginning of its trial, since a recorder may have been started in
+    /// between.
     pub fn opening(&self, session: &Session, time: SessionTime) -> Vec<StreamSample> {
         let (spec, recording) = (&session.spec, &self.recording);
         let told = json!({
@@ -77,8 +78,8 @@ impl SampleMaker {
         all.into_iter().filter(|sample| self.outlets.contains(&sample.outlet)).collect()
     }
 
-    /// The samples of events that were just applied to this session. `judged`: every press of the human so far; `belief`: the estimate
-    /// after the last event.
+    /// Samples of events that were just applied to this session. `judged`: every press of the human so far; `belief`:
+    /// the estimate after the last event.
     pub fn samples(
         &mut self,
         events: &[Stamped],
@@ -125,13 +126,13 @@ impl SampleMaker {
         samples
     }
 
-    /// Net benefit of each signal; NaN for those that cannot be sent now.
+    /// Net benefit of each signal, by channel; NaN for signals that cannot be sent now.
     fn net_benefits(&self, advice: &Recommendation) -> Vec<f64> {
         let option = |signal: &Signal| advice.options.iter().find(|option| option.signal == *signal);
         self.signals.iter().map(|signal| option(signal).map_or(f64::NAN, |option| option.net)).collect()
     }
 
-    /// The beliefs, if they have changed; by gaze alone, not more often than [`BELIEF_STEP_S`] says.
+    /// A sample of the beliefs, if they have changed; if only gaze changed them, at most one per [`BELIEF_STEP_S`].
     fn belief_sample(&mut self, belief: &BeliefSnapshot, by_gaze: bool) -> Option<StreamSample> {
         let is_due = |(at, _): &(SessionTime, Vec<f32>)| !by_gaze || belief.time.secs_since(*at) >= BELIEF_STEP_S;
         let held: Vec<f32> = belief.held.iter().map(|held| held.p_truth).collect();
@@ -144,7 +145,8 @@ impl SampleMaker {
     }
 }
 
-/// Agent, button, whether the press did anything, and whether it was an error: "yes", "no", or nothing where that is not judged.
+/// Texts of a press: agent, button, whether the press had an effect, and whether it was an error ("yes", "no", or empty
+/// if it is not judged).
 fn press_texts(
     agent: Agent,
     button: &str,

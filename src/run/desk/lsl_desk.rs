@@ -1,4 +1,4 @@
-//! The Lab Streaming Layer at the desk: its library, and the streams that are offered to recorders.
+//! The Lab Streaming Layer (LSL) at the operator's desk: its library, and the streams that are sent.
 
 use std::rc::Rc;
 
@@ -6,8 +6,8 @@ use crate::analysis::lsl::describe;
 use crate::edge::lsl::{self, LslError, LslLibrary, LslStreams};
 use crate::session::{Session, SessionSpec};
 
-/// The library, if the session uses it, and the streams that are offered. Those of a participant stay the same from one recording to
-/// the next, so that a recorder reads on.
+/// The LSL library, if the session uses it, and the streams that are sent. A participant's streams stay open from one
+/// recording to the next, so that a recorder can continue.
 #[derive(Default)]
 pub(in crate::run) struct LslDesk {
     library: Option<LslLibrary>,
@@ -18,28 +18,28 @@ impl LslDesk {
     /// Loads the library, if the session uses it.
     ///
     /// # Errors
-    /// There is none, or it is too old.
+    /// There is no such library, or it is too old.
     pub fn open(spec: &SessionSpec) -> Result<LslDesk, LslError> {
         let library = spec.uses_lsl().then(|| lsl::load(spec.lsl.as_ref())).transpose()?;
         Ok(LslDesk { library, streams: None })
     }
 
-    /// The library, if the session uses it.
+    /// The LSL library, if the session uses it.
     pub fn library(&self) -> Option<LslLibrary> {
         self.library
     }
 
-    /// The streams of this session; `None` if it sends none.
+    /// The LSL streams of this session; `None` if it sends none.
     ///
     /// # Errors
-    /// The library does not offer them.
+    /// The library cannot open the streams.
     pub fn streams(&mut self, session: &Session) -> Result<Option<Rc<LslStreams>>, LslError> {
         let wanted = describe(&session.spec, &session.kitchen);
         let Some(library) = self.library.filter(|_| !wanted.is_empty()) else { return Ok(None) };
         if let Some(streams) = self.streams.as_ref().filter(|streams| streams.descriptions == wanted) {
             return Ok(Some(streams.clone()));
         }
-        // Those of another participant end first.
+        // Streams of the previous participant end before new ones are opened.
         self.streams = None;
         self.streams = Some(Rc::new(LslStreams::offer(library, wanted)?));
         Ok(self.streams.clone())

@@ -1,4 +1,4 @@
-//! The participant's display at the desk.
+//! The participant's display at the operator's desk.
 
 use crate::display::page_language::DisplayWords;
 use crate::display::{consent_sight, scene};
@@ -8,7 +8,7 @@ use crate::run::error::LiveError;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Session, SessionSpec};
 
-/// The participant's display, if the session has one.
+/// The server of the participant's display, if the session has one.
 #[derive(Default)]
 pub(in crate::run) struct WallDisplay(Option<Display>);
 
@@ -26,12 +26,12 @@ impl WallDisplay {
         opened.map(|display| WallDisplay(Some(display))).map_err(|reason| LiveError::Display { address, port, reason })
     }
 
-    /// The display.
+    /// The participant's display, if the session has one.
     pub fn display(&self) -> Option<&Display> {
         self.0.as_ref()
     }
 
-    /// Lets the participant's page ask for consent to this text; whether there is a page.
+    /// Lets the participant's page ask for consent to this text; returns whether a page is connected.
     pub fn ask_consent(&self, session: &Session, text: &str) -> bool {
         let screen = self.0.as_ref().map(Display::screen);
         if let Some(screen) = &screen {

@@ -1,17 +1,17 @@
-//! The desk in a build without the feature `display`: no display, and nothing comes from one.
+//! Stand-in for the participant's display at the operator's desk, in a build without the feature `display`.
 
 use crate::run::error::LiveError;
 use crate::session::{Session, SessionSpec};
 
-/// Input of a display: this type has no value.
+/// Input of a participant's page, which never occurs in this build: the type has no value.
 pub(in crate::run) enum PageInput {}
 
-/// No display.
+/// Stand-in for the participant's display, which this build lacks.
 #[derive(Default)]
 pub(in crate::run) struct WallDisplay {}
 
 impl WallDisplay {
-    /// Opens no display: sessions with a participant at a display have been refused before.
+    /// Opens no display; sessions that need one were refused before.
     ///
     /// # Errors
     /// None.
@@ -19,18 +19,18 @@ impl WallDisplay {
         Ok(WallDisplay {})
     }
 
-    /// Asks nobody: there is no page.
+    /// Does nothing, since this build has no page that could ask.
     pub fn ask_consent(&self, _: &Session, _: &str) -> bool {
         false
     }
 
-    /// Never.
+    /// Never returns, since this build has no page.
     pub async fn next(&mut self) -> Option<PageInput> {
         std::future::pending().await
     }
 }
 
-/// Never: there is no page.
+/// Never called, since this build has no page.
 pub(in crate::run) fn is_consent(_: &PageInput) -> bool {
     false
 }

@@ -21,11 +21,12 @@ use crate::session::settings::ParticipantKind;
 use crate::session::tracker::GazeGapSpec;
 use crate::wizard::ScriptedWizard;
 
-/// The simulated participant of a trial. In a plan the same person has several trials and learns from the earlier ones.
+/// The simulated participant of a trial. In a study plan, the same participant has several trials and improves with
+/// practice.
 pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> SimulatedParticipant {
     let person = spec.step.as_ref().map_or(trial, |step| u64::from(step.participant));
     let trials = spec.step.as_ref().and_then(|step| step.period).map_or(0, |period| period.saturating_sub(1));
-    // About half of the presses are made by the human.
+    // The human makes about half of the presses, so that the practice of earlier trials can be estimated.
     let presses = f64::from(trials) * f64::from(spec.trial.presses) / 2.0;
     let population = spec.participant.population.clone().unwrap_or_default();
     SimulatedParticipant::new(kitchen, &population, spec.seed, person, trial, Experience { trials, presses })
@@ -40,7 +41,7 @@ pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial:
     Some(if spec.script_reads_offers() { script.reading_offers(seed, trial) } else { script })
 }
 
-/// The drop-outs of the simulated tracker in a trial.
+/// Gaps in the data of the simulated eye tracker in a trial.
 pub(super) fn gaze_gaps(spec: &SessionSpec, trial: u64) -> Option<GazeGaps> {
     let GazeGapSpec { every_s, shortest_s, longest_s } = *spec.tracker.gaps.as_ref()?;
     Some(GazeGaps::new(every_s, [shortest_s, longest_s], stream(spec.seed, "tracker's gaps", trial)))
@@ -49,7 +50,7 @@ pub(super) fn gaze_gaps(spec: &SessionSpec, trial: u64) -> Option<GazeGaps> {
 /// The robot of a trial.
 ///
 /// # Panics
-/// The arm is to be simulated, and this build has no physics.
+/// The settings ask for an arm with simulated physics, and this build has none.
 pub(super) fn trial_robot(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
     let robot = Robot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
     match spec.robot.arm {

@@ -1,5 +1,5 @@
-//! Events that follow at once from others: the criterion of a familiarisation, the measured gaze accuracy, the assistant's signal, the end of
-//! proposed presses.
+//! Events that follow immediately from others: evaluation of a familiarisation's criterion, gaze accuracy, the
+//! assistant's signal, the end of a proposal.
 
 use super::Engine;
 use crate::base::time::SessionTime;
@@ -13,7 +13,7 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::{Event, Phase};
 
 impl Engine {
-    /// Evaluates the criterion at the end of a familiarisation.
+    /// Evaluates at the end of a familiarisation whether its criterion is met.
     pub(super) fn check_criterion(&mut self, now: SessionTime) {
         let session = self.session();
         let Some((step, protocol)) = session.step() else { return };
@@ -27,7 +27,7 @@ impl Engine {
         self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
     }
 
-    /// Takes proposed presses off the display once they are out of date.
+    /// Removes a proposal of presses from the display once it is out of date.
     pub(super) fn end_outdated_proposal(&mut self, now: SessionTime) {
         if self.session().is_running() && proposals::is_outdated(self.session()) {
             self.record_own(now, Event::SignalEnded { reason: SignalEnd::Outdated });
@@ -43,7 +43,7 @@ impl Engine {
         }
     }
 
-    /// Records what the human seems unaware of by its gaze.
+    /// Records which change the human seems unaware of, judged by gaze.
     pub(super) fn note_unawareness(&mut self, now: SessionTime) {
         let unaware = self.follower.unaware().filter(|_| self.session().is_running());
         if let Some(aspect) = unaware {
@@ -52,8 +52,8 @@ impl Engine {
         }
     }
 
-    /// The signal that the assistant sends because of its recommendation, if it is allowed. An error gets one proposal, while it is the
-    /// human's last press.
+    /// The signal that the assistant sends because of its recommendation, if it may act. An error gets one proposal, as
+    /// long as the error is the human's last press.
     pub(super) fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
         let is_last = |error: u64| self.judged().last().is_some_and(|press| press.seq == error);
         let proposal =

@@ -1,4 +1,5 @@
-//! Information about events for the simulated participant and the scripted wizard, and offers to a wizard at the console.
+//! Tells the simulated participant and the scripted wizard about events, and opens and closes offers to a wizard at the
+//! console.
 
 use super::Engine;
 use crate::base::time::SessionTime;
@@ -11,7 +12,7 @@ use crate::session::offers;
 use crate::session::{Event, Stamped};
 
 impl Engine {
-    /// Passes the part of an applied event that the participant can notice.
+    /// Tells the simulated participant the part of an applied event that they can notice.
     pub(super) fn tell_participant(&mut self, stamped: &Stamped, change: &Change) {
         let Some(participant) = &mut self.participant else { return };
         let session = &self.follower.session;
@@ -34,10 +35,11 @@ impl Engine {
         }
     }
 
-    /// Records the changes of the offer that are due.
+    /// Records that the offer to the wizard opens or closes, as due.
     pub(super) fn review_offer(&mut self, now: SessionTime) {
         while let Some(mut event) = offers::due(self.session(), now) {
-            // The recommendation has a reason for its first option only; of two orders of one dish another may be offered.
+            // A recommendation states a reason for its first option only; if two orders are of the same dish, the offer
+            // may be about the other order.
             if let Event::OfferOpened(advice) = &mut event
                 && let (None, OfferedAct::Signal(signal)) = (&advice.reason, &advice.what)
             {
@@ -48,7 +50,8 @@ impl Engine {
         }
     }
 
-    /// Passes the part of an applied event that a scripted wizard sees: kitchen, presses, gaze, and offers if they are shown.
+    /// Tells a scripted wizard the part of an applied event that it sees: kitchen, presses, gaze, and offers if they
+    /// are shown.
     pub(super) fn tell_wizard(&mut self, stamped: &Stamped, change: &Change) {
         let Some(wizard) = &mut self.wizard else { return };
         let session = &self.follower.session;

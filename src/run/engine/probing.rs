@@ -1,4 +1,5 @@
-//! Freeze probes in a running session: they begin when they are due, their questions are drawn, and a simulated participant answers.
+//! Freeze probes in a running session: begins them when they are due, draws their questions, and lets a simulated
+//! participant answer.
 
 use super::Engine;
 use crate::base::time::SessionTime;
@@ -10,13 +11,13 @@ use crate::session::probes::{DueProbe, ProbeEvent, ProbeSubject, of_trial, upcom
 use crate::session::wall_display::Answering;
 
 impl Engine {
-    /// Time of the next event of a probe.
+    /// Session time of the next event of a freeze probe.
     pub(super) fn probe_due(&self) -> Option<SessionTime> {
         let rule = upcoming(self.session()).map(|(due, _)| due);
         [rule, self.answer_due()].into_iter().flatten().min()
     }
 
-    /// Time at which the simulated participant answers the shown question.
+    /// Session time at which the simulated participant answers the shown question.
     fn answer_due(&self) -> Option<SessionTime> {
         let (participant, session) = (self.participant.as_ref()?, self.session());
         let open = session.probes.open.as_ref().filter(|open| !open.is_paused())?;
@@ -25,7 +26,7 @@ impl Engine {
         Some(open.when(open.asked_at, SessionTime::from_secs_f64(after_s)).max(session.time))
     }
 
-    /// Records what is due of probes. An answer at the last moment counts.
+    /// Records the events of a freeze probe that are due. An answer at the last possible time counts.
     pub(super) fn review_probe(&mut self, now: SessionTime) {
         loop {
             let rule = upcoming(self.session()).filter(|(due, _)| *due <= now);
@@ -53,7 +54,7 @@ impl Engine {
         self.record_own(now, Event::Probe(ProbeEvent::Begun { probe, origin, uses_estimate, questions }));
     }
 
-    /// Which aspects are believed wrong now, by the estimate.
+    /// For each state aspect, whether the estimate says that the belief about it is false now.
     fn believed_wrong(&mut self, now: SessionTime) -> Vec<bool> {
         let belief = self.follower.belief_at(now);
         let session = self.session();
@@ -71,7 +72,8 @@ impl Engine {
         let answer = match (&asked.about, aspect) {
             (_, Some(aspect)) => participant.answer(session.state, aspect, &asked.choices, (probe, question)),
             (ProbeSubject::NextOrder, _) => participant.next_order().map(|order| kitchen.location(order).name.clone()),
-            // Simulated participants do not predict the robot.
+            // Simulated participants do not answer questions about the robot's next press, since they do not predict
+            // the robot.
             _ => None,
         };
         let asks_confidence = of_trial(&session.spec).is_some_and(|spec| spec.confidence);

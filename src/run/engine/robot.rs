@@ -1,4 +1,4 @@
-//! The robot in a running session: its activities become events, and it is informed of relevant events.
+//! The robot in a running session: turns its activities into events, and tells it about events that concern it.
 
 use super::Engine;
 use crate::arm::worker::Robot;
@@ -9,7 +9,7 @@ use crate::robot::RobotActivity;
 use crate::session::{Event, Stamped};
 
 impl Engine {
-    /// The robot, for experiments with its arm.
+    /// The session's robot, for experiments with its arm.
     pub fn robot(&mut self) -> &mut Robot {
         &mut self.robot
     }
@@ -37,7 +37,8 @@ impl Engine {
         self.record_own(now, event);
     }
 
-    /// Informs the robot of an applied event (interventions of the wizard, presses of the human); returns its reactions.
+    /// Tells the robot about an applied event (an intervention of the wizard, or a press of the human); returns its
+    /// reactions.
     pub(super) fn tell_robot(&mut self, stamped: &Stamped, change: &Change) -> Vec<RobotActivity> {
         let kitchen = self.session().kitchen.clone();
         let now = stamped.time;

@@ -1,4 +1,4 @@
-//! Requests to Pupil Capture about the trial.
+//! Requests to Pupil Capture, the eye tracker's program, at events of the trial.
 
 use std::time::Instant;
 
@@ -12,24 +12,25 @@ use crate::session::{Event, Phase, Session};
 const RUNNING: &str = "trial running";
 const PAUSED: &str = "trial paused";
 
-/// Requests to Pupil Capture about a recording.
+/// Sends requests to Pupil Capture for one recording.
 #[derive(Debug, Default)]
 pub(super) struct CaptureOrders {
-    /// Channel to Pupil Capture, if it is in use.
+    /// Channel to Pupil Capture, if that is the tracker.
     orders: Option<Sender<CaptureRequest>>,
-    /// The name of the recording.
+    /// Name of the recording, as Pupil Capture gets it.
     name: String,
-    /// Whether the trial was begun and is not over.
+    /// Whether the trial has begun and not ended.
     is_on: bool,
-    /// Labels of the trial's state: whether it runs, and the signal that is shown.
+    /// Label of the trial's phase that was sent to Pupil Capture last.
     phase: Option<&'static str>,
     signal: Option<String>,
-    /// Number of the freeze probe that is held.
+    /// Number of the freeze probe that is open.
     probe: Option<u32>,
 }
 
 impl CaptureOrders {
-    /// Prepares Pupil Capture for a recording with this name; the trial of a continued recording is recorded from now on.
+    /// Prepares Pupil Capture for a recording with this name; the trial of a continued recording is recorded from now
+    /// on.
     pub fn begin(tracker: &GazeTracker, name: String, session: &Session, now: Instant) -> CaptureOrders {
         let mut capture = CaptureOrders { orders: tracker.orders(), name, ..CaptureOrders::default() };
         capture.probe = session.probes.open.as_ref().map(|open| open.number);
@@ -45,7 +46,7 @@ impl CaptureOrders {
         capture
     }
 
-    /// Reports an event of the trial, which happened at `at`.
+    /// Reports an event of the trial, which happened at the instant `at`, to Pupil Capture.
     pub fn tell(&mut self, event: &Event, at: Instant) {
         if self.orders.is_none() {
             return;
@@ -99,7 +100,7 @@ impl CaptureOrders {
         }
     }
 
-    /// Ends Capture's recording of a trial that is left before its end.
+    /// Ends Pupil Capture's recording when the wizard leaves before the end of the trial.
     pub fn leave(&mut self, at: Instant) {
         if std::mem::take(&mut self.is_on) {
             (self.phase, self.signal, self.probe) = (None, None, None);
@@ -119,7 +120,7 @@ impl CaptureOrders {
         self.order(CaptureRequest::Annotate { label, at, state });
     }
 
-    /// Sends a request if Pupil Capture is connected; the health line shows a lost connection.
+    /// Sends a request if Pupil Capture is connected; a lost connection is shown in the console's line about devices.
     fn order(&self, order: CaptureRequest) {
         if let Some(orders) = &self.orders {
             let _ = orders.try_send(order);

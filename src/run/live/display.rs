@@ -1,4 +1,4 @@
-//! The participant's display in a live session: its content, and its inputs as events.
+//! The participant's display in a live session: its content, and its inputs as events of the session.
 
 use std::time::Instant;
 
@@ -18,18 +18,18 @@ use crate::session::tutorial::{TutorialEvent, TutorialReader};
 use crate::session::wall_display::{Answering, DisplayEvent};
 use crate::session::{Event, Session};
 
-/// The participant's display in a recording.
+/// The participant's display during one recording.
 pub(super) struct ParticipantDisplay {
     screen: PageConnection,
-    /// Its present content.
+    /// Content that the display shows at present.
     shown: Option<DisplayUpdate>,
-    /// The robot's hand, if it is shown, and its pose that was told last.
+    /// The robot's hand, if the display shows it, with the pose that was sent last.
     hand: Option<RobotHand>,
     told: Option<RobotPose>,
 }
 
 impl ParticipantDisplay {
-    /// The display at the desk, if there is one, with its state for the wizard.
+    /// The display of the operator's desk, if there is one, with its state for the wizard.
     pub fn at(desk: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<DisplayHealth>) {
         let health = |display: &Display| DisplayHealth {
             url: display.url(),
@@ -43,13 +43,13 @@ impl ParticipantDisplay {
         )
     }
 
-    /// Builds the page for this session.
+    /// Sends the constant part of the page for this session.
     pub fn build(&mut self, session: &Session) {
         self.screen.build(&scene(session));
         (self.hand, self.told) = (RobotHand::new(session), None);
     }
 
-    /// Tells the page where the robot's hand is now, if it moved.
+    /// Tells the page where the robot's hand is now, if the hand moved.
     pub fn move_robot(&mut self, session: &Session, now: SessionTime) {
         let pose = self.hand.as_mut().map(|hand| hand.at(session, now));
         if let Some(pose) = pose.filter(|_| pose != self.told) {
@@ -58,7 +58,7 @@ impl ParticipantDisplay {
         }
     }
 
-    /// Updates the content if it changed.
+    /// Sends the content to the display if it changed.
     pub fn show(&mut self, session: &Session, now: SessionTime) {
         let seen = sight(session);
         if self.shown.as_ref() != Some(&seen) {
@@ -67,7 +67,7 @@ impl ParticipantDisplay {
         }
     }
 
-    /// Updates the display's state for the wizard.
+    /// Updates the display's state that the wizard sees.
     pub fn examine(&self, health: &mut DisplayHealth) {
         let counts = self.screen.counts();
         health.page = counts.page.map(|page| [page.width_px, page.height_px]);
@@ -77,7 +77,7 @@ impl ParticipantDisplay {
     }
 }
 
-/// An input of the page as an event of the session and a notice to the wizard.
+/// An input of the page, converted to an event of the session and a notice to the wizard.
 #[derive(Debug, Default)]
 pub(super) struct PageEvent {
     pub event: Option<Event>,
@@ -85,7 +85,7 @@ pub(super) struct PageEvent {
 }
 
 impl PageEvent {
-    /// Converts an input of the acting page; `now` is the session time.
+    /// Converts an input of the page that acts for the participant; `now` is the session time.
     pub fn from_input(input: PageInput, session: &Session, now: SessionTime) -> PageEvent {
         let event = match input {
             PageInput::Connected { width_px, height_px } => {
@@ -112,7 +112,7 @@ impl PageEvent {
     }
 }
 
-/// A reply of the participant as an event of the session, if it is one now.
+/// Converts a reply of the participant to an event of the session; `None` if the reply is not possible now.
 fn answered(reply: PageReply, session: &Session) -> Option<Event> {
     match reply {
         PageReply::Answer { item, answer: Some(given) } => {
@@ -121,7 +121,7 @@ fn answered(reply: PageReply, session: &Session) -> Option<Event> {
         PageReply::Answer { item, answer: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
         PageReply::Next => session.next_item().and_then(|next| answer(next, session)),
         PageReply::Back { item } => answer(ProtocolEvent::ItemShown { item }, session),
-        // It is asked for before a recording begins; a late one changes nothing.
+        // Consent is asked for before a recording begins; a late consent changes nothing.
         PageReply::Consent => None,
         PageReply::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
         PageReply::Turn { step, forward } => turn(session, &step, forward),
@@ -133,14 +133,14 @@ fn answered(reply: PageReply, session: &Session) -> Option<Event> {
     }
 }
 
-/// A press of the participant. Its event is stamped at reception, since time in the log never decreases; the time at which the
-/// button went down is recorded in addition.
+/// A press of the participant. Its event is stamped at reception, since time in the log never decreases; the time at
+/// which the button went down is recorded in addition.
 fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> PageEvent {
     if session.kitchen.button_named(Agent::Human, &button).is_none() {
         let text = "the display told a button that the kitchen does not have".to_string();
         return PageEvent { event: None, notice: Some((NoticeLevel::Refused, text)) };
     }
-    // A press that was under way when the probe began is none.
+    // A press that reaches the program after the probe began is ignored.
     if session.probes.open.is_some() {
         return PageEvent::default();
     }
@@ -151,11 +151,11 @@ fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> Pa
     PageEvent { event: Some(Event::Press { agent: Agent::Human, button, at_ns }), notice: None }
 }
 
-/// The page of the tutorial that the participant turns to from this step.
+/// The event by which the participant turns to the next (`forward`) or previous page of the tutorial from this step.
 fn turn(session: &Session, step: &str, forward: bool) -> Option<Event> {
     let (tutorial, state) = session.tutorial()?;
     let by = TutorialReader::Participant;
-    // A page that was turned twice at once is turned once.
+    // A page that was turned twice at the same time is turned once.
     let from = tutorial.position(step).filter(|&from| from == state.step)?;
     let to = if forward { from + 1 } else { from.checked_sub(1)? };
     practise(
@@ -167,13 +167,15 @@ fn turn(session: &Session, step: &str, forward: bool) -> Option<Event> {
     )
 }
 
-/// An event of the tutorial. What the page cannot do now is no news for the wizard: it was late, or pressed in a step without presses.
+/// Converts an input of the tutorial's page to an event. Impossible inputs are ignored without a notice to the wizard:
+/// they came late, or were presses in a step without presses.
 fn practise(session: &Session, event: TutorialEvent) -> Option<Event> {
     let event = Event::Protocol(ProtocolEvent::Tutorial(event));
     admit(session, &event).is_ok().then_some(event)
 }
 
-/// The answer to the question of a probe. One that is late, or names no choice, is none, and no news for the wizard.
+/// Converts the answer to a freeze probe question to an event. Answers that are late or name no choice are ignored
+/// without a notice to the wizard.
 fn believe(
     session: &Session,
     (probe, question): (u32, u32),
@@ -192,12 +194,12 @@ fn believe(
     admit(session, &event).is_ok().then_some(event)
 }
 
-/// An answer to a questionnaire, if the session lets the participant answer on the display.
+/// Converts an answer to a questionnaire to an event, if participants answer on the display in this session.
 fn answer(event: ProtocolEvent, session: &Session) -> Option<Event> {
     (session.spec.display.questionnaire == Answering::Display).then_some(Event::Protocol(event))
 }
 
-/// Session time of an instant shortly before now.
+/// Session time of an instant shortly before the present one.
 fn session_time(at: Instant, now: SessionTime) -> SessionTime {
     let age_ns = Instant::now().saturating_duration_since(at).as_nanos() as u64;
     SessionTime(now.0.saturating_sub(age_ns))

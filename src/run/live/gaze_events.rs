@@ -1,4 +1,4 @@
-//! Messages of the eye tracker as events of the session.
+//! Converts messages of the eye tracker to events of the session.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -13,18 +13,18 @@ use crate::run::desk::GazeTracker;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{Event, Phase, Session};
 
-/// A tracker message that is no event.
+/// No events, for a tracker message that is none.
 const NONE: [Option<Event>; 2] = [None, None];
 
-/// State of gaze input in a recording.
+/// Gaze input of one recording.
 #[derive(Debug, Default)]
 pub(super) struct GazeInput {
     clock: DeviceClock,
     limit: RateLimit,
     dropped: DropCounts,
-    /// Whether a wrong time stamp was told.
+    /// Whether the wizard was told of a wrong time stamp.
     has_complained: bool,
-    /// Replayed gaze with the index of its next sample.
+    /// Gaze replayed from a file, with the index of the next sample.
     file: Option<Arc<GazeFile>>,
     next: usize,
 }
@@ -40,14 +40,14 @@ impl GazeInput {
         GazeInput { dropped, file: Some(file), next, ..GazeInput::default() }
     }
 
-    /// What is to be said about the first sample with a wrong time stamp.
+    /// Message to the wizard about the first sample with a wrong time stamp.
     pub fn complaint(&mut self, news: &GazeNews) -> Option<String> {
         let GazeNews::WrongTime(t) = news else { return None };
         let is_first = !std::mem::replace(&mut self.has_complained, true);
         is_first.then(|| format!("gaze is refused: t = {t} is no time in seconds, nor in ms, us or ns since 1970"))
     }
 
-    /// The events for a tracker message; none for messages that are only counted.
+    /// The events for a tracker message; empty for messages that are only counted.
     pub fn events(&mut self, news: GazeNews, now: SessionTime) -> [Option<Event>; 2] {
         let tracker = match news {
             GazeNews::Sample(sample, at) => return self.sample(sample, at, now),
@@ -63,7 +63,7 @@ impl GazeInput {
                 self.dropped.overrun += count;
                 return NONE;
             }
-            // The console counts senders that are no trackers; the log has nothing of them.
+            // Senders that are not trackers are counted at the console only, not in the log.
             GazeNews::Rejected(_) | GazeNews::Refused { .. } => return NONE,
             GazeNews::Began => {
                 self.clock = DeviceClock::default();
@@ -92,7 +92,7 @@ impl GazeInput {
         [Some(Event::Tracker(tracker)), None]
     }
 
-    /// The sample, and before it that the tracker's clock was set, if the sample shows that.
+    /// The event of a gaze sample, preceded by an event that the tracker's clock was set, if the sample shows that.
     fn sample(&mut self, sample: GazeSample, at: Option<Instant>, now: SessionTime) -> [Option<Event>; 2] {
         if !self.limit.admits(now) {
             self.dropped.too_frequent += 1;
@@ -112,7 +112,7 @@ impl GazeInput {
         [step, Some(Event::Gaze(GazeSample { taken_ns, ..sample }))]
     }
 
-    /// An event with the counts of dropped input, if they have grown.
+    /// An event with the counts of gaze input that was dropped, if they have grown.
     pub fn drops(&self, session: &Session) -> Option<Event> {
         let is_news = self.dropped != session.tracker.dropped && session.phase != Phase::Closed;
         is_news.then_some(Event::Tracker(TrackerEvent::Dropped(self.dropped)))
@@ -124,7 +124,7 @@ impl GazeInput {
         session.is_running().then(|| session_time_in_file(session, *at_s))
     }
 
-    /// The next sample of replayed gaze.
+    /// The next sample of replayed gaze, as an event.
     pub fn next_of_file(&mut self, session: &Session) -> Option<Event> {
         let (at_s, sample) = self.file.as_ref()?.samples.get(self.next).copied()?;
         self.next += 1;
@@ -133,7 +133,7 @@ impl GazeInput {
     }
 }
 
-/// Session time of a sample in a file, given its time on the trial's clock in seconds.
+/// Session time of a sample from a gaze file, given the sample's time on the trial's clock in seconds.
 fn session_time_in_file(session: &Session, at_s: f64) -> SessionTime {
     session.trial_start + session.paused_total + SessionTime::from_secs_f64(at_s)
 }

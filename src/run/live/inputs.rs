@@ -1,4 +1,4 @@
-//! Inputs of a live session on their way into the engine: terminal, gaze, the participant's page, recommendations.
+//! Inputs of a live session on their way to the engine: terminal, gaze, the participant's page, recommendations.
 
 use super::display::PageEvent;
 use super::live_session::Live;
@@ -13,7 +13,7 @@ use crate::session::tracker::{TrackerEvent, TrackerRecording};
 use crate::session::{Event, Phase};
 
 impl Live {
-    /// Handles a terminal message; returns the way of leaving the recording, if any.
+    /// Handles a message from the terminal; returns how the wizard leaves the recording, if at all.
     pub(super) fn take_message(&mut self, message: ConsoleMessage) -> Option<LeavingReason> {
         self.tick();
         self.dirty |= !matches!(message, ConsoleMessage::Pointer(..));
@@ -31,8 +31,8 @@ impl Live {
         None
     }
 
-    /// Passes an event to the engine and records the result. Refusals are shown to the wizard, except for gaze samples and late
-    /// recommendations.
+    /// Passes an event to the engine and records the result. Refusals are shown to the wizard, except for gaze samples
+    /// and late recommendations.
     pub(super) fn input(&mut self, event: Event) {
         let is_silent = matches!(event, Event::Gaze(_) | Event::Advised(_));
         let outcome = self.engine.input(self.clock.now(), event);
@@ -45,13 +45,13 @@ impl Live {
     /// Lets the engine raise due events.
     pub(super) fn fire(&mut self) {
         let events = self.engine.fire();
-        // Most control cycles of the arm give no event.
+        // Most control cycles of the arm lead to no event.
         if !events.is_empty() {
             self.record(&events);
         }
     }
 
-    /// Handles an input of the acting page.
+    /// Handles an input of the page that acts for the participant.
     pub(super) fn hear(&mut self, input: PageInput) {
         if self.engine.session().phase == Phase::Closed {
             return;
@@ -65,7 +65,7 @@ impl Live {
         }
     }
 
-    /// Handles a tracker message.
+    /// Handles a message of the eye tracker.
     pub(super) fn take_gaze(&mut self, news: GazeNews) {
         if let GazeNews::Rejected(count) = news {
             self.model.count_rejected(count);
@@ -97,7 +97,7 @@ impl Live {
         }
     }
 
-    /// Records the mouse pointer as a gaze sample, once it has been moved.
+    /// Records the mouse pointer as a gaze sample, once the pointer has been moved.
     pub(super) fn sample_pointer(&mut self) {
         if let Some([x, y]) = self.model.pointer {
             self.input(Event::Gaze(GazeSample::new(x, y, 1.0)));
@@ -105,7 +105,7 @@ impl Live {
     }
 }
 
-/// Whether the wizard is told what the tracker did, also where it is not looked for.
+/// Whether the wizard gets a notice about what the tracker did, wherever the wizard looks.
 fn is_warning(event: &TrackerEvent) -> bool {
     match event {
         TrackerEvent::ClockSet { .. } | TrackerEvent::OtherSurfaces { .. } => true,

@@ -1,4 +1,4 @@
-//! A live session: its parts, its beginning and its end.
+//! A live session: its parts, beginning and end.
 
 use std::time::{Duration, Instant};
 
@@ -34,52 +34,52 @@ use crate::session::settings::GazeSource;
 use crate::session::wizard_screen::VisibleScreen;
 use crate::session::{Event, Header, Session};
 
-/// Period of redrawing clocks and ages, while the trial is running and otherwise.
+/// Period of redrawing clocks and ages on the console while the trial is running.
 const RUNNING: Duration = Duration::from_millis(100);
 const RESTING: Duration = Duration::from_millis(250);
 
-/// A running recording at the desk.
+/// A running session with its recording and devices.
 pub(super) struct Live {
     pub(super) engine: Engine,
-    /// The advisor, if the session requests advice.
+    /// The assistant's thread, if the session requests advice.
     pub(super) advisor: Option<AdvisorDesk>,
-    /// The comparison of wizard and assistants, if it is shown.
+    /// The comparison of wizard and assistants, if the console shows it.
     pub(super) comparison: Option<ComparisonDesk>,
     /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,
     pub(super) model: ConsoleModel,
-    /// Lock of the recording.
+    /// Header of the recording.
     header: Header,
     pub(super) log: LogWriter,
-    /// The stream to Rerun viewers.
+    /// Stream to Rerun viewers.
     pub(super) viewing: Option<StreamedSession>,
-    /// The streams of the Lab Streaming Layer.
+    /// Streams of the Lab Streaming Layer.
     pub(super) lsl: Option<LslStreaming>,
     /// Lock on the previous part of a continued recording.
     _before: Option<RecordingLock>,
-    /// Whether writing the log has failed.
+    /// Error of writing the log, if writing has failed.
     pub(super) failed: Option<WriteError>,
     pub(super) clock: SessionClock,
     pub(super) gaze: GazeInput,
     pub(super) capture: CaptureOrders,
-    /// Sequence number of a signal that no frame has shown yet.
+    /// Sequence number of a signal that no frame on the wizard's screen has shown yet.
     pub(super) undrawn: Option<u64>,
     /// Last recorded content of the wizard's screen.
     pub(super) seen: Option<VisibleScreen>,
-    /// Number of judged presses in the console model.
+    /// Number of judged presses that the console has been told.
     pub(super) judged: usize,
-    /// Whether the screen must be redrawn.
+    /// Whether the screen has to be redrawn.
     pub(super) dirty: bool,
 }
 
 /// Runs and records a session at the desk until the wizard leaves it.
 ///
 /// # Errors
-/// The session cannot be recorded, or the terminal is gone.
+/// The session cannot be recorded, or the terminal was closed.
 pub(in crate::run) async fn run(begun: PreparedSession, desk: &mut OperatorDesk) -> Result<LiveOutcome, LiveError> {
     let mut live = Live::open(begun, desk)?;
     live.greet(&desk.tracker);
-    // Leaving without a key means quitting the program.
+    // If the wizard left by no key, the program was told to end.
     let leaving = event_loop::run(&mut live, desk).await?.unwrap_or(LeavingReason::Quit);
     desk.tracker.keep(live.engine.session().calibrated.clone());
     let end = live.close(leaving);
@@ -105,7 +105,7 @@ impl ConsoleShell for Live {
     }
 
     fn samples_pointer(&self) -> bool {
-        // With a display, the pointer on the display is used.
+        // In sessions with a participant's display, the pointer there stands for gaze, not the one at the console.
         self.engine.session().spec.participant.gaze == GazeSource::Mouse && self.display.is_none()
     }
 
@@ -203,7 +203,7 @@ impl Live {
         Ok(live)
     }
 
-    /// Opens the stream to Rerun if the session has one; if that fails, the session continues without it.
+    /// Opens the stream to Rerun if the session has one; if that fails, the session continues without the stream.
     fn begin_viewing(&mut self, is_new: bool, next: u64) {
         match StreamedSession::open(self.engine.session(), &self.header, &mut self.log, next, is_new) {
             Ok(viewing) => self.viewing = viewing,
@@ -212,7 +212,7 @@ impl Live {
         self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);
     }
 
-    /// Begins to send to the Lab Streaming Layer, if the session does; if that fails, the session continues without it.
+    /// Opens the session's LSL streams, if it has any; if that fails, the session continues without them.
     fn begin_lsl(&mut self, desk: &mut OperatorDesk) {
         match LslStreaming::open(desk, self.engine.session(), &self.name(), &self.clock) {
             Ok(lsl) => self.lsl = lsl,
@@ -221,14 +221,14 @@ impl Live {
         self.model.lsl = self.lsl.as_ref().map(LslStreaming::status);
     }
 
-    /// Records the present state of the tracker.
+    /// Records the tracker's state at the beginning of a recording.
     fn greet(&mut self, tracker: &GazeTracker) {
         self.gaze = GazeInput::at(tracker, self.engine.session());
         tracker.known().for_each(|news| self.take_gaze(news));
         self.capture = CaptureOrders::begin(tracker, self.name(), self.engine.session(), Instant::now());
     }
 
-    /// Begins the first phase of a plan, with the consent as first event.
+    /// Begins the first phase of a study plan; the participant's consent is the first event.
     fn begin_protocol(&mut self, consent: Option<ProtocolEvent>) {
         if let Some(consent) = consent {
             self.input(Event::Protocol(consent));
@@ -240,12 +240,12 @@ impl Live {
         }
     }
 
-    /// The name of the recording.
+    /// Name of the recording.
     fn name(&self) -> String {
         self.log.folder().file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Start of the same trial in another recording beside this one.
+    /// Start of a repetition of this trial in a new recording beside this one.
     fn beginning_again(&self) -> SessionStart {
         let out = self.log.folder().parent().unwrap_or(std::path::Path::new(".")).to_path_buf();
         let header = Header { redoes: Some(self.name()), started: None, continues: None, ..self.header.clone() };
@@ -254,7 +254,7 @@ impl Live {
 
     fn close(mut self, leaving: LeavingReason) -> Result<LiveOutcome, LiveError> {
         if self.failed.is_none() {
-            // A recording of a plan that is left early is unfinished and can be continued.
+            // A planned recording that is left early stays unfinished, so that it can be continued.
             if leaving != LeavingReason::Quit || self.engine.session().is_step_done() {
                 self.input(Event::SessionEnded);
             }

@@ -1,4 +1,5 @@
-//! The live streams of the Lab Streaming Layer: samples of every event go to a thread that never makes the session wait.
+//! Live streams of the Lab Streaming Layer: samples of every event go to a thread, so that the session never waits for
+//! the network.
 
 use std::rc::Rc;
 
@@ -11,19 +12,19 @@ use crate::run::desk::OperatorDesk;
 use crate::run::engine::Engine;
 use crate::session::{Session, Stamped};
 
-/// A session whose samples are sent.
+/// Sends a session's samples to its LSL streams.
 pub(super) struct LslStreaming {
     maker: SampleMaker,
     streams: Rc<LslStreams>,
-    /// Counts of losses that the wizard was told of.
+    /// Numbers of lost samples that the wizard was told.
     told: LslCounts,
 }
 
 impl LslStreaming {
-    /// The streams of a recording with this name, which begins now; `None` if the session sends none.
+    /// The streams for a recording with this name, which begins now; `None` if the session sends none.
     ///
     /// # Errors
-    /// They cannot be offered, for this reason; the session can go on without them.
+    /// The streams cannot be opened, for this reason; the session can continue without them.
     pub fn open(
         desk: &mut OperatorDesk,
         session: &Session,
@@ -40,7 +41,7 @@ impl LslStreaming {
         Ok(streams.map(open))
     }
 
-    /// Sends the samples of events that have just been recorded. `belief`: the estimate after the last one.
+    /// Sends the samples of events that have just been recorded. `belief`: the estimate after the last event.
     pub fn tell(&mut self, events: &[Stamped], engine: &Engine, belief: &BeliefSnapshot, clock: &SessionClock) {
         let samples = self.maker.samples(events, engine.session(), engine.judged(), belief);
         self.send(samples, clock);
@@ -54,14 +55,14 @@ impl LslStreaming {
         self.streams.tell(samples.into_iter().map(timed).collect());
     }
 
-    /// State of the streams.
+    /// State of the LSL streams.
     pub fn status(&self) -> LslStatus {
         let LslCounts { sent, dropped, refused } = self.streams.counts();
         let names = self.streams.descriptions.iter().map(|stream| stream.outlet.name().to_string()).collect();
         LslStatus { streams: names, sent, lost: dropped + refused }
     }
 
-    /// What is to be said about samples that were lost since the last call.
+    /// Message to the wizard about samples that were lost since the last call.
     pub fn complaint(&mut self) -> Option<String> {
         let now = self.streams.counts();
         let before = std::mem::replace(&mut self.told, now);

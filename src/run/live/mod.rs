@@ -1,8 +1,9 @@
 //! A live session: real time, a wizard at the console, every event recorded at once.
 //!
-//! Frames are composed when something changed, at most 30 per second, and written by a thread of their own, so that a slow terminal delays
-//! no press. Before a frame is drawn, its visible content is recorded if it changed. The log is flushed with every event, gaze within
-//! 50 ms. The loop checks four times a second whether the log is still in place, and saves a log whose folder vanished.
+//! Frames are composed when something changed, at most 30 per second, and a separate thread writes them, so that a slow
+//! terminal delays no press. Before a frame is drawn, its visible content is recorded if it changed. The log is flushed
+//! with every event, gaze within 50 ms. Four times a second, the loop checks whether the log is still in place, and
+//! saves a log whose folder vanished.
 
 mod capture_orders;
 #[cfg(feature = "display")]

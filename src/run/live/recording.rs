@@ -1,4 +1,4 @@
-//! Recording of events in the log and their distribution to stream, comparison and tracker; handling of write errors.
+//! Recording of events in the log, their distribution to viewers, comparison and tracker, and handling of write errors.
 
 use super::live_session::Live;
 use super::lsl_streaming::LslStreaming;
@@ -13,7 +13,7 @@ use crate::session::probes::ProbeEvent;
 use crate::session::{Event, Phase, Stamped};
 
 impl Live {
-    /// Writes events to the log. If that fails the session ends, because the log is the data.
+    /// Writes events to the log. If that fails, the session ends, since it would have no data.
     pub(super) fn record(&mut self, events: &[Stamped]) {
         self.dirty = true;
         for stamped in events {
@@ -82,7 +82,7 @@ impl Live {
         }
     }
 
-    /// Checks that the recording is still in place, and whether the wall clock jumped.
+    /// Checks that the recording is still in place, and whether the computer's clock jumped.
     pub(super) fn watch(&mut self) {
         self.examine_display();
         if let Some(by_ms) = self.clock.jump() {
@@ -114,7 +114,8 @@ impl Live {
         }
     }
 
-    /// Handles a failed log: alarm, robot stop, end of the session. The console stays open until the wizard leaves.
+    /// Handles a log that cannot be written: alarm, robot stop, end of the session. The console stays open until the
+    /// wizard leaves.
     pub(super) fn fail(&mut self, error: WriteError) {
         let (reason, saved) = match &error {
             WriteError::Unwritable { reason, saved, .. } => (reason.to_string(), saved.clone()),
@@ -127,7 +128,8 @@ impl Live {
         self.failed = Some(error);
         self.dirty = true;
         for event in [Event::RobotStopped, Event::SessionEnded] {
-            // These events cannot be recorded; a robot that is already stopped stays stopped.
+            // The result is ignored: these events cannot be recorded, and a robot that is stopped already refuses to
+            // stop.
             let _ = self.engine.input(self.clock.now(), event);
         }
     }

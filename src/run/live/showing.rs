@@ -1,4 +1,4 @@
-//! Output of a live session: the wizard's screen (and its record), and the participant's display.
+//! Output of a live session: the wizard's screen with its record in the log, and the participant's display.
 
 use super::live_session::Live;
 use crate::console::screen::screen;
@@ -8,13 +8,13 @@ use crate::session::wall_display::DisplayEvent;
 use crate::session::{Event, Phase};
 
 impl Live {
-    /// Updates the time of the console model.
+    /// Updates the time that the console shows.
     pub(super) fn tick(&mut self) {
         self.model.now = self.clock.now();
         self.model.clock = self.model.now;
     }
 
-    /// Prepares the frame that is drawn next, and records the visible content.
+    /// Prepares the next frame and records what the wizard will see in it.
     pub(super) fn prepare_frame(&mut self) {
         self.tick();
         click_question::expire(&mut self.model, self.engine.session());
@@ -37,7 +37,7 @@ impl Live {
         }
     }
 
-    /// Records that the frame just drawn is the first one with a signal.
+    /// Records that the frame just drawn is the first to show a signal.
     pub(super) fn tell_drawn(&mut self) {
         if let Some(signal) = self.undrawn.take_if(|_| self.engine.session().phase != Phase::Closed) {
             self.input(Event::SignalDrawn { signal });
@@ -50,7 +50,7 @@ impl Live {
             display.build(self.engine.session());
         }
         self.examine_display();
-        // The page may have been connected before this recording.
+        // A page can have been connected since before this recording.
         let page = self.model.display.as_ref().and_then(|display| display.page);
         if let Some([width_px, height_px]) = page {
             self.input(Event::Display(DisplayEvent::Connected { width_px, height_px }));
@@ -72,7 +72,7 @@ impl Live {
         }
     }
 
-    /// Updates the state of the participant's display for the wizard.
+    /// Updates the state of the participant's display that the wizard sees.
     pub(super) fn examine_display(&mut self) {
         if let (Some(display), Some(health)) = (&self.display, &mut self.model.display) {
             display.examine(health);

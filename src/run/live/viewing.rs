@@ -1,4 +1,5 @@
-//! The live stream to Rerun: every event goes to the scene, whose updates go to a stream that never blocks.
+//! Live stream to Rerun viewers: events update the scene, and its updates go to a stream that never makes the session
+//! wait.
 
 use std::net::SocketAddr;
 
@@ -12,10 +13,10 @@ use crate::run::engine::Engine;
 use crate::scene::{DerivedData, SessionScene};
 use crate::session::{Header, Session, Stamped};
 
-/// Delay of motion updates between events, so that no earlier event can follow.
+/// Delay with which motion between events is streamed, so that no earlier event can follow.
 const BEHIND: SessionTime = SessionTime(100_000_000);
 
-/// A streamed session.
+/// Streams a live session to Rerun viewers.
 pub(super) struct StreamedSession {
     scene: SessionScene,
     stream: RerunStream,
@@ -24,11 +25,11 @@ pub(super) struct StreamedSession {
 }
 
 impl StreamedSession {
-    /// Opens the stream of a recording, whose next event has the number `next`; none, where the session asks for none.
-    /// `is_whole`: the recording does not go on from an earlier part.
+    /// Opens the stream of a recording, whose next event has the sequence number `next`; `None` if the session has no
+    /// stream. `is_whole`: the recording does not continue an earlier part.
     ///
     /// # Errors
-    /// The stream cannot be opened, for this reason; the session can go on without it.
+    /// The stream cannot be opened, for this reason; the session can continue without it.
     pub fn open(
         session: &Session,
         header: &Header,
@@ -58,7 +59,7 @@ impl StreamedSession {
         Ok(Some(StreamedSession { scene, stream, is_whole }))
     }
 
-    /// Streams events that have just been recorded.
+    /// Streams events that have just been recorded to the viewers.
     pub fn view(&mut self, events: &[Stamped], engine: &Engine) {
         let judged = engine.judged();
         for (index, stamped) in events.iter().enumerate() {
@@ -67,22 +68,22 @@ impl StreamedSession {
         }
     }
 
-    /// Streams motion since the last event.
+    /// Streams the arm's motion since the last event.
     pub fn view_motion(&mut self, now: SessionTime) {
         self.stream.tell(self.scene.until(now - BEHIND));
     }
 
-    /// State of the stream.
+    /// State of the stream to Rerun.
     pub fn status(&self) -> ViewerStreamStatus {
         let fares = self.stream.fares();
         let address = self.stream.server.map(|address| address.to_string());
         ViewerStreamStatus { address, written: fares.written, dropped: fares.dropped }
     }
 
-    /// Ends the stream. If the file shows the whole log, which is complete now, it is sealed.
+    /// Ends the stream. If its file shows the whole log, which is complete now, the file is sealed as up to date.
     pub fn close(self, log: &LogWriter) {
         if let Some(file) = self.stream.close().filter(|_| self.is_whole) {
-            // A file without a seal is rebuilt on demand.
+            // If sealing fails, the file is rebuilt from the log when it is needed.
             let _ = rrd::seal(&file, &[log.folder().join(LOG_NAME)]);
         }
     }

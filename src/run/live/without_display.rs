@@ -1,4 +1,4 @@
-//! A live session in a build without the feature `display`; sessions with a participant at a display have been refused before.
+//! Stand-in for the participant's display in a live session, in a build without the feature `display`.
 
 use crate::base::time::SessionTime;
 use crate::console::display_status::DisplayHealth;
@@ -6,44 +6,44 @@ use crate::console::notice::NoticeLevel;
 use crate::run::desk::{OperatorDesk, PageInput};
 use crate::session::{Event, Session};
 
-/// No display: this type has no value.
+/// The participant's display, which this build lacks: the type has no value.
 pub(super) enum ParticipantDisplay {}
 
 impl ParticipantDisplay {
-    /// The display at the desk: there is none.
+    /// Returns no display, since this build lacks it.
     pub fn at(_: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<DisplayHealth>) {
         (None, None)
     }
 
-    /// There is nothing to build.
+    /// Does nothing: this build has no display.
     pub fn build(&mut self, _: &Session) {
         match *self {}
     }
 
-    /// No hand is shown to the participant.
+    /// Does nothing: this build shows no hand to the participant.
     pub fn move_robot(&mut self, _: &Session, _: SessionTime) {
         match *self {}
     }
 
-    /// Nothing is shown to the participant.
+    /// Does nothing: this build shows nothing to the participant.
     pub fn show(&mut self, _: &Session, _: SessionTime) {
         match *self {}
     }
 
-    /// There is nothing to examine.
+    /// Does nothing: this build has no display whose state could be examined.
     pub fn examine(&self, _: &mut DisplayHealth) {
         match *self {}
     }
 }
 
-/// An input of the page as an event of the session and a notice to the wizard.
+/// An input of the page, converted to an event of the session and a notice to the wizard.
 pub(super) struct PageEvent {
     pub event: Option<Event>,
     pub notice: Option<(NoticeLevel, String)>,
 }
 
 impl PageEvent {
-    /// Nothing comes from a display.
+    /// Never called, since this build has no page.
     pub fn from_input(input: PageInput, _: &Session, _: SessionTime) -> PageEvent {
         match input {}
     }

@@ -1,4 +1,5 @@
-//! A live session in a build without the feature `rerun`: no stream is written, and the wizard is told if the session asks for one.
+//! Stand-in for the live stream to Rerun in a build without the feature `rerun`; the wizard is told if the session asks
+//! for a stream.
 
 use crate::base::features::{Feature, NotBuilt};
 use crate::base::time::SessionTime;
@@ -7,11 +8,11 @@ use crate::edge::log::LogWriter;
 use crate::run::engine::Engine;
 use crate::session::{Header, Session, Stamped};
 
-/// No stream: this type has no value.
+/// The stream to Rerun, which this build lacks: the type has no value.
 pub(super) enum StreamedSession {}
 
 impl StreamedSession {
-    /// Opens no stream.
+    /// Opens no stream, since this build lacks Rerun.
     ///
     /// # Errors
     /// The session asks for a stream.
@@ -25,22 +26,22 @@ impl StreamedSession {
         if session.spec.rerun.is_on() { Err(NotBuilt(Feature::Rerun).to_string()) } else { Ok(None) }
     }
 
-    /// Nothing is streamed.
+    /// Does nothing: this build has no stream.
     pub fn view(&mut self, _: &[Stamped], _: &Engine) {
         match *self {}
     }
 
-    /// Nothing is streamed.
+    /// Does nothing: this build has no stream.
     pub fn view_motion(&mut self, _: SessionTime) {
         match *self {}
     }
 
-    /// There is no state.
+    /// Never called, since this build has no stream.
     pub fn status(&self) -> ViewerStreamStatus {
         match *self {}
     }
 
-    /// There is nothing to end.
+    /// Never called, since this build has no stream.
     pub fn close(self, _: &LogWriter) {
         match self {}
     }

@@ -1,4 +1,4 @@
-//! The causes of a person's errors: by the consensus of two raters, by both raters' codes, or by the estimate.
+//! The causes of a person's errors, from the consensus of two raters, from both raters' codes, or from the estimate.
 
 use crate::analysis::follower::Follower;
 use crate::edge::file_error::{FileError, FileResult};
@@ -11,25 +11,26 @@ use crate::measures::cause_codes::{CauseKind, Codable, Code, Codes};
 use crate::measures::rater_choice::{RaterChoice, RaterPair};
 use crate::session::settings::ParticipantKind;
 
-/// What raters say about the errors of a recording.
+/// Raters' codes of the errors of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CodedErrors {
-    /// Codes of two raters: of those who were named or settled a consensus, else of the two who coded most errors; `None` with fewer
-    /// than two, or if more than two could be these.
+    /// Codes of two raters: those who were named or settled a consensus, else the two who coded most errors. `None`
+    /// with fewer than two raters, or if the choice is ambiguous.
     pub raters: Option<[Codes; 2]>,
-    /// The consensus, if it holds and covers every error.
+    /// Consensus codes of the two raters, if these hold and cover every error.
     pub consensus: Option<Codes>,
-    /// The two raters of that consensus.
+    /// The two raters who settled the consensus.
     pub settled_by: Option<[String; 2]>,
-    /// Why there is a consensus that does not hold.
+    /// Why the raters' consensus does not hold, if there is one.
     pub stale: Option<String>,
 }
 
 impl CodedErrors {
-    /// Reads the codes beside a log. `named` are the two raters whose codes are asked for, if any.
+    /// Reads the codes beside a log. `named`: the two raters whose codes are to be used, if the user names them.
     ///
     /// # Errors
-    /// A file with codes is damaged; or more than two raters have coded every error of a person, and nobody said which two count.
+    /// A file with codes is damaged; or more than two raters have coded every error of a person, and the user did not
+    /// name two of them.
     pub fn read(log: &LogReader, follower: &Follower, named: Option<&[String; 2]>) -> FileResult<CodedErrors> {
         let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
         let all = rater_codes::read_all(log.folder(), &codable)?;
@@ -71,9 +72,9 @@ impl CodedErrors {
         }
     }
 
-    /// Human presses with the causes of errors, and the source of the causes: recorded beliefs for simulated participants; for people
-    /// the raters' consensus, the codes of two raters who both coded every error, else the estimate. The source is `None` for a simulated
-    /// participant without recorded beliefs.
+    /// Human presses with the causes of errors, and the source of the causes: recorded beliefs for simulated
+    /// participants; for people the raters' consensus, the codes of two raters who both coded every error, else the
+    /// estimate. The source is `None` for a simulated participant without recorded beliefs.
     pub fn judged(
         &self,
         follower: &Follower,
@@ -101,7 +102,7 @@ impl CodedErrors {
         (judged, Some(basis))
     }
 
-    /// The codes that both raters share: their consensus, else what both coded alike, if both coded every error.
+    /// Codes that two raters share: their consensus, else the errors that both coded alike, if both coded every error.
     pub fn shared(&self, judged: &[JudgedPress]) -> Option<Codes> {
         let alike = || self.complete_raters(judged).map(|[one, other]| one.agreed(other));
         self.consensus.clone().or_else(alike)
@@ -129,7 +130,7 @@ fn tied(log: &LogReader, raters: &[String]) -> FileError {
     FileError::from_finding(log.folder(), found, remedy)
 }
 
-/// The cause that a code names.
+/// The cause of an error that a code stands for.
 fn cause(kitchen: &Kitchen, press: &JudgedPress, code: &Code) -> Option<Cause> {
     if code.kind() != CauseKind::Belief {
         return Some(Cause::Slip);
@@ -137,8 +138,9 @@ fn cause(kitchen: &Kitchen, press: &JudgedPress, code: &Code) -> Option<Cause> {
     Some(Cause::Belief { gain_nats: f64::NAN, target: code.target(kitchen, press.before)?, with: None })
 }
 
-/// The cause of an error by two raters, which does not depend on who is the first. If both coded a false belief, it is belief related;
-/// where they name two, the first in the layout's order comes first. Otherwise the error counts as not belief related.
+/// The cause of an error by two raters, whatever their order. If both coded a false belief, the error follows from one;
+/// if the raters name two different ones, the first in the layout's order comes first. Otherwise the error does not
+/// count as following from a false belief.
 fn agreed(kitchen: &Kitchen, press: &JudgedPress, [one, other]: &[Codes; 2]) -> Option<Cause> {
     let codes = [one.0.get(&press.seq)?, other.0.get(&press.seq)?];
     if codes.iter().any(|code| code.kind() != CauseKind::Belief) {

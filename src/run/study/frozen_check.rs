@@ -1,4 +1,4 @@
-//! Holds recordings against a frozen plan.
+//! Compares the recordings of a study with a frozen plan.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use crate::edge::frozen_file::read_frozen;
 use crate::edge::log::LogReader;
 use crate::study::preregistration::{Preregistration, RecordedPlan};
 
-/// How these recordings stand to the frozen plan in a file.
+/// Comparison of these recordings with the frozen plan in a file.
 ///
 /// # Errors
 /// The file or a recording cannot be read, or the file was changed after the plan was frozen.

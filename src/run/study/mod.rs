@@ -1,4 +1,5 @@
-//! `tomcom study`: replays the recordings of a study on all processors and writes tables, charts and the report.
+//! Command `tomcom study`: replays the recordings of a study on all processors and writes tables, charts and the
+//! report.
 
 mod coded_errors;
 mod frozen_check;
@@ -33,7 +34,7 @@ use crate::study::tables::questionnaires::{AnswerRow, answers};
 use crate::study::tables::tutorial_answers::TutorialAnswer;
 use crate::study::trial_statistics::{Trial, arrange};
 
-/// Reasons why a study could not be analysed.
+/// Error of analysing a study.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum StudyError {
     /// A file cannot be read.
@@ -57,13 +58,13 @@ impl From<FileError> for StudyError {
 pub struct AnalysisRequest {
     /// Recordings, or folders that contain recordings.
     pub paths: Vec<PathBuf>,
-    /// The folder for tables and report.
+    /// Folder for tables and report.
     pub out: PathBuf,
-    /// How much is computed.
+    /// Optional parts of the analysis that are computed.
     pub extent: AnalysisScope,
-    /// The two raters whose codes are taken; `None`: those with the most complete codes of each recording.
+    /// The two raters whose codes are used; `None` for those with the most complete codes of each recording.
     pub raters: Option<[String; 2]>,
-    /// The file of the frozen plan that the recordings are held against.
+    /// File of the frozen plan with which the recordings are compared.
     pub frozen: Option<PathBuf>,
 }
 
@@ -113,7 +114,8 @@ fn name(recording: &Path) -> String {
 /// Analyses recordings of one kitchen and calls `done` after each. Returns the summary and the report's path.
 ///
 /// # Errors
-/// A recording cannot be read or replayed, or belongs to another kitchen than the first; or the results cannot be written.
+/// A recording cannot be read or replayed, or belongs to another kitchen than the first; or the results cannot be
+/// written.
 pub fn study(
     analysis: &AnalysisRequest,
     recordings: &NamedRecordings,
@@ -168,13 +170,13 @@ pub fn study(
     Ok((figures, path))
 }
 
-/// The answers to the questions of tutorials, by participant and recording.
+/// Answers to the comprehension questions of tutorials, ordered by participant and recording.
 fn tutorial_answers(recordings: &NamedRecordings) -> Result<Vec<TutorialAnswer>, FileError> {
     let mut all = Vec::new();
     for (path, name) in &recordings.found {
         all.extend(tutorials::read(path, name)?);
     }
-    // The order of a tutorial's questions stays.
+    // The sort is stable, so that a tutorial's questions keep their order.
     all.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
     Ok(all)
 }

@@ -1,4 +1,4 @@
-//! The answers to a questionnaire, as the tables have them, and its score.
+//! Answers to a questionnaire in the form that the tables need, and the questionnaire's score.
 
 use crate::session::plan::{Item, ItemForm, ItemKind, Questionnaire, ScoreRule};
 use crate::session::protocol::Protocol;
@@ -33,14 +33,14 @@ pub(super) fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {
     questionnaire.items.iter().enumerate().map(answered).collect()
 }
 
-/// The answer to an item from 0 to 1 on its scale, turned round if the item is reversed.
+/// Answer to an item as a number from 0 to 1 on its scale, reversed if the item is.
 fn share(questionnaire: &Questionnaire, protocol: &Protocol, index: usize) -> Option<f64> {
     let [least, most] = questionnaire.form(index)?.ends()?;
     let share = (protocol.given(index)?.number()? - least) as f64 / (most - least).max(1) as f64;
     Some(if questionnaire.items.get(index)?.reversed { 1.0 - share } else { share })
 }
 
-/// The questionnaire's score; `None` if it has no rule, or if an item was left out.
+/// Score of the questionnaire; `None` if it has no scoring rule, or if an item was left out.
 fn score(questionnaire: &Questionnaire, protocol: &Protocol) -> Option<f64> {
     let count = questionnaire.items.len();
     let shares: Option<Vec<f64>> = (0..count).map(|index| share(questionnaire, protocol, index)).collect();
@@ -54,7 +54,7 @@ fn score(questionnaire: &Questionnaire, protocol: &Protocol) -> Option<f64> {
             let sum: Option<f64> = shares.iter().enumerate().map(on_scale).sum();
             Some(sum? / count as f64)
         }
-        // Each item adds 0 to 4 points, and the sum is taken times 2.5 (Brooke 1996).
+        // System Usability Scale: each item adds 0 to 4 points, and the sum is multiplied by 2.5 (Brooke 1996).
         ScoreRule::Sus => Some(2.5 * shares.iter().map(|share| (4.0 * share).round()).sum::<f64>()),
     }
 }

@@ -1,4 +1,4 @@
-//! Replays one recording of a study once and reduces it to the statistics that the analysis keeps.
+//! Replays one recording of a study once, and reduces it to the statistics that the analysis keeps.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -47,34 +47,35 @@ use crate::study::trial_statistics::{BeliefErrors, Trial};
 /// Result of analysing one recording.
 #[derive(Debug)]
 pub struct RecordingAnalysis {
-    /// The trial's measures.
+    /// Statistics of the trial.
     pub trial: Trial,
-    /// What the report tells about the recording.
+    /// Settings and circumstances of the recording, for the report.
     pub facts: Facts,
-    /// CSV rows of the tables of events.
+    /// Rows of the CSV tables of events.
     pub rows: [Vec<u8>; 5],
 }
 
 /// Optional parts of the analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AnalysisScope {
-    /// Whether the signals of communication concepts are computed.
+    /// Whether hypothetical signals of communication concepts are computed.
     pub concepts: bool,
-    /// Whether the tables of events are written.
+    /// Whether rows of the CSV tables of events are written.
     pub events: bool,
 }
 
-/// Replay of a recording, with the analyses that its condition and the requested scope need.
+/// Replay of a recording together with the analyses that its condition and the requested scope need.
 enum Pass {
     Plain(Box<Follower>),
-    /// Replay with the assistant's hypothetical signals in a wizard trial.
+    /// Replay of a wizard trial with the assistant's hypothetical signals.
     Beside(Box<ComparisonFollower>),
-    /// Replay with hypothetical signals of all compared concepts in an unassisted trial.
+    /// Replay of an unassisted trial with hypothetical signals of all compared concepts.
     Swept(Box<ConceptSweep>),
 }
 
 impl Pass {
-    /// `is_known`: what the participant believed is recorded, or may follow from raters' codes.
+    /// The replay for this session. `is_known`: the participant's beliefs are recorded, or may follow from raters'
+    /// codes.
     fn new(session: Session, extent: AnalysisScope, is_known: bool) -> Pass {
         let (spec, mut session) = (&session.spec.clone(), session);
         let cost = CostToGo::new(session.kitchen.clone());
@@ -107,7 +108,7 @@ impl Pass {
     }
 }
 
-/// Attribution of people's errors to causes by the estimated beliefs.
+/// Attributes people's errors to causes by the estimated beliefs.
 struct ByEstimate {
     attributor: Attributor,
     cost: CostToGo,
@@ -115,7 +116,7 @@ struct ByEstimate {
 }
 
 impl ByEstimate {
-    /// Attributes the press of an event that was just applied.
+    /// Attributes the error of a press that was just applied to a cause.
     fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower) {
         let Some(press) = change.human_press() else { return };
         let (kitchen, judged) = (&follower.session.kitchen, follower.judged.last());
@@ -130,7 +131,7 @@ impl ByEstimate {
     }
 }
 
-/// Belief state with the expected probabilities of an estimate.
+/// A belief state whose probabilities are those that the estimate expects.
 fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &DirichletBelief) -> Belief {
     let mut belief = Belief::of_truth(kitchen, state);
     for index in 0..kitchen.aspects.len() {
@@ -140,11 +141,11 @@ fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &Dirichle
     belief
 }
 
-/// Analyses the recording with this name in tables; `None` for a practice recording. `raters` are the two whose codes are taken, if
-/// they were named.
+/// Analyses the recording with this name in tables; `None` for a practice recording. `raters`: the two whose codes are
+/// used, if the user named them.
 ///
 /// # Errors
-/// The recording cannot be read or replayed, or it is not clear which two raters' codes are to be taken.
+/// The recording cannot be read or replayed, or it is not clear which two raters' codes to use.
 pub fn read(
     recording: &Path,
     name: &str,
@@ -241,7 +242,8 @@ pub fn read(
     Ok(Some((kitchen, RecordingAnalysis { trial, facts: Facts::from_session(&header, &follower.session), rows })))
 }
 
-/// Communications that were sent, and for a wizard trial also the assistant's hypothetical ones, each list with its sender's name.
+/// Communications of each sender, with the sender's name: those that were sent and, in a wizard trial, the assistant's
+/// hypothetical ones.
 fn lanes(pass: &mut Pass) -> Vec<(String, Vec<CommunicationEvent>)> {
     if let Pass::Beside(watcher) = pass {
         watcher.finish();
@@ -253,7 +255,7 @@ fn lanes(pass: &mut Pass) -> Vec<(String, Vec<CommunicationEvent>)> {
     vec![(name.to_string(), sent(session))]
 }
 
-/// Number of contents of a signal; 0 of other entries.
+/// Number of contents of a signal on the timeline; 0 for other entries.
 fn contents(entry: &TimelineEntry) -> u64 {
     match &entry.what {
         TimelineEvent::Signal { signal, .. } => signal.contents() as u64,
@@ -261,7 +263,7 @@ fn contents(entry: &TimelineEntry) -> u64 {
     }
 }
 
-/// Signals that were shown to the participant.
+/// Signals that were shown to the participant, as communications.
 fn sent(session: &Session) -> Vec<CommunicationEvent> {
     let mut press = 0;
     let mut sent = Vec::new();
@@ -278,7 +280,7 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
     sent
 }
 
-/// The participant's false beliefs, recorded or by what raters share; `None` if there is only the estimate.
+/// The participant's false beliefs, recorded or from codes that raters share; `None` if only the estimate is known.
 fn known_beliefs(
     follower: &Follower,
     judged: &[JudgedPress],
@@ -383,7 +385,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
     }
 }
 
-/// Seconds between two times of a session, without pauses.
+/// Time between two session times, without pauses, in seconds.
 fn since(session: &Session, from: SessionTime, to: SessionTime) -> f64 {
     clock_at(session, to).secs_since(clock_at(session, from))
 }

@@ -1,4 +1,5 @@
-//! Collects the rows of the tables of events during the replay of a recording. [`crate::study::tables`] declares their columns.
+//! Collects the rows of the CSV tables of events while a recording is replayed. [`crate::study::tables`] declares their
+//! columns.
 
 use super::coded_errors::CodedErrors;
 use crate::analysis::follower::Follower;
@@ -28,9 +29,9 @@ use crate::study::tables::offer_table::OfferRow;
 pub struct RowCollector {
     recording: String,
     rows: EventRows,
-    /// Time of each agent's last press.
+    /// Session time of each agent's last press.
     pressed_at: [Option<SessionTime>; 2],
-    /// Presses of both agents; those of the human are judged after the replay.
+    /// Presses of both agents; human presses are judged after the replay.
     presses: Vec<RecordedPress>,
     witness: Option<BeliefWitness>,
     look: Option<GazeRun>,
@@ -48,23 +49,23 @@ impl EventRows {
     }
 }
 
-/// Analysis of the human's presses, available after the replay.
+/// Analyses of the human's presses, which are complete after the replay.
 #[derive(Clone, Copy, Debug)]
 pub struct PressFacts<'a> {
-    /// The human's presses with their verdicts, in order.
+    /// The human's presses with their judgements, in order.
     pub judged: &'a [JudgedPress],
-    /// The error sequences.
+    /// Error sequences of the trial.
     pub sequences: &'a [Sequence],
-    /// Causes of people's errors by the estimated beliefs, with the log number of the press.
+    /// Causes of people's errors by the estimated beliefs, with the sequence number of the press.
     pub by_estimate: Option<&'a [(u64, Cause)]>,
-    /// The codes of raters, if they coded the trial.
+    /// Raters' codes of the errors.
     pub coded: &'a CodedErrors,
-    /// The periods of false belief, if they are known.
+    /// The participant's false beliefs, if they are known.
     pub known: Option<&'a KnownBeliefs>,
 }
 
 impl<'a> PressFacts<'a> {
-    /// Analysis of the press with this log number; `None` for presses of the robot.
+    /// Analysis of the press with this sequence number; `None` for presses of the robot.
     fn analysis(&self, seq: u64, session: &Session) -> Option<PressAnalysis<'a>> {
         let index = self.judged.binary_search_by_key(&seq, |press| press.seq).ok()?;
         let episode = self.known.and_then(|known| known.episode(&session.kitchen, &self.judged[index]));
@@ -87,7 +88,7 @@ impl<'a> PressFacts<'a> {
 }
 
 impl RowCollector {
-    /// A collector without rows for this recording.
+    /// A collector for the recording with this name, without rows yet.
     pub fn new(recording: &str) -> RowCollector {
         RowCollector {
             recording: recording.to_string(),
@@ -99,7 +100,7 @@ impl RowCollector {
         }
     }
 
-    /// Records an event that was just applied; `was_running`: the trial was running before the event.
+    /// Adds the rows of an event that was just applied; `was_running`: the trial was running before the event.
     pub fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower, was_running: bool) {
         let session = &follower.session;
         if let Change::Press { press, presses } = change {
@@ -125,7 +126,7 @@ impl RowCollector {
         }
     }
 
-    /// Records a press; `number` counts the presses of its agent from 1.
+    /// Adds a press; `number` counts the presses of its agent from 1.
     fn pressed(&mut self, stamped: &Stamped, press: &Press, number: u32, follower: &Follower) {
         let session = &follower.session;
         let before = self.pressed_at[press.agent.index()].replace(stamped.time);
@@ -185,7 +186,8 @@ impl RowCollector {
         self.rows.add(&GazeRow { recording: &self.recording, kitchen: &session.kitchen, time_s, run });
     }
 
-    /// The CSV rows, in the order of [`Table::OF_EVENTS`]. `lanes`: sent communications, and hypothetical ones of the assistant.
+    /// The CSV rows, in the order of [`Table::OF_EVENTS`]. `lanes`: communications that were sent, and the assistant's
+    /// hypothetical ones.
     pub fn finish(
         mut self,
         session: &Session,
@@ -207,7 +209,7 @@ impl RowCollector {
             for (index, sent) in all.iter().enumerate() {
                 let is_matched = |pairs: &Vec<(usize, usize)>| pairs.iter().any(|&(a, b)| [a, b][side] == index);
                 let matched = pairs.as_ref().map(is_matched);
-                // The first lane is that of the sender.
+                // The first lane contains the communications that were sent, which can have used an offer.
                 let took = |timed: &&TimedOffer| side == 0 && timed.sent == Some(sent.clock);
                 let offer = offers.iter().find(took).map(|timed| timed.offer.seq);
                 self.rows.add(&CommunicationRow { recording, kitchen, lane, sent, offer, matched });

@@ -1,5 +1,5 @@
-//! Hypothetical signals of communication concepts in an unassisted trial, for all values of their parameters in one replay. The
-//! planner runs once per decision; all costs of communication are then applied to the same benefits.
+//! Hypothetical signals of communication concepts in an unassisted trial, for all values of their parameters in one
+//! replay. The planner runs once per decision; all costs of communication are then applied to the same benefits.
 
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::follower::Follower;
@@ -19,26 +19,27 @@ use crate::session::{Applied, Event, Session, Stamped};
 use crate::study::prevention::{ConceptSignal, TrialTruth};
 use crate::study::roc::{CONCEPTS, LEAST_COST, SweptTrial, parameters};
 
-/// A concept with one parameter value, and its hypothetical signals.
+/// A concept with one value of its parameter, and its hypothetical signals.
 #[derive(Debug)]
 struct SweptConcept {
     concept: ConceptName,
     parameter: f64,
-    /// Signals that must not be repeated yet.
+    /// Signals that the concept may not repeat yet.
     repeats: Repeats,
     sent: Vec<ConceptSignal>,
 }
 
-/// Replays a session and evaluates all concepts when the assistant is asked.
+/// Replays a session, and evaluates all communication concepts whenever the assistant is asked for advice.
 #[derive(Debug)]
 pub struct ConceptSweep {
-    /// The session, with the estimate.
+    /// The session with the belief estimate.
     pub follower: Follower,
     planner: Planner,
     tom: TomConcept,
     cost: CostToGo,
     swept_concepts: Vec<SweptConcept>,
-    /// Log number and time of the event after which the concepts are evaluated, once simultaneous events have been applied.
+    /// Sequence number and time of the event after which the concepts are evaluated, once simultaneous events have been
+    /// applied.
     pending: Option<(u64, SessionTime)>,
 }
 
@@ -46,7 +47,7 @@ impl ConceptSweep {
     /// Creates the replay of a session that has no events yet.
     pub fn new(session: Session, cost: CostToGo) -> ConceptSweep {
         let (kitchen, spec) = (session.kitchen.clone(), &session.spec);
-        // The planner's accuracy is that for the smallest swept cost.
+        // The planner is as accurate as the smallest of the analysed costs requires.
         let assistant = AssistantSpec { cost_of_communication: LEAST_COST, ..spec.assistant.clone() };
         let swept = |concept: ConceptName, parameter: f64| SweptConcept {
             concept,
@@ -66,7 +67,7 @@ impl ConceptSweep {
         }
     }
 
-    /// Applies one event.
+    /// Applies one event of the session.
     ///
     /// # Errors
     /// Errors of [`Follower::apply`].
@@ -91,7 +92,7 @@ impl ConceptSweep {
         Ok(change)
     }
 
-    /// Evaluates every concept in the present state.
+    /// Evaluates every communication concept in the session's present state.
     fn evaluate(&mut self) {
         let Some((seq, time)) = self.pending.take().filter(|_| self.follower.session.is_running()) else { return };
         let question = AdviceRequest::from_follower(&mut self.follower, seq, time);
@@ -116,7 +117,8 @@ impl ConceptSweep {
         }
     }
 
-    /// Prevention counts of every concept and parameter value by the truth about the trial; to be called after the last event.
+    /// Errors that each concept would have prevented with each parameter value, given the trial's true errors and false
+    /// beliefs; to be called after the last event.
     pub fn swept(&self, truth: &TrialTruth) -> Vec<SweptTrial> {
         let signalled = self.swept_concepts.iter().map(|swept| SweptTrial {
             concept: swept.concept,

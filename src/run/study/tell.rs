@@ -126,7 +126,7 @@ pub fn describe(figures: &StudySummary) -> String {
     text
 }
 
-/// Concepts that acted by themselves, one a line.
+/// Results of concepts that sent signals by themselves, as one line of text each.
 fn of_live(arms: &[LiveArm]) -> String {
     let Some(first) = arms.first() else { return String::new() };
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
@@ -151,7 +151,8 @@ fn of_live(arms: &[LiveArm]) -> String {
     text
 }
 
-/// Similarity at its three levels; the paper does not say which one its 74 % are.
+/// Similarity of wizard and assistant at its three levels, as text. The paper does not say which level its 74 % belong
+/// to.
 fn of_similarity(who: &str, found: &Similarity) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let level = |level: &MatchShares| format!("{} (by chance {})", number(level.recall), number(level.chance_recall));
@@ -194,12 +195,12 @@ fn of_effect(effect: &AssistanceEffect) -> String {
     )
 }
 
-/// "p = 0.123", or "p < 0.001".
+/// A p value as text: "p = 0.123", or "p < 0.001".
 fn p_value(p: f64) -> String {
     if p < 0.001 { "p < 0.001".to_string() } else { format!("p = {p:.3}") }
 }
 
-/// The contrasts of the primary outcome between arms.
+/// Contrasts of the primary outcome between study arms, as text.
 pub fn describe_arms(found: &ArmComparison) -> String {
     let mut text = format!(
         "{} per press of the human, by condition (linear mixed model of {} trials of {}):\n",

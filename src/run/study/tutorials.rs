@@ -1,4 +1,5 @@
-//! Reads the answers to the questions of tutorials, also from recordings of practice, which are not analysed as trials.
+//! Reads the answers to the comprehension questions of tutorials, including those in practice recordings, which are not
+//! analysed as trials.
 
 use std::path::Path;
 
@@ -6,7 +7,7 @@ use crate::edge::file_error::FileResult;
 use crate::edge::log::LogReader;
 use crate::study::tables::tutorial_answers::{TutorialAnswer, TutorialAnswers};
 
-/// The answers in the recording with this name in tables; none if it has no tutorial.
+/// The answers in a recording; empty if it has no tutorial. `name`: name of the recording in tables.
 ///
 /// # Errors
 /// The recording cannot be read.

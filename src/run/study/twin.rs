@@ -1,9 +1,10 @@
-//! Usefulness of the signals of a simulated trial, judged by twins.
+//! Usefulness of the signals in a simulated trial, judged by running the trial without them (unassisted twins).
 //!
-//! The trial is run again from its recording. At every signal the run is copied, and the copy goes on with the same random streams
-//! and without this or any later signal, until the false beliefs that the signal is about have ended. The signal is useful if the
-//! copy makes more belief related errors about them than the trial did until they ended there. A proposal of k presses is useful if the
-//! copy makes more errors in its next k presses, belief related or not: a spared slip counts, too.
+//! The trial is run again from its recording. At every signal the run is copied, and the copy continues with the same
+//! random streams and without this or any later signal, until the false beliefs that the signal is about have ended.
+//! The signal is useful if the copy has more errors from these beliefs than the trial had until the beliefs ended
+//! there. A proposal of k presses is useful if the copy has more errors in its next k presses, whatever their cause, so
+//! that a prevented slip counts, too.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -24,11 +25,11 @@ use crate::session::admit::is_external;
 use crate::session::settings::Condition;
 use crate::session::{Event, Phase, Session, Stamped};
 
-/// What a signal could spare.
+/// Errors that a signal can prevent.
 enum SignalScope {
-    /// Belief related errors about these aspects.
+    /// Errors that follow from false beliefs about these state aspects.
     Beliefs(Vec<AspectId>),
-    /// Errors in so many next presses.
+    /// Errors in this number of next presses.
     Presses(usize),
 }
 
@@ -41,16 +42,16 @@ impl SignalScope {
     }
 }
 
-/// A signal of the trial, and what its twin did.
+/// A signal of the trial, with the errors of the twin that continues without it.
 struct TwinResult {
     time: SessionTime,
     scope: SignalScope,
-    /// Errors of the twin that the signal could have spared.
+    /// Number of the twin's errors that the signal could have prevented.
     errors: u64,
 }
 
-/// Number of useful signals of a recorded trial of a simulated participant; `None` if the trial cannot be run again: participants
-/// decide otherwise since the program's version that recorded it, or this build lacks the arm.
+/// Number of useful signals of a recorded trial of a simulated participant; `None` if the trial cannot be run again:
+/// simulated participants decide differently since the program's version that recorded it, or this build lacks the arm.
 ///
 /// # Errors
 /// The recording cannot be read.
@@ -77,7 +78,8 @@ pub(super) fn useful_signals(recording: &Path) -> FileResult<Option<u64>> {
     Ok(Some(twins.iter().filter(is_useful).count() as u64))
 }
 
-/// Runs the session up to a recorded event, and a twin for every signal on the way. Recommendations are taken from the recording.
+/// Runs the session up to a recorded event, and a twin for every signal before it. Recommendations are taken from the
+/// recording.
 fn run_to(again: &mut Engine, recorded: &Stamped, twins: &mut Vec<TwinResult>) -> Vec<Stamped> {
     let is_signal = match &recorded.event {
         Event::SignalShown { .. } => true,
@@ -92,7 +94,7 @@ fn run_to(again: &mut Engine, recorded: &Stamped, twins: &mut Vec<TwinResult>) -
     if is_external(again.session(), &recorded.event) {
         events = again.input(recorded.time, recorded.event.clone()).events;
     } else {
-        // A participant can act without an event.
+        // The participant can act without an event, so the next due action is tried until an event occurs.
         while events.is_empty() && again.next_due().is_some_and(|due| due <= recorded.time) {
             events = again.fire();
         }
@@ -108,7 +110,8 @@ fn run_to(again: &mut Engine, recorded: &Stamped, twins: &mut Vec<TwinResult>) -
     events
 }
 
-/// Runs a twin without further signals until the false beliefs that a signal at `time` is about have ended.
+/// Runs a twin (the trial continued without further signals) until the false beliefs that a signal at `time` is about
+/// have ended.
 fn twin(mut engine: Engine, time: SessionTime, signal: &Signal) -> TwinResult {
     let scope = SignalScope::of_signal(engine.session(), signal);
     let presses = engine.judged().len();
@@ -116,7 +119,7 @@ fn twin(mut engine: Engine, time: SessionTime, signal: &Signal) -> TwinResult {
     while engine.session().phase == Phase::Running || engine.session().is_frozen() {
         attendant.step(&mut engine);
         let _ = engine.take_questions();
-        // What a participant believes is recorded before its presses.
+        // The belief is over once the twin's recorded beliefs say so; they are recorded before each press.
         let is_over = match &scope {
             SignalScope::Beliefs(told) => {
                 let corrected = open_at(engine.follower(), time, told).all(|episode| episode.corrected.is_some());
@@ -132,13 +135,13 @@ fn twin(mut engine: Engine, time: SessionTime, signal: &Signal) -> TwinResult {
     TwinResult { time, scope, errors }
 }
 
-/// Periods of false belief about these aspects that were open at a time.
+/// False belief episodes about these aspects that were open at this time.
 fn open_at<'a>(follower: &'a Follower, time: SessionTime, told: &'a [AspectId]) -> impl Iterator<Item = &'a Episode> {
     let is_open = move |episode: &&Episode| episode.began <= time && episode.corrected.is_none_or(|end| end > time);
     follower.episodes.all().filter(|episode| told.contains(&episode.aspect)).filter(is_open)
 }
 
-/// Errors after a time that a signal at that time could spare.
+/// Number of errors after this time that a signal at this time can prevent.
 fn errors_after(follower: &Follower, time: SessionTime, scope: &SignalScope) -> u64 {
     match scope {
         SignalScope::Beliefs(told) => belief_errors_after(follower, time, told),
@@ -149,7 +152,8 @@ fn errors_after(follower: &Follower, time: SessionTime, scope: &SignalScope) -> 
     }
 }
 
-/// Belief related errors after a time about aspects in `told` that were believed wrong at that time, until the beliefs were right.
+/// Number of errors after this time that follow from false beliefs, held at this time, about the aspects in `told`;
+/// counted until each belief is corrected.
 fn belief_errors_after(follower: &Follower, time: SessionTime, told: &[AspectId]) -> u64 {
     let kitchen = &follower.session.kitchen;
     let open: Vec<&Episode> = open_at(follower, time, told).collect();

@@ -1,4 +1,4 @@
-//! Report section that compares the arms of a study.
+//! Section of the study report that compares the study's arms.
 
 use maud::{Markup, Render, html};
 
@@ -9,7 +9,7 @@ use crate::study::figures::StudySummary;
 use crate::study::group_orders::GroupOrder;
 use crate::study::trial_statistics::Trial;
 
-/// Section with the arms' rates, their contrasts, and whether the assistant is not worse than the wizard.
+/// Section with the arms' rates, their contrasts, and the non-inferiority of the assistant to the wizard.
 pub(super) fn arms(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
     let misfits: Vec<(&Trial, String)> =
         trials.iter().filter(|trial| trial.counts()).filter_map(|trial| Some((trial, trial.misfit()?))).collect();
@@ -67,7 +67,7 @@ fn rates(captions: &mut Captions, found: &ArmComparison) -> Markup {
     captions.table_of_columns(&caption, &columns, found.arms.iter())
 }
 
-/// A contrast of the primary model with those of the two others.
+/// A contrast of the primary model, with the same contrast of the two other models.
 struct ContrastRow<'a> {
     own: &'a ArmContrast,
     carried: Option<&'a ArmContrast>,

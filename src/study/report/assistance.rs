@@ -1,4 +1,4 @@
-//! Report section on the effect of assistance.
+//! Section of the study report on the effect of assistance.
 
 use maud::{Markup, Render, html};
 
@@ -16,7 +16,7 @@ use crate::study::trial_statistics::Trial;
 pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
     let headline = figures.effects.first();
     if figures.conditions.len() > 2 {
-        // Two conditions are compared in the pictures and tests; more of them in a section of their own.
+        // Charts and tests compare two conditions; a study with more has another section for that.
         return section("Errors and times", scroll(conditions(captions, figures)));
     }
     let pictures = pictures(captions, figures, trials);
@@ -42,7 +42,7 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
     section(if figures.conditions.len() > 1 { "Does assistance help?" } else { "Errors and times" }, content)
 }
 
-/// Charts of two conditions.
+/// Charts for a study of two conditions.
 fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
     let key = keys(&[("first", "assisted first"), ("second", "unassisted first")]);
     let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
@@ -86,7 +86,7 @@ fn conditions(captions: &mut Captions, figures: &StudySummary) -> Markup {
     captions.table_of_columns(caption, &columns, figures.conditions.iter())
 }
 
-/// The effect of assistance on the first measure, as a sentence.
+/// Sentence on the effect of assistance on the main measure.
 fn in_words(effect: &AssistanceEffect) -> Markup {
     let (Some(reduction), Some(test)) = (effect.reduction, effect.assistance()) else { return nothing() };
     let [estimate, low, high] = [reduction.estimate, reduction.low, reduction.high].map(|value| 100.0 * value);
@@ -105,7 +105,7 @@ fn in_words(effect: &AssistanceEffect) -> Markup {
     }
 }
 
-/// The effect of the period on press durations, as a sentence.
+/// Sentence on the effect of the period on the time between presses, which shows experience.
 fn experience(figures: &StudySummary) -> Markup {
     let pace = figures.effects.iter().find(|effect| effect.measure.name == "press_s");
     let Some((effect, test)) = pace.and_then(|effect| Some((effect, effect.by_period.within?))) else {
@@ -123,7 +123,7 @@ fn experience(figures: &StudySummary) -> Markup {
     }
 }
 
-/// Table of tests, one line per compared measure.
+/// Table of tests, with one row per compared measure.
 fn tests(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let columns: [PageColumn<AssistanceEffect>; 12] = [
         ("measure (lower is better)", |effect| effect.measure.title.render()),

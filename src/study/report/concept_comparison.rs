@@ -1,4 +1,4 @@
-//! Report section that compares communication concepts.
+//! Section of the study report that compares communication concepts.
 
 use maud::{Markup, Render, html};
 
@@ -38,7 +38,7 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
     section("Which concept prevents more?", content)
 }
 
-/// What the figure shows of confidence bands.
+/// Sentence on how the chart shows confidence bands.
 fn bands(figures: &StudySummary) -> String {
     let drawn = figures.roc.iter().filter(|roc| !roc.points.is_empty());
     let without: Vec<&str> = drawn.clone().filter(|roc| roc.band.is_empty()).map(|roc| roc.concept.title()).collect();
@@ -52,7 +52,7 @@ fn bands(figures: &StudySummary) -> String {
     }
 }
 
-/// Remark on points beyond the end of the axis.
+/// Sentence on points beyond the end of the axis.
 fn cut_off(figures: &StudySummary) -> String {
     let points = figures.roc.iter().flat_map(|roc| &roc.points);
     match points.filter(|point| point.signals_per_100_actions > MOST_SIGNALS).count() as u64 {
@@ -61,7 +61,7 @@ fn cut_off(figures: &StudySummary) -> String {
     }
 }
 
-/// Table of the concepts that acted by themselves, with what the analysis of unassisted trials says of them.
+/// Table of the concepts that sent signals by themselves, with the predictions from the analysis of unassisted trials.
 fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let parameter = |arm: &LiveArm| arm.arm.parameter.map_or(String::new(), |parameter| format!(" {parameter}"));
     let rows = figures.live.iter().map(|arm| {

@@ -1,4 +1,4 @@
-//! Elements of the report page: sections, charts, tables, and formatted numbers.
+//! Elements of the study report's page: sections, charts, tables, and formatted numbers.
 
 use maud::{Markup, PreEscaped, Render, html};
 
@@ -8,7 +8,7 @@ use crate::study::svg::minus;
 /// Text in place of an unknown value: a dash.
 pub(super) const UNKNOWN: &str = "\u{2013}";
 
-/// Numbers charts and tables in page order.
+/// Numbers charts and tables in the order of the page.
 #[derive(Debug, Default)]
 pub(super) struct Captions {
     figures: u32,
@@ -26,13 +26,13 @@ impl Captions {
         }
     }
 
-    /// A numbered table with its caption; the first column is text, all others are numbers. Notes belong in the caption, because
-    /// page breaks never separate it from its table.
+    /// A numbered table with its caption; the first column is text, all others are numbers. Notes belong in the
+    /// caption, because page breaks never separate a caption from its table.
     pub(super) fn table(&mut self, caption: impl Render, heads: &[impl Render], rows: &[Vec<Markup>]) -> Markup {
         self.table_of_class(None, caption, heads, rows)
     }
 
-    /// A table with one row per element of `rows`; each column has a head and a function for its cells.
+    /// A table with one row per element of `rows`; each column has a heading and a function that makes its cells.
     pub(super) fn table_of_columns<'r, Row: 'r>(
         &mut self,
         caption: impl Render,
@@ -75,15 +75,15 @@ impl Captions {
     }
 }
 
-/// Column of a table on the page: its head, and a function for its cells.
+/// Column of a table on the report's page: its heading, and the function that makes its cells.
 pub(super) type PageColumn<Row> = (&'static str, fn(&Row) -> Markup);
 
-/// Empty markup.
+/// HTML markup without content.
 pub(super) fn nothing() -> Markup {
     PreEscaped(String::new())
 }
 
-/// Cells of a table row.
+/// Cells of one row of an HTML table.
 pub(super) fn cells<const N: usize>(cells: [&dyn Render; N]) -> Vec<Markup> {
     cells.into_iter().map(Render::render).collect()
 }
@@ -126,7 +126,7 @@ pub(super) fn percent(value: Option<f64>) -> String {
 pub(super) fn p_value(p: Option<f64>) -> String {
     match p {
         None => UNKNOWN.to_string(),
-        // A line break after the sign would leave the number alone.
+        // Without the no-break space, the number could stand alone on the next line.
         Some(p) if p < 0.001 => "<\u{a0}0.001".to_string(),
         Some(p) => format!("{p:.3}"),
     }
@@ -140,7 +140,7 @@ pub(super) fn p_sentence(p: Option<f64>) -> String {
     }
 }
 
-/// "low to high"; a text if a bound is infinite.
+/// A range as "low to high"; another text if a bound is infinite.
 pub(super) fn range([low, high]: [f64; 2], digits: usize) -> String {
     if low.is_infinite() && high.is_infinite() {
         return "no interval: too few values".to_string();

@@ -1,4 +1,4 @@
-//! Report section on methods, from settings and circumstances in the recordings.
+//! Section of the study report on methods, from settings and circumstances in the recordings.
 
 use maud::{Markup, html};
 
@@ -29,7 +29,7 @@ pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> Markup {
     section("Methods", content)
 }
 
-/// All values of a fact as text.
+/// All values of a setting or circumstance, as text.
 fn all(facts: &Facts, key: &str) -> String {
     facts.all(key).unwrap_or_else(|| "unknown".to_string())
 }
@@ -103,7 +103,7 @@ fn analysis(figures: &StudySummary) -> String {
         }
         Some(BeliefBasis::Raters) => "Causes of errors were coded by two raters.",
         Some(BeliefBasis::Estimate) => "Causes of errors were attributed by the assistant's estimate of the beliefs.",
-        // Probes tell no causes of errors.
+        // Answers to probes do not tell the causes of errors.
         Some(BeliefBasis::Probes) | None => "Causes of errors are not known for all trials.",
     };
     format!(
@@ -112,7 +112,7 @@ fn analysis(figures: &StudySummary) -> String {
     )
 }
 
-/// Sentence with the numbers of trials by the reason of their end.
+/// Sentence with the number of trials by the reason why they ended.
 fn endings(figures: &StudySummary) -> String {
     let one = |(reason, &count): (&EndReason, &u64)| {
         let how = match reason {

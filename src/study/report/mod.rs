@@ -1,4 +1,4 @@
-//! The report: one self-contained HTML page for screen and print.
+//! The study report: one self-contained HTML page for screen and print.
 
 mod arm_section;
 mod assistance;
@@ -19,10 +19,10 @@ use super::facts::Facts;
 use super::figures::StudySummary;
 use super::trial_statistics::Trial;
 
-/// Style sheet of the page, and of its charts.
+/// Style sheet of the report's page and its charts.
 pub const STYLE: &str = include_str!("style.css");
 
-/// The report as an HTML page; it refers to the files of these tables.
+/// The report as an HTML page, with links to the files of these tables.
 pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[Table]) -> String {
     let captions = &mut Captions::default();
     let sections = [
@@ -53,7 +53,7 @@ pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[T
     page.into_string()
 }
 
-/// The HTML head of the page.
+/// HTML head of the report's page.
 fn head(figures: &StudySummary, trials: &[Trial]) -> Markup {
     html! {
         head {
@@ -66,7 +66,7 @@ fn head(figures: &StudySummary, trials: &[Trial]) -> Markup {
     }
 }
 
-/// Metadata of the page as (name, content).
+/// Metadata of the report's page as (name, content).
 fn metadata(trials: &[Trial]) -> [(&'static str, String); 3] {
     let [generator, participants] = page_head::about(trials.iter().map(|trial| trial.participant.as_str()));
     [generator, participants, ("viewport", "width=device-width, initial-scale=1".to_string())]

@@ -1,21 +1,23 @@
-//! Metadata in the head of a report: the program version and the participants' codes. `tomcom forget` finds reports by them.
+//! Metadata in the HTML head of a report: program version and participants' codes, by which `tomcom forget` finds
+//! reports.
 
 use std::collections::BTreeSet;
 
-/// Name of the metadata with program and version.
+/// Name of the metadata field with program and version.
 const GENERATOR: &str = "generator";
-/// Name of the metadata with the participants' codes.
+/// Name of the metadata field with the participants' codes.
 const PARTICIPANTS: &str = "participants";
-/// Program name before its version.
+/// Name of the program, before its version.
 const PROGRAM: &str = "tomcom ";
 
-/// Metadata of a report about these participants, as (name, content). Names consist of letters, digits, - and _, as in tables.
+/// Metadata fields of a report about these participants, as (name, content). Codes consist of letters, digits, - and _,
+/// as in tables.
 pub(super) fn about<'a>(participants: impl Iterator<Item = &'a str>) -> [(&'static str, String); 2] {
     let participants: Vec<&str> = participants.collect::<BTreeSet<&str>>().into_iter().collect();
     [(GENERATOR, format!("{PROGRAM}{}", env!("CARGO_PKG_VERSION"))), (PARTICIPANTS, participants.join(" "))]
 }
 
-/// Participants of a report that this program wrote; `None` for any other page.
+/// Participants of a report that this program wrote; `None` for any other HTML page.
 pub fn participants(page: &str) -> Option<Vec<&str>> {
     let (head, _) = page.split_once("</head>")?;
     head.contains(&tag(GENERATOR, PROGRAM)).then_some(())?;

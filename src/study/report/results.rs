@@ -1,4 +1,4 @@
-//! Report section with the results beside those of the paper.
+//! Section of the study report that shows the results beside those of the paper.
 
 use maud::{Markup, html};
 
@@ -40,7 +40,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
         ),
         row("mean seconds to recover from a sequence", number(totals.mean_recovery_s, 1), UNKNOWN),
     ];
-    // Where nothing can be tested, as with more than two conditions, there is nothing to compare.
+    // A study without the test, as one with more than two conditions, has no result to compare with the paper's.
     if let Some(test) = figures.anova {
         rows.extend([
             row("assistance: p of the mixed ANOVA", p_value(Some(test.p)), "0.014"),
@@ -56,7 +56,7 @@ pub(super) fn beside_the_paper(captions: &mut Captions, figures: &StudySummary) 
     section("Comparison with the paper", captions.table(caption, &["", "here", "paper"], &rows))
 }
 
-/// Belief related errors about orders, recipes, an order or its recipe, and places.
+/// Shares of errors from false beliefs about orders, recipes, an order or its recipe, and other locations, as text.
 fn kinds(figures: &StudySummary) -> String {
     let found = figures.totals.belief_related_by_kind;
     found.map_or(UNKNOWN.to_string(), |kinds| {
@@ -77,7 +77,7 @@ pub(super) fn similarity(captions: &mut Captions, figures: &StudySummary) -> Mar
     section("Wizard and assistant", content)
 }
 
-/// Caption of the wizard's performance, with the source of the false beliefs.
+/// Caption of the table of the wizard's performance, with the source of the false beliefs.
 fn performance(figures: &StudySummary) -> String {
     let unknown = "; false beliefs that led to no error are not known";
     match figures.wizard_beliefs_from {
@@ -87,7 +87,7 @@ fn performance(figures: &StudySummary) -> String {
     }
 }
 
-/// What the wizard was offered, and what was made of it, as a sentence for each.
+/// Sentences on the offers to the wizard, and on how many the wizard used.
 fn offers(found: &OfferSummary) -> Markup {
     let times = |one: &OfferDurations| match (one.median_s, one.shortest_s) {
         (Some(median_s), Some(shortest_s)) => format!("{median_s:.1} s in the median, {shortest_s:.1} s at least"),
@@ -107,7 +107,7 @@ fn offers(found: &OfferSummary) -> Markup {
     }
 }
 
-/// Table of the similarity of wizard and assistant; empty without signals.
+/// Table of the similarity between wizard and assistant; empty without signals.
 fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let Some(found) = &figures.similarity else { return nothing() };
     let share = |what: &str, level: &MatchShares| {
@@ -146,7 +146,7 @@ fn matches(captions: &mut Captions, figures: &StudySummary) -> Markup {
     }
 }
 
-/// Note on wizard signals that have no match in principle; only for participants with recorded beliefs.
+/// Sentence on wizard signals that cannot have a match; only for participants with recorded beliefs.
 fn limits(figures: &StudySummary, wizard: &WizardMeasures) -> Markup {
     let (Some(late), Some(wrong), Some(needless)) = (wizard.late, wizard.wrong_targets, wizard.needless) else {
         return nothing();
@@ -206,12 +206,13 @@ pub(super) fn people(captions: &mut Captions, figures: &StudySummary) -> Markup 
     section("Questionnaires", content)
 }
 
-/// What a group of answers follows: the condition of a trial, or nothing.
+/// Words for when answers were given: after trials of a condition, or before the trials.
 fn asked_after(after: Option<StudyArm>) -> String {
     after.map_or_else(|| "before the trials".to_string(), |after| after.title().to_string())
 }
 
-/// Answers by item. Words are only counted: they can tell who wrote them, and stand in the table.
+/// Table of answers by item. Answers in words are only counted, since they can identify their author; the CSV table has
+/// them.
 fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = figures.questionnaires.iter().map(|item| {
         let mean = match (item.points, item.kind) {
@@ -238,7 +239,7 @@ fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
     )
 }
 
-/// Scores by questionnaire and condition.
+/// Table of scores by questionnaire and condition.
 fn scores(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = figures.questionnaire_scores.iter().map(|one| {
         let after = asked_after(one.condition);

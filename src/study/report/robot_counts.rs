@@ -1,4 +1,4 @@
-//! Report section on robot events besides presses, and on the wizard's interventions in the robot.
+//! Section of the study report on robot events other than presses, and on the wizard's interventions in the robot.
 
 use maud::{Markup, Render, html};
 

@@ -1,4 +1,4 @@
-//! Report sections around the results: summary, trials, definitions, files.
+//! Sections of the study report around the results: summary, trials, definitions, files.
 
 use maud::{Markup, Render, html};
 
@@ -12,7 +12,7 @@ use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;
 use crate::study::trial_statistics::Trial;
 
-/// Least number of participants with both trials for which r and p stand among the main results.
+/// Least number of participants with both trials for which r and p are among the main results.
 const FEWEST_PARTICIPANTS: usize = 8;
 
 /// Section with the study's title and main results.
@@ -97,7 +97,7 @@ fn card(value: &str, what: &str) -> Markup {
     html! { div class="card" { b { (value) } span { (what) } } "\n" }
 }
 
-/// Largest number of trials in the printed list.
+/// Largest number of trials that the report lists.
 const MOST_TRIALS: usize = 60;
 
 /// Section with all trials, and with the reasons for excluded ones.

@@ -1,4 +1,4 @@
-//! Table of the presses of both agents.
+//! Table of the presses of both agents, for the CSV file of actions.
 
 use crate::kitchen::{Agent, Kitchen, Press};
 use crate::measures::JudgedPress;
@@ -7,50 +7,51 @@ use crate::measures::cause_codes::{CauseKind, Code};
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 
-/// A recorded press.
+/// A recorded press with its time and number.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordedPress {
-    /// Log number of the press event.
+    /// Sequence number of the press in the log.
     pub seq: u64,
-    /// Time on the trial clock, in seconds.
+    /// Time of the press on the trial's clock, in seconds.
     pub time_s: f64,
     /// The press with the states before and after it.
     pub press: Press,
     /// Number of the press among those of its agent, from 1.
     pub number: u32,
-    /// Seconds since this agent's previous press, without pauses.
+    /// Time since this agent's previous press, without pauses, in seconds.
     pub since_s: Option<f64>,
     /// Log probability of a human press under the estimated belief, in nats.
     pub log_p: Option<f64>,
 }
 
-/// Analysis of a human press.
+/// Judgement of a human press: error, cause, raters' codes.
 #[derive(Clone, Copy, Debug)]
 pub struct PressAnalysis<'a> {
-    /// Its regret, whether it was an error, and the cause of that.
+    /// Regret of the press, whether it was an error, and the cause of the error.
     pub judged: &'a JudgedPress,
     /// Number of the press's error sequence in the trial, from 1.
     pub sequence: Option<usize>,
     /// Cause of a person's error by the assistant's estimate.
     pub by_estimate: Option<Cause>,
-    /// Codes of two raters.
+    /// Codes that two raters gave to the error.
     pub codes: [Option<&'a Code>; 2],
-    /// The consensus of these two, where it defines the causes of errors.
+    /// Consensus code of the two raters, where it determines the cause of the error.
     pub shared: Option<&'a Code>,
-    /// Beginning of the false belief behind a belief related error, on the trial's clock in seconds, where it is known.
+    /// Beginning of the false belief behind the error, on the trial's clock in seconds, where it is known.
     pub false_since_s: Option<f64>,
-    /// Its end; `None` if there is none until the trial's end.
+    /// End of the false belief behind the error, on the trial's clock in seconds; `None` if the belief is not corrected
+    /// before the trial's end.
     pub false_until_s: Option<f64>,
 }
 
-/// A press with its analysis.
+/// Row of the table of actions: a press with its analysis.
 #[derive(Clone, Copy, Debug)]
 pub struct ActionRow<'a> {
     /// Folder of the recording.
     pub recording: &'a str,
     /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
-    /// The press.
+    /// The recorded press.
     pub recorded: &'a RecordedPress,
     /// Analysis of a human press; `None` for presses of the robot.
     pub analysis: Option<PressAnalysis<'a>>,
@@ -61,7 +62,8 @@ impl ActionRow<'_> {
         Some(self.analysis?.judged)
     }
 
-    /// Targets of the false belief behind the press; the second only if the cause needs two false beliefs.
+    /// Targets of the false belief behind the press; the second only if the press needs two false beliefs to be
+    /// explained.
     fn targets(&self) -> [Option<String>; 2] {
         let label = |target: Target| target.label(self.kitchen);
         match self.judged().and_then(|press| press.cause) {
@@ -70,7 +72,8 @@ impl ActionRow<'_> {
         }
     }
 
-    /// Log probability ratio of the press under belief and truth; `None` for causes from raters.
+    /// Difference of the press's log probability under the false belief and under the truth, in nats; `None` for causes
+    /// from raters.
     fn gain_nats(&self) -> Option<f64> {
         match self.judged()?.cause? {
             Cause::Belief { gain_nats, .. } => Some(rounded(gain_nats)).filter(|gain| gain.is_finite()),
@@ -88,7 +91,7 @@ impl ActionRow<'_> {
     }
 }
 
-/// Meanings of columns that take more than a line.
+/// Meanings of columns that are too long for one line of code.
 const SECOND_ASPECT: &str =
     "second aspect, if only two false beliefs together explain the error, or if the two raters name different ones";
 const RATER: &str = "code of one of the two raters, who were named, settled a consensus or else coded most errors: belief (with location), slip, race, \
@@ -167,7 +170,7 @@ impl TableRow for ActionRow<'_> {
     }
 }
 
-/// What the estimate and raters say about a press, and for how long a false belief lasted.
+/// Columns with causes by estimate and raters, and with the duration of the false belief.
 fn of_estimate_and_raters<'a>() -> Vec<Column<ActionRow<'a>>> {
     vec![
         ActionRow::column(

@@ -3,7 +3,7 @@
 use super::trial_column::{TrialColumn, plain};
 use crate::session::study_arm::StudyArm;
 
-/// The arm by what was done, the planned one, what the wizard was allowed to see, and the contents of signals.
+/// Columns for the arm by what was done, the planned arm, what the wizard could see, and the contents of signals.
 pub(super) fn arms() -> Vec<TrialColumn> {
     vec![
         plain(

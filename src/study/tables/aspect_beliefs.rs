@@ -1,21 +1,21 @@
-//! Table of the beliefs about each aspect before each human press.
+//! Table of the beliefs about each state aspect before each human press.
 
 use crate::mind::AspectBelief;
 use crate::mind::recorded_estimate::AspectEstimate;
 use crate::study::column::{Column, Table, TableRow};
 
-/// Estimated and recorded belief about an aspect before a human press.
+/// Row of the table of beliefs: estimated and recorded belief about one aspect before a human press.
 #[derive(Clone, Copy, Debug)]
 pub struct BeliefRow<'a> {
     /// Folder of the recording.
     pub recording: &'a str,
-    /// Log number of the press event.
+    /// Sequence number of the press in the log.
     pub seq: u64,
-    /// True value of the aspect.
+    /// True value of the state aspect.
     pub truth: &'a str,
-    /// The estimate before the press.
+    /// Estimate of the belief before the press.
     pub estimate: &'a AspectEstimate,
-    /// Recorded belief of a simulated participant.
+    /// Recorded belief, for simulated participants.
     pub believed: Option<&'a AspectBelief>,
 }
 

@@ -5,20 +5,20 @@ use crate::measures::matching::{CommunicationEvent, CommunicationKind};
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{Column, Table, TableRow};
 
-/// A sent or hypothetical communication.
+/// Row of the table of communications: one that was sent, or that a concept would have sent.
 #[derive(Clone, Copy, Debug)]
 pub struct CommunicationRow<'a> {
     /// Folder of the recording.
     pub recording: &'a str,
     /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
-    /// Sender: wizard, assistant, or the concept of a hypothetical communication.
+    /// Sender of the communication: wizard, assistant, or the concept of a hypothetical communication.
     pub lane: &'a str,
-    /// The communication.
+    /// The communication, with number of presses and time.
     pub sent: &'a CommunicationEvent,
-    /// The offer whose signal this was, if the wizard could see one.
+    /// Sequence number of the offer whose signal this was, if the wizard could see one.
     pub offer: Option<u64>,
-    /// Whether the other lane has a matching communication within the window; `None` without another lane.
+    /// Whether another sender has a matching communication within the window; `None` without another sender.
     pub matched: Option<bool>,
 }
 

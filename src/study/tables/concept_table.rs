@@ -1,4 +1,4 @@
-//! Table of the prevention counts of communication concepts.
+//! Table of errors that communication concepts would have prevented.
 
 use crate::communication::concept::ConceptName;
 use crate::study::column::{Column, Table, TableCell, TableRow};
@@ -6,14 +6,14 @@ use crate::study::prevention::PreventionCounts;
 use crate::study::roc::SweptTrial;
 use crate::study::trial_statistics::Trial;
 
-/// A concept with one parameter value in an unassisted trial.
+/// Row of the table of concepts: a concept with one parameter value in an unassisted trial.
 #[derive(Clone, Copy, Debug)]
 pub struct ConceptRow<'a> {
     trial: &'a Trial,
     swept: &'a SweptTrial,
 }
 
-/// Rows for all concepts that were evaluated on a trial.
+/// Rows for all communication concepts that were evaluated on a trial.
 pub fn concepts(trial: &Trial) -> impl Iterator<Item = ConceptRow<'_>> {
     trial.swept.iter().map(move |swept| ConceptRow { trial, swept })
 }

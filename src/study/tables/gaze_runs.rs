@@ -1,42 +1,42 @@
-//! Table of gaze runs: successive gaze samples on the same location.
+//! Table of gaze runs: series of successive gaze samples on the same location.
 
 use crate::base::time::SessionTime;
 use crate::kitchen::{Kitchen, LocationId};
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{Column, Table, TableRow};
 
-/// A run of gaze samples on one location, or on none.
+/// Successive gaze samples on one location, or on none.
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRun {
-    /// The location that the gaze was on; none: on no location, or not usable.
+    /// Location of the gaze; `None` if it was on no location, or not usable.
     pub location: Option<LocationId>,
-    /// When its first sample was taken, in session time.
+    /// Session time at which the first sample of the run was taken.
     pub began: SessionTime,
-    /// When its last sample was taken, in session time.
+    /// Session time at which the last sample of the run was taken.
     pub last: SessionTime,
-    /// Sums of x, y and confidence over the samples.
+    /// Sums of x, y and confidence over the run's samples.
     pub sums: [f64; 3],
-    /// Number of samples.
+    /// Number of samples in the run.
     pub samples: u64,
 }
 
 impl GazeRun {
-    /// Mean of x (0), y (1) or confidence (2).
+    /// Mean over the run of x (`of` is 0), y (1) or confidence (2).
     fn mean(&self, of: usize) -> f64 {
         rounded(self.sums[of] / self.samples as f64)
     }
 }
 
-/// A gaze run with its recording.
+/// Row of the table of gaze: a run with its recording.
 #[derive(Clone, Copy, Debug)]
 pub struct GazeRow<'a> {
     /// Folder of the recording.
     pub recording: &'a str,
     /// The kitchen of the recording.
     pub kitchen: &'a Kitchen,
-    /// Start of the run on the trial clock, in seconds.
+    /// Time at which the run begins, on the trial's clock in seconds.
     pub time_s: f64,
-    /// The run.
+    /// The gaze run of the row.
     pub run: GazeRun,
 }
 

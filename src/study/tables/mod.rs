@@ -1,4 +1,4 @@
-//! Declarations of the tables: source of a row, and columns.
+//! Declarations of the CSV tables: the type of a row, and the columns.
 
 pub mod actions;
 mod arm_columns;

@@ -6,12 +6,12 @@ use crate::communication::offer::{OfferEnd, OfferUse, OfferedAct};
 use crate::mind::recorded_estimate::rounded;
 use crate::study::column::{Column, Table, TableRow};
 
-/// An offer of a recording.
+/// Row of the table of offers: an offer of a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct OfferRow<'a> {
     /// Folder of the recording.
     pub recording: &'a str,
-    /// The offer.
+    /// The offer with its times.
     pub timed: &'a TimedOffer,
 }
 

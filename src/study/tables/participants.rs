@@ -5,17 +5,18 @@ use crate::study::effect::{StudyMeasure, TrialPair, pairs};
 use crate::study::tables::trials::{HEADLINE, measures};
 use crate::study::trial_statistics::Trial;
 
-/// A participant with its trials, at least one.
+/// Row of the table of participants: a participant's trials, at least one.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticipantRow<'a>(&'a [Trial]);
 
-/// Participants of these trials, which must be ordered by participant.
+/// One row per participant of these trials, which must be ordered by participant.
 pub fn participants(trials: &[Trial]) -> impl Iterator<Item = ParticipantRow<'_>> {
     trials.chunk_by(|a, b| a.participant == b.participant).map(ParticipantRow)
 }
 
 impl ParticipantRow<'_> {
-    /// The compared pair of trials for a measure; `None` unless two trials count and have the measure.
+    /// The compared pair of trials for a measure; `None` unless the participant has two trials that count and have the
+    /// measure.
     fn pair(&self, measure: StudyMeasure) -> Option<TrialPair> {
         pairs(self.0, measure).pop()
     }

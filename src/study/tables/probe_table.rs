@@ -1,4 +1,4 @@
-//! Table of the questions of probes.
+//! Table of the questions of freeze probes.
 
 use crate::analysis::probe_record::{FrozenAspect, ProbeResponse, ProbedQuestion, ProbedTrial};
 use crate::mind::WORTH_TELLING;
@@ -7,7 +7,7 @@ use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::effect::StudyMeasure;
 use crate::study::trial_statistics::Trial;
 
-/// Situation awareness by probes.
+/// Measure of situation awareness: share of wrong answers to freeze probes.
 pub const PROBES_WRONG: StudyMeasure = StudyMeasure {
     name: "probes_wrong",
     unit: "share of the questions",
@@ -18,14 +18,14 @@ pub const PROBES_WRONG: StudyMeasure = StudyMeasure {
     value: |trial| trial.probes.as_ref().and_then(ProbedTrial::share_wrong),
 };
 
-/// A question of a recording.
+/// Row of the table of probes: a question of a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct ProbeRow<'a> {
     trial: &'a Trial,
     question: &'a ProbedQuestion,
 }
 
-/// The questions of a trial's probes.
+/// Rows for the questions of a trial's freeze probes.
 pub fn probes(trial: &Trial) -> impl Iterator<Item = ProbeRow<'_>> {
     trial.probes.iter().flat_map(|probes| &probes.questions).map(move |question| ProbeRow { trial, question })
 }
@@ -45,7 +45,7 @@ impl ProbeRow<'_> {
     }
 }
 
-/// The values of an estimate with at least [`WORTH_TELLING`], the most probable first.
+/// Text with the values that the estimate gives at least the probability [`WORTH_TELLING`], the most probable first.
 fn told(frozen: &FrozenAspect) -> String {
     let mut told: Vec<(&String, f64)> = frozen.estimate_p.iter().map(|(name, p)| (name, *p)).collect();
     told.retain(|(_, p)| *p >= WORTH_TELLING);
@@ -117,7 +117,7 @@ fn answer<'a>() -> Vec<ProbeColumn<'a>> {
     ]
 }
 
-/// What was known when the trial froze; empty for questions of level 2.
+/// Columns with truth, estimate and belief at the freeze; empty for questions of level 2.
 fn frozen<'a>() -> Vec<ProbeColumn<'a>> {
     let p_false = "probability by the estimate that the belief in the truth is below one half: the prediction that calibration judges";
     let believed = "probability of the true value in a simulated participant's belief";

@@ -4,14 +4,14 @@ use crate::session::answer_value::AnswerValue;
 use crate::study::column::{Column, Table, TableCell, TableRow};
 use crate::study::trial_statistics::{QuestionnaireAnswer, Trial};
 
-/// An answer with the trial after which it was given.
+/// Row of the table of questionnaires: an answer with the trial after which it was given.
 #[derive(Clone, Copy, Debug)]
 pub struct AnswerRow<'a> {
     trial: &'a Trial,
     answer: &'a QuestionnaireAnswer,
 }
 
-/// Answers after a trial.
+/// Rows for the answers given after a trial.
 pub fn answers(trial: &Trial) -> impl Iterator<Item = AnswerRow<'_>> {
     trial.answers.iter().map(move |answer| AnswerRow { trial, answer })
 }

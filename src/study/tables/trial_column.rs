@@ -1,4 +1,4 @@
-//! How a column of the table of trials is declared.
+//! Declaration of a column of the table of trials.
 
 use crate::study::column::{Column, TableCell, TableRow};
 use crate::study::effect::StudyMeasure;
@@ -7,11 +7,11 @@ use crate::study::trial_statistics::Trial;
 /// Declaration of a column in the table of trials.
 pub(super) enum TrialColumn {
     Plain(Column<Trial>),
-    /// A measure that is compared between assisted and unassisted trials.
+    /// A measure that the report compares between assisted and unassisted trials.
     Compared(StudyMeasure),
 }
 
-/// A column that is not compared.
+/// Declares a column that the report does not compare.
 pub(super) fn plain(
     name: &'static str,
     unit: &'static str,

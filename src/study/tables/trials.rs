@@ -16,7 +16,7 @@ use crate::study::tables::arm_columns;
 use crate::study::tables::probe_table::PROBES_WRONG;
 use crate::study::trial_statistics::{BeliefErrors, Trial, mean_length};
 
-/// Main measure of the report.
+/// Main measure of the report, the first that is compared.
 pub const HEADLINE: StudyMeasure = StudyMeasure {
     name: "error_rate_human",
     unit: "errors per press of the human",
@@ -27,7 +27,7 @@ pub const HEADLINE: StudyMeasure = StudyMeasure {
     value: Trial::error_rate_human,
 };
 
-/// Number of errors, as the paper compares them. Trials differ in length, so the rate is the headline.
+/// Number of errors, which the paper compares. Since trials differ in length, the error rate is the main measure.
 const NUMBER_OF_ERRORS: StudyMeasure = StudyMeasure {
     name: "errors",
     unit: "errors",
@@ -38,13 +38,14 @@ const NUMBER_OF_ERRORS: StudyMeasure = StudyMeasure {
     value: |trial| Some(trial.errors as f64),
 };
 
-/// The compared measures, in column order; the first is [`HEADLINE`], the last the number of errors and those that came later.
+/// The compared measures in the order of columns; the first is [`HEADLINE`], the last are the number of errors and
+/// measures that were added later.
 pub fn measures() -> Vec<StudyMeasure> {
     let measure = |column: TrialColumn| match column {
         Compared(measure) => Some(measure),
         TrialColumn::Plain(_) => None,
     };
-    // Measures are compared by name.
+    // Measures are compared by their names.
     let rank = |measure: &StudyMeasure| match measure {
         one if *one == HEADLINE => 0,
         one if *one == NUMBER_OF_ERRORS => 2,
@@ -70,7 +71,7 @@ impl TableRow for Trial {
     }
 }
 
-/// All columns in file order; new columns are appended.
+/// All columns of the table of trials, in file order; new columns are appended.
 fn declared() -> impl Iterator<Item = TrialColumn> {
     kind_of_trial()
         .into_iter()
@@ -235,7 +236,7 @@ fn robot() -> Vec<TrialColumn> {
     ]
 }
 
-/// One column per reason for aborting a press.
+/// One column per reason for aborting a press of the robot.
 fn presses_given_up() -> Vec<TrialColumn> {
     let why = |reason: AbortReason| match reason {
         AbortReason::NoLongerUseful => ("no_longer_useful", "the press was no longer useful when the arm arrived"),
@@ -276,7 +277,7 @@ fn by_hand() -> Vec<TrialColumn> {
     ]
 }
 
-/// Sequences whatever the aspect, presses that were lost, and errors by kind of aspect.
+/// Columns with error sequences, lost presses, and errors by kind of state aspect.
 fn work() -> Vec<TrialColumn> {
     fn cause(name: &'static str, meaning: &'static str, count: fn(&CauseKindCounts) -> u64) -> TrialColumn {
         TrialColumn::Plain(Trial::column(name, "errors", meaning, move |trial| {
@@ -320,7 +321,7 @@ fn work() -> Vec<TrialColumn> {
     ]
 }
 
-/// Offers that a wizard could see.
+/// Columns about offers that a wizard could see.
 fn offered() -> Vec<TrialColumn> {
     fn offers(
         name: &'static str,
@@ -354,7 +355,7 @@ fn shown() -> Vec<TrialColumn> {
     vec![plain("display_arm", "", arm, |t| t.display_arm.map(DisplayedArm::name).into())]
 }
 
-/// False belief episodes, how far raters agree on them, and a wizard's hits.
+/// Columns about false belief episodes, raters' agreement on them, and a wizard's hits.
 fn false_beliefs() -> Vec<TrialColumn> {
     fn shared(name: &'static str, meaning: &'static str, count: fn(SharedBeliefs) -> u64) -> TrialColumn {
         TrialColumn::Plain(Trial::column(name, "errors", meaning, move |trial| trial.shared_beliefs.map(count).into()))
@@ -386,7 +387,7 @@ fn false_beliefs() -> Vec<TrialColumn> {
     ]
 }
 
-/// Answers to probes.
+/// Columns about answers to freeze probes.
 fn probed() -> Vec<TrialColumn> {
     vec![
         plain(

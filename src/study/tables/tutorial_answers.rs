@@ -7,7 +7,7 @@ use crate::session::tutorial::TutorialEvent;
 use crate::session::{Event, SessionSpec, Stamped};
 use crate::study::column::{Column, Table, TableRow};
 
-/// A question of a tutorial, and what the participant answered.
+/// Row of the table of tutorials: a question with the participant's answers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TutorialAnswer {
     /// The recording's name in tables.
@@ -16,13 +16,13 @@ pub struct TutorialAnswer {
     pub participant: String,
     /// The tutorial's name.
     pub tutorial: String,
-    /// Identifier of the step.
+    /// Identifier of the tutorial's step.
     pub step: String,
     /// The question, as the participant read it.
     pub question: String,
-    /// The first answer's words; `None` if the question was not answered.
+    /// Text of the first answer; `None` if the question was not answered.
     pub first_answer: Option<String>,
-    /// Number of answers, the right one included.
+    /// Number of answers given, including the right one.
     pub tries: u32,
     /// Whether the last answer was right; `None` if the question was not answered.
     pub right: Option<bool>,
@@ -37,23 +37,23 @@ impl TutorialAnswer {
     }
 }
 
-/// A question that is followed through a recording.
+/// A question of the tutorial while its recording is read.
 struct OpenQuestion<'a> {
     step: &'a TutorialStep,
     shown: Option<SessionTime>,
     answer: TutorialAnswer,
 }
 
-/// Reads the answers to the questions of a recording's tutorial from its events.
+/// Collects the answers to the questions of a recording's tutorial from its events.
 pub struct TutorialAnswers<'a> {
     first: Option<&'a str>,
     open: Vec<OpenQuestion<'a>>,
-    /// The tutorial began in the recording.
+    /// Whether the tutorial has begun in the recording.
     has_begun: bool,
 }
 
 impl<'a> TutorialAnswers<'a> {
-    /// The questions of the tutorial among the phases of a recording; `None` if it has no tutorial.
+    /// A collector for the tutorial among the phases of a recording; `None` if the recording has no tutorial.
     pub fn new(recording: &str, spec: &'a SessionSpec) -> Option<TutorialAnswers<'a>> {
         let tutorial = spec.step.as_ref()?.phases.iter().find_map(|phase| match phase {
             PhaseSpec::Tutorial { tutorial } => Some(tutorial),
@@ -79,7 +79,7 @@ impl<'a> TutorialAnswers<'a> {
         Some(TutorialAnswers { first, open: open.collect(), has_begun: false })
     }
 
-    /// Takes note of an event.
+    /// Takes note of an event of the recording.
     pub fn note(&mut self, stamped: &Stamped) {
         let Event::Protocol(event) = &stamped.event else { return };
         match event {
@@ -117,7 +117,7 @@ impl<'a> TutorialAnswers<'a> {
         }
     }
 
-    /// The questions with their answers, in the tutorial's order; none if the tutorial did not begin.
+    /// The questions with their answers, in the tutorial's order; empty if the tutorial did not begin.
     pub fn finish(self) -> Vec<TutorialAnswer> {
         let has_begun = self.has_begun;
         self.open.into_iter().filter(|_| has_begun).map(|question| question.answer).collect()

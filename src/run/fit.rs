@@ -49,7 +49,7 @@ impl FitTrials {
             one_kitchen.admit(recording, &replay.session().kitchen)?;
             models.push(replay.session().spec.human.clone());
             let (participant, trial) = (&replay.session().spec.participant, replay.session().trial);
-            people.push((participant.kind, participant.code.clone(), replay.session().seed(), trial));
+            people.push((participant.kind, participant.code.clone(), replay.session().spec.seed, trial));
             let own = read_trial(&mut replay)?;
             observations.push(if probes { own } else { FitObservations { answers: Vec::new(), ..own } });
         }

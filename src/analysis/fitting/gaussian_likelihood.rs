@@ -6,6 +6,9 @@ use super::response_surface::QuadraticSurface;
 
 /// Ridge of a matrix that is inverted, as a share of its largest element: 1e-12 of it is lost in rounding.
 const RIDGE: f64 = 1e-9;
+/// Standard error of a curvature per step squared, in standard deviations of the noise: of five points on a line at -1, -1/2, 0, 1/2 and 1,
+/// 2 / sqrt(0.875).
+const CURVATURE_NOISE: f64 = 2.14;
 
 /// The log likelihood -(x - m)' I (x - m) / 2 + const of one person's presses, with the information I and the maximum m.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,20 +29,22 @@ impl GaussianLikelihood {
     ///
     /// With slope g, curvature H and noise of the slope with covariance S, the maximum m is known with covariance H^-1 + H^-1 S H^-1, so
     /// that I = H (H + S)^-1 H. Directions in which the surface bends down count by the size of their curvature, as in saddle-free Newton
-    /// methods (Dauphin et al. 2014): the likelihood rises there towards a maximum beyond the surface.
+    /// methods (Dauphin et al. 2014): the likelihood rises there towards a maximum beyond the surface. What the noise alone would bend is
+    /// taken off first (positive-part shrinkage), so that a likelihood that says nothing gives hardly any information.
     pub fn from_surface(surface: &QuadraticSurface, centre: &[f64], steps: &[f64]) -> GaussianLikelihood {
         let n = centre.len();
-        let per_step = DMatrix::from_diagonal(&DVector::from_iterator(n, steps.iter().map(|step| 1.0 / step)));
-        let bent = SymmetricEigen::new(&per_step * &surface.curvature * &per_step);
-        let sizes = DMatrix::from_diagonal(&bent.eigenvalues.map(f64::abs));
+        let bent = SymmetricEigen::new(surface.curvature.clone());
+        let by_noise = CURVATURE_NOISE * surface.noise;
+        let size = |bend: f64| if bend.abs() > by_noise { bend.abs() - by_noise * by_noise / bend.abs() } else { 0.0 };
+        let sizes = DMatrix::from_diagonal(&bent.eigenvalues.map(size));
         let curvature = &bent.eigenvectors * sizes * bent.eigenvectors.transpose();
-        let noise = &per_step * &surface.slope_covariance * &per_step;
-        let both = &curvature + noise;
+        let both = &curvature + &surface.slope_covariance;
         let ridge = DMatrix::identity(n, n) * (RIDGE * both.amax().max(f64::MIN_POSITIVE));
         let share = &curvature * inverse(both + ridge);
-        let product = &share * &curvature;
-        let information = (&product + product.transpose()) / 2.0;
-        let slope = &share * (&per_step * &surface.slope);
+        let in_steps = &share * &curvature;
+        let per_step = DMatrix::from_diagonal(&DVector::from_iterator(n, steps.iter().map(|step| 1.0 / step)));
+        let information = &per_step * (&in_steps + in_steps.transpose()) * &per_step / 2.0;
+        let slope = &per_step * (&share * &surface.slope);
         let weighted = &information * DVector::from_column_slice(centre) - slope;
         GaussianLikelihood { information, weighted }
     }
@@ -53,8 +58,11 @@ pub(super) fn inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+
     use super::super::response_surface::surface;
     use super::*;
+    use crate::base::rng::stream;
 
     #[test]
     fn a_surface_without_noise_keeps_its_maximum_and_curvature() {
@@ -72,13 +80,27 @@ mod tests {
         let mut sign = 1.0;
         let mut noisy = |x: &[f64]| {
             sign = -sign;
-            2.0 * x[0] * x[0] + 0.4 * sign
+            4.0 * x[0] * x[0] + 0.4 * sign
         };
         let (centre, steps) = ([0.0], [1.0]);
         let rough = surface(&mut noisy, &centre, &steps).expect("a surface");
         let found = GaussianLikelihood::from_surface(&rough, &centre, &steps);
         let information = found.information[(0, 0)];
-        let (curvature, noise) = (rough.curvature[(0, 0)].abs(), rough.slope_covariance[(0, 0)]);
+        let (bend, noise) = (rough.curvature[(0, 0)], rough.slope_covariance[(0, 0)]);
+        let curvature = bend - (CURVATURE_NOISE * rough.noise).powi(2) / bend;
         assert!((information - curvature * curvature / (curvature + noise)).abs() < 1e-6 && noise > 0.0, "{found:?}");
+        assert!(information > 0.0 && information < bend, "{found:?}");
+    }
+
+    #[test]
+    fn a_flat_likelihood_gives_hardly_any_information() {
+        let mut random = stream(9827, "noise", 0);
+        let mut sum = 0.0;
+        for _ in 0..200 {
+            let flat = surface(|_| random.random::<f64>(), &[0.0], &[1.0]).expect("a surface");
+            sum += GaussianLikelihood::from_surface(&flat, &[0.0], &[1.0]).information[(0, 0)];
+        }
+        // The noise has a standard deviation of 0.29; a curvature of that size would tell as much at every step.
+        assert!(sum / 200.0 < 0.15, "{}", sum / 200.0);
     }
 }

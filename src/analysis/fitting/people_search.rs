@@ -15,10 +15,12 @@ use crate::mind::model::HumanModel;
 pub const ROUNDS: usize = 8;
 /// Step sizes of the first round.
 const FIRST_STEP: f64 = 0.5;
-/// A surface reaches to two standard deviations of what is known of a person.
-const STEP_SDS: f64 = 2.0;
-/// Bounds of a step.
-const STEPS: [f64; 2] = [0.05, 1.6];
+/// A step lowers a person's log likelihood by so many nats, and by the noise of its surface. It follows from the person's own presses alone:
+/// with the population, steps would shrink until noise looks like information.
+const STEP_NATS: f64 = 3.0;
+/// Bounds of a step, and the largest factor between successive steps.
+const STEPS: [f64; 2] = [0.2, 1.0];
+const STEP_CHANGE: f64 = 2.5;
 /// A person is settled when its mode is within this many steps of the centre of its surface.
 const NEAR: f64 = 0.5;
 
@@ -86,8 +88,8 @@ pub fn search(
         surveys.iter_mut().for_each(|survey| survey.keep_inside(&bounds));
         let found = likelihoods_at(what, &surveys, &likelihoods);
         tries += found.first().map_or(0, Vec::len) as u64;
-        let gaussians: Vec<GaussianLikelihood> =
-            surveys.iter().zip(found).map(|(survey, losses)| survey.gaussian(losses)).collect();
+        let surfaces = surveys.iter().zip(found).map(|(survey, losses)| survey.gaussian(losses));
+        let (gaussians, noises): (Vec<GaussianLikelihood>, Vec<f64>) = surfaces.unzip();
         let estimate = estimate(&gaussians, start);
         let inside = |at: &[f64]| -> Vec<f64> {
             at.iter().zip(&bounds).map(|(at, [low, high])| at.clamp(*low, *high)).collect()
@@ -98,8 +100,8 @@ pub fn search(
         if converged && round > 1 || round == ROUNDS {
             return FoundPeople { mean: inside(&estimate.mean), estimate, modes, tries, converged };
         }
-        for ((survey, person), mode) in surveys.iter_mut().zip(&estimate.people).zip(&modes) {
-            survey.move_to(mode, &person.sd);
+        for (((survey, gaussian), noise), mode) in surveys.iter_mut().zip(&gaussians).zip(&noises).zip(&modes) {
+            survey.move_to(mode, gaussian, *noise);
         }
     }
 }
@@ -144,12 +146,13 @@ impl Survey {
         }
     }
 
-    fn gaussian(&self, losses: Vec<f64>) -> GaussianLikelihood {
+    /// The likelihood by these losses, and their noise.
+    fn gaussian(&self, losses: Vec<f64>) -> (GaussianLikelihood, f64) {
         let mut losses = losses.into_iter();
         let next = |_: &[f64]| losses.next().unwrap_or(f64::INFINITY);
         match surface(next, &self.centre, &self.steps) {
-            Some(found) => GaussianLikelihood::from_surface(&found, &self.centre, &self.steps),
-            None => GaussianLikelihood::flat(self.centre.len()),
+            Some(found) => (GaussianLikelihood::from_surface(&found, &self.centre, &self.steps), found.noise),
+            None => (GaussianLikelihood::flat(self.centre.len()), 0.0),
         }
     }
 
@@ -161,10 +164,14 @@ impl Survey {
         })
     }
 
-    fn move_to(&mut self, mode: &[f64], sd: &[f64]) {
-        for (((centre, step), mode), sd) in self.centre.iter_mut().zip(&mut self.steps).zip(mode).zip(sd) {
+    fn move_to(&mut self, mode: &[f64], known: &GaussianLikelihood, noise: f64) {
+        let information = known.information.diagonal();
+        for (((centre, step), mode), information) in
+            self.centre.iter_mut().zip(&mut self.steps).zip(mode).zip(&information)
+        {
             *centre = mode.clamp(*centre - REACH * *step, *centre + REACH * *step);
-            *step = (STEP_SDS * sd).clamp(STEPS[0], STEPS[1]);
+            let wanted = (2.0 * (STEP_NATS + noise) / information).sqrt();
+            *step = wanted.clamp(*step / STEP_CHANGE, *step * STEP_CHANGE).clamp(STEPS[0], STEPS[1]);
         }
     }
 }

@@ -117,7 +117,9 @@ fn coarse() -> HumanModel {
     model
 }
 
+/// By hand, as below, until its time and its margins are known.
 #[test]
+#[ignore = "its time and margins are not measured yet"]
 fn people_who_differ_are_found_better_with_their_population() {
     let kitchen = kitchen("layouts/burger.toml");
     let start = coarse();

@@ -189,17 +189,23 @@ pub(super) struct SimulateArgs {
 
 /// Fits the human model to recordings.
 ///
-/// Maximum likelihood estimates of parameters from recorded presses, with standard errors.
+/// Maximum likelihood estimates of parameters from recorded presses, with standard errors; with --people a population whose persons
+/// differ.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nMore: docs/human-model.md"
+    after_help = "A session uses the file with human_model = \"FILE\".\nExample: tomcom fit recordings/* --out sessions/human.toml\nExample: tomcom fit recordings/* --people --out sessions/fitted.toml\nMore: docs/human-model.md"
 )]
 pub(super) struct FitArgs {
     /// The folders of recordings of one kitchen, or their events.jsonl.
     #[arg(required = true, value_name = "RECORDING")]
     pub(super) recordings: Vec<PathBuf>,
-    /// Parameters to fit, separated by commas.
-    #[arg(long, value_enum, value_delimiter = ',', default_value = FitParameter::USUAL)]
+    /// Fit a population whose persons have parameters of their own: estimates for both, shrinkage, and how likely each person's last trial is
+    /// after a fit without it.
+    #[arg(long)]
+    pub(super) people: bool,
+    /// Parameters to fit, separated by commas. With --people by default tau, lapse, reading, half-life and recipe-knowledge.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = FitParameter::USUAL,
+          default_value_if("people", "true", FitParameter::OF_PERSONS))]
     pub(super) parameters: Vec<FitParameter>,
     /// Parameter file to start from; parameters that are not fitted keep its values. By default the parameters in the
     /// recordings.
@@ -212,7 +218,7 @@ pub(super) struct FitArgs {
     /// Largest number of likelihood evaluations.
     #[arg(long, default_value_t = 600, value_parser = clap::value_parser!(u64).range(10..=100_000))]
     pub(super) tries: u64,
-    /// Write the fitted parameters to this file.
+    /// Write the fitted parameters to this file; with --people also those of each person, by code.
     #[arg(long, value_name = "FILE")]
     pub(super) out: Option<PathBuf>,
     /// Output format.
@@ -241,10 +247,13 @@ pub(super) enum FitParameter {
     OtherLooks,
     /// Share of changes by others that attract a look, where gaze is unknown.
     Capture,
+    /// Expected probability of a true recipe at the start of a trial.
+    RecipeKnowledge,
 }
 
 impl FitParameter {
     const USUAL: &str = "tau,lapse,radius,reading,half-life";
+    const OF_PERSONS: &str = "tau,lapse,reading,half-life,recipe-knowledge";
 
     pub(super) fn parameter(self) -> Parameter {
         match self {
@@ -257,6 +266,7 @@ impl FitParameter {
             FitParameter::Looks => Parameter::LooksHz,
             FitParameter::OtherLooks => Parameter::OtherLooksHz,
             FitParameter::Capture => Parameter::Capture,
+            FitParameter::RecipeKnowledge => Parameter::RecipeTruth,
         }
     }
 }

@@ -5,10 +5,12 @@ use std::path::Path;
 use super::args::{FitArgs, ReplayArgs};
 use super::failure::Failure;
 use super::output::{print, progress};
+use crate::analysis::fitting::people_summary;
 use crate::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
 use crate::edge::files;
+use crate::mind::fitted_people::HumanModelFile;
 use crate::run::accuracy::AccuracySample;
-use crate::run::{accuracy, check_beliefs, fit, steadiness};
+use crate::run::{accuracy, check_beliefs, fit, fit_people, steadiness};
 
 /// Runs the command `tomcom replay RECORDING... --check-beliefs`.
 pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
@@ -39,7 +41,7 @@ pub(super) fn offers(args: &ReplayArgs) -> Result<(), Failure> {
 
 /// Runs the command `tomcom fit RECORDING...`.
 pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
-    let start = args.start.as_deref().map(files::read_human_model).transpose()?;
+    let start = args.start.as_deref().map(files::read_human_model).transpose()?.map(|file| file.population());
     let mut parameters: Vec<_> = args.parameters.iter().map(|one| one.parameter()).collect();
     parameters.sort_unstable();
     parameters.dedup();
@@ -53,13 +55,32 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
     }
     let trials = fit::FitTrials::read(&args.recordings, args.probes)?;
     let plan = fitting::FitPlan { parameters, start, most_tries: args.tries as usize };
+    let write = |file: &HumanModelFile, comment: &str| match &args.out {
+        Some(path) => files::write_human_model(path, file, comment).map_err(|error| unwritable(path, error)),
+        None => Ok(()),
+    };
+    if args.people {
+        return fit_people(args, &trials, &plan, write);
+    }
     let searches = if args.probes { 2 } else { 1 };
     let bar = progress(searches * plan.most_tries as u64, "tries at most");
     let found = fit::fit(&trials, &plan, || bar.inc(1));
     bar.finish_and_clear();
-    if let Some(path) = &args.out {
-        let written = files::write_human_model(path, &found.model, &fitting::comment(&found));
-        written.map_err(|error| unwritable(path, error))?;
-    }
+    write(&HumanModelFile::new(found.model.clone(), None), &fitting::comment(&found))?;
     print(args.format, &found, || fitting::describe(&found))
+}
+
+/// `tomcom fit RECORDING... --people`.
+fn fit_people(
+    args: &FitArgs,
+    trials: &fit::FitTrials,
+    plan: &fitting::FitPlan,
+    write: impl Fn(&HumanModelFile, &str) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    fit_people::require_people(&args.recordings, trials)?;
+    let bar = progress(fit_people::most_replays(trials, plan), "replays at most");
+    let found = fit_people::fit(trials, plan, || bar.inc(1));
+    bar.finish_and_clear();
+    write(&found.file, &people_summary::people_comment(fitting::FITTED, &found))?;
+    print(args.format, &found, || people_summary::describe_people(&found))
 }

@@ -37,6 +37,8 @@ pub enum Parameter {
     OtherLooksHz,
     /// Share of the changes by others that attract the gaze.
     Capture,
+    /// Expected probability of a true recipe at the start of a trial.
+    RecipeTruth,
 }
 
 impl Parameter {
@@ -56,6 +58,7 @@ impl Parameter {
             Parameter::LooksHz => "looks_hz",
             Parameter::OtherLooksHz => "other_looks_hz",
             Parameter::Capture => "capture",
+            Parameter::RecipeTruth => "recipe_truth",
         }
     }
 
@@ -67,6 +70,7 @@ impl Parameter {
             Parameter::RadiusDeg => "deg",
             Parameter::ReadingRateHz | Parameter::LooksHz | Parameter::OtherLooksHz => "1/s",
             Parameter::RecipeHalfLifeS => "s",
+            Parameter::RecipeTruth => "probability",
         }
     }
 
@@ -82,6 +86,7 @@ impl Parameter {
             Parameter::LooksHz => model.looking.looks_hz,
             Parameter::OtherLooksHz => model.looking.other_looks_hz,
             Parameter::Capture => model.looking.capture,
+            Parameter::RecipeTruth => model.prior.recipe_truth,
         }
     }
 
@@ -97,6 +102,7 @@ impl Parameter {
             Parameter::LooksHz => model.looking.looks_hz = value,
             Parameter::OtherLooksHz => model.looking.other_looks_hz = value,
             Parameter::Capture => model.looking.capture = value,
+            Parameter::RecipeTruth => model.prior.recipe_truth = value,
         }
     }
 
@@ -111,6 +117,7 @@ impl Parameter {
             Parameter::RecipeHalfLifeS => [5.0, 20_000.0],
             Parameter::Foresight | Parameter::Capture => [0.001, 0.999],
             Parameter::LooksHz | Parameter::OtherLooksHz => [0.01, 20.0],
+            Parameter::RecipeTruth => [0.01, 0.999],
         }
     }
 
@@ -118,7 +125,7 @@ impl Parameter {
     /// ln(1 / (1 / tau + 0.1)) for tau, since the likelihood changes less and less as tau grows.
     pub fn to_scale(self, value: f64) -> f64 {
         match self {
-            Parameter::Lapse | Parameter::Foresight | Parameter::Capture => {
+            Parameter::Lapse | Parameter::Foresight | Parameter::Capture | Parameter::RecipeTruth => {
                 let p = value.clamp(1e-4, 1.0 - 1e-4);
                 (p / (1.0 - p)).ln()
             }
@@ -130,7 +137,9 @@ impl Parameter {
     /// The value of a parameter from the scale of the fit, the inverse of [`Parameter::to_scale`].
     pub fn from_scale(self, scaled: f64) -> f64 {
         match self {
-            Parameter::Lapse | Parameter::Foresight | Parameter::Capture => 1.0 / (1.0 + (-scaled).exp()),
+            Parameter::Lapse | Parameter::Foresight | Parameter::Capture | Parameter::RecipeTruth => {
+                1.0 / (1.0 + (-scaled).exp())
+            }
             Parameter::Tau => 1.0 / ((-scaled).exp() - STRICT),
             _ => scaled.exp(),
         }
@@ -139,7 +148,9 @@ impl Parameter {
     /// Standard error of a value from its standard error on the scale of the fit (delta method).
     pub fn error_of(self, value: f64, scaled_error: f64) -> f64 {
         let slope = match self {
-            Parameter::Lapse | Parameter::Foresight | Parameter::Capture => value * (1.0 - value),
+            Parameter::Lapse | Parameter::Foresight | Parameter::Capture | Parameter::RecipeTruth => {
+                value * (1.0 - value)
+            }
             Parameter::Tau => value * (1.0 + STRICT * value),
             _ => value,
         };

@@ -17,6 +17,7 @@ use crate::mind::observation::Observation;
 use crate::session::Event;
 use crate::session::probe_sampling;
 use crate::session::probes::{ProbeEvent, ProbeQuestion};
+use crate::session::settings::ParticipantKind;
 
 /// Recorded trials to which the human model is fitted, all of one kitchen.
 #[derive(Clone, Debug)]
@@ -29,6 +30,9 @@ pub struct FitTrials {
     pub differ: bool,
     /// Observations of each trial, to which the model is fitted.
     pub observations: Vec<FitObservations>,
+    /// Code of each trial's participant, with the seed in front where simulated participants have several, and the trial's number, which
+    /// grows from trial to trial of a participant in a plan.
+    pub people: Vec<(String, u64)>,
 }
 
 impl FitTrials {
@@ -40,13 +44,17 @@ impl FitTrials {
     pub fn read(recordings: &[PathBuf], probes: bool) -> FileResult<FitTrials> {
         each_once(recordings)?;
         let (mut one_kitchen, mut observations, mut models) = (SameKitchen::default(), Vec::new(), Vec::new());
+        let mut people = Vec::new();
         for recording in recordings {
             let mut replay = Replay::open(recording)?;
             one_kitchen.admit(recording, &replay.session().kitchen)?;
             models.push(replay.session().spec.human.clone());
+            let (participant, trial) = (&replay.session().spec.participant, replay.session().trial);
+            people.push((participant.kind, participant.code.clone(), replay.session().spec.seed, trial));
             let own = read_trial(&mut replay)?;
             observations.push(if probes { own } else { FitObservations { answers: Vec::new(), ..own } });
         }
+        let people = names(&people);
         if probes && observations.iter().all(|one| one.answers.is_empty()) {
             let first = recordings.first().map_or(Path::new("."), PathBuf::as_path);
             let found = "no answer to a probe in any of the recordings".to_string();
@@ -54,7 +62,7 @@ impl FitTrials {
         }
         let kitchen = one_kitchen.kitchen()?;
         let differ = models.windows(2).any(|pair| pair[0] != pair[1]);
-        Ok(FitTrials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations })
+        Ok(FitTrials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations, people })
     }
 
     /// These trials without answers to freeze probes.
@@ -63,6 +71,20 @@ impl FitTrials {
         trials.observations.iter_mut().for_each(|one| one.answers.clear());
         trials
     }
+}
+
+/// Names of the participants of trials, of their kinds, codes, seeds and numbers. Simulated participants of another seed are other
+/// people.
+fn names(trials: &[(ParticipantKind, String, u64, u64)]) -> Vec<(String, u64)> {
+    let is_simulated = |kind: ParticipantKind| kind == ParticipantKind::Simulated;
+    let mut seeds = trials.iter().filter(|(kind, ..)| is_simulated(*kind)).map(|(_, _, seed, _)| seed);
+    let first = seeds.next();
+    let several = seeds.any(|seed| Some(seed) != first);
+    let name = |(kind, code, seed, trial): &(ParticipantKind, String, u64, u64)| {
+        let name = if is_simulated(*kind) && several { format!("seed{seed}-{code}") } else { code.clone() };
+        (name, *trial)
+    };
+    trials.iter().map(name).collect()
 }
 
 /// Observations and probe answers of a recording, without answers about what comes next.

@@ -23,6 +23,8 @@ pub mod error;
 mod event_loop;
 #[cfg(feature = "cli")]
 pub mod fit;
+#[cfg(feature = "cli")]
+pub mod fit_people;
 pub mod headless;
 #[cfg(feature = "cli")]
 pub mod leaving;

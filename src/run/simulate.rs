@@ -91,6 +91,7 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
         (spec.trial.condition, spec.assistant.shadow) = (Condition::None, Shadow::Off);
     }
     spec.participant.code = format!("S{:03}", trial + 1);
+    spec.adopt_person();
     spec
 }
 

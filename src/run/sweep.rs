@@ -19,6 +19,7 @@ use crate::edge::file_error::FileError;
 use crate::edge::log::WriteError;
 use crate::edge::overwrite;
 use crate::kitchen::cost_to_go::CostToGo;
+use crate::mind::fitting::Parameter;
 use crate::session::SessionSpec;
 use crate::session::settings::{Condition, GazeSource};
 
@@ -109,6 +110,14 @@ impl FromStr for SweepAxis {
     }
 }
 
+/// Gives everybody this parameter of the human model, also those who have one of their own.
+fn set_for_all(spec: &mut SessionSpec, parameter: Parameter, value: f64) {
+    parameter.set(&mut spec.human, value);
+    if let Some(people) = &mut spec.people {
+        people.forget(parameter);
+    }
+}
+
 impl SweepAxis {
     /// Applies a value to the settings; the value was validated when it was parsed.
     fn set(&self, spec: &mut SessionSpec, value: &str) {
@@ -122,8 +131,8 @@ impl SweepAxis {
                 spec.assistant.rollout.rollouts = whole;
                 spec.assistant.rollout.least_rollouts = spec.assistant.rollout.least_rollouts.min(whole);
             }
-            Knob::Tau => spec.human.decision.tau = number,
-            Knob::Radius => spec.human.perception.radius_deg = number,
+            Knob::Tau => set_for_all(spec, Parameter::Tau, number),
+            Knob::Radius => set_for_all(spec, Parameter::RadiusDeg, number),
             Knob::Gaze if value == "off" => spec.participant.gaze = GazeSource::None,
             Knob::Gaze => {}
             Knob::Asks => {

@@ -46,9 +46,11 @@ impl PreparedSession {
         match beginning {
             SessionStart::New { files, trial, out } => {
                 let kitchen = Arc::new(files.kitchen.kitchen);
-                let mut header = Header::new(files.spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
+                let mut spec = files.spec;
+                spec.adopt_person();
+                let mut header = Header::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
                 header.keys = files.keys;
-                let engine = Engine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen)).without_causes();
+                let engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen)).without_causes();
                 let (first, time, place) = (Vec::new(), SessionTime::ZERO, RecordingPlace::In(out));
                 Ok(PreparedSession { engine, header, first, consent: None, time, compare: None, place })
             }

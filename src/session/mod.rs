@@ -26,6 +26,7 @@ pub mod battery;
 mod condition;
 mod console_settings;
 pub mod event;
+pub mod fitted_parameters;
 pub mod gaze_awareness;
 mod gaze_check;
 pub mod gaze_samples;

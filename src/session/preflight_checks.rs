@@ -1,6 +1,7 @@
 //! Preflight checks of participant, gaze, eye tracker and disk space.
 
 use super::condition::Condition;
+use super::fitted_parameters::ParametersOf;
 use super::gaze_samples::faults;
 use super::lsl_settings::LslGazeSpec;
 use super::participant_settings::{GazeSource, ParticipantKind};
@@ -54,8 +55,20 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
 }
 
-/// Checks condition, participant, gaze source and gaze accuracy; `check_gaze` is the key that starts a gaze accuracy
-/// check.
+/// Whose parameters the human model has, where its file has some of persons.
+fn human_model(session: &Session) -> Option<PreflightCheck> {
+    let spec = &session.spec;
+    let file = spec.human_model.as_deref().unwrap_or("its file");
+    let found = match spec.parameters_of? {
+        ParametersOf::Person => format!("parameters of {}, from {file}", spec.participant.code),
+        ParametersOf::Population => {
+            format!("parameters of the population: {file} has none of {}", spec.participant.code)
+        }
+    };
+    Some(PreflightCheck::ok("human model", found))
+}
+
+/// Checks condition, participant, human model, gaze source and gaze accuracy; `check_gaze` is the key that starts a gaze accuracy check.
 pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec<PreflightCheck> {
     let spec = &session.spec.participant;
     let who = match spec.kind {
@@ -65,6 +78,7 @@ pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec
     };
     let mut checks: Vec<PreflightCheck> = condition(session).into_iter().collect();
     checks.push(PreflightCheck::ok("participant", format!("{}, {who}", spec.code)));
+    checks.extend(human_model(session));
     match spec.gaze {
         GazeSource::Simulated => checks.push(PreflightCheck::ok("gaze", "simulated: it comes with the trial")),
         GazeSource::None => checks.push(PreflightCheck::ok("gaze", "none is asked for")),

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 pub use super::condition::Condition;
 pub use super::console_settings::{ConsoleSpec, MAX_NOTES, ThemeChoice, Visibility};
+use super::fitted_parameters::ParametersOf;
 pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
 use super::plan::{PlanSpec, StepSpec};
@@ -15,6 +16,7 @@ use super::stream_settings::RerunSpec;
 use super::tracker::TrackerSpec;
 use super::wall_display::DisplaySpec;
 use crate::communication::settings::{AssistantSpec, Shadow};
+use crate::mind::fitted_people::FittedPeople;
 use crate::mind::model::HumanModel;
 use crate::participant::population::Population;
 use crate::wizard::settings::{WizardKind, WizardSpec};
@@ -71,6 +73,13 @@ pub struct SessionSpec {
     /// Parameters of the human model; in a recording, the parameters in use.
     #[serde(default)]
     pub human: HumanModel,
+    /// Whose parameters [`Self::human`] are, where the file of `human_model` has parameters of persons; written by the program, not allowed
+    /// in session files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parameters_of: Option<ParametersOf>,
+    /// Parameters of persons in the file of `human_model`, until [`Self::adopt_person`] has chosen among them. Never recorded.
+    #[serde(skip)]
+    pub people: Option<FittedPeople>,
     /// Study plan with several participants and trials.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plan: Option<PlanSpec>,
@@ -147,6 +156,14 @@ impl SessionSpec {
             return Err(SettingError::new("participant.gaze", found, remedy));
         }
         self.lsl.as_ref().map_or(Ok(()), LslSpec::check)
+    }
+
+    /// Gives the human model the parameters of the participant of this recording, whose code is known now. Without parameters of persons
+    /// nothing changes.
+    pub fn adopt_person(&mut self) {
+        let Some(people) = self.people.take() else { return };
+        let is_known = people.apply(&self.participant.code, &mut self.human);
+        self.parameters_of = Some(if is_known { ParametersOf::Person } else { ParametersOf::Population });
     }
 
     /// Whether the session needs the library of the Lab Streaming Layer.

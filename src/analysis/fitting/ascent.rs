@@ -60,13 +60,21 @@ pub struct Maximum {
     pub converged: bool,
 }
 
+/// Maximises a log likelihood within bounds as [`ascend`] does, without errors and intervals, which take most of its evaluations.
+pub fn climb(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> Maximum {
+    let mut search = Search::begin(loss, start, bounds, most);
+    let free: Vec<usize> = (0..start.len()).collect();
+    let converged = search.climb(&free).is_some();
+    let variable = |&at: &f64| FittedVariable { at, standard_error: None, end: None, limit: None };
+    let variables = search.at.iter().map(variable).collect();
+    Maximum { variables, evaluations: search.evaluations, converged }
+}
+
 /// Maximises a log likelihood within bounds; `loss` is its negative in nats. Stops after about `most` evaluations of
 /// `loss`.
 pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> Maximum {
-    let inside = |(at, [low, high]): (&f64, &[f64; 2])| at.clamp(*low, *high);
-    let at: Vec<f64> = start.iter().zip(bounds).map(inside).collect();
-    let count = at.len();
-    let mut search = Search { loss, bounds, at, steps: vec![FIRST_STEP; count], evaluations: 0, most };
+    let mut search = Search::begin(loss, start, bounds, most);
+    let count = start.len();
     let mut held = vec![None; count];
     // A variable that converges at a bound is held there, and the others are optimised again.
     let last = loop {
@@ -115,7 +123,13 @@ struct Search<'a, F> {
     most: usize,
 }
 
-impl<F: FnMut(&[f64]) -> f64> Search<'_, F> {
+impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
+    fn begin(loss: F, start: &[f64], bounds: &'a [[f64; 2]], most: usize) -> Search<'a, F> {
+        let inside = |(at, [low, high]): (&f64, &[f64; 2])| at.clamp(*low, *high);
+        let at: Vec<f64> = start.iter().zip(bounds).map(inside).collect();
+        Search { loss, bounds, steps: vec![FIRST_STEP; at.len()], at, evaluations: 0, most }
+    }
+
     /// Maximises over the free variables. Returns the surface around the maximum (`Some(None)` without free variables),
     /// or `None` if the search did not converge.
     fn climb(&mut self, free: &[usize]) -> Option<Option<QuadraticSurface>> {

@@ -6,20 +6,28 @@
 //! sequence of quadratic surfaces ([`ascent`]). Standard errors follow from the curvature of the last surface (the
 //! observed information) and from the noise. A parameter whose maximum lies at a bound is not identified; its interval
 //! is one-sided.
+//!
+//! [`people_fit`] fits a population whose persons differ ([`people_search`], [`population_estimate`]).
 
 pub mod ascent;
 pub mod downhill_simplex;
 pub mod fitted_answers;
+pub mod gaussian_likelihood;
+pub mod parameter_scale;
+pub mod people_fit;
+pub mod people_search;
+pub mod people_summary;
+pub mod population_estimate;
 pub mod response_surface;
 
 use serde::Serialize;
 
 use self::ascent::{BoundReached, FittedVariable, Maximum, ascend};
 pub use self::fitted_answers::FittedAnswers;
+use self::parameter_scale::{bounds_of, is_possible, model_at, point_of};
 use crate::base::words::count;
 use crate::mind::fitting::{Likelihood, Parameter};
 use crate::mind::model::HumanModel;
-use crate::session::ranges;
 
 /// Half width of a 95 % interval, in standard errors.
 const HALF_WIDTH: f64 = 1.96;
@@ -145,24 +153,16 @@ pub fn fit(
     tried: impl Fn(),
 ) -> FitSummary {
     let begin = plan.start.as_ref().unwrap_or(trials.model);
-    let with = |at: &[f64]| {
-        let mut model = begin.clone();
-        plan.parameters.iter().zip(at).for_each(|(parameter, &scaled)| {
-            parameter.set(&mut model, parameter.from_scale(scaled));
-        });
-        model
-    };
+    let with = |at: &[f64]| model_at(begin, &plan.parameters, at);
     let loss = |at: &[f64]| {
         let model = with(at);
         // Invalid models get an infinite loss.
-        let is_possible = ranges::check_human_model(&model).is_ok() && model.fault().is_none();
-        let loss = if is_possible { -likelihood(&model).total() } else { f64::INFINITY };
+        let loss = if is_possible(&model) { -likelihood(&model).total() } else { f64::INFINITY };
         tried();
         loss
     };
-    let scaled = |parameter: &Parameter, value: f64| parameter.to_scale(value);
-    let start: Vec<f64> = plan.parameters.iter().map(|one| scaled(one, one.get(begin))).collect();
-    let bounds: Vec<[f64; 2]> = plan.parameters.iter().map(|one| one.bounds().map(|end| scaled(one, end))).collect();
+    let start = point_of(begin, &plan.parameters);
+    let bounds = bounds_of(&plan.parameters);
     let before = likelihood(begin);
     let Maximum { mut variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
     let mut model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());

@@ -22,7 +22,7 @@ pub struct QuadraticSurface {
     /// Standard deviation of the residuals.
     pub noise: f64,
     /// Covariance of the first derivatives that follows from the residuals.
-    slope_covariance: DMatrix<f64>,
+    pub slope_covariance: DMatrix<f64>,
 }
 
 /// Number of function values that [`surface`] needs for this number of variables.
@@ -30,13 +30,18 @@ pub fn points(variables: usize) -> usize {
     design(variables).len()
 }
 
+/// The points at which [`surface`] evaluates its function, in that order.
+pub fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+    let at = |by: Vec<f64>| by.iter().zip(centre).zip(steps).map(|((by, centre), step)| centre + by * step).collect();
+    design(centre.len()).into_iter().map(at).collect()
+}
+
 /// Fits a surface around `centre`, with steps of the given sizes along each variable and each pair of variables. Values
 /// that are not finite are ignored; `None` if too few remain.
 pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<QuadraticSurface> {
     let n = centre.len();
     let (mut rows, mut values) = (Vec::new(), Vec::new());
-    for by in design(n) {
-        let at: Vec<f64> = (0..n).map(|index| centre[index] + by[index] * steps[index]).collect();
+    for (by, at) in design(n).into_iter().zip(points_around(centre, steps)) {
         let value = function(&at);
         if value.is_finite() {
             rows.extend(terms(&by));

@@ -73,6 +73,9 @@ impl Study {
         if let Some(tutorial) = &tutorial {
             text += &serde_json::to_string(tutorial).unwrap_or_default();
         }
+        if let Some(people) = &session.people {
+            text += &serde_json::to_string(people).unwrap_or_default();
+        }
         let digest = digest(&text);
         Some(Study { plan, questionnaires, tutorial, session, digest })
     }
@@ -96,12 +99,14 @@ impl Study {
         practice.into_iter().chain(trials).map(|(period, condition)| Slot { period, condition }).collect()
     }
 
-    /// The settings of a recording with people, and the number of its trial.
+    /// The settings of a recording with people, with the participant's own parameters of the human model where there are any, and the
+    /// number of its trial.
     pub fn settings(&self, wanted: WantedRecording) -> (SessionSpec, u64) {
         let slots = self.slots(wanted.participant);
         let slot = slots[wanted.slot];
         let mut spec = self.session.clone();
         spec.participant.code = self.plan.code(wanted.participant);
+        spec.adopt_person();
         set_arm(&mut spec, slot.condition);
         let practice = self.plan.familiarisation.as_ref().filter(|_| slot.period.is_none());
         if let Some(practice) = practice {
@@ -146,6 +151,7 @@ impl Study {
         let phases = vec![PhaseSpec::Tutorial { tutorial: self.tutorial.clone()? }];
         let mut spec = self.session.clone();
         spec.participant.code = code.to_string();
+        spec.adopt_person();
         spec.step = Some(StepSpec {
             plan: format!("{}-tutorial", self.plan.name),
             digest: self.digest.clone(),

@@ -6,6 +6,7 @@ mod drop_outs;
 mod exact;
 mod fitting;
 mod fitting_answers;
+mod fitting_people;
 mod grid;
 mod laws;
 mod observed;

@@ -2,6 +2,7 @@
 //! what happens around a trial.
 
 mod assignment;
+mod fitted;
 mod progress;
 mod protocol;
 mod questionnaires;

@@ -1,0 +1,144 @@
+//! `tomcom fit --people`: population and persons beside one set of parameters for all, on all trials and on trials that were left out.
+
+use std::collections::BTreeMap;
+
+use super::FitPlan;
+use super::ascent::climb;
+use super::parameter_scale::{bounds_of, is_possible, model_at, point_of};
+use super::people_search::{FoundPeople, PeopleSearch, PersonTry, TrialPart, search};
+use super::people_summary::{
+    FittedPerson, HeldOut, HeldOutPerson, PeopleSummary, PersonSummary, PooledParameter, PopulationParameter,
+};
+use crate::mind::fitted_people::{FittedPeople, HumanModelFile};
+use crate::mind::fitting::Likelihood;
+use crate::mind::model::HumanModel;
+
+/// The search of one part of the trials: one set of parameters for all, population and persons.
+struct PartFit {
+    pooled: Vec<f64>,
+    people: FoundPeople,
+    tries: u64,
+    converged: bool,
+}
+
+/// Fits population and persons. `model` is the human model in the recordings, `likelihoods` returns the likelihood of each try.
+///
+/// The intervals over persons of [`HeldOut`] are left to the caller.
+pub fn fit_people(
+    people: &[FittedPerson],
+    model: &HumanModel,
+    plan: &FitPlan,
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+) -> PeopleSummary {
+    let base = plan.start.as_ref().unwrap_or(model);
+    let start = point_of(base, &plan.parameters);
+    let all = fit_part(people.len(), base, plan, (&start, TrialPart::All), &likelihoods);
+    let held_out = people.iter().any(|person| person.recordings > 1).then(|| {
+        // The search begins where that of all trials ended, which saves rounds; where it ends follows from the training alone.
+        let training = fit_part(people.len(), base, plan, (&all.pooled, TrialPart::Training), &likelihoods);
+        (judge(people, base, plan, &training, &likelihoods), training)
+    });
+    let at_modes = sums(&at_each(base, plan, &all.people.modes, TrialPart::All, &likelihoods));
+    let at_pooled = vec![all.pooled.clone(); people.len()];
+    let each_pooled = at_each(base, plan, &at_pooled, TrialPart::All, &likelihoods);
+    let pooled = sums(&each_pooled);
+    let presses = pooled.presses.max(1) as f64;
+    let population = &all.people.estimate;
+    let person = |(index, person): (usize, &FittedPerson)| {
+        let posterior = &population.people[index];
+        PersonSummary::from_posterior(person, each_pooled[index].presses, &plan.parameters, posterior)
+    };
+    let trained = held_out.as_ref().map(|(_, training)| training);
+    PeopleSummary {
+        recordings: people.iter().map(|person| person.recordings).sum(),
+        human_actions: pooled.presses,
+        answers: pooled.answers,
+        log_likelihood_pooled: pooled.log_p / presses,
+        log_likelihood: at_modes.log_p / presses,
+        tries: all.tries + trained.map_or(0, |training| training.tries),
+        converged: all.converged && trained.is_none_or(|training| training.converged),
+        pooled: plan.parameters.iter().zip(&all.pooled).map(|(one, at)| PooledParameter::new(*one, *at)).collect(),
+        population: PopulationParameter::all(&plan.parameters, population),
+        people: people.iter().enumerate().map(person).collect(),
+        file: file(people, base, plan, &all.people),
+        held_out: held_out.map(|(held_out, _)| held_out),
+    }
+}
+
+/// Fits one set of parameters for all, then population and persons from there.
+fn fit_part(
+    people: usize,
+    base: &HumanModel,
+    plan: &FitPlan,
+    (start, part): (&[f64], TrialPart),
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+) -> PartFit {
+    let loss = |at: &[f64]| {
+        let model = model_at(base, &plan.parameters, at);
+        if !is_possible(&model) {
+            return f64::INFINITY;
+        }
+        let tries: Vec<PersonTry> =
+            (0..people).map(|person| PersonTry { person, part, model: model.clone() }).collect();
+        -sums(&likelihoods(&tries)).total()
+    };
+    let pooled = climb(loss, start, &bounds_of(&plan.parameters), plan.most_tries);
+    let at: Vec<f64> = pooled.variables.iter().map(|variable| variable.at).collect();
+    let what = PeopleSearch { base, parameters: &plan.parameters, people, part };
+    let found = search(what, &at, likelihoods);
+    let tries = pooled.evaluations as u64 + found.tries;
+    PartFit { pooled: at, converged: pooled.converged && found.converged, people: found, tries }
+}
+
+/// Likelihood of each person's trials at its own point.
+fn at_each(
+    base: &HumanModel,
+    plan: &FitPlan,
+    points: &[Vec<f64>],
+    part: TrialPart,
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+) -> Vec<Likelihood> {
+    let model = |at: &Vec<f64>| model_at(base, &plan.parameters, at);
+    let tries = points.iter().enumerate().map(|(person, at)| PersonTry { person, part, model: model(at) });
+    likelihoods(&tries.collect::<Vec<PersonTry>>())
+}
+
+fn sums(each: &[Likelihood]) -> Likelihood {
+    each.iter().copied().fold(Likelihood::default(), Likelihood::plus)
+}
+
+/// How likely the presses of the trials are that were left out.
+fn judge(
+    people: &[FittedPerson],
+    base: &HumanModel,
+    plan: &FitPlan,
+    training: &PartFit,
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+) -> HeldOut {
+    let same = |at: &[f64]| vec![at.to_vec(); people.len()];
+    let by = |points: &[Vec<f64>]| at_each(base, plan, points, TrialPart::HeldOut, &likelihoods);
+    let [pooled, population, own] =
+        [same(&training.pooled), same(&training.people.mean), training.people.modes.clone()].map(|points| by(&points));
+    let judged = (0..people.len()).filter(|&one| pooled[one].presses > 0);
+    let per_press = |found: &Likelihood| found.log_p / found.presses as f64;
+    let by_person: Vec<HeldOutPerson> = judged
+        .map(|one| HeldOutPerson {
+            code: people[one].code.clone(),
+            human_actions: pooled[one].presses,
+            pooled: per_press(&pooled[one]),
+            population: per_press(&population[one]),
+            own: per_press(&own[one]),
+        })
+        .collect();
+    let is_judged = |person: &&FittedPerson| by_person.iter().any(|one| one.code == person.code);
+    let left_out = people.iter().filter(|person| !is_judged(person)).map(|person| person.code.clone()).collect();
+    HeldOut { left_out, gain: None, population_gain: None, by_person }
+}
+
+/// The file of parameters: the median person of the population, and every person.
+fn file(people: &[FittedPerson], base: &HumanModel, plan: &FitPlan, found: &FoundPeople) -> HumanModelFile {
+    let values = |at: &Vec<f64>| plan.parameters.iter().zip(at).map(|(one, at)| (*one, one.from_scale(*at))).collect();
+    let own: BTreeMap<_, _> =
+        people.iter().zip(&found.modes).map(|(person, at)| (person.code.clone(), values(at))).collect();
+    HumanModelFile::new(model_at(base, &plan.parameters, &found.mean), Some(FittedPeople(own)))
+}

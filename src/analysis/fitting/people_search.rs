@@ -1,0 +1,177 @@
+//! Searches the parameters of persons of one population: quadratic surfaces of each person's log likelihood, with the population
+//! estimated anew after each round of surfaces.
+//!
+//! The surfaces are those of the likelihood alone; the population enters afterwards. So a surface stays right when the population
+//! changes, and a person with few presses needs no maximum of its own. A round costs every person the points of one surface.
+
+use super::gaussian_likelihood::GaussianLikelihood;
+use super::parameter_scale::{bounds_of, is_possible, model_at};
+use super::population_estimate::{PopulationEstimate, estimate};
+use super::response_surface::{REACH, points_around, surface};
+use crate::mind::fitting::{Likelihood, Parameter};
+use crate::mind::model::HumanModel;
+
+/// Largest number of rounds.
+pub const ROUNDS: usize = 8;
+/// Step sizes of the first round.
+const FIRST_STEP: f64 = 0.5;
+/// A step lowers a person's log likelihood by so many nats, and by the noise of its surface. It follows from the person's own presses alone:
+/// with the population, steps would shrink until noise looks like information.
+const STEP_NATS: f64 = 3.0;
+/// Bounds of a step, and the largest factor between successive steps.
+const STEPS: [f64; 2] = [0.2, 1.0];
+const STEP_CHANGE: f64 = 2.5;
+/// A person is settled when its mode is within this many steps of the centre of its surface.
+const NEAR: f64 = 0.5;
+
+/// Which trials of a person are used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TrialPart {
+    /// All.
+    All,
+    /// All but the last one; the only one of a person who has one.
+    Training,
+    /// The last one of a person who has several.
+    HeldOut,
+}
+
+/// A set of parameters to be tried on a person's trials.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PersonTry {
+    /// Index of the person.
+    pub person: usize,
+    /// Which of its trials are used.
+    pub part: TrialPart,
+    /// The parameters.
+    pub model: HumanModel,
+}
+
+/// What is searched.
+#[derive(Clone, Copy, Debug)]
+pub struct PeopleSearch<'a> {
+    /// Parameters that are not searched.
+    pub base: &'a HumanModel,
+    /// The parameters in which persons differ.
+    pub parameters: &'a [Parameter],
+    /// Number of persons.
+    pub people: usize,
+    /// Which trials are used.
+    pub part: TrialPart,
+}
+
+/// What a search found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundPeople {
+    /// Population and persons.
+    pub estimate: PopulationEstimate,
+    /// The population's mean within the bounds of the parameters.
+    pub mean: Vec<f64>,
+    /// The persons' modes within the bounds of the parameters.
+    pub modes: Vec<Vec<f64>>,
+    /// Number of tried sets of parameters a person.
+    pub tries: u64,
+    /// Whether every person's mode was near the centre of its last surface.
+    pub converged: bool,
+}
+
+/// Searches from `start`, which is the same for all persons. `likelihoods` returns the likelihood of each try, in their order.
+pub fn search(
+    what: PeopleSearch<'_>,
+    start: &[f64],
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+) -> FoundPeople {
+    let bounds = bounds_of(what.parameters);
+    let mut surveys = vec![Survey { centre: start.to_vec(), steps: vec![FIRST_STEP; start.len()] }; what.people];
+    let mut tries = 0;
+    let mut round = 0;
+    loop {
+        surveys.iter_mut().for_each(|survey| survey.keep_inside(&bounds));
+        let found = likelihoods_at(what, &surveys, &likelihoods);
+        tries += found.first().map_or(0, Vec::len) as u64;
+        let surfaces = surveys.iter().zip(found).map(|(survey, losses)| survey.gaussian(losses));
+        let (gaussians, noises): (Vec<GaussianLikelihood>, Vec<f64>) = surfaces.unzip();
+        let estimate = estimate(&gaussians, start);
+        let inside = |at: &[f64]| -> Vec<f64> {
+            at.iter().zip(&bounds).map(|(at, [low, high])| at.clamp(*low, *high)).collect()
+        };
+        let modes: Vec<Vec<f64>> = estimate.people.iter().map(|person| inside(&person.mode)).collect();
+        round += 1;
+        let converged = surveys.iter().zip(&modes).all(|(survey, mode)| survey.is_near(mode, &bounds));
+        if converged && round > 1 || round == ROUNDS {
+            return FoundPeople { mean: inside(&estimate.mean), estimate, modes, tries, converged };
+        }
+        for (((survey, gaussian), noise), mode) in surveys.iter_mut().zip(&gaussians).zip(&noises).zip(&modes) {
+            survey.move_to(mode, gaussian, *noise);
+        }
+    }
+}
+
+/// Negative log likelihoods of every person at the points of its survey; infinite where there can be nobody.
+fn likelihoods_at(
+    what: PeopleSearch<'_>,
+    surveys: &[Survey],
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+) -> Vec<Vec<f64>> {
+    let (mut tries, mut places) = (Vec::new(), Vec::new());
+    let mut losses: Vec<Vec<f64>> = Vec::new();
+    for (person, survey) in surveys.iter().enumerate() {
+        let points = points_around(&survey.centre, &survey.steps);
+        losses.push(vec![f64::INFINITY; points.len()]);
+        for (point, at) in points.iter().enumerate() {
+            let model = model_at(what.base, what.parameters, at);
+            if is_possible(&model) {
+                tries.push(PersonTry { person, part: what.part, model });
+                places.push((person, point));
+            }
+        }
+    }
+    for ((person, point), found) in places.into_iter().zip(likelihoods(&tries)) {
+        losses[person][point] = -found.total();
+    }
+    losses
+}
+
+/// Where a person's next surface lies.
+#[derive(Clone, Debug)]
+struct Survey {
+    centre: Vec<f64>,
+    steps: Vec<f64>,
+}
+
+impl Survey {
+    fn keep_inside(&mut self, bounds: &[[f64; 2]]) {
+        for ((centre, step), [low, high]) in self.centre.iter_mut().zip(&mut self.steps).zip(bounds) {
+            *step = step.min((high - low) / 2.0);
+            *centre = centre.clamp(low + *step, (high - *step).max(low + *step));
+        }
+    }
+
+    /// The likelihood by these losses, and their noise.
+    fn gaussian(&self, losses: Vec<f64>) -> (GaussianLikelihood, f64) {
+        let mut losses = losses.into_iter();
+        let next = |_: &[f64]| losses.next().unwrap_or(f64::INFINITY);
+        match surface(next, &self.centre, &self.steps) {
+            Some(found) => (GaussianLikelihood::from_surface(&found, &self.centre, &self.steps), found.noise),
+            None => (GaussianLikelihood::flat(self.centre.len()), 0.0),
+        }
+    }
+
+    /// Whether a mode is near the centre; beside a bound, where the centre cannot lie, it may be as far as the surface reaches.
+    fn is_near(&self, mode: &[f64], bounds: &[[f64; 2]]) -> bool {
+        self.centre.iter().zip(&self.steps).zip(mode).zip(bounds).all(|(((centre, step), mode), [low, high])| {
+            let is_beside = centre - step <= *low || centre + step >= *high;
+            (mode - centre).abs() <= step * if is_beside { 1.0 } else { NEAR }
+        })
+    }
+
+    fn move_to(&mut self, mode: &[f64], known: &GaussianLikelihood, noise: f64) {
+        let information = known.information.diagonal();
+        for (((centre, step), mode), information) in
+            self.centre.iter_mut().zip(&mut self.steps).zip(mode).zip(&information)
+        {
+            *centre = mode.clamp(*centre - REACH * *step, *centre + REACH * *step);
+            let wanted = (2.0 * (STEP_NATS + noise) / information).sqrt();
+            *step = wanted.clamp(*step / STEP_CHANGE, *step * STEP_CHANGE).clamp(STEPS[0], STEPS[1]);
+        }
+    }
+}

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::measures::sequences::FALSE_BELOW;
 use crate::session::probes::ProbeOrigin;
 use crate::session::study_arm::StudyArm;
 
 /// What a question was about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ProbedKind {
     /// What an order location shows.
     Order,
@@ -51,7 +53,7 @@ impl ProbedKind {
 }
 
 /// What came back to a question.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ProbeResponse {
     /// The name of a value.
     Value(String),
@@ -64,7 +66,7 @@ pub enum ProbeResponse {
 }
 
 /// What was known of a question's aspect when the trial froze.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrozenAspect {
     /// Number of values that the aspect can have.
     pub values: usize,
@@ -89,7 +91,7 @@ pub struct FrozenAspect {
 }
 
 /// What a simulated participant believed about an aspect when the trial froze.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrozenBelief {
     /// Name of the most probable value.
     pub believes: String,
@@ -105,7 +107,7 @@ impl FrozenBelief {
 }
 
 /// A question that a participant was shown.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbedQuestion {
     /// Number of the probe in the trial, from 1.
     pub probe: u32,
@@ -166,7 +168,7 @@ impl ProbedQuestion {
 }
 
 /// The probes of one trial.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbedTrial {
     /// The arm of the trial.
     pub study_arm: StudyArm,

@@ -59,7 +59,7 @@ pub struct OfferedAdvice {
 }
 
 /// How the signal of an offer was sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OfferUse {
     /// By the key that takes the offer.
     Taken,
@@ -68,7 +68,7 @@ pub enum OfferUse {
 }
 
 /// When and how the signal of an offer was sent.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct UsedOffer {
     /// By which key.
     pub how: OfferUse,
@@ -77,7 +77,7 @@ pub struct UsedOffer {
 }
 
 /// An offer.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Offer {
     /// Sequence number of its `offer_opened`, by which `offer_closed` and `signal_shown` name it.
     pub seq: u64,

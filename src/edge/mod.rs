@@ -51,6 +51,7 @@ pub mod rrd;
 #[cfg(feature = "rerun")]
 pub mod stream;
 pub mod stream_head;
+pub mod study_part_file;
 pub mod temporary;
 pub mod terminal;
 mod tracker_folder;

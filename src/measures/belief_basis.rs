@@ -1,9 +1,9 @@
 //! How it is known what a participant believed.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Source of the causes of errors, and of false beliefs; the most reliable first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BeliefBasis {
     /// Recorded beliefs of a simulated participant.

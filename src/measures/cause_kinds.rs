@@ -1,6 +1,6 @@
 //! Belief related errors by the kind of aspect that was believed wrong, as the paper discusses them: orders, recipes, places.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::attribution::{Cause, Target};
 use super::judged_press::JudgedPress;
@@ -8,7 +8,7 @@ use super::sequences::Episode;
 use crate::kitchen::{AspectId, Kitchen};
 
 /// Numbers of belief related errors by kind of aspect.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CauseKindCounts {
     /// Errors about an order.
     pub orders: u64,

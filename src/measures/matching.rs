@@ -12,7 +12,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::median::median;
 use crate::base::time::SessionTime;
@@ -22,7 +22,7 @@ use crate::kitchen::LocationId;
 pub const WINDOW: u32 = 3;
 
 /// Kind of a communication.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum CommunicationKind {
     /// A signal that shows an order's recipe.
     Recipe,
@@ -33,7 +33,7 @@ pub enum CommunicationKind {
 }
 
 /// Content of a communication, as the matching compares it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct CommunicationTarget {
     /// The kind of communication.
     pub kind: CommunicationKind,
@@ -42,7 +42,7 @@ pub struct CommunicationTarget {
 }
 
 /// A communication with its time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CommunicationEvent {
     /// Number of human presses in the trial before it.
     pub press: u32,

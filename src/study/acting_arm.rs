@@ -1,15 +1,19 @@
 //! Who sent the signals of a trial without a person: nobody, a script, or a concept with its parameter.
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize, de};
 
 use crate::communication::concept::ConceptName;
 use crate::session::study_arm::StudyArm;
 
+/// Name of who sent the signals: of an arm, or of a concept.
+pub type ActorName = &'static str;
+
 /// Who sent the signals of a trial by itself.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActingArm {
     /// `none`, `wizard` or `wizard+advice` (a script), or the name of a concept.
-    pub concept: &'static str,
+    #[serde(deserialize_with = "actor")]
+    pub concept: ActorName,
     /// The concept's parameter: cost of communication in presses, threshold, or presses proposed; null for the others.
     pub parameter: Option<f64>,
 }
@@ -26,4 +30,12 @@ impl ActingArm {
         let rank = StudyArm::ALL.iter().position(|arm| arm.name() == self.concept).unwrap_or(StudyArm::ALL.len());
         (rank, self.parameter.unwrap_or(0.0))
     }
+}
+
+/// Reads who sent the signals, by the name of an arm or of a concept.
+fn actor<'de, D: Deserializer<'de>>(input: D) -> Result<ActorName, D::Error> {
+    let name = String::deserialize(input)?;
+    let arms = StudyArm::ALL.into_iter().map(StudyArm::name);
+    let mut known = arms.chain(ConceptName::ALL.into_iter().map(ConceptName::name));
+    known.find(|known| *known == name).ok_or_else(|| de::Error::custom(format!("the unknown sender \"{name}\"")))
 }

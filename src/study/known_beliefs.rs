@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::belief_trace::BeliefTrace;
 use super::rater_episodes::rater_episodes;
@@ -26,7 +26,7 @@ pub struct KnownBeliefs {
 }
 
 /// How far two raters agree on the false beliefs behind the errors of a trial, by their own codes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SharedBeliefs {
     /// Errors that both put down to the same false belief.
     pub same: u64,

@@ -13,6 +13,7 @@
 //! - [`drawn_study`] draws studies from a [`simulation_pool`]; [`power`] counts what their tests find, [`power_answer`] says how many participants are
 //!   needed; [`arm_table`] compares the arms of a pool.
 //! - [`frozen_plan`] is what is frozen before a study, [`preregistration`] whether the study is that one.
+//! - [`study_part`] is what a shard of a study's recordings hands to the joined analysis.
 //! - [`tables`] declares the tables: the source of a row, and each [column](mod@column) with name, unit, meaning and value. Header lines,
 //!   rows and [`dictionary`] are generated. A measure that is compared between assisted and unassisted trials is declared as such
 //!   in the table of trials ([`tables::trials`]); its columns in the table of participants and its line in the report are
@@ -52,6 +53,7 @@ pub mod robot_tally;
 pub mod roc;
 pub mod simulation_pool;
 pub mod statistics;
+pub mod study_part;
 pub mod svg;
 pub mod tables;
 pub mod trial_statistics;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::base::time::SessionTime;
 use crate::communication::Sender;
@@ -13,7 +13,7 @@ use crate::session::event::EndReason;
 use crate::session::settings::ArmKind;
 
 /// Robot statistics of a trial from start to end, pauses included.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RobotSummary {
     /// Contact statistics of a simulated physical arm; `None` for a timed arm, which has no contacts.
     pub arm: Option<ArmSummary>,
@@ -32,7 +32,7 @@ pub struct RobotSummary {
 }
 
 /// Safety and contact statistics of a simulated physical arm.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ArmSummary {
     /// Times that the arm stopped because it felt somebody.
     pub protective_stops: u64,

@@ -1,6 +1,6 @@
 //! Statistics of one trial for the analysis; recordings themselves are not kept in memory.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::acting_arm::ActingArm;
 use super::known_beliefs::SharedBeliefs;
@@ -21,7 +21,7 @@ use crate::session::study_arm::StudyArm;
 use crate::session::wall_display::DisplayedArm;
 
 /// Statistics of one trial.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
     /// Path of the recording's folder, relative to the folder given by the user.
     pub recording: String,
@@ -114,7 +114,7 @@ pub struct Trial {
 }
 
 /// Errors that false beliefs caused in a trial.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BeliefErrors {
     /// How it is known what the human believed.
     pub basis: BeliefBasis,
@@ -135,7 +135,7 @@ pub struct BeliefErrors {
 }
 
 /// An answer to a questionnaire item.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct QuestionnaireAnswer {
     /// The questionnaire's name.
     pub questionnaire: String,

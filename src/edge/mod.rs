@@ -27,6 +27,7 @@ mod gaze_table;
 mod host_name;
 pub mod key_file;
 pub mod language;
+pub mod list_cache;
 pub mod log;
 pub mod lsl;
 #[cfg(feature = "mcap")]

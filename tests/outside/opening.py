@@ -127,8 +127,9 @@ def replay(tomcom, recording, repeats):
         frames.append(terminal.until(lambda lines: position(lines) is not None))
         terminal.send(".")
         terminal.until(has("paused"))
-        # All of it is read by then.
-        time.sleep(3)
+        # At the end all of it is read.
+        terminal.send("\x1b[F")
+        terminal.until(lambda lines: position(lines)[0] > 0.99 * position(lines)[1])
         for _ in range(10):
             _, length, row, first, last = position(terminal.screen.display)
             column = chance.randrange(first, last)

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::wizard_log::clock_at;
 use crate::base::time::SessionTime;
@@ -12,7 +12,7 @@ use crate::measures::median;
 use crate::session::Session;
 
 /// An offer with its times on the trial's clock, in seconds.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimedOffer {
     /// The offer of a signal to the wizard.
     pub offer: Offer,

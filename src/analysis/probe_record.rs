@@ -3,12 +3,14 @@
 
 use std::collections::BTreeMap;
 
+use serde::{Deserialize, Serialize};
+
 use crate::measures::sequences::FALSE_BELOW;
 use crate::session::probes::ProbeOrigin;
 use crate::session::study_arm::StudyArm;
 
 /// Kind of a probe question, by what it asks about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ProbedKind {
     /// The content of an order location.
     Order,
@@ -52,7 +54,7 @@ impl ProbedKind {
 }
 
 /// Response of a participant to a probe question.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ProbeResponse {
     /// The answered value, by its name.
     Value(String),
@@ -65,7 +67,7 @@ pub enum ProbeResponse {
 }
 
 /// State aspect of a probe question at the time the trial froze: estimate, belief and history.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrozenAspect {
     /// Number of values that the state aspect can have.
     pub values: usize,
@@ -92,7 +94,7 @@ pub struct FrozenAspect {
 }
 
 /// Belief of a simulated participant about a state aspect when the trial froze.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrozenBelief {
     /// Name of the value that the participant believed most probable.
     pub believes: String,
@@ -108,7 +110,7 @@ impl FrozenBelief {
 }
 
 /// A probe question that a participant was shown, with truth, estimate and response.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbedQuestion {
     /// Number of the freeze probe in the trial, from 1.
     pub probe: u32,
@@ -172,7 +174,7 @@ impl ProbedQuestion {
 }
 
 /// The freeze probes of one trial.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbedTrial {
     /// Study arm of the trial.
     pub study_arm: StudyArm,

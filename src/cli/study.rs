@@ -1,15 +1,18 @@
 //! The command `tomcom study`, which analyses a study.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
 use super::data::two_raters;
 use super::failure::Failure;
 use super::list::exists;
-use super::output::{OutputFormat, print, progress};
+use super::output::{OutputFormat, print, progress, put_aside};
+use crate::base::words::count;
+use crate::run::simulate::Shard;
 use crate::run::study::reading::AnalysisScope;
-use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError};
+use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError, shards};
+use crate::study::figures::StudySummary;
 
 /// Analyses the recordings of a study: report and tables.
 ///
@@ -17,13 +20,15 @@ use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError};
 /// report (HTML) and tables (CSV).
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples: tomcom study recordings\n          tomcom study shards/* --out results --format json\nMore: docs/study.md, docs/analysis.md"
+    after_help = "Examples: tomcom study recordings\n          tomcom study shards/* --out results --format json\n          \
+                  tomcom study shards/3 --shard 3/8 --out part-3.jsonl\n          \
+                  tomcom study --from part-*.jsonl --out results\nMore: docs/study.md, docs/cluster.md, docs/analysis.md"
 )]
 pub(super) struct StudyArgs {
     /// Folders with recordings in them, or recordings, of one kitchen.
-    #[arg(required = true, value_name = "DIR")]
+    #[arg(required_unless_present = "from", value_name = "DIR")]
     paths: Vec<PathBuf>,
-    /// Folder for report.html and the tables; by default the folder "study" in the first DIR.
+    /// Folder for report.html and the tables; by default the folder "study" in the first DIR. With --shard, the file of the part.
     #[arg(long)]
     out: Option<PathBuf>,
     /// The two raters whose codes of errors are taken; by default the two with the most complete codes of a recording.
@@ -32,7 +37,14 @@ pub(super) struct StudyArgs {
     /// Compare the recordings with a plan that was frozen with tomcom plan PLAN --freeze FILE, and say what differs.
     #[arg(long, value_name = "FILE")]
     frozen: Option<PathBuf>,
-    /// Parts to skip, separated by commas.
+    /// Analyse one shard of the recordings, such as "3/8", the third of eight, for job arrays, and only write what the analysis of all needs of it
+    /// to the file --out. Shards are those of tomcom simulate.
+    #[arg(long, value_name = "PART/PARTS", requires = "out", conflicts_with_all = ["frozen", "format"])]
+    shard: Option<Shard>,
+    /// Join these parts, written with --shard, instead of reading recordings; the results are those of one analysis of all recordings.
+    #[arg(long, value_name = "FILE", num_args = 1.., requires = "out", conflicts_with_all = ["paths", "shard", "raters", "skip"])]
+    from: Vec<PathBuf>,
+    /// Steps of the analysis to skip, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',')]
     skip: Vec<Skip>,
     /// Output format.
@@ -58,17 +70,36 @@ impl From<StudyError> for Failure {
     }
 }
 
+/// `tomcom study`.
 pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
     args.paths.iter().try_for_each(|path| exists(path))?;
-    let recordings = NamedRecordings::find(&args.paths)?;
     let extent =
         AnalysisScope { concepts: !args.skip.contains(&Skip::Concepts), events: !args.skip.contains(&Skip::Events) };
-    let out = args.out.clone().unwrap_or_else(|| args.paths[0].join("study"));
     let raters = args.raters.as_ref().map(|raters| two_raters(raters, "--raters")).transpose()?;
+    let paths = if args.from.is_empty() { args.paths.clone() } else { args.from.clone() };
+    // Parts are joined into a folder that is named.
+    let out = args.out.clone().unwrap_or_else(|| paths[0].join("study"));
+    let request = AnalysisRequest { paths, out, extent, raters, frozen: args.frozen.clone() };
+    if !args.from.is_empty() {
+        let (figures, report) = shards::join(&request)?;
+        return told(args.format, &figures, &report);
+    }
+    let recordings = NamedRecordings::find(&request.paths)?;
     let bar = progress(recordings.number() as u64, "recordings");
-    let (paths, frozen) = (args.paths.clone(), args.frozen.clone());
-    let request = AnalysisRequest { paths, out, extent, raters, frozen };
+    if let Some(shard) = args.shard {
+        let begun = |number: usize| bar.set_length(number as u64);
+        let number = shards::analyse_shard(&request, recordings, shard, begun, || bar.inc(1))?;
+        bar.finish_and_clear();
+        let Shard { number: part, of } = shard;
+        put_aside(&format!("part {part} of {of}: {}\n", count(number, "recording", "recordings")));
+        return Ok(());
+    }
     let (figures, report) = study::study(&request, &recordings, || bar.inc(1))?;
     bar.finish_and_clear();
-    print(args.format, &figures, || format!("{}report: {}\n", study::describe(&figures), report.display()))
+    told(args.format, &figures, &report)
+}
+
+/// Prints the summary.
+fn told(format: OutputFormat, figures: &StudySummary, report: &Path) -> Result<(), Failure> {
+    print(format, figures, || format!("{}report: {}\n", study::describe(figures), report.display()))
 }

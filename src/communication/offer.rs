@@ -64,7 +64,7 @@ pub struct OfferedAdvice {
 }
 
 /// How the wizard sent the signal of an offer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OfferUse {
     /// By the key that takes the present offer.
     Taken,
@@ -73,7 +73,7 @@ pub enum OfferUse {
 }
 
 /// When and how the wizard sent the signal of an offer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct UsedOffer {
     /// The kind of key with which the signal was sent.
     pub how: OfferUse,
@@ -82,7 +82,7 @@ pub struct UsedOffer {
 }
 
 /// An offer: a recommendation that is shown to the wizard.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Offer {
     /// Sequence number of the offer's event `offer_opened`, by which `offer_closed` and `signal_shown` refer to it.
     pub seq: u64,

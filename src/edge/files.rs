@@ -277,6 +277,8 @@ fn read_kitchen_with(layout_path: &Path, keys: Option<&FileText>) -> FileResult<
     })?;
     layout_ranges::check(&layout_text).map_err(|error| wrong_layout(layout_path, &layout_text, error))?;
     let files = compile_kitchen((layout_path, layout_text), (&recipes_path, recipes_text))?;
+    #[cfg(feature = "physics")]
+    check_reach(layout_path, &files.layout.text, &layout, &files.kitchen)?;
     check_keys((layout_path, &files.layout.text), &layout, &files.kitchen, keys)?;
     Ok(files)
 }
@@ -286,14 +288,13 @@ fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
     FileError::at(path, text, error.place, error.found, error.remedy)
 }
 
-/// Compiles a kitchen from texts, whatever its numbers: it may be that of an old recording. The paths only serve error messages.
+/// Compiles a kitchen from texts, whatever its numbers and whether the arm reaches its buttons: it may be that of an old recording, whose arm
+/// gives up what it cannot reach. The paths only serve error messages.
 pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenFiles> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
     match Kitchen::compile(&layout_spec, &recipes_spec) {
         Ok(kitchen) => {
-            #[cfg(feature = "physics")]
-            check_reach(layout.0, &layout.1, &layout_spec, &kitchen)?;
             let layout_text = FileText { path: layout.0.display().to_string(), text: layout.1 };
             let recipes_text = FileText { path: layout_spec.recipes.into_inner(), text: recipes.1 };
             Ok(KitchenFiles { kitchen, layout: layout_text, recipes: recipes_text })

@@ -27,6 +27,7 @@ mod gaze_table;
 mod host_name;
 pub mod key_file;
 pub mod language;
+pub mod list_cache;
 pub mod log;
 pub mod lsl;
 #[cfg(feature = "mcap")]
@@ -51,6 +52,7 @@ pub mod rrd;
 #[cfg(feature = "rerun")]
 pub mod stream;
 pub mod stream_head;
+pub mod study_part_file;
 pub mod temporary;
 pub mod terminal;
 mod tracker_folder;

@@ -5,8 +5,11 @@ use std::fs;
 use std::io::{self, BufRead, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
+
 use super::file_error::{FileError, FileResult, open_regular};
 use super::log::{LOG_NAME, ruling};
+use crate::session::header::Continues;
 use crate::session::plan::{PlanRecording, RecordingOutcome, StepSpec};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
 use crate::session::{Event, Header, Stamped};
@@ -77,11 +80,18 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
         let mut line = String::new();
         // What is wrong with a header is told where the recording is read.
         let read = BufReader::new(file).read_line(&mut line).ok();
-        let header = read.and_then(|_| serde_json::from_str::<Header>(&line).ok());
+        let header = read.and_then(|_| serde_json::from_str::<PartHeaderGlance>(&line).ok());
         continued.extend(header.and_then(|header| header.continues).map(|before| folder.join(before.recording)));
     }
     found.retain(|path| !continued.contains(path));
     Ok(found)
+}
+
+/// Which part a log continues; the rest of its header would take longer to read.
+#[derive(Deserialize)]
+struct PartHeaderGlance {
+    #[serde(default)]
+    continues: Option<Continues>,
 }
 
 /// What the log of one part says.

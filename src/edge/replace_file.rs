@@ -1,21 +1,57 @@
-//! Replaces a small file as a whole: whoever reads it meanwhile, or after a crash, finds the old content or the new one.
+//! Replaces a file as a whole: whoever reads it meanwhile, or after a crash, finds the old content or the new one.
 
 use std::fs::{self, File};
-use std::io::{self, Write};
-use std::path::Path;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
 
 /// Suffix of the file that is written before it takes the name.
 const NEW: &str = ".new";
+
+/// A file that is being written, and takes its name when it is whole.
+#[derive(Debug)]
+pub struct Replacement {
+    path: PathBuf,
+    new: PathBuf,
+    out: BufWriter<File>,
+}
+
+impl Replacement {
+    /// Begins a new file beside `path`.
+    ///
+    /// # Errors
+    /// The folder cannot be written to.
+    pub fn begin(path: &Path) -> io::Result<Replacement> {
+        let mut new = path.as_os_str().to_os_string();
+        new.push(NEW);
+        let new = PathBuf::from(new);
+        Ok(Replacement { path: path.to_path_buf(), out: BufWriter::new(File::create(&new)?), new })
+    }
+
+    /// Adds to the new file.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.out.write_all(bytes)
+    }
+
+    /// Brings the new file to the disk and gives it the name.
+    ///
+    /// # Errors
+    /// The folder cannot be written to.
+    pub fn finish(self) -> io::Result<()> {
+        let file = self.out.into_inner().map_err(io::IntoInnerError::into_error)?;
+        file.sync_all()?;
+        fs::rename(&self.new, &self.path)
+    }
+}
 
 /// Writes a file beside `path` to the disk and gives it that name.
 ///
 /// # Errors
 /// The folder cannot be written to.
 pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut name = path.as_os_str().to_os_string();
-    name.push(NEW);
-    let mut file = File::create(&name)?;
-    file.write_all(bytes)?;
-    file.sync_all()?;
-    fs::rename(&name, path)
+    let mut file = Replacement::begin(path)?;
+    file.write(bytes)?;
+    file.finish()
 }

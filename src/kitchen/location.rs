@@ -1,13 +1,14 @@
 //! Locations and storages, with their areas on the wall display.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::agent::Agent;
 use super::content::ContentId;
 use super::look::Appearance;
 
 /// Identifies a location: an index into [`super::Kitchen::locations`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
 pub struct LocationId(pub u8);
 
 impl LocationId {

@@ -1,9 +1,9 @@
 //! Sources of knowledge about what a participant believed.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The source from which an analysis takes causes of errors and false beliefs; the most reliable source first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BeliefBasis {
     /// Beliefs that a simulated participant recorded.

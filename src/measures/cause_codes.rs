@@ -11,7 +11,7 @@ use super::matching::kappa;
 use crate::kitchen::{Kitchen, LocationKind, OrderContent, State};
 
 /// Cause of an error as coded by a rater.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Code {
     /// A false belief; contains the location's name. An order location stands for the recipe of its dish.
     Belief(String),
@@ -177,7 +177,7 @@ impl Codable {
 }
 
 /// Codes of one rater for one recording, by log number of the erroneous press.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Codes(pub BTreeMap<u64, Code>);
 
 impl Codes {

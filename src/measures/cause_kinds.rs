@@ -1,7 +1,7 @@
 //! Belief related errors by the kind of aspect that the false belief is about, as in the paper: orders, recipes,
 //! places.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::attribution::{Cause, Target};
 use super::judged_press::JudgedPress;
@@ -9,7 +9,7 @@ use super::sequences::Episode;
 use crate::kitchen::{AspectId, Kitchen};
 
 /// Numbers of belief related errors by kind of aspect.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CauseKindCounts {
     /// Number of errors from a false belief about an order.
     pub orders: u64,

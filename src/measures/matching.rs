@@ -14,7 +14,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::median::median;
 use crate::base::time::SessionTime;
@@ -24,7 +24,7 @@ use crate::kitchen::LocationId;
 pub const WINDOW: u32 = 3;
 
 /// Kind of a communication to the participant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum CommunicationKind {
     /// A signal that shows an order's recipe.
     Recipe,
@@ -35,7 +35,7 @@ pub enum CommunicationKind {
 }
 
 /// Content of a communication, as far as the matching compares it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct CommunicationTarget {
     /// The kind of the communication.
     pub kind: CommunicationKind,
@@ -44,7 +44,7 @@ pub struct CommunicationTarget {
 }
 
 /// A communication of wizard or assistant, with its time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CommunicationEvent {
     /// Number of presses of the human in the trial before the communication.
     pub press: u32,

@@ -1,11 +1,13 @@
-//! Lists the recordings of a folder.
+//! Lists the recordings of a folder. Figures of closed recordings are kept for the next list ([`crate::edge::list_cache`]).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{parallel, standing};
+use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::analysis::recording_table::{ListedRecording, RecordingList, RecordingState};
-use crate::edge::file_error::FileResult;
+use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::list_cache::{KeptFigures, ListCache, LogGlance};
 use crate::edge::log::{LogEnding, LogReader, at_line};
 use crate::edge::recordings;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -36,7 +38,10 @@ pub fn list(
     let found = recordings::of_folder(folder)?;
     begun(found.len());
     let own = || None::<(Arc<Kitchen>, CostToGo)>;
-    let rows = parallel::each_with(&found, own, |cost, path| read_or_tell(path, depth, cost), done);
+    let cache = ListCache::open();
+    let read = parallel::each_with(&found, own, |cost, path| read_or_tell(path, depth, cost, &cache), done);
+    let (rows, new): (Vec<ListedRecording>, Vec<_>) = read.into_iter().unzip();
+    cache.keep(new.into_iter().flatten());
     let list = RecordingList::new(folder.display().to_string(), rows);
     let is_named = |path: &PathBuf, row: &ListedRecording| name(path) == row.recording;
     let path = |row| found.iter().find(|path| is_named(path, row)).cloned().unwrap_or_else(|| folder.to_path_buf());
@@ -49,8 +54,16 @@ fn name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
-fn read_or_tell(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, CostToGo)>) -> ListedRecording {
-    read(path, depth, cost).unwrap_or_else(|error| ListedRecording {
+/// Figures of a recording that are new to the cache, with the log's digest.
+type NewFigures = Option<(String, KeptFigures)>;
+
+fn read_or_tell(
+    path: &Path,
+    depth: ListDepth,
+    cost: &mut Option<(Arc<Kitchen>, CostToGo)>,
+    cache: &ListCache,
+) -> (ListedRecording, NewFigures) {
+    let unreadable = |error: FileError| ListedRecording {
         recording: name(path),
         code: None,
         condition: None,
@@ -60,11 +73,53 @@ fn read_or_tell(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, 
         errors: None,
         state: RecordingState::Unreadable,
         reason: Some(error.to_string()),
+    };
+    let glance = LogGlance::read(path);
+    if let Some(glance) = &glance
+        && let Some(figures) = cache.figures(&glance.digest)
+    {
+        return (from_figures(path, depth, glance, figures).unwrap_or_else(unreadable), None);
+    }
+    match read(path, depth, cost) {
+        Ok((row, at_console)) => {
+            let glance = glance.filter(|_| at_console.counts());
+            let new = glance.zip(row.arm.zip(row.trial_s).zip(row.errors));
+            let new =
+                new.map(|(glance, ((arm, trial_s), errors))| (glance.digest, KeptFigures { arm, trial_s, errors }));
+            (row, new)
+        }
+        Err(error) => (unreadable(error), None),
+    }
+}
+
+/// The row of a closed recording whose figures are known.
+fn from_figures(
+    path: &Path,
+    depth: ListDepth,
+    glance: &LogGlance,
+    figures: KeptFigures,
+) -> FileResult<ListedRecording> {
+    let standing = standing::with_ruling(ExclusionStatus::default(), path)?;
+    let is_excluded = !standing.counts();
+    Ok(ListedRecording {
+        recording: name(path),
+        code: Some(glance.code.clone()),
+        condition: Some(glance.condition),
+        arm: Some(figures.arm),
+        date: glance.date.clone(),
+        trial_s: Some(figures.trial_s),
+        errors: (depth == ListDepth::WithErrors).then_some(figures.errors),
+        state: if is_excluded { RecordingState::Excluded } else { RecordingState::Whole },
+        reason: is_excluded.then(|| standing.describe()),
     })
 }
 
-/// Applies all events of a recording; `cost` is reused for the next recording of the same kitchen.
-fn read(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, CostToGo)>) -> FileResult<ListedRecording> {
+/// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen. Returns, too, what was said at the console.
+fn read(
+    path: &Path,
+    depth: ListDepth,
+    cost: &mut Option<(Arc<Kitchen>, CostToGo)>,
+) -> FileResult<(ListedRecording, ExclusionStatus)> {
     let mut log = LogReader::open(path)?;
     let mut session = log.session();
     let kitchen = session.kitchen.clone();
@@ -91,14 +146,15 @@ fn read(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, CostToGo
             _ => {}
         }
     }
-    let standing = standing::exclusion_status(&session, &log)?;
+    let at_console = ExclusionStatus::at_console(&session);
+    let standing = standing::with_ruling(at_console.clone(), log.folder())?;
     let state = match log.ending() {
         LogEnding::Running => RecordingState::Running,
         _ if !standing.counts() => RecordingState::Excluded,
         LogEnding::Cut => RecordingState::Cut,
         LogEnding::Closed => RecordingState::Whole,
     };
-    Ok(ListedRecording {
+    let row = ListedRecording {
         recording: name(path),
         code: Some(session.spec.participant.code.clone()),
         condition: Some(session.spec.trial.condition),
@@ -108,5 +164,6 @@ fn read(path: &Path, depth: ListDepth, cost: &mut Option<(Arc<Kitchen>, CostToGo
         errors: (depth == ListDepth::WithErrors).then_some(errors),
         state,
         reason: (state == RecordingState::Excluded).then(|| standing.describe()),
-    })
+    };
+    Ok((row, at_console))
 }

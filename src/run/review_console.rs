@@ -24,6 +24,8 @@ use crate::session::Event;
 
 /// Largest time per frame for applying events at full speed.
 const WORK: Duration = Duration::from_millis(20);
+/// Time for reading the rest of a recording, of the 50 ms between two ticks of files.
+const READING: Duration = Duration::from_millis(35);
 /// Length of a seek step, 10 s.
 const SEEK: SessionTime = SessionTime(10_000_000_000);
 
@@ -33,7 +35,8 @@ const SEEK: SessionTime = SessionTime(10_000_000_000);
 /// # Errors
 /// The recording cannot be read, or there is no terminal.
 pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) -> Result<(), ReviewError> {
-    let film = SeekableReplay::open(recording)?;
+    // The console begins at once, and the rest is read beside it; a running session is shown at its end.
+    let film = if follow { SeekableReplay::open(recording) } else { SeekableReplay::begin(recording) }?;
     at_desk(film, recording, follow, compare, None)
 }
 
@@ -142,17 +145,22 @@ impl Review {
     }
 
     /// Handles a message from the terminal; returns whether the review is left.
-    fn take_message(&mut self, message: ConsoleMessage) -> bool {
+    fn take_message(&mut self, message: ConsoleMessage) -> Result<bool, ReviewError> {
         self.dirty = true;
         self.tick();
         match update(&mut self.model, &self.film.session, message) {
-            Some(ConsoleCommand::Move(to)) => self.go(to),
+            Some(ConsoleCommand::Move(to)) => {
+                if !matches!(to, ReplayKey::PlayPause | ReplayKey::Faster | ReplayKey::Slower) {
+                    self.read_rest(|| true)?;
+                }
+                self.go(to);
+            }
             Some(ConsoleCommand::Code { press }) => self.keep(press),
-            Some(ConsoleCommand::Quit) => return true,
+            Some(ConsoleCommand::Quit) => return Ok(true),
             Some(ConsoleCommand::Input(_) | ConsoleCommand::Start(_) | ConsoleCommand::Next | ConsoleCommand::Redo)
             | None => {}
         }
-        false
+        Ok(false)
     }
 
     /// Saves the raters' codes, and goes to the error whose code changed.
@@ -278,6 +286,22 @@ impl Review {
         }
     }
 
+    /// Reads on in a recording that is not yet read to its end, as long as `goes_on` says so.
+    fn read_rest(&mut self, goes_on: impl Fn() -> bool) -> Result<(), ReviewError> {
+        if self.film.is_read() {
+            return Ok(());
+        }
+        let known = self.film.events.len();
+        self.film.read_while(goes_on)?;
+        self.tell(known);
+        self.dirty = true;
+        if self.film.is_read() {
+            let excluded = self.film.standing()?.excluded.is_some();
+            self.playback(|playback| playback.excluded = excluded);
+        }
+        Ok(())
+    }
+
     /// Reads new events of a recording that is still being written.
     fn look(&mut self) -> Result<(), ReviewError> {
         let (_, known) = self.film.length();
@@ -309,6 +333,9 @@ impl Review {
         } else {
             return;
         }
+        if !self.film.is_read() {
+            self.now = self.now.min(self.film.read_to());
+        }
         let until = self.film.until(self.now);
         let began = Instant::now();
         while self.film.position < until && began.elapsed() < WORK {
@@ -332,8 +359,12 @@ impl ConsoleShell for Review {
 
     fn take(&mut self, event: LoopEvent) -> Result<Option<()>, ReviewError> {
         match event {
-            LoopEvent::Terminal(message) => return Ok(self.take_message(message).then_some(())),
+            LoopEvent::Terminal(message) => return Ok(self.take_message(message)?.then_some(())),
             LoopEvent::FileTick if self.grows => self.look()?,
+            LoopEvent::FileTick => {
+                let began = Instant::now();
+                self.read_rest(|| began.elapsed() < READING)?;
+            }
             _ => {}
         }
         Ok(None)

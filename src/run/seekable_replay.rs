@@ -1,5 +1,5 @@
-//! A replay that can be moved to any time: the recording is read once and all its presses are judged; the shown session
-//! applies the same events. Snapshots of the session make steps back fast.
+//! A seekable replay: the recording is read once with all presses judged; the shown session applies the same events. Snapshots, kept while
+//! reading, make every move cheap: at most [`KEEP_EVERY`] events are applied. A console can begin before the recording is read to its end.
 
 use std::path::Path;
 
@@ -54,6 +54,8 @@ pub struct SeekableReplay {
     pub position: usize,
     /// Snapshots of the session before the first event and after every [`KEEP_EVERY`] events.
     kept: Vec<Session>,
+    /// Time of the log's last event and number of its events, until all of them are read.
+    unread_end: Option<(SessionTime, usize)>,
 }
 
 impl SeekableReplay {
@@ -62,10 +64,22 @@ impl SeekableReplay {
     /// # Errors
     /// Errors of [`Replay::step`].
     pub fn open(recording: &Path) -> FileResult<SeekableReplay> {
+        let mut film = SeekableReplay::begin(recording)?;
+        film.read()?;
+        Ok(film)
+    }
+
+    /// Opens a recording without reading its events.
+    ///
+    /// # Errors
+    /// Errors of [`Replay::open`].
+    pub fn begin(recording: &Path) -> FileResult<SeekableReplay> {
         let replay = Replay::open(recording)?;
+        let last = replay.log().last_event()?;
+        let unread_end = Some(last.map_or((SessionTime::ZERO, 0), |last| (last.time, last.seq as usize + 1)));
         let session = replay.session().clone();
         let kept = vec![session.clone()];
-        let mut film = SeekableReplay {
+        Ok(SeekableReplay {
             replay,
             events: Vec::new(),
             errors: Vec::new(),
@@ -74,14 +88,15 @@ impl SeekableReplay {
             session,
             position: 0,
             kept,
-        };
-        film.read()?;
-        Ok(film)
+            unread_end,
+        })
     }
 
     /// Hides the estimate and all signals for raters, who must not know whether the participant was assisted. This must
     /// be called before the replay is moved.
     pub fn blinded(mut self) -> SeekableReplay {
+        // The others hold what is hidden.
+        self.kept.truncate(1);
         for session in self.kept.iter_mut().chain([&mut self.session]) {
             session.spec.console.visibility = Visibility::State;
         }
@@ -96,8 +111,20 @@ impl SeekableReplay {
     /// # Errors
     /// Errors of [`Replay::step`].
     pub fn read(&mut self) -> FileResult<bool> {
+        self.read_while(|| true)
+    }
+
+    /// Reads appended events, as long as `goes_on` says so; returns whether there were any.
+    ///
+    /// # Errors
+    /// Errors of [`Replay::step`].
+    pub fn read_while(&mut self, goes_on: impl Fn() -> bool) -> FileResult<bool> {
         let before = self.events.len();
-        while let Some(event) = self.replay.step()? {
+        while goes_on() {
+            let Some(event) = self.replay.step()? else {
+                self.unread_end = None;
+                break;
+            };
             let (session, belief) = (self.replay.session(), self.replay.follower.filter.belief());
             let by_gaze = event.stamped.event.is_sample();
             self.beliefs.note(BeliefSnapshot::new(
@@ -108,6 +135,9 @@ impl SeekableReplay {
                 by_gaze,
             ));
             self.events.push(event.stamped);
+            if self.events.len() == self.kept.len() * KEEP_EVERY {
+                self.kept.push(self.replay.session().clone());
+            }
         }
         let judged = &self.replay.follower.judged;
         let new = judged[self.judged..].iter().filter(|press| press.verdict.error).map(|press| press.time);
@@ -116,9 +146,14 @@ impl SeekableReplay {
         Ok(self.events.len() > before)
     }
 
-    /// Whether the recording lacks its end event.
+    /// Whether all events were read that the recording has for now.
+    pub fn is_read(&self) -> bool {
+        self.unread_end.is_none()
+    }
+
+    /// Whether the recording has no end event, as far as it was read.
     pub fn is_cut(&self) -> bool {
-        self.replay.log().is_cut()
+        self.is_read() && self.replay.log().is_cut()
     }
 
     /// Whether the trial was aborted or excluded from the analysis.
@@ -129,9 +164,14 @@ impl SeekableReplay {
         exclusion_status(self.replay.session(), self.replay.log())
     }
 
-    /// Session time of the last event, and number of events.
+    /// The time of the last event, and the number of events, those that are not read yet among them.
     pub fn length(&self) -> (SessionTime, usize) {
-        (self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time), self.events.len())
+        self.unread_end.unwrap_or_else(|| (self.read_to(), self.events.len()))
+    }
+
+    /// The time of the last event that was read.
+    pub fn read_to(&self) -> SessionTime {
+        self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time)
     }
 
     /// Applies and returns the next event.
@@ -145,10 +185,10 @@ impl SeekableReplay {
         Some(stamped)
     }
 
-    /// Moves the replay to the position after the first `position` events.
+    /// Moves to the position after the first `position` events, which must have been read.
     pub fn wind(&mut self, position: usize) {
-        if position < self.position {
-            let index = (position / KEEP_EVERY).min(self.kept.len() - 1);
+        let index = (position / KEEP_EVERY).min(self.kept.len() - 1);
+        if position < self.position || index * KEEP_EVERY > self.position {
             self.session = self.kept[index].clone();
             self.position = index * KEEP_EVERY;
         }

@@ -28,8 +28,15 @@ pub fn aborted(recording: &Path) -> FileResult<Option<String>> {
 /// # Errors
 /// The file beside the log is damaged.
 pub fn exclusion_status(session: &Session, log: &LogReader) -> FileResult<ExclusionStatus> {
-    let at_console = ExclusionStatus::at_console(session);
-    Ok(match ruling(log.folder())? {
+    with_ruling(ExclusionStatus::at_console(session), log.folder())
+}
+
+/// The same for the recording in this folder, from what was said at the console.
+///
+/// # Errors
+/// The file beside the log is damaged.
+pub fn with_ruling(at_console: ExclusionStatus, folder: &Path) -> FileResult<ExclusionStatus> {
+    Ok(match ruling(folder)? {
         Some(ExclusionRecord { excluded, reason, .. }) => {
             ExclusionStatus { excluded: excluded.then_some(reason), ..at_console }
         }

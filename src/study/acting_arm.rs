@@ -1,15 +1,19 @@
 //! Who sent the signals of a simulated trial: nobody, a scripted wizard, or a concept with its parameter.
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize, de};
 
 use crate::communication::concept::ConceptName;
 use crate::session::study_arm::StudyArm;
 
+/// Name of who sent the signals: of an arm, or of a concept.
+pub type ActorName = &'static str;
+
 /// Sender of the signals in a simulated trial, with the parameter of its concept.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActingArm {
     /// Name of the sender: `none`, `wizard` or `wizard+advice` (scripted wizard), or a concept.
-    pub concept: &'static str,
+    #[serde(deserialize_with = "actor")]
+    pub concept: ActorName,
     /// Parameter of the concept: cost of communication in presses (ToM-Com), threshold (ToM), or number of proposed
     /// presses (DEV); null for other senders.
     pub parameter: Option<f64>,
@@ -27,4 +31,12 @@ impl ActingArm {
         let rank = StudyArm::ALL.iter().position(|arm| arm.name() == self.concept).unwrap_or(StudyArm::ALL.len());
         (rank, self.parameter.unwrap_or(0.0))
     }
+}
+
+/// Reads who sent the signals, by the name of an arm or of a concept.
+fn actor<'de, D: Deserializer<'de>>(input: D) -> Result<ActorName, D::Error> {
+    let name = String::deserialize(input)?;
+    let arms = StudyArm::ALL.into_iter().map(StudyArm::name);
+    let mut known = arms.chain(ConceptName::ALL.into_iter().map(ConceptName::name));
+    known.find(|known| *known == name).ok_or_else(|| de::Error::custom(format!("the unknown sender \"{name}\"")))
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec};
@@ -10,9 +10,9 @@ use crate::session::{Header, Session};
 use crate::wizard::settings::{WizardKind, WizardSpec};
 
 /// Settings and circumstances by key, from one or several recordings; every value that occurred is kept.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Facts {
-    found: BTreeMap<&'static str, BTreeSet<String>>,
+    found: BTreeMap<String, BTreeSet<String>>,
 }
 
 impl Facts {
@@ -21,7 +21,7 @@ impl Facts {
         let spec = &header.session;
         let mut facts = Facts::default();
         let mut is = |key: &'static str, value: String| {
-            facts.found.entry(key).or_default().insert(value);
+            facts.found.entry(key.to_string()).or_default().insert(value);
         };
         is("program", header.program.clone());
         is("format", header.version.to_string());

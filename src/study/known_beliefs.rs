@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::belief_trace::BeliefTrace;
 use super::rater_episodes::rater_episodes;
@@ -27,7 +27,7 @@ pub struct KnownBeliefs {
 }
 
 /// Agreement of two raters about the false beliefs behind the errors of a trial, by the codes of each alone.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SharedBeliefs {
     /// Number of errors that both raters attribute to the same false belief.
     pub same: u64,

@@ -9,7 +9,7 @@
 //! A proposal of k presses is one interruption with k contents. The proposal prevents the errors of the next k presses,
 //! and is useless if none of them is an error, whatever its cause.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::known_beliefs::KnownBeliefs;
 use crate::base::time::SessionTime;
@@ -69,7 +69,7 @@ pub struct ConceptSignal {
 }
 
 /// Counts of prevented errors and useless signals of a concept, in one or several trials.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PreventionCounts {
     /// Number of human presses.
     pub presses: u64,

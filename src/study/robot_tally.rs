@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::base::time::SessionTime;
 use crate::communication::Sender;
@@ -14,7 +14,7 @@ use crate::session::event::EndReason;
 use crate::session::settings::ArmKind;
 
 /// Robot statistics of a trial from its start to its end, pauses included.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RobotSummary {
     /// Contact statistics of a simulated physical arm; `None` for a timed arm, which has no contacts.
     pub arm: Option<ArmSummary>,
@@ -33,7 +33,7 @@ pub struct RobotSummary {
 }
 
 /// Safety and contact statistics of a simulated physical arm.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ArmSummary {
     /// Number of protective stops: the arm stopped because of a contact force.
     pub protective_stops: u64,

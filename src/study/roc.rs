@@ -6,7 +6,7 @@
 //! Signals are interruptions: a proposal of k presses is one.
 
 use rand::RngExt;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::prevention::{PreventionCounts, PreventionRates};
 use crate::base::rng::stream;
@@ -45,7 +45,7 @@ pub fn parameters(concept: ConceptName) -> Vec<f64> {
 pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, ConceptName::Dev];
 
 /// Prevention counts of a concept with one parameter value in one unassisted trial.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SweptTrial {
     /// Communication concept that would have sent the signals.
     pub concept: ConceptName,

@@ -1,6 +1,6 @@
 //! Statistics of one trial for the analysis; recordings themselves are not kept in memory.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::acting_arm::ActingArm;
 use super::known_beliefs::SharedBeliefs;
@@ -21,7 +21,7 @@ use crate::session::study_arm::StudyArm;
 use crate::session::wall_display::DisplayedArm;
 
 /// Statistics of one trial of a study: conditions, counts, medians, answers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
     /// Path of the recording's folder, relative to the folder given by the user.
     pub recording: String,
@@ -115,7 +115,7 @@ pub struct Trial {
 }
 
 /// Errors of a trial that follow from false beliefs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BeliefErrors {
     /// Source of what the human believed: recorded beliefs, raters or the estimate.
     pub basis: BeliefBasis,
@@ -137,7 +137,7 @@ pub struct BeliefErrors {
 }
 
 /// An answer to a questionnaire item.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct QuestionnaireAnswer {
     /// The questionnaire's name.
     pub questionnaire: String,

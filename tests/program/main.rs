@@ -14,6 +14,7 @@ mod overwriting;
 mod plan;
 mod power;
 mod stuck_terminal;
+mod study_parts;
 mod survival;
 mod terminal;
 mod tmux;

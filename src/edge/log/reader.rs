@@ -1,7 +1,7 @@
 //! Reads recordings, also those that are still being written, and over all their parts.
 
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -16,6 +16,8 @@ use crate::session::{Event, Header, Session, Stamped};
 
 /// No line of a log is longer, in bytes: what is longer is no log.
 const MAX_LINE: usize = 1 << 24;
+/// The last event is looked for in so many bytes at the end of a log.
+const TAIL: u64 = 1 << 16;
 /// No recording has more parts.
 const MAX_PARTS: usize = 100;
 
@@ -149,6 +151,24 @@ impl LogReader {
         self.next_seq += 1;
         self.ended = stamped.event == Event::SessionEnded;
         Ok(LogLine { number: self.number, text, stamped })
+    }
+
+    /// The last event that is whole in the log of this part, wherever the reader is; `None` if there is none, or none that can be read: what is
+    /// wrong with a line is told where the line is read.
+    ///
+    /// # Errors
+    /// The log cannot be read.
+    pub fn last_event(&self) -> FileResult<Option<Stamped>> {
+        let unreadable = |reason| FileError::unreadable(&self.path, reason, "a readable recording");
+        let mut file = open_regular(&self.path).map_err(unreadable)?;
+        let length = file.metadata().map_err(unreadable)?.len();
+        let mut tail = Vec::new();
+        file.seek(SeekFrom::Start(length.saturating_sub(TAIL))).map_err(unreadable)?;
+        file.take(TAIL).read_to_end(&mut tail).map_err(unreadable)?;
+        let mut lines = tail.split(|&byte| byte == b'\n').rev();
+        // What follows the last line end is empty, or a line that is not whole.
+        lines.next();
+        Ok(lines.next().and_then(|line| serde_json::from_slice(line).ok()))
     }
 
     /// Whether what was read so far lacks the session's end.

@@ -110,8 +110,9 @@ impl JourneyTables {
 
     fn fill(&mut self, kitchen: &Kitchen) {
         for free in 0..=self.all_free {
+            let steps = self.steps(kitchen, free);
             for component in 0..self.components.len() {
-                let presses = self.search(kitchen, free, self.components[component]);
+                let presses = self.search(kitchen, &steps, self.components[component]);
                 let take = |agent: Agent| {
                     let hand = kitchen.hands[agent.index()].index();
                     let is_free = free & (1 << agent.index()) != 0;
@@ -120,42 +121,53 @@ impl JourneyTables {
                         _ => None,
                     })
                 };
-                let best = Agent::BOTH.into_iter().flat_map(take).map(|(hand, item)| presses[hand][item.index()]).min();
+                let taken = Agent::BOTH.into_iter().flat_map(take).map(|(hand, item)| presses[self.place(hand, item)]);
+                let best = taken.min();
                 self.storage_presses.push(best.unwrap_or(NEVER).saturating_add(1));
-                for row in &presses[..self.locations] {
-                    self.presses.extend_from_slice(row);
-                }
+                self.presses.extend_from_slice(&presses[..self.locations * self.contents]);
             }
         }
     }
 
-    /// Number of presses to the board from everywhere, computed backwards from the component in a hand beside the
-    /// board: `[location][content]`; the last row is the spare place.
-    fn search(&self, kitchen: &Kitchen, free: FreeMask, component: ContentId) -> Vec<Vec<u8>> {
-        let mut presses = vec![vec![NEVER; self.contents]; self.locations + 1];
-        for hand in kitchen.hands {
-            presses[hand.index()][component.index()] = 1;
+    /// Index of an item at a location; the last location is the spare place.
+    fn place(&self, location: usize, item: ContentId) -> usize {
+        location * self.contents + item.index()
+    }
+
+    /// All single presses with these hands and places free, from place to place; they are the same for all components.
+    fn steps(&self, kitchen: &Kitchen, free: FreeMask) -> Vec<(usize, usize)> {
+        let mut steps = Vec::new();
+        for location in 0..=self.locations {
+            for item in (1..self.contents).map(|item| ContentId(item as u8)) {
+                let from = self.place(location, item);
+                let to = self.successors(kitchen, free, location, item);
+                steps.extend(to.map(|(to, item)| (from, self.place(to, item))));
+            }
         }
-        // Journeys are short, so relaxing all edges until nothing changes is fast enough.
+        steps
+    }
+
+    /// Backwards from the component in a hand beside the board, by place.
+    fn search(&self, kitchen: &Kitchen, steps: &[(usize, usize)], component: ContentId) -> Vec<u8> {
+        let mut presses = vec![NEVER; (self.locations + 1) * self.contents];
+        for hand in kitchen.hands {
+            presses[self.place(hand.index(), component)] = 1;
+        }
+        // Journeys are short, so relaxing all steps until nothing changes is fast enough.
         loop {
             let mut changed = false;
-            for location in 0..=self.locations {
-                for item in 1..self.contents {
-                    let best = self.successors(kitchen, free, location, ContentId(item as u8));
-                    let best =
-                        best.map(|(to, item)| presses[to][item.index()].saturating_add(1)).min().unwrap_or(NEVER);
-                    if best < presses[location][item] {
-                        presses[location][item] = best;
-                        changed = true;
-                    }
+            for &(from, to) in steps {
+                let through = presses[to].saturating_add(1);
+                if through < presses[from] {
+                    presses[from] = through;
+                    changed = true;
                 }
             }
             if !changed {
                 break;
             }
         }
-        let board = kitchen.board.index();
-        presses[board][component.index()] = 0;
+        presses[self.place(kitchen.board.index(), component)] = 0;
         presses
     }
 

@@ -1,11 +1,14 @@
 //! Command `tomcom study`: replays the recordings of a study on all processors and writes tables, charts and the
 //! report.
+//!
+//! Each recording is analysed by itself ([`reading`]) and kept as an [`AnalysedRecording`]; all of them together give summary, tables and report.
+//! Between the two a study can be cut into parts, which are analysed on different machines and joined ([`shards`]).
 
 mod coded_errors;
-mod frozen_check;
 mod questionnaire_answers;
 pub mod reading;
 mod rows;
+pub mod shards;
 mod sweep;
 mod tell;
 mod tutorials;
@@ -14,19 +17,24 @@ mod twin;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use self::reading::{AnalysisScope, RecordingAnalysis};
+use self::reading::AnalysisScope;
 pub use self::tell::{describe, describe_arms};
 use super::parallel;
 use super::replay::SameKitchen;
 use crate::edge::export::{ExportError, ExportFolder};
 use crate::edge::file_error::FileError;
+use crate::edge::frozen_file::read_frozen;
 use crate::edge::log::LogReader;
 use crate::edge::recordings;
 use crate::kitchen::Kitchen;
+use crate::session::SessionSpec;
 use crate::study::dictionary::{DictionaryRow, dictionary};
 use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
+use crate::study::frozen_plan::FrozenPlan;
+use crate::study::preregistration::{Preregistration, RecordedPlan};
 use crate::study::report;
+use crate::study::study_part::AnalysedRecording;
 use crate::study::tables::concept_table::{ConceptRow, concepts};
 use crate::study::tables::participants::{ParticipantRow, participants};
 use crate::study::tables::probe_table::{ProbeRow, probes};
@@ -56,9 +64,9 @@ impl From<FileError> for StudyError {
 /// Inputs and outputs of the analysis of a study.
 #[derive(Clone, Debug)]
 pub struct AnalysisRequest {
-    /// Recordings, or folders that contain recordings.
+    /// Recordings, or folders that contain recordings; or the parts of a study that are joined.
     pub paths: Vec<PathBuf>,
-    /// Folder for tables and report.
+    /// The folder for tables and report, or the file of a part.
     pub out: PathBuf,
     /// Optional parts of the analysis that are computed.
     pub extent: AnalysisScope,
@@ -75,7 +83,7 @@ pub struct NamedRecordings {
 }
 
 impl NamedRecordings {
-    /// Finds the recordings at these paths, each once.
+    /// Finds the recordings at these paths, each once, ordered by name: the order does not depend on how they are spread over folders.
     ///
     /// # Errors
     /// A path is neither a recording nor a folder with recordings.
@@ -96,6 +104,7 @@ impl NamedRecordings {
                 *name = path.display().to_string();
             }
         }
+        found.sort_by(|(one, a), (other, b)| (a, one).cmp(&(b, other)));
         Ok(NamedRecordings { found })
     }
 
@@ -121,40 +130,87 @@ pub fn study(
     recordings: &NamedRecordings,
     done: impl Fn() + Sync,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let preregistration = match &analysis.frozen {
-        Some(file) => Some(frozen_check::check(file, recordings.found.iter().map(|(path, _)| path.as_path()))?),
-        None => None,
-    };
+    let frozen = frozen(analysis)?;
     let export = ExportFolder::create(&analysis.out)?;
     let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
-    let work = |&(index, (path, name)): &(usize, &(PathBuf, String))| -> Result<Option<(Trial, Facts)>, StudyError> {
-        let Some((own, RecordingAnalysis { trial, facts, rows })) =
-            reading::read(path, name, analysis.extent, analysis.raters.as_ref())?
-        else {
-            return Ok(None);
-        };
-        same_kitchen((first, &kitchen), (path, &own))?;
+    let work = |&(index, recording): &(usize, &(PathBuf, String))| -> Result<(usize, AnalysedRecording), StudyError> {
+        let (analysed, rows) = analyse(recording, analysis, (first, &kitchen))?;
         if analysis.extent.events {
-            export.keep(index, &rows)?;
+            keep(&export, index, &analysed, &rows)?;
         }
-        Ok(Some((trial, facts)))
+        Ok((index, analysed))
     };
+    let analysed = parallel::each(&numbered, work, done).into_iter().collect::<Result<Vec<_>, StudyError>>()?;
+    conclude(analysed, &export, analysis.extent, frozen)
+}
+
+/// The plan that the recordings are held against, with its digest.
+fn frozen(analysis: &AnalysisRequest) -> Result<Option<(String, FrozenPlan)>, FileError> {
+    analysis.frozen.as_ref().map(|file| read_frozen(file)).transpose()
+}
+
+/// Analyses one recording. `first` is a recording of the study with its kitchen. Returns the rows of the tables of events, too.
+fn analyse(
+    (path, name): &(PathBuf, String),
+    analysis: &AnalysisRequest,
+    first: (&Path, &Arc<Kitchen>),
+) -> Result<(AnalysedRecording, [Vec<u8>; 5]), StudyError> {
+    let log = LogReader::open(path)?;
+    let plan = recorded_plan(&log.header.session);
+    let tutorial = tutorials::read(log, name)?;
+    let (mut trial, mut rows) = (None, Default::default());
+    if let Some((own, read)) = reading::read(path, name, analysis.extent, analysis.raters.as_ref())? {
+        same_kitchen(first, (path, &own))?;
+        (trial, rows) = (Some((read.trial, read.facts)), read.rows);
+    }
+    Ok((AnalysedRecording { recording: name.clone(), plan, tutorial, trial }, rows))
+}
+
+/// The plan that a recording with these settings belongs to.
+fn recorded_plan(spec: &SessionSpec) -> RecordedPlan {
+    let plan = spec.step.as_ref().map(|step| (step.plan.clone(), step.digest.clone()));
+    RecordedPlan { participant: spec.participant.code.clone(), plan }
+}
+
+/// Puts the rows of a recording aside until all recordings are read; practice has none.
+fn keep(
+    export: &ExportFolder,
+    index: usize,
+    analysed: &AnalysedRecording,
+    rows: &[Vec<u8>; 5],
+) -> Result<(), ExportError> {
+    if analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
+}
+
+/// The summary, the tables and the report from all recordings of a study, which are ordered by name; each with the number under which its rows
+/// are kept.
+fn conclude(
+    analysed: Vec<(usize, AnalysedRecording)>,
+    export: &ExportFolder,
+    extent: AnalysisScope,
+    frozen: Option<(String, FrozenPlan)>,
+) -> Result<(StudySummary, PathBuf), StudyError> {
     let (mut trials, mut facts, mut kept) = (Vec::new(), Facts::default(), Vec::new());
-    for (index, read) in parallel::each(&numbered, work, done).into_iter().enumerate() {
-        if let Some((trial, own)) = read? {
+    let (mut plans, mut tutorials) = (Vec::new(), Vec::new());
+    for (index, recording) in analysed {
+        plans.push(recording.plan);
+        tutorials.extend(recording.tutorial);
+        if let Some((trial, own)) = recording.trial {
             kept.push(index);
             trials.push(trial);
             facts.add(own);
         }
     }
     arrange(&mut trials);
-    let practice = (recordings.number() - trials.len()) as u64;
-    let tutorials = tutorial_answers(recordings)?;
+    let practice = (plans.len() - trials.len()) as u64;
+    // The order of a tutorial's questions stays.
+    tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
+    let preregistration = frozen.map(|(digest, frozen)| Preregistration::new(digest, &frozen, &plans));
     let figures = StudySummary::from_trials(&trials, &facts, practice).with_tutorials(&tutorials);
     let figures = figures.with_preregistration(preregistration);
-    if !analysis.extent.events {
+    if !extent.events {
         kept.clear();
     }
     let mut filled = export.tables_of_events(&kept)?;
@@ -168,17 +224,6 @@ pub fn study(
     filled.sort_unstable();
     let path = export.report(&report::page(&figures, &trials, &facts, &filled))?;
     Ok((figures, path))
-}
-
-/// Answers to the comprehension questions of tutorials, ordered by participant and recording.
-fn tutorial_answers(recordings: &NamedRecordings) -> Result<Vec<TutorialAnswer>, FileError> {
-    let mut all = Vec::new();
-    for (path, name) in &recordings.found {
-        all.extend(tutorials::read(path, name)?);
-    }
-    // The sort is stable, so that a tutorial's questions keep their order.
-    all.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
-    Ok(all)
 }
 
 fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) -> Result<(), FileError> {

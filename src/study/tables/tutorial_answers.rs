@@ -1,5 +1,7 @@
 //! Table of answers to the questions of tutorials.
 
+use serde::{Deserialize, Serialize};
+
 use crate::base::time::SessionTime;
 use crate::session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
@@ -8,7 +10,7 @@ use crate::session::{Event, SessionSpec, Stamped};
 use crate::study::column::{Column, Table, TableRow};
 
 /// Row of the table of tutorials: a question with the participant's answers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TutorialAnswer {
     /// The recording's name in tables.
     pub recording: String,

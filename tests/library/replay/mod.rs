@@ -2,6 +2,7 @@
 
 mod assistants;
 mod equality;
+mod list_cache;
 mod offers;
 mod probes;
 mod reading;

@@ -1,9 +1,11 @@
 //! Replays that are moved in time: forward, back, and to landmarks.
 
+use std::cell::Cell;
 use std::fs;
 
 use rand::RngExt;
 use tomcom::base::rng::stream;
+use tomcom::base::time::SessionTime;
 use tomcom::history::landmark::ReplayLandmark;
 use tomcom::run::seekable_replay::SeekableReplay;
 use tomcom::session::TimelineEvent;
@@ -46,6 +48,31 @@ fn a_recording_can_be_wound_forward_and_back() {
             film.wind(film.last_step());
         }
         assert_eq!(film.position, 0, "as many steps back as forward");
+    }
+}
+
+/// A console begins before the recording is read: the end is known at once, and what is read later is the same.
+#[test]
+fn a_recording_that_is_read_bit_by_bit_is_the_same_as_one_that_is_read_at_once() {
+    let out = simulated("default.toml", ArmKind::Timed, "bit-by-bit", 1, 9811);
+    let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
+    let mut whole = SeekableReplay::open(&recording).expect("a recording");
+    let mut slow = SeekableReplay::begin(&recording).expect("a recording");
+    assert!(whole.is_read() && !slow.is_read() && !slow.is_cut());
+    assert_eq!((slow.length(), slow.read_to()), (whole.length(), SessionTime::ZERO));
+    let mut slices = 0;
+    while !slow.is_read() {
+        let left = Cell::new(1000);
+        slow.read_while(|| left.replace(left.get() - 1) > 0).expect("events");
+        slices += 1;
+    }
+    assert!(slices > 4, "{slices}");
+    assert_eq!((slow.length(), slow.is_cut(), &slow.errors), (whole.length(), whole.is_cut(), &whole.errors));
+    let (_, events) = whole.length();
+    for position in [events, events / 3, events / 2, 1] {
+        whole.wind(position);
+        slow.wind(position);
+        assert_eq!(whole.session, slow.session, "at {position}");
     }
 }
 

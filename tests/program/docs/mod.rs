@@ -19,7 +19,8 @@ use self::markdown::{Block, Page, matches};
 use crate::tmux::TOMCOM;
 
 /// Why a block may be left out.
-const REASONS: [&str; 4] = ["builds", "needs a person", "needs the network", "takes minutes"];
+const REASONS: [&str; 6] =
+    ["builds", "needs a person", "needs the network", "takes minutes", "needs GNU parallel", "needs a cluster"];
 /// What stands in blocks; of the last two nothing is looked at.
 const LANGUAGES: [&str; 8] = ["console", "sh", "toml", "json", "python", "rust", "text", "r"];
 /// No longer than this, in bytes: what somebody reads who decides whether to read on.

@@ -1,0 +1,129 @@
+//! A study in parts: a shard of its recordings is analysed into one file, and the parts are joined ([`crate::study::study_part`]).
+//!
+//! To which shard a recording belongs follows from its header alone, by the rule of `tomcom simulate --shard`. So a job that simulated shard 3 of 8
+//! analyses shard 3 of 8, whether it has a folder of its own or shares one with the others.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::reading::AnalysisScope;
+use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, recorded_plan};
+use crate::edge::export::ExportFolder;
+use crate::edge::file_error::{FileError, FileResult};
+use crate::edge::files::compile_kitchen;
+use crate::edge::log::LogReader;
+use crate::edge::study_part_file::{PartReader, PartWriter};
+use crate::run::parallel;
+use crate::run::replay::SameKitchen;
+use crate::run::simulate::Shard;
+use crate::study::figures::StudySummary;
+use crate::study::study_part::{PART_FORMAT, PartAnalysis, PartHeader, check_parts, trial_index};
+
+/// Number of recordings that are analysed before their results are written, which bounds memory.
+const BLOCK: usize = 32;
+
+/// What a recording's header says about its place in a study.
+struct RecordingPlace {
+    /// Whether it belongs to the shard.
+    is_own: bool,
+    plan: Option<(String, String)>,
+}
+
+impl RecordingPlace {
+    fn read(recording: &Path, shard: Shard) -> FileResult<RecordingPlace> {
+        let header = LogReader::open(recording)?.header;
+        let is_own = trial_index(header.session.step.as_ref(), header.trial) % shard.of == shard.number - 1;
+        Ok(RecordingPlace { is_own, plan: recorded_plan(&header.session).plan })
+    }
+}
+
+/// Analyses a shard of these recordings and writes the part to the file `analysis.out`. `begun` is called with the number of recordings of the
+/// shard, which is returned, and `done` after each.
+///
+/// # Errors
+/// A recording cannot be read or replayed, or belongs to another kitchen than the first; or the file cannot be written.
+pub fn analyse_shard(
+    analysis: &AnalysisRequest,
+    recordings: NamedRecordings,
+    shard: Shard,
+    begun: impl FnOnce(usize),
+    done: impl Fn() + Sync,
+) -> Result<u64, StudyError> {
+    let places = parallel::each(&recordings.found, |(path, _)| RecordingPlace::read(path, shard), || ());
+    let (mut own, mut plans) = (Vec::new(), BTreeSet::new());
+    for (recording, place) in recordings.found.into_iter().zip(places) {
+        let place = place?;
+        if place.is_own {
+            own.push(recording);
+            plans.extend(place.plan);
+        }
+    }
+    begun(own.len());
+    let AnalysisScope { concepts, events } = analysis.extent;
+    let header = PartHeader {
+        study_part: PART_FORMAT,
+        program: env!("CARGO_PKG_VERSION").to_string(),
+        shard: shard.number,
+        shards: shard.of,
+        recordings: own.len() as u64,
+        analysis: PartAnalysis { concepts, events, raters: analysis.raters.clone() },
+        plans,
+    };
+    let Some((first, _)) = own.first() else {
+        PartWriter::create(&analysis.out, &header, &None)?.finish()?;
+        return Ok(0);
+    };
+    let log = LogReader::open(first)?;
+    let texts = Some([log.header.layout.clone(), log.header.recipes.clone()]);
+    let mut part = PartWriter::create(&analysis.out, &header, &texts)?;
+    let work = |recording: &(PathBuf, String)| analyse(recording, analysis, (first, &log.kitchen));
+    for block in own.chunks(BLOCK) {
+        for analysed in parallel::each(block, work, &done) {
+            let (recording, rows) = analysed?;
+            part.add(&recording, &rows)?;
+        }
+    }
+    part.finish()?;
+    Ok(header.recordings)
+}
+
+/// Joins the parts of a study, the files `analysis.paths`: the results are those of one analysis of all recordings, to the last byte. Returns the
+/// summary and the report's path.
+///
+/// # Errors
+/// A file is no part; the parts do not make one study; a recording is in two of them; or the results cannot be written.
+pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), StudyError> {
+    let frozen = frozen(analysis)?;
+    let mut parts = analysis.paths.iter().map(|path| PartReader::open(path)).collect::<FileResult<Vec<_>>>()?;
+    let headers: Vec<PartHeader> = parts.iter().map(|part| part.header.clone()).collect();
+    check_parts(&headers)
+        .map_err(|wrong| FileError::from_finding(parts[wrong.index].path(), wrong.found, wrong.remedy))?;
+    let mut kitchen = SameKitchen::default();
+    for part in &parts {
+        if let Some([layout, recipes]) = &part.kitchen {
+            let own = compile_kitchen(
+                (layout.path.as_ref(), layout.text.clone()),
+                (recipes.path.as_ref(), recipes.text.clone()),
+            )?;
+            kitchen.admit(part.path(), &Arc::new(own.kitchen))?;
+        }
+    }
+    let PartAnalysis { concepts, events, .. } = headers[0].analysis.clone();
+    let export = ExportFolder::create(&analysis.out)?;
+    let (mut analysed, mut names) = (Vec::new(), BTreeSet::new());
+    for part in &mut parts {
+        while let Some((recording, rows)) = part.next_recording()? {
+            if !names.insert(recording.recording.clone()) {
+                let found = format!("the recording {}, which is in another part, too", recording.recording);
+                return Err(FileError::from_finding(part.path(), found, "each recording once".to_string()).into());
+            }
+            if events {
+                keep(&export, analysed.len(), &recording, &rows)?;
+            }
+            analysed.push((analysed.len(), recording));
+        }
+    }
+    analysed.sort_by(|(_, one), (_, other)| one.recording.cmp(&other.recording));
+    conclude(analysed, &export, AnalysisScope { concepts, events }, frozen)
+}

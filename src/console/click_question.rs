@@ -1,4 +1,5 @@
-//! A click on a signal or on the offer asks once before it sends, unless the session file says `click_sends = true`.
+//! Confirmation of mouse clicks that send: a click on a signal or on the offer asks the wizard first, unless the
+//! session file says `click_sends = true`.
 
 use crossterm::event::KeyCode;
 
@@ -14,7 +15,8 @@ use crate::communication::{Sender, Signal};
 use crate::session::offers;
 use crate::session::{Event, Session};
 
-/// Asks whether to send a clicked signal, or the signal of the clicked offer; or says why it cannot be sent.
+/// Asks the wizard whether to send a clicked signal or the clicked offer's signal; or says why the signal cannot be
+/// sent.
 pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, action: &KeyAction) {
     let asked = match action {
         KeyAction::Signal(_, signal) => match refusal(session, model.now, &shown(signal)) {
@@ -33,10 +35,11 @@ pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, 
     }
 }
 
-/// The question waits so long for its answer, in seconds: an enter that comes later is not meant for it.
+/// Time after which the question whether to send closes, in seconds: a later enter key is probably not an answer to it.
 const WAITS_S: f64 = 5.0;
 
-/// Closes a question that has waited too long, and one that an offer has overtaken: enter means the offer then.
+/// Closes the question whether to send a clicked signal once it is too old, or once a newer offer has opened: from then
+/// on, enter accepts that offer.
 pub fn expire(model: &mut ConsoleModel, session: &Session) {
     let Some(Dialog::Send(question)) = &model.dialog else { return };
     let is_late = model.clock.secs_since(question.asked) > WAITS_S;
@@ -48,7 +51,8 @@ pub fn expire(model: &mut ConsoleModel, session: &Session) {
     }
 }
 
-/// Answers the question: enter sends, if it is pressed and not held; esc leaves.
+/// A key while the console asks whether to send a clicked signal: enter sends if it is newly pressed (not held), esc
+/// cancels.
 pub(super) fn answer(
     model: &mut ConsoleModel,
     session: &Session,
@@ -65,7 +69,7 @@ pub(super) fn answer(
     }
 }
 
-/// Sends what was clicked. Of an offer only the one that was clicked.
+/// Sends the clicked signal. After a click on an offer, nothing is sent if that offer has closed meanwhile.
 pub(super) fn confirm(model: &mut ConsoleModel, session: &Session, question: SendQuestion) -> Option<ConsoleCommand> {
     model.dialog = None;
     let now_meant = offers::enter(session, model.now).ok().map(|(offer, _)| offer.seq);

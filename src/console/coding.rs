@@ -1,4 +1,4 @@
-//! Coding the errors of a recording: which error one stands at, and what the rater says about it.
+//! The rater's actions at the console: going from error to error in a recording, and coding the cause of each error.
 
 use super::console_message::ConsoleCommand;
 use super::console_model::ConsoleModel;
@@ -8,7 +8,7 @@ use super::playback::ReplayKey;
 use crate::measures::cause_codes::Code;
 use crate::session::Session;
 
-/// Does what a key asks for.
+/// Carries out an action of the rater's keys.
 pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterKey) -> Option<ConsoleCommand> {
     let events = model.playback.as_ref().map_or(0, |playback| playback.event);
     let coding = model.coding.as_mut()?;
@@ -46,7 +46,7 @@ pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterKey) -> Optio
     Some(ConsoleCommand::Code { press })
 }
 
-/// Goes to an error, if there is one.
+/// Moves the replay to the error with this index, if there is one.
 fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
     let errors = model.coding.as_ref().map(|coding| &coding.errors)?;
     let Some(error) = to.and_then(|to| errors.get(to)) else {
@@ -56,7 +56,7 @@ fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
     Some(ConsoleCommand::Move(ReplayKey::ToEvent(error.press)))
 }
 
-/// Takes a step back, or does it again.
+/// Undoes the rater's last step, or redoes it.
 fn undone(model: &mut ConsoleModel, again: bool) -> Option<ConsoleCommand> {
     let coding = model.coding.as_mut()?;
     let press = if again { coding.redo() } else { coding.undo() };
@@ -67,7 +67,7 @@ fn undone(model: &mut ConsoleModel, again: bool) -> Option<ConsoleCommand> {
     press.map(|press| ConsoleCommand::Code { press })
 }
 
-/// Goes to an error of the list.
+/// Moves the replay to the error with this index in the list.
 pub(super) fn go_to(model: &mut ConsoleModel, index: usize) -> Option<ConsoleCommand> {
     if let Some(coding) = &mut model.coding {
         coding.chosen = None;

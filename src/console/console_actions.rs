@@ -1,4 +1,4 @@
-//! Actions of the console, as the key table names them.
+//! Actions of the console: what each entry of the key table does.
 
 use super::beliefs::{beliefs, visibility};
 use super::coding;
@@ -23,7 +23,7 @@ use crate::session::offers;
 use crate::session::settings::Visibility;
 use crate::session::{Event, Phase, Session};
 
-/// Sends the signal of the offer that the wizard has read.
+/// Sends the signal of the open offer.
 fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if model.answered.is_some_and(|answered| model.clock.secs_since(answered) < ANSWER_S) {
         model.say(NoticeLevel::Refused, "not sent: this enter came right after that of a list");
@@ -41,7 +41,7 @@ fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand>
     }
 }
 
-/// Does what a key stands for.
+/// Carries out the action of a key.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
     match action {
         KeyAction::Signal(_, signal) => {
@@ -121,7 +121,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             model.dialog = Some(Dialog::Palette(ListCursor::default()));
             None
         }
-        // A recording loses nothing by being left; a training does.
+        // A replay can be left without a question, for nothing is lost; a wizard training asks first.
         KeyAction::Quit if model.playback.is_some() && model.lesson.is_none() => Some(ConsoleCommand::Quit),
         KeyAction::Quit if session.phase == Phase::Closed => Some(ConsoleCommand::Quit),
         KeyAction::Quit => {
@@ -132,7 +132,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
     }
 }
 
-/// Another difference between wizard and assistant, or what each knew at this one.
+/// Selects another difference between wizard and assistant, or shows what each of them knew at the selected difference.
 pub(super) fn differ(model: &mut ConsoleModel, session: &Session, step: ComparisonKey) {
     let Some(compared) = &mut model.comparison else { return };
     compared.choose(step);

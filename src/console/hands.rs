@@ -1,4 +1,5 @@
-//! Manual interventions at the console: keys that correct the kitchen and the robot, and the lists that they open.
+//! The experimenter's manual interventions at the console: keys that correct the recorded state of the kitchen and
+//! steer the robot, and the lists that they open.
 
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
@@ -14,7 +15,7 @@ use crate::session::probes::ProbeEvent;
 use crate::session::{Event, Phase, Session};
 use crossterm::event::KeyCode;
 
-/// Carries out an intervention, or opens its list.
+/// Carries out a manual intervention of the experimenter, or opens the list that it needs.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualAction) -> Option<ConsoleCommand> {
     let by = Sender::Wizard;
     match hand {
@@ -72,13 +73,14 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
     }
 }
 
-/// Number of the probe whose questions can be skipped.
+/// Number of the freeze probe whose remaining questions can be skipped now.
 pub(super) fn skippable(session: &Session) -> Option<u32> {
     let open = session.probes.open.as_ref()?;
     (open.closed.is_none() && session.phase == Phase::Paused).then_some(open.number)
 }
 
-/// Closes the list of reasons of a probe that is over: the next probe is not skipped for them.
+/// Closes the list of reasons for skipping a freeze probe once that probe is over, so that the reason does not skip the
+/// next probe.
 pub fn expire(model: &mut ConsoleModel, session: &Session) {
     if let Some(Dialog::Pick(Picker { question: PickerQuestion::SkipProbe(probe), .. })) = model.dialog
         && skippable(session) != Some(probe)
@@ -106,7 +108,7 @@ fn ask(model: &mut ConsoleModel, question: PickerQuestion) -> Option<ConsoleComm
     None
 }
 
-/// A key on the line for a note.
+/// Handles a key in the text input of a note.
 pub(super) fn write(
     model: &mut ConsoleModel,
     session: &Session,
@@ -129,7 +131,7 @@ pub(super) fn write(
     }
 }
 
-/// A key in an open list.
+/// Handles a key in an open list.
 pub(super) fn pick(
     model: &mut ConsoleModel,
     session: &Session,
@@ -142,7 +144,7 @@ pub(super) fn pick(
             return None;
         }
         PickerOutcome::Left => {
-            // From the second question back to the first.
+            // Esc in the list of contents goes back to the list of places.
             let back =
                 matches!(picker.question, PickerQuestion::Content(_)).then(|| Picker::new(PickerQuestion::Place));
             model.dialog = back.map(Dialog::Pick);

@@ -18,8 +18,8 @@ const THINKS: f32 = 0.5;
 pub enum BeliefStanding {
     /// The participant probably believes a wrong value.
     False,
-    /// The true value is improbable and so is every other value; or the true value is the most probable one, but so
-    /// uncertain that a signal about it is on offer.
+    /// The true value is improbable and so is every other value; or the true value is probable, but a signal about the
+    /// aspect is on offer.
     Unsure,
     /// The participant probably knows the true value.
     Right,

@@ -108,8 +108,8 @@ pub(super) fn press(
     }
 }
 
-/// Handles a key of an open list. Quick typing and held arrow keys count; a held enter, or one right after the key that
-/// opened the list, does not.
+/// Handles a key of an open list. Quick typing and held arrow keys count; a held enter key, and keys with ctrl such as
+/// the one that opened the list, do not.
 fn in_list(model: &mut ConsoleModel, session: &Session, chord: KeyChord, touch: Touch) -> Option<ConsoleCommand> {
     if chord.ctrl || (chord.code == KeyCode::Enter && touch != Touch::Press) {
         return None;

@@ -1,6 +1,6 @@
-//! Severity of a message to the wizard.
+//! Severity of a notice, the console's short message to the wizard.
 
-/// Severity of a notice.
+/// Severity of a notice, the console's short message to the wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoticeLevel {
     /// Information: an action was carried out.

@@ -1,5 +1,5 @@
-//! Preflight checks at the console. If all are ok the trial starts at once; else a list shows the problems with remedies, and the
-//! wizard fixes them or overrides them. The results are recorded.
+//! Preflight checks at the console. If all are ok, the trial starts at once; else a list shows the problems with
+//! remedies, and the wizard fixes or overrides them. The results are recorded.
 
 use core::net::SocketAddr;
 
@@ -20,7 +20,7 @@ use crate::session::{Event, Session};
 /// The key that overrides failed checks and starts the trial.
 pub const OVERRIDE: char = 'o';
 
-/// Runs all preflight checks.
+/// Runs all preflight checks: participant, gaze, display, robot, recording, disk, keyboard, streams.
 pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     let mut checks = participant(session, model.now, &key(model, &KeyAction::Hand(ManualAction::Calibrate)));
     checks.extend(model.gaze_pairing.as_ref().and_then(|pairing| pairing.check(session, model.now)));
@@ -37,7 +37,7 @@ pub fn all_ok(checks: &[PreflightCheck]) -> bool {
     checks.iter().all(|check| check.verdict == PreflightVerdict::Ok)
 }
 
-/// The key of an action.
+/// The key of an action, as text.
 fn key(model: &ConsoleModel, action: &KeyAction) -> String {
     model.keys.chord_for(action).map(|key| key.to_string()).unwrap_or_default()
 }
@@ -61,7 +61,7 @@ fn robot(session: &Session, model: &ConsoleModel) -> PreflightCheck {
     }
 }
 
-/// The freeze probes of the trial, and where they are answered.
+/// Preflight check of the trial's freeze probes: their number, and where they are answered.
 fn probes(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
     let probes = of_trial(&session.spec)?;
     let minutes = session.spec.trial.seconds / 60.0;
@@ -136,7 +136,7 @@ fn keyboard(model: &ConsoleModel) -> PreflightCheck {
     }
 }
 
-/// Starts the trial if all checks are ok; else opens the list.
+/// Starts the trial if all preflight checks are ok; else opens the list of checks.
 pub(super) fn start(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     match all_ok(&checks(session, model)) {
         true => go(model, session, false),
@@ -163,7 +163,7 @@ fn go(model: &mut ConsoleModel, session: &Session, overridden: bool) -> Option<C
     Some(ConsoleCommand::Start(Event::Preflight { checks, overridden }))
 }
 
-/// Handles a key while the list is open.
+/// Handles a key while the list of preflight checks is open.
 pub(super) fn answer(
     model: &mut ConsoleModel,
     session: &Session,
@@ -177,13 +177,13 @@ pub(super) fn answer(
             model.dialog = None;
             None
         }
-        // Keys that fix a problem also work in the list.
+        // Keys that fix a problem also work in the list of preflight checks.
         (_, Some(KeyAction::ResumeRobot)) => super::sending::resume_robot(model, session),
         (_, Some(KeyAction::Hand(ManualAction::HoldRobot))) if is_press => {
             super::hands::act(model, session, ManualAction::HoldRobot)
         }
         (_, Some(KeyAction::Advance)) if is_press && is_ok => go(model, session, false),
-        // A problem may have been fixed in the meantime.
+        // If the problem has been fixed in the meantime, the start does not count as an override.
         (KeyCode::Char(OVERRIDE), _) if is_press => go(model, session, !is_ok),
         _ => None,
     }

@@ -1,4 +1,4 @@
-//! The lines of the table of keys, as they are before a key file changes them.
+//! The default key table: all actions with their keys and texts, before a key file changes them.
 
 use crossterm::event::KeyCode::{
     self, BackTab, Backspace, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp, Right, Tab, Up,
@@ -27,19 +27,19 @@ const CONSOLE: &str = "Console";
 const COMPARISON: &str = "Wizard and assistant";
 const CODING: &str = "Why it was an error";
 
-/// What the key does that looks at one aspect of the belief.
+/// Help text of the key that shows one state aspect of the belief over time.
 const BELIEF: &str = "one belief over time; again: the next";
 
-/// What the palette does.
+/// Help text of the palette, the list of all actions.
 const PALETTE: &str = "all actions, found by typing";
 
-/// The palette, from which every other action can be found.
+/// Key binding of the palette, from which every other action can be found.
 fn palette() -> KeyBinding {
     let keys = [KeyChord::ctrl('k'), KeyChord::char(':')];
     line("palette", &keys, KeyAction::Palette, CONSOLE, PALETTE, Some("find"))
 }
 
-/// A line of the console: name in key files, keys, what it does, heading, help, and what the footer says.
+/// An entry of the key table: name in key files, keys, action, heading in the help, help text, label in the hint line.
 fn line(
     name: &str,
     keys: &[KeyChord],
@@ -52,7 +52,8 @@ fn line(
     KeyBinding { section: KeySection::Console, name, chords: keys.to_vec(), action, group, help, footer, layer: None }
 }
 
-/// A line of the experimenter's hands; the footer shows it when it matters.
+/// An entry of the key table for a manual intervention. The hint line shows such an entry only where it is the next
+/// step.
 fn hand(name: &str, key: char, hand: ManualAction, group: &'static str, help: &str) -> KeyBinding {
     line(name, &[KeyChord::ctrl(key)], KeyAction::Hand(hand), group, help, None)
 }
@@ -61,7 +62,8 @@ fn plain(code: KeyCode) -> [KeyChord; 1] {
     [KeyChord::plain(code)]
 }
 
-/// Everything that a live session can bind, in the order of help and footer; the letters are the layout's.
+/// Default key table of a live session, in the order of help and hint line; the kitchen's layout file assigns the
+/// letters.
 pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
     let wizards = |line: KeyBinding| KeyBinding { layer: Some(KeyLayer::Wizard), ..line };
     let mut lines = vec![
@@ -165,7 +167,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
     lines
 }
 
-/// Everything that the console over a recording can bind.
+/// Default key table of a replay.
 pub fn replay() -> Vec<KeyBinding> {
     let moves = [
         ("step_forward", plain(Right), ReplayKey::StepForward, "to the next event", Some("step")),
@@ -214,7 +216,7 @@ pub fn replay() -> Vec<KeyBinding> {
     lines.into_iter().map(|line| KeyBinding { section: KeySection::Replay, ..line }).collect()
 }
 
-/// What a rater says about errors; only where they are coded.
+/// Key bindings of a rater's codes, active only while errors are coded.
 fn codes() -> [KeyBinding; 9] {
     let code =
         |name, keys: &[KeyChord], rate, help, footer| line(name, keys, KeyAction::Rate(rate), CODING, help, footer);
@@ -235,7 +237,7 @@ fn codes() -> [KeyBinding; 9] {
     ]
 }
 
-/// The arrows of a rater: they choose an error of the list.
+/// What an arrow key does while a rater codes: it selects an error of the list.
 pub fn choosing(action: &KeyAction) -> Option<(RaterKey, &'static str)> {
     match action {
         KeyAction::Look(PanelKey::Back) => Some((RaterKey::ChooseEarlier, "choose the error above; enter goes there")),
@@ -244,7 +246,7 @@ pub fn choosing(action: &KeyAction) -> Option<(RaterKey, &'static str)> {
     }
 }
 
-/// What was believed wrong, by the letters of the signals.
+/// Key bindings with which a rater codes false beliefs, one for each location, on the letters of the signals.
 pub fn causes(kitchen: &Kitchen, marks: &[Option<KeyChord>]) -> Vec<KeyBinding> {
     let cause = |(index, mark): (usize, &Option<KeyChord>)| {
         let (id, chord) = (LocationId(index as u8), (*mark)?);
@@ -254,7 +256,7 @@ pub fn causes(kitchen: &Kitchen, marks: &[Option<KeyChord>]) -> Vec<KeyBinding> 
     marks.iter().enumerate().filter_map(cause).collect()
 }
 
-/// Where wizard and assistant differ; only where they are compared.
+/// Key bindings of the differences between wizard and assistant, active only in a comparison.
 fn differences() -> [KeyBinding; 3] {
     let differ = |name, key, step, help, footer| {
         line(name, &[KeyChord::ctrl(key)], KeyAction::Differ(step), COMPARISON, help, footer)
@@ -266,7 +268,7 @@ fn differences() -> [KeyBinding; 3] {
     ]
 }
 
-/// What is on the screen.
+/// Key bindings that change which panels the screen shows.
 fn looks(next: &[KeyChord]) -> [KeyBinding; 5] {
     let look = |name, code, look, help, footer| line(name, &plain(code), KeyAction::Look(look), CONSOLE, help, footer);
     let panels = "the next panel alone";
@@ -279,7 +281,8 @@ fn looks(next: &[KeyChord]) -> [KeyBinding; 5] {
     ]
 }
 
-/// Left and right go through time: here on the timeline, in a recording from event to event.
+/// Left and right arrow keys in a live session: they scroll the timeline. In a replay, they go from event to event
+/// instead.
 fn times() -> [KeyBinding; 2] {
     let time = |name, code, look, help| line(name, &plain(code), KeyAction::Look(look), CONSOLE, help, None);
     [

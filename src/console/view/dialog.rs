@@ -1,4 +1,4 @@
-//! Dialogs above the panels: the help, generated from the key table, and confirmations.
+//! Dialogs above the panels: the help, which is generated from the key table, and questions to confirm.
 
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
@@ -18,7 +18,7 @@ use crate::session::{Phase, Session};
 /// Draws the open dialog, if there is one.
 pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Session, model: &ConsoleModel) {
     match &model.dialog {
-        // The question whether to send stands in the line of messages.
+        // The question whether to send a clicked signal stands in the line of messages.
         None | Some(Dialog::Send(_)) => {}
         Some(Dialog::Pick(list)) => picker::draw(brush, regions.middle(), session, list),
         Some(Dialog::Palette(cursor)) => picker::draw_palette(brush, regions.middle(), session, model, cursor),
@@ -75,7 +75,8 @@ fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
     }
 }
 
-/// Width, wrapped lines, and number of visible lines of a report on a screen of this size.
+/// Width, wrapped lines, and number of visible lines of a training report on a terminal of this size (columns and
+/// rows).
 fn report_lines(lines: &[String], size: (u16, u16)) -> (u16, Vec<String>, usize) {
     let columns = size.0.saturating_sub(4).min(110);
     let broken = lines.iter().flat_map(|line| {
@@ -87,14 +88,14 @@ fn report_lines(lines: &[String], size: (u16, u16)) -> (u16, Vec<String>, usize)
     (columns, broken.collect(), usize::from(size.1.saturating_sub(6)))
 }
 
-/// Number of lines of the open report below the visible ones.
+/// Number of lines of the open training report that are below the visible part.
 pub fn report_rest(model: &ConsoleModel) -> usize {
     let Some(Dialog::Report(lines)) = &model.dialog else { return 0 };
     let (_, lines, rows) = report_lines(lines, model.size);
     lines.len().saturating_sub(rows)
 }
 
-/// Draws the report of a training.
+/// Draws the report of a wizard training.
 fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleModel) {
     let (columns, lines, rows) = report_lines(lines, (screen.width, screen.height));
     let rest = lines.len().saturating_sub(rows);
@@ -110,9 +111,9 @@ fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleMo
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &hints);
 }
 
-/// Least width of a help column.
+/// Least width of a help column, in characters.
 const HELP_COLUMNS: u16 = 39;
-/// Indent of the description in a help line.
+/// Indent of the description in a help line, in characters.
 const HELP_INDENT: u16 = 7;
 
 /// A line of the help: a heading, a key with its action, or a sign with its meaning.
@@ -126,7 +127,7 @@ enum Line<'a> {
 }
 
 impl Line<'_> {
-    /// Width of the line.
+    /// Width of the help line, in characters.
     fn columns(&self) -> u16 {
         match self {
             Line::Heading(text) => width(text),
@@ -137,7 +138,7 @@ impl Line<'_> {
     }
 }
 
-/// Legend of the signs.
+/// Legend of the signs that the panels use.
 fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
     let meanings = [
         (signs.gaze, "the gaze; in the belief: it was just there"),
@@ -166,7 +167,7 @@ fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
     meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()
 }
 
-/// Columns of the help, and number of columns that fit side by side.
+/// Columns of the help, and the number of them that fit side by side on the screen.
 fn help_columns<'a>(keys: &'a KeyBindings, theme: &Theme, size: (u16, u16)) -> (Vec<Vec<Line<'a>>>, usize) {
     let mut groups: Vec<(&str, Vec<Line>)> = Vec::new();
     for binding in &keys.bindings {
@@ -196,7 +197,7 @@ fn help(brush: &mut Painter, screen: Rect, model: &ConsoleModel) {
         0 => "any key closes".to_string(),
         more => format!("arrows: page {} of {}, other keys close", from + 1, more + 1),
     };
-    // As wide as the longest line, if it fits.
+    // Help columns are as wide as the longest line, if that fits.
     let longest = columns.iter().flatten().map(Line::columns).max().unwrap_or(0).max(HELP_COLUMNS);
     let column_width = (screen.width.saturating_sub(4) / fits as u16).min(longest + 2);
     let inside = open(brush, screen, (column_width * fits as u16 + 4, tallest + 2), "Keys", &remark);
@@ -234,13 +235,13 @@ fn help_line(brush: &mut Painter, x: u16, y: u16, columns: u16, line: &Line) {
     }
 }
 
-/// Distributes the groups over as few columns as possible: each goes into the first column with room, and continues in the next
-/// column if it is too long.
+/// Distributes the key groups of the help over as few columns as possible: each group goes into the first column with
+/// room, and continues in the next column if it is too long.
 fn columns<'a>(groups: &[(&'a str, Vec<Line<'a>>)], rows: usize) -> Vec<Vec<Line<'a>>> {
     let rows = rows.max(4);
     let mut columns: Vec<Vec<Line>> = vec![Vec::new()];
     for (group, members) in groups {
-        // A heading with an empty line above.
+        // A group needs two additional rows, for its heading and an empty line above it.
         let fits = |column: &Vec<Line>| column.is_empty() || column.len() + members.len() + 2 <= rows;
         let mut index = columns.iter().position(fits).unwrap_or(columns.len());
         if index == columns.len() {

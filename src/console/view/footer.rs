@@ -1,4 +1,5 @@
-//! The two lowest lines: messages at full width, and below them the active key layer with the keys that are possible now.
+//! The two lowest lines of the console: messages at full width, and below them hints with the keys that have an effect
+//! now.
 
 use std::borrow::Cow;
 
@@ -18,14 +19,14 @@ use crate::history::wording;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Phase, Session};
 
-/// A hint: its keys with what a click on them does, and what they do.
+/// A key hint in the console's lowest line: keys, the action of a click on each, and a label.
 struct Hint<'a> {
     keys: Vec<(String, Option<ClickAction>)>,
     label: Cow<'a, str>,
     role: TextRole,
 }
 
-/// Draws the line of keys.
+/// Draws the line of key hints.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
@@ -43,14 +44,16 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         let badge = brush.theme.badge(role);
         x = brush.text(x, area.y, area.width, label, badge);
     }
-    // Ending the trial is rare, so its hint is dropped first; after the trial only quitting remains.
+    // The hint for ending the trial is among the first to be left out if there is no room, since it is rarely needed;
+    // after the trial, the hints for the next step come first.
     let is_over = is_over(session, model);
     let is_late = |binding: &&KeyBinding| match is_over {
         true => !matches!(binding.action, KeyAction::Advance | KeyAction::Quit | KeyAction::Hand(ManualAction::Redo)),
         false => matches!(binding.action, KeyAction::EndTrial | KeyAction::Look(PanelKey::Next)),
     };
     let (late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
-    // The robot stop comes first, then the key back to all panels if one panel is at full size, and a rater's keys.
+    // The first hint is the robot stop, the second is the key back to all panels while one is at full size, then follow
+    // a rater's keys.
     first.sort_by_key(|binding| match binding.action {
         KeyAction::StopRobot => 0,
         KeyAction::Look(PanelKey::All) => 1,
@@ -67,7 +70,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
 }
 
 impl Hint<'_> {
-    /// Draws it; returns the column behind it. A click on the words does what the first key does.
+    /// Draws the key hint; returns the column after it. A click on the label does what the first key does.
     fn draw(&self, brush: &mut Painter, x: u16, y: u16) -> u16 {
         let mut at = x;
         for (key, click) in &self.keys {
@@ -88,7 +91,7 @@ impl Hint<'_> {
     }
 }
 
-/// The hint of an entry, if it can do something now.
+/// The key hint of a key binding, if its action has an effect now.
 fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel) -> Option<Hint<'a>> {
     let label = label(binding, session, model)?;
     let role = if binding.action == KeyAction::StopRobot { TextRole::Alarm } else { TextRole::Strong };
@@ -100,7 +103,7 @@ fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel)
         let chord = model.keys.chord_for(action).filter(|_| is_possible(session, model, action))?;
         Some((chord.to_string(), Some(ClickAction::Key(chord))))
     };
-    // Keys of both directions share a hint, and so do those of a kind.
+    // Keys for two opposite directions share a key hint, and so do keys of one kind.
     let pair = |[back, on]: [ReplayKey; 2]| {
         let parts = [back, on].map(KeyAction::Move).iter().filter_map(part).collect::<Vec<_>>();
         match parts.as_slice() {
@@ -123,8 +126,8 @@ fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel)
     (!keys.is_empty()).then_some(Hint { keys, label, role })
 }
 
-/// Draws the line of messages: the question whether to send what was clicked, or the last notice; without one, that the arm has
-/// stopped itself, for as long as it stands.
+/// Draws the line of messages: the question whether to send a clicked signal, or the latest notice, or else, as long as
+/// the robot arm stands after it stopped itself, the reason.
 pub fn message(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.message;
     if area.area() == 0 {
@@ -158,12 +161,12 @@ fn style_of(brush: &Painter, notice: &Notice) -> Style {
     }
 }
 
-/// Whether a live trial is over.
+/// Whether the trial of a live session is over.
 fn is_over(session: &Session, model: &ConsoleModel) -> bool {
     model.playback.is_none() && matches!(session.phase, Phase::Over(_) | Phase::Closed)
 }
 
-/// The next step after the trial, in a plan.
+/// The next step of the study plan after a trial, in words.
 pub(super) fn onward(session: &Session) -> Option<String> {
     session.protocol.as_ref().filter(|_| session.phase != Phase::Closed)?;
     Some(match session.next_phase() {
@@ -173,7 +176,8 @@ pub(super) fn onward(session: &Session) -> Option<String> {
     })
 }
 
-/// Label of an entry in the hint line, if it has one there; what is possible decides elsewhere.
+/// Label of a key binding in the line of key hints, if it may stand there; whether its action has an effect now is not
+/// checked here.
 fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -> Option<Cow<'a, str>> {
     if binding.layer.is_some_and(|layer| layer != model.layer) {
         return None;
@@ -201,7 +205,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
         },
         KeyAction::Move(ReplayKey::PlayPause) => Some(if plays { "pause" } else { "play" }),
         KeyAction::Quit if is_over && session.is_step_done() => Some("closes the session"),
-        // After the trial the robot rests, and the screen asks for what comes next.
+        // After the trial the robot rests, and the line of key hints offers only the next step.
         KeyAction::StopRobot
         | KeyAction::ResumeRobot
         | KeyAction::SwitchLayer

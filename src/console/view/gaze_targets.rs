@@ -1,4 +1,4 @@
-//! The gaze accuracy check: the target in the kitchen panel, and the result.
+//! Gaze accuracy check on the console: the present target in the kitchen panel, and the result.
 
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
@@ -15,17 +15,17 @@ use crate::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use crate::session::Session;
 
 const COLUMNS: u16 = 76;
-/// Column of the values.
+/// Column at which the values of the result begin.
 const VALUE: u16 = 15;
 
-/// Draws the target at its position on the display.
+/// Draws the present target of the gaze accuracy check in the kitchen panel.
 pub fn target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session) {
     let Some(check) = &session.calibration else { return };
     let Some(((index, _), point)) = check.shown.zip(check.target()) else { return };
     let Some((x, y)) = plan.cell(point) else { return };
     let text = format!(" + look here: {} of {} ", index + 1, check.targets.len());
     let columns = super::paint::width(&text).min(panel.width);
-    // The cross is on the target; the words are after it, or before it without room.
+    // The cross is on the target; the instruction stands to its right, or to its left if there is no room.
     let before = if x + columns < panel.right() { 1 } else { columns.saturating_sub(2) };
     let text = if before == 1 { text } else { format!(" look here: {} of {} + ", index + 1, check.targets.len()) };
     let badge = brush.theme.badge(TextRole::Gaze);
@@ -33,7 +33,7 @@ pub fn target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Ses
     brush.text(x, y, columns, &text, badge);
 }
 
-/// Draws the result of the check, once all targets have been shown.
+/// Draws the result of the gaze accuracy check, once all targets have been shown.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let Some(outcome) = session.calibration.as_ref().and_then(|check| check.result.as_ref()) else { return };
     let inside = open(brush, screen, (COLUMNS, 13), "Calibration check", "space stops the robot");
@@ -83,7 +83,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
         let words = format!("{key}  ");
         let parts = [(enter, TextRole::Strong), (words.as_str(), TextRole::Strong), (does, role)];
         let end = brush.parts(inside.x + 1, y, columns, &parts);
-        // The first click chooses, the next one takes.
+        // The first click on an action selects it, the next click carries it out.
         let chord = if is_taken { KeyChord::plain(KeyCode::Enter) } else { KeyChord::char(key) };
         brush.key_target(inside.x + 1, y, end, chord);
         y += 1;
@@ -101,7 +101,7 @@ fn verdict(accuracy_deg: f64) -> (&'static str, TextRole) {
     }
 }
 
-/// Accuracy at every target, in degrees.
+/// Measured gaze accuracy at every target, in degrees.
 fn targets(found: &GazeAccuracy) -> String {
     let one = |target: &crate::gaze::calibration::TargetAccuracy| match target.accuracy_deg {
         Some(deg) => format!("{deg:.1}"),

@@ -1,4 +1,4 @@
-//! `view(&Session, &Model, &mut Frame)`: reads, draws, and changes nothing.
+//! `view(&Session, &Model, &mut Frame)`: draws the console from session and model, and changes neither.
 
 pub mod belief_panel;
 mod cards;
@@ -44,7 +44,7 @@ pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     draw(&mut Painter::new(frame.buffer_mut(), model.theme), session, model);
 }
 
-/// What can be clicked on the console as it is drawn now.
+/// Cells of the console, as it is drawn now, that can be clicked.
 pub fn click_targets(session: &Session, model: &ConsoleModel) -> Vec<ClickTarget> {
     paint::targets(model.theme, model.size, |brush| draw(brush, session, model))
 }

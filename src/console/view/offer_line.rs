@@ -1,5 +1,5 @@
-//! The offer's line: the one signal that is worth sending now, its key, what is believed, and what it saves. It is the only thing
-//! on the screen that is inverse in the colour of signals.
+//! The line of the offer: the one signal that is worth sending now, its key, the false belief behind it, and the
+//! presses that it saves. Nothing else on the screen is inverse in the colour of signals.
 
 use super::belief_panel::QUIET;
 use super::paint::{Painter, width, wrap};
@@ -21,7 +21,7 @@ use crate::session::offers;
 use crate::session::settings::{Condition, Visibility};
 use crate::session::{Phase, Session};
 
-/// An offer as it is drawn: what stands open, or in recordings without offers the best signal.
+/// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
 pub(super) struct ShownOffer<'a> {
     act: OfferedAct,
     benefit: Option<f64>,
@@ -52,7 +52,7 @@ pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<Sh
 }
 
 impl ShownOffer<'_> {
-    /// The place that the offered signal is about.
+    /// The kitchen location that the offered signal is about.
     pub(super) fn place(&self, session: &Session) -> Option<LocationId> {
         match &self.act {
             OfferedAct::Signal(signal) => signal.location(&session.kitchen),
@@ -60,7 +60,7 @@ impl ShownOffer<'_> {
         }
     }
 
-    /// The label with the keys: " enter  SHOW RECIPE OF ORDER 1 [q] ".
+    /// Label of the offer with its keys: " enter SHOW RECIPE OF ORDER 1 [q] ".
     fn label(&self, session: &Session, model: &ConsoleModel) -> String {
         let words = match &self.act {
             OfferedAct::Signal(signal @ Signal::ShowRecipe(_)) => format!("show {}", wording::signal(signal)),
@@ -69,14 +69,14 @@ impl ShownOffer<'_> {
         };
         let own = self.place(session).and_then(|place| model.keys.mark(place));
         let own = own.map_or(String::new(), |key| format!(" [{key}]"));
-        // Enter in dialogs never sends the offer, and in a pause nothing can be sent.
+        // The enter key is named only where it sends the offer: not in dialogs, replays and pauses.
         let is_free = model.playback.is_none() && model.dialog.is_none() && session.is_running();
         let enter = model.keys.chord_for(&KeyAction::Accept).filter(|_| is_free);
         let enter = enter.map_or(String::new(), |key| format!("{key}  "));
         format!(" {enter}{}{own} ", words.to_uppercase())
     }
 
-    /// What the signal saves: "saves ≈ 4 presses".
+    /// What the offered signal saves: "saves ≈ 4 presses".
     fn saves(&self, brush: &Painter, session: &Session) -> String {
         let Some(benefit) = self.benefit else { return String::new() };
         match session.spec.assistant.concept {
@@ -88,7 +88,8 @@ impl ShownOffer<'_> {
         }
     }
 
-    /// What is believed, what is true, how surely and for how long, and the press that would come: the more important first.
+    /// Reasons for the offer, most important first: what the participant believes and what is true, how certain that is
+    /// and for how long, and the wrong press that is expected.
     fn because(&self, session: &Session, model: &ConsoleModel) -> Vec<String> {
         let Some(reason) = self.reason.map(|reason| wording::reason(&session.kitchen, reason)) else {
             return Vec::new();
@@ -96,7 +97,7 @@ impl ShownOffer<'_> {
         let aspect = session.kitchen.aspect_named(&reason.aspect);
         let belief = beliefs(session, model).into_iter().find(|belief| Some(belief.aspect) == aspect);
         let since = belief.and_then(|belief| belief.since);
-        // The certainty is that of the belief panel, while the participant is thought to think the same.
+        // The certainty is taken from the belief panel if both name the same believed value.
         let is_same = |belief: &EstimatedBelief| {
             beliefs::value(&session.kitchen, belief.aspect, belief.thinks) == reason.believes
         };
@@ -110,13 +111,13 @@ impl ShownOffer<'_> {
     }
 }
 
-/// Draws the offer's line, or why there is none.
+/// Draws the line of the offer, or why there is no offer.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.offer;
     if area.area() == 0 {
         return;
     }
-    // A click asks also where the offer has just closed: then it says so.
+    // A click on the line right after the offer has closed gets a notice that it has.
     let takes = model.layer == KeyLayer::Wizard && model.playback.is_none() && offers::are_made(session);
     if let Some(chord) = model.keys.chord_for(&KeyAction::Accept).filter(|_| takes) {
         brush.target(area, ClickAction::Key(chord));
@@ -137,7 +138,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     if end + width(&saves) < right {
         brush.text_right(right, area.y, width(&saves), &saves, strong);
     }
-    // The reason stands in a line of its own, or between label and saving.
+    // The reason stands in a line of its own, or between the label and the saving.
     let (mut x, y, limit) = match area.height {
         1 => (end + 1, area.y, right.saturating_sub(width(&saves) + 2)),
         _ => (area.x + 1, area.y + 1, right),
@@ -153,7 +154,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// Why nothing is offered.
+/// Why there is no offer, in words.
 fn silence(session: &Session, model: &ConsoleModel) -> String {
     if session.spec.trial.condition == Condition::Assistant {
         return "The assistant sends the signals by itself".to_string();
@@ -173,7 +174,7 @@ fn silence(session: &Session, model: &ConsoleModel) -> String {
     }
 }
 
-/// What the best signal would save, where that is less than it costs to interrupt.
+/// Saving and cost of the best signal in words, where the signal costs more than it saves.
 fn too_little(session: &Session) -> String {
     let assistant = &session.spec.assistant;
     let options = session.advice.iter().flat_map(|advice| &advice.options);
@@ -188,7 +189,7 @@ fn too_little(session: &Session) -> String {
     }
 }
 
-/// The value that the participant is thought to hold for a place, if it is wrong.
+/// The value that the participant falsely believes about a location, if any.
 pub(super) fn thinks(session: &Session, believed: &[EstimatedBelief], place: LocationId) -> Option<String> {
     let wrong = believed.iter().find(|belief| {
         belief.standing == BeliefStanding::False && beliefs::place(session, belief.aspect) == Some(place)

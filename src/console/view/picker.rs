@@ -1,4 +1,4 @@
-//! List dialogs above the panels: a question with its answers, and the palette.
+//! Lists above the panels: a question with its answers, and the list of all actions (the palette).
 
 use ratatui::layout::Rect;
 
@@ -16,14 +16,14 @@ use crate::console::possible::is_possible_behind;
 use crate::session::Session;
 use crossterm::event::KeyCode;
 
-/// Largest size of the list: columns and rows.
+/// Largest size of a list: columns and rows.
 const MOST: (u16, u16) = (72, 26);
 /// Rows around the list: frame, search line, separator, key hints.
 const AROUND: u16 = 6;
-/// Says how a list is searched.
+/// Text that says how the entries of a list are filtered.
 pub(super) const TYPE: &str = "type to filter, without spaces: ";
 
-/// A row: its text, its remark at the right, and whether it does something now.
+/// A row of a list: text, remark at the right, and whether choosing the row has an effect now.
 struct Row {
     label: String,
     remark: String,
@@ -35,15 +35,15 @@ struct ListPage<'a> {
     title: String,
     cursor: &'a ListCursor,
     rows: Vec<Row>,
-    /// Number of rows without a filter.
+    /// Number of rows before filtering.
     all: usize,
-    /// What the space bar does.
+    /// What the space bar does while the list is open.
     space: &'a str,
-    /// What enter does.
+    /// What the enter key does while the list is open.
     takes: &'a str,
 }
 
-/// Draws an open list of answers.
+/// Draws the open list of answers to a question.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picker) {
     let rows = picker.choices(session).into_iter();
     let rows = rows.map(|choice| Row { label: choice.label, remark: choice.remark, counts: true }).collect();
@@ -52,10 +52,10 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picke
     ListPage { title, cursor: &picker.cursor, rows, all, space: STOPS, takes: "takes it" }.draw(brush, screen);
 }
 
-/// What the space bar does in a list of a live session.
+/// Text for what the space bar does in a list of a live session.
 const STOPS: &str = "space stops the robot";
 
-/// Draws the palette: key, action, and group; what does nothing now is grey.
+/// Draws the palette (the list of all actions): key, action, and group; actions without an effect now are grey.
 pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel, cursor: &ListCursor) {
     let row = |line: &&KeyBinding| {
         let key = line.chords.first().map_or(String::new(), KeyChord::to_string);
@@ -76,7 +76,7 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
 
 impl ListPage<'_> {
     fn draw(&self, brush: &mut Painter, screen: Rect) {
-        // The height stays the same while the filter changes.
+        // The height of the list stays the same while the filter changes.
         let size = (MOST.0.min(screen.width), (self.all as u16 + AROUND).min(MOST.1).min(screen.height));
         let inside = open(brush, screen, size, &self.title, self.space);
         let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));

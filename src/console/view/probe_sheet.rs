@@ -1,5 +1,5 @@
-//! The sheet of a freeze probe: the question, its choices, the answers so far, and the time that is left. Whether an answer is right is
-//! not shown: the wizard may sit beside the participant.
+//! The sheet of a freeze probe: the question, its choices, the answers so far, and the time that is left. The sheet
+//! does not show whether an answer is right, because the wizard may sit beside the participant.
 
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
@@ -19,10 +19,11 @@ use crate::session::probes::{OpenProbe, ProbeAnswer, ProbeQuestion};
 use crate::session::settings::Visibility;
 use crate::session::{Phase, Session};
 
-/// How sure a participant is, in words.
+/// Confidence of the participant in an answer, in words.
 const SURE: [&str; 3] = ["a guess", "fairly sure", "certain"];
 
-/// Clears what lies below the sheet where the participant answers at the console: what is asked must not stand beside the question.
+/// Clears the area under a freeze probe's sheet where the participant answers at the console, so that the state that is
+/// asked about is not visible.
 pub(super) fn hide(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel) {
     let is_open = session.probes.open.is_some() && session.phase == Phase::Paused;
     if is_open && model.playback.is_none() && answerer(session, model) == ProbeAnswerer::Console {
@@ -30,7 +31,7 @@ pub(super) fn hide(brush: &mut Painter, area: Rect, session: &Session, model: &C
     }
 }
 
-/// Draws the sheet.
+/// Draws the sheet of a freeze probe.
 pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Session, model: &ConsoleModel) {
     let mut page = Page::new(screen);
     let who = answerer(session, model);
@@ -73,7 +74,7 @@ fn capital(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The question with its choices by number, in as many columns as have room.
+/// Draws the question with its numbered choices, in as many columns as have room.
 fn ask(
     page: &mut Page,
     (open, index, question): (&OpenProbe, usize, &ProbeQuestion),
@@ -131,7 +132,8 @@ fn sure(page: &mut Page, entry: ProbeEntry) {
     page.focus_here();
 }
 
-/// The answers so far; what was answered stands there only where the study shows beliefs to the wizard, and not for raters.
+/// Draws the progress of the answers. Their content is shown only where the study shows beliefs to the wizard, and
+/// never to raters.
 fn answers(page: &mut Page, open: &OpenProbe, session: &Session, model: &ConsoleModel) {
     let is_shown = visibility(session, model) >= Visibility::Belief && model.coding.is_none();
     let given =

@@ -49,7 +49,8 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let inside = brush.panel_with(area, title, &parts);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
-    // On small screens the pose of the arm has priority over what the kitchen panel also shows.
+    // In a low panel the pose of the arm has priority over the content of the robot's hand, which the kitchen panel
+    // also shows.
     match session.robot.arm.last {
         Some((_, moment)) if inside.height < 4 => arm(brush, x, inside.y + 1, columns, session, &moment),
         Some((_, moment)) => {
@@ -70,7 +71,7 @@ fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     brush.text_right(x + columns, y, columns / 2, &presses, quiet);
 }
 
-/// Draws phase, joints, distance of the hand, and contact force of the arm.
+/// Draws the arm's motion phase, joint angles as bars, distance of the human's hand, and contact force.
 fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, moment: &ArmSample) {
     let signs = brush.theme.signs();
     let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
@@ -92,7 +93,7 @@ fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mom
     brush.parts(x, y, columns, &parts);
 }
 
-/// The joint angles in degrees.
+/// Draws the arm's joint angles in degrees.
 fn joints(brush: &mut Painter, x: u16, y: u16, columns: u16, moment: &ArmSample) {
     let angles: String = moment.joints.iter().map(|angle| format!("{:>6.0}", angle.to_degrees())).collect();
     brush.parts(x, y, columns, &[("joints", TextRole::Quiet), (&angles, TextRole::Text), (" deg", TextRole::Quiet)]);
@@ -158,7 +159,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
 }
 
-/// The key that releases the robot.
+/// The key that releases the held robot, with words.
 fn release(model: &ConsoleModel) -> String {
     model
         .keys
@@ -172,7 +173,7 @@ fn held(brush: &mut Painter, x: u16, y: u16, columns: u16, model: &ConsoleModel)
     badge(brush, x, y, columns, " HELD ", &format!(" {} ", release(model)))
 }
 
-/// Draws a badge, with more words if there is room; returns the next column and the remaining width.
+/// Draws a badge (inverse label), with more words if there is room; returns the next column and the remaining width.
 fn badge(brush: &mut Painter, x: u16, y: u16, columns: u16, label: &str, words: &str) -> (u16, u16) {
     let badge = brush.theme.badge(TextRole::Strong);
     let end = brush.text(x, y, columns, label, badge);

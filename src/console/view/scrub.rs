@@ -1,4 +1,4 @@
-//! The position in a recording: a bar over its whole length, with the time reached and the whole time.
+//! Position in a recording: a bar over the whole length, with the time reached and the total time.
 
 use ratatui::layout::Rect;
 
@@ -16,7 +16,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     if area.area() == 0 {
         return;
     }
-    // The recording's own time, which runs before the trial and in pauses, too.
+    // Times are those of the recording, which also run before the trial and in pauses.
     let end = format!(" {} of {} ", session.time, playback.length.max(session.time));
     let quiet = brush.style(TextRole::Quiet);
     brush.text(area.x, area.y, area.width, " recording ", quiet);

@@ -1,4 +1,5 @@
-//! Sheets around a trial: instruction, questionnaire, debriefing, and questions before a recording.
+//! Sheets (forms at full size) around a trial: instruction, questionnaire, debriefing, and questions before a
+//! recording.
 
 use crossterm::event::KeyCode;
 use ratatui::Frame;
@@ -18,9 +19,9 @@ use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{ItemForm, Questionnaire, SLIDER_END, Scale, Tutorial, TutorialStepKind};
 use crate::session::protocol::{ItemAnswer, Protocol};
 
-/// Draws the sheet of the running phase, if it has one.
+/// Draws the sheet of the session's present phase, if that phase has one.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
-    // In a replay the keys have other meanings.
+    // In a replay, the sheet shows no keys, since keys have other meanings there.
     let pen = &mut Pen { brush, with_keys: model.playback.is_none() };
     let sheet = sheet(session);
     if let Some(SheetContent::Probe(open)) = sheet {
@@ -39,7 +40,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     }
 }
 
-/// Label of the advance key: the next phase.
+/// Label of the key that leaves the sheet: the name of the next phase.
 fn onward(session: &Session) -> String {
     match session.next_phase() {
         Some(phase) => format!("on to the {}", phase.name()),
@@ -169,7 +170,7 @@ fn draw_questions(
             Some(ItemAnswer::Skipped) => "-".to_string(),
             None => "?".to_string(),
         };
-        // What is longer than a number stands below its item.
+        // Answers of more than three columns stand below their item.
         if width(&answer) <= 3 {
             page.marked(&format!("{answer:>3}"), &item.text, TextRole::Text);
         } else {
@@ -188,7 +189,8 @@ fn draw_questions(
     page.draw(pen, screen, &questionnaire.title, where_, hints);
 }
 
-/// Draws how an item is answered, with the given answer; returns the keys that answer it, and what they do.
+/// Draws how a questionnaire item is answered, with the answer so far; returns the keys that answer it, and what they
+/// do.
 fn item_form(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) -> (String, &'static str) {
     match form {
         ItemForm::Scale(of) => {
@@ -224,13 +226,13 @@ fn item_form(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) -> (
     }
 }
 
-/// Adds the answer that was typed, if one was.
+/// Adds the typed answer to the page, if there is one.
 fn typed(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) {
     page.space();
     page.text(0, &given.map_or_else(|| "_".to_string(), |given| form.words(given)), TextRole::Strong);
 }
 
-/// Draws the scale with the given answer marked. Its anchors stand under the first and the last point.
+/// Draws a rating scale with the given answer marked. The scale's end labels stand under its first and last point.
 fn scale(page: &mut Page, of: &Scale, given: Option<&AnswerValue>) {
     let point = |point: u8| match given == Some(&AnswerValue::from(point)) {
         true => format!("[{point}]"),
@@ -271,7 +273,7 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
     page.draw(pen, screen, "The criterion is not met", where_, hints);
 }
 
-/// Draws a question before a recording, on an otherwise empty screen.
+/// Draws a question to the user before a recording, on an otherwise empty screen.
 pub fn draw_question(question: &QuestionPage, theme: Theme, frame: &mut Frame) {
     let screen = frame.area();
     let mut brush = Painter::new(frame.buffer_mut(), theme);

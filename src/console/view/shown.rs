@@ -1,4 +1,4 @@
-//! The participant's side: the signal on the display, its content and its remaining time.
+//! Panel of the participant's side: the signal on the display, its content and its remaining time.
 
 use super::paint::{Painter, width, wrap};
 use super::regions::{Regions, ScreenSize};
@@ -9,7 +9,7 @@ use crate::console::key_action::KeyAction;
 use crate::history::wording;
 use crate::session::{Phase, Session, ShownSignal, proposals};
 
-/// Draws the panel that says which signal the participant sees now.
+/// Draws the panel that tells which signal the participant sees now.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.shown;
     if area.area() == 0 {
@@ -33,7 +33,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// The signal with its remaining time in one line.
+/// Draws the present signal with its remaining time in one line.
 fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     let start = model.keys.chord_for(&KeyAction::Advance).filter(|_| session.phase == Phase::Ready);
     if let Some(key) = start {
@@ -62,18 +62,18 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
 }
 
-/// Remaining time in seconds, and as a share of its duration.
+/// Remaining time of a signal in seconds, and as a share of its duration.
 fn left(session: &Session, shown: &ShownSignal, model: &ConsoleModel) -> (f64, f64) {
     let now = if session.is_running() { model.now } else { session.paused_at };
     let left_s = shown.until.secs_since(now);
     (left_s, left_s / shown.until.secs_since(shown.since).max(1e-3))
 }
 
-/// Content of the signal in words.
+/// Content of a signal in words.
 fn says(session: &Session, signal: &Signal) -> String {
     let kitchen = &session.kitchen;
     let Some(location) = signal.location(kitchen) else {
-        // Proposed presses: those that are still to be made.
+        // Of proposed presses, only those that the participant has not made yet are shown.
         return proposals::left(session).map_or(String::new(), |left| format!("next: {}", wording::proposal(left)));
     };
     let content = kitchen.content_label(session.state, location);

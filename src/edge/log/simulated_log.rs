@@ -1,5 +1,6 @@
-//! Logs of simulated sessions. The same header gives the same recording, so a complete recording is read, and an incomplete one is
-//! replaced. Several programs may simulate into one folder; each recording is written by one of them.
+//! Logs of simulated sessions. The same header always gives the same recording, so a complete recording is kept and
+//! only read, and an incomplete one is replaced. Several programs may simulate into one folder; each recording is
+//! written by one of them.
 
 use std::fs;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -15,14 +16,14 @@ use crate::session::{Event, Header, Stamped};
 /// Upper limit of the length of a complete log's last line, in bytes.
 const LAST: u64 = 256;
 
-/// The log of a simulated session, before it is simulated.
+/// State of a simulated session's log before the simulation.
 #[derive(Debug)]
 pub enum SimulatedLog {
-    /// A new log.
+    /// A new log, to be written.
     Begun {
-        /// The log to write to.
+        /// Writer of the new log.
         log: Box<LogWriter>,
-        /// New path of a log that ended before the end of its header.
+        /// New path of an old log that ended before the end of its header.
         moved: Option<PathBuf>,
     },
     /// The recording exists and is complete.
@@ -42,7 +43,7 @@ impl SimulatedLog {
         fs::create_dir_all(folder).map_err(|reason| WriteError::unwritable(folder, reason))?;
         let lock = RecordingLock::take(folder)?;
         check_simulated(folder, header)?;
-        // The last holder of the lock may have completed it.
+        // The previous holder of the lock may have completed the recording.
         if is_whole(folder, header) {
             return Ok(SimulatedLog::Whole);
         }
@@ -64,7 +65,7 @@ impl SimulatedLog {
 pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError> {
     let path = folder.join(LOG_NAME);
     if !path.exists() {
-        // A kill before the log leaves settings behind.
+        // A program that was killed before it wrote the log leaves settings behind.
         let is_foreign = read_regular(&folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
         let what = "a session.toml that tomcom did not write";
         return if is_foreign { Err(WriteError::Taken { folder: folder.to_path_buf(), what }) } else { Ok(()) };

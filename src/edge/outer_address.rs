@@ -2,7 +2,8 @@
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
 
-/// The address at which others reach what listens at this one: for a wildcard address, that of this machine in the network.
+/// The address at which other computers reach a server of this program: for a wildcard address, this machine's address
+/// in the network.
 pub(super) fn reachable(mut listening: SocketAddr) -> SocketAddr {
     if let (true, Some(known)) = (listening.ip().is_unspecified(), address_outside(listening.ip())) {
         listening.set_ip(known);

@@ -1,5 +1,6 @@
-//! The part of ZeroMQ's wire protocol (ZMTP 3.0, <https://rfc.zeromq.org/spec/23/>, without security) that Pupil Remote,
-//! subscriptions and annotations need. Input is bounded: memory is allocated for received bytes, never for claimed lengths.
+//! The part of ZeroMQ's wire protocol (ZMTP 3.0, <https://rfc.zeromq.org/spec/23/>, without security) that the
+//! connection to Pupil Capture needs. Input is bounded: memory is allocated for received bytes, never for claimed
+//! lengths.
 
 use std::io;
 use std::time::Duration;
@@ -8,13 +9,13 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-/// The frames of a message.
+/// A ZeroMQ message, as its frames.
 pub type ZmtpMessage = Vec<Vec<u8>>;
 
 /// Longest message, in bytes of all frames, and largest number of frames.
 const MAX_MESSAGE: usize = 1 << 20;
 const MAX_FRAMES: usize = 16;
-/// Time limit of the other side for immediate answers.
+/// Time limit for replies of the other side that need no work.
 const PATIENCE: Duration = Duration::from_secs(2);
 const GREETING: usize = 64;
 
@@ -22,14 +23,14 @@ const MORE: u8 = 1;
 const LONG: u8 = 2;
 const COMMAND: u8 = 4;
 
-/// Role of a socket.
+/// Role of a ZeroMQ socket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SocketRole {
-    /// Sends requests and receives replies.
+    /// Request socket: sends requests and receives replies.
     Req,
-    /// Receives subscribed messages.
+    /// Subscriber socket: receives subscribed messages.
     Sub,
-    /// Sends to subscribers.
+    /// Publisher socket: sends messages to subscribers.
     Pub,
 }
 
@@ -47,7 +48,7 @@ fn broken(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, what)
 }
 
-/// Assembles messages from received bytes.
+/// Assembles ZeroMQ messages from received bytes.
 #[derive(Debug, Default)]
 pub struct FrameAssembler {
     bytes: Vec<u8>,
@@ -65,7 +66,7 @@ impl FrameAssembler {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// The next complete message; commands are skipped.
+    /// The next complete message; protocol commands are skipped.
     ///
     /// # Errors
     /// The bytes are not a message, or the message is too large.
@@ -112,7 +113,7 @@ impl FrameAssembler {
     }
 }
 
-/// A connection to a socket of another program.
+/// A connection to a ZeroMQ socket of another program.
 #[derive(Debug)]
 pub struct ZmtpConnection {
     stream: TcpStream,
@@ -152,7 +153,7 @@ impl ZmtpConnection {
         }
         stream.write_all(&[&[COMMAND, ready.len() as u8], ready.as_slice()].concat()).await?;
         let mut connection = ZmtpConnection { stream, inbox: FrameAssembler::default(), chunk: vec![0; 1 << 16] };
-        // Their READY comes before anything else.
+        // The other side's READY command comes before anything else.
         let flags = loop {
             match connection.inbox.next_frame()? {
                 Some((flags, body)) if body.starts_with(b"\x05READY") => break flags,
@@ -231,7 +232,7 @@ impl ZmtpConnection {
     }
 }
 
-/// A property of a READY command.
+/// A property of a READY command, as bytes.
 fn property(name: &str, value: &str) -> Vec<u8> {
     let mut bytes = vec![name.len() as u8];
     bytes.extend(name.as_bytes());

@@ -105,7 +105,7 @@ impl KitchenMap {
             let all: Vec<&Item> = items.iter().collect();
             return KitchenMap::columns(&all, cells, [0.0, 1.0]);
         }
-        // An order takes one line on small screens, else lines for name, dish and recipe.
+        // An order takes one line on small screens, else separate lines for name, dish and recipe.
         let strip_rows = if cells.height >= 18 { 4 } else { 1 };
         let (strip_cells, body_cells) = match above {
             true => split_rows(cells, strip_rows),
@@ -341,7 +341,7 @@ fn widths(columns: &[Vec<&Item>], total: u16) -> Vec<u16> {
     widths
 }
 
-/// Row `index` of `count` equal rows.
+/// Row number `index` of an area that is divided into `count` rows of equal height.
 fn share(cells: Rect, count: usize, index: usize) -> Rect {
     let edge = |index: usize| cells.y + (usize::from(cells.height) * index / count.max(1)) as u16;
     Rect { y: edge(index), height: edge(index + 1) - edge(index), ..cells }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// Special keys: name in key files, and name on the screen.
+/// Special keys: name in key files, name on the screen, and key code.
 const NAMED: [(&str, &str, KeyCode); 16] = [
     ("space", "space", KeyCode::Char(' ')),
     ("tab", "tab", KeyCode::Tab),
@@ -75,7 +75,7 @@ impl KeyChord {
         KeyChord::char(small(letter))
     }
 
-    /// Parses a key name of a key file.
+    /// Parses the name of a key in a key file.
     ///
     /// # Errors
     /// The text found, and a description of a valid one.

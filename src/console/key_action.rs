@@ -100,9 +100,9 @@ pub enum PanelKey {
     Last,
     /// Show all panels.
     All,
-    /// Scroll back in time.
+    /// Scroll the shown panel back in time.
     Back,
-    /// Scroll forward in time.
+    /// Scroll the shown panel forward in time.
     Forward,
     /// Scroll the timeline to an earlier time.
     Earlier,

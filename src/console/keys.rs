@@ -29,7 +29,7 @@ impl KeyBindings {
     /// The key table of a live session.
     ///
     /// # Errors
-    /// A key with two meanings, or an invalid entry of the key file.
+    /// A key has two meanings, or an entry of the key file is invalid.
     pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<KeyBindings, KeyError> {
         let Consoles { comparing, mut bindings, .. } =
             Consoles::from_bindings(lines(kitchen, map)?, KeySection::Console);

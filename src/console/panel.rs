@@ -15,7 +15,7 @@ pub enum Panel {
     GazeMap,
     /// List of the newest events.
     Events,
-    /// Presses, signals and errors over time.
+    /// Timeline of presses, signals and errors.
     Timeline,
     /// Comparison of the wizard's and the assistants' signals on one time axis.
     Comparison,

@@ -21,7 +21,7 @@ pub enum PickerQuestion {
     Abort,
     /// Why is the trial excluded from the analysis?
     Exclude,
-    /// Why is the rest of the probe with this number skipped?
+    /// Why are the remaining questions of the freeze probe with this number skipped?
     SkipProbe(u32),
 }
 

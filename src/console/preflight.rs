@@ -17,7 +17,7 @@ use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, partici
 use crate::session::probes::of_trial;
 use crate::session::{Event, Session};
 
-/// The key that overrides failed checks and starts the trial.
+/// The key that overrides failed preflight checks and starts the trial.
 pub const OVERRIDE: char = 'o';
 
 /// Runs all preflight checks: participant, gaze, display, robot, recording, disk, keyboard, streams.
@@ -32,7 +32,7 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     checks
 }
 
-/// Whether all checks are ok.
+/// Whether all preflight checks are ok.
 pub fn all_ok(checks: &[PreflightCheck]) -> bool {
     checks.iter().all(|check| check.verdict == PreflightVerdict::Ok)
 }

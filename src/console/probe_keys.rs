@@ -111,7 +111,7 @@ pub(super) fn write(
         SheetKey::Forward | SheetKey::Back => {
             let by = if stroke == SheetKey::Forward { 1 } else { -1 };
             let to = entry.choice.map_or(0, |choice| choice.saturating_add_signed(by)).min(choices);
-            // The first arrow goes to the first choice.
+            // If no choice is selected yet, the down arrow selects the first choice.
             let to = if entry.choice.is_none() && by > 0 { 1 } else { to };
             (entry.choice, entry.is_typed) = (Some(to), false);
         }

@@ -64,17 +64,17 @@ impl RaterSession {
         self.errors.get(self.at(events)?)
     }
 
-    /// Index of the first error without a code.
+    /// Index of the first error that has no code yet.
     pub fn first_open(&self) -> Option<usize> {
         self.errors.iter().position(|error| self.code(error).is_none())
     }
 
-    /// The code of an error.
+    /// The code that an error has, if any.
     pub fn code(&self, error: &ListedError) -> Option<&Code> {
         self.codes.0.get(&error.press)
     }
 
-    /// Number of errors with a code.
+    /// Number of errors that have a code.
     pub fn coded(&self) -> usize {
         self.errors.iter().filter(|error| self.code(error).is_some()).count()
     }

@@ -21,7 +21,7 @@ pub struct RecordingPicker {
 /// Result of the list of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordingReply {
-    /// The recording with this index in [`RecordingPicker::rows`].
+    /// The recording with this index in [`RecordingPicker::rows`] was chosen.
     Chosen(usize),
     /// The list was closed without a choice.
     Leave,

@@ -3,11 +3,11 @@
 /// Meaning of a key on a sheet (a form at full size).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SheetKey {
-    /// Tick the step, go on from the item, or confirm.
+    /// Tick the present step, go on from the present item, or confirm the sheet.
     Confirm,
     /// Go on to the session's next phase, if the sheet is complete.
     Leave,
-    /// Show the next item.
+    /// Show the next item of the sheet.
     Forward,
     /// Show the previous item.
     Back,

@@ -1,5 +1,5 @@
-//! Clocks. Session time comes from the monotonic clock. The wall clock can be set and can jump; it is used only for names and headers
-//! of recordings, and its jumps are recorded in the log.
+//! Clocks of the program. Session time comes from the monotonic clock. The wall clock can be set and can jump; it is
+//! used only for names and headers of recordings, and its jumps are recorded in the log.
 
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -18,14 +18,14 @@ pub struct SessionClock {
     offset: SessionTime,
     began: Instant,
     looked: Instant,
-    /// Total time of suspensions since `began`.
+    /// Total time since `began` for which the program was suspended.
     stood: Duration,
-    /// Wall clock minus session time at the last comparison, in milliseconds.
+    /// Wall clock minus session time at the last comparison of the two, in milliseconds.
     ahead_ms: i64,
 }
 
 impl SessionClock {
-    /// Starts a clock that shows `offset` now.
+    /// Starts a session clock that shows `offset` now.
     pub fn start(offset: SessionTime) -> SessionClock {
         let now = Instant::now();
         let ahead_ms = WallTime::now().unix_ms as i64 - millis(offset);
@@ -77,7 +77,7 @@ fn millis(time: SessionTime) -> i64 {
 /// A time of the wall clock, in UTC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WallTime {
-    /// Milliseconds since 1970-01-01.
+    /// Milliseconds since 1970-01-01 (UTC).
     unix_ms: u64,
 }
 
@@ -137,7 +137,7 @@ mod tests {
         assert!((told - 3_600_000).abs() < 100, "{told}");
         assert_eq!(clock.jump_at(shows(400), wall_after(3_600_400)), None);
         assert!(clock.jump_at(shows(400), wall_after(400)).is_some_and(|by_ms| by_ms < -3_599_000));
-        // The computer sleeps for a minute.
+        // The computer is suspended for a minute.
         assert_eq!(clock.at(after(60_400)), shows(400));
         assert!(clock.jump_at(shows(400), wall_after(60_400)).is_some_and(|by_ms| (59_900..60_100).contains(&by_ms)));
         assert_eq!(clock.at(after(60_500)), shows(500));

@@ -3,7 +3,7 @@
 
 use std::time::{Duration, Instant};
 
-/// Number of clock replies averaged for the offset (as Pupil Labs does).
+/// Number of clock replies averaged for the offset between two clocks (as Pupil Labs does).
 pub(super) const ANSWERS: usize = 10;
 /// Largest difference between two replies' offsets that their delays do not explain, in seconds; beyond it, the other
 /// clock was slewed between them, and they are not averaged. Capture's Time Sync slews by 0.5 ms every 0.1 s, up to 10

@@ -105,7 +105,7 @@ impl ConnectionTable {
         Some(Arrival { place, made_room: is_full })
     }
 
-    /// Index of the connection to be replaced, among those of this address or among all.
+    /// Index of the connection that a new one may replace, among those of this address or among all.
     fn replaceable(&self, entries: &[ConnectionEntry], only: Option<IpAddr>, now: Instant) -> Option<usize> {
         let is_waiting = |entry: &ConnectionEntry| entry.standing == ConnectionStanding::Waiting;
         let mut waiting = BTreeMap::<IpAddr, usize>::new();
@@ -172,7 +172,7 @@ impl ConnectionPlace {
         });
     }
 
-    /// Completes when the connection is replaced and has to be closed.
+    /// Completes when another connection replaces this one, which then has to be closed.
     pub async fn closed(&self) {
         // An error means that the table entry no longer exists, which has the same consequence.
         let _ = self.closing.clone().wait_for(|closing| *closing).await;
@@ -192,8 +192,8 @@ impl Drop for ConnectionPlace {
     }
 }
 
-/// The network that limits count as one address: an IPv4 address, or the /64 prefix of an IPv6 address, which one site can
-/// use completely.
+/// The network that limits count as one address: an IPv4 address, or the /64 prefix of an IPv6 address, all of which
+/// one site can use.
 pub fn network_of(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V4(address) => address.into(),

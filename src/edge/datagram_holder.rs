@@ -23,7 +23,7 @@ impl DatagramHolder {
         DatagramHolder { senders, holder: None }
     }
 
-    /// Whether a datagram from this address is read.
+    /// Whether a gaze datagram from this address is read.
     pub fn admits(&self, from: IpAddr, now: Instant) -> bool {
         match (self.senders, self.holder) {
             (GazeSenders::Any, _) | (_, None) => true,

@@ -129,8 +129,8 @@ impl ExportFolder {
         self.write_table(Row::TABLE, |out| out.write_all(&rows).map(|()| !rows.is_empty()))
     }
 
-    /// Writes the event tables from the stored rows of these recordings, in this order, and removes the temporary files. Returns the
-    /// tables that have rows.
+    /// Writes the event tables from the stored rows of these recordings, in this order, and removes the temporary
+    /// files. Returns the tables that have rows.
     ///
     /// # Errors
     /// The files cannot be written.

@@ -18,7 +18,7 @@ pub type FileResult<T> = Result<T, FileError>;
 /// An error of a file that the program reads or writes: unreadable, unsuitable as a whole, or invalid in one place.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum FileError {
-    /// The file cannot be read.
+    /// The file cannot be read or written.
     #[error("{}: cannot be read: {reason}", path.display())]
     Unreadable {
         /// Path of the file.

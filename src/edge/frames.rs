@@ -129,7 +129,7 @@ impl FrameWriter {
 /// Runs a write on a separate thread, and waits for it until the time limit; a write that takes longer counts as done.
 ///
 /// # Errors
-/// Errors of the write within the time limit, or the thread cannot be started.
+/// The write fails within the time limit, or the thread cannot be started.
 pub(super) fn write_within(
     longest: Duration,
     write: impl FnOnce() -> io::Result<()> + Send + 'static,
@@ -147,6 +147,6 @@ fn discard_unread() {
     let _ = tcflush(io::stdout(), QueueSelector::OFlush);
 }
 
-/// Not available on this system.
+/// Discarding unread terminal output is not available on this operating system.
 #[cfg(not(unix))]
 fn discard_unread() {}

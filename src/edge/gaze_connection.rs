@@ -31,7 +31,7 @@ pub(super) type SharedGate = Arc<Mutex<GazeGate>>;
 pub(super) struct GazeConnection {
     /// TCP stream of the connection.
     pub stream: TcpStream,
-    /// Address of the sender.
+    /// Network address of the sender.
     pub from: IpAddr,
     /// Entry of the connection in the table of connections.
     pub place: ConnectionPlace,
@@ -59,7 +59,7 @@ pub(super) async fn attend(connection: GazeConnection) {
 
 /// Counts a rejected sender of gaze.
 pub(super) fn reject(news: &Sender<GazeNews>) {
-    // A closed or full channel has more serious consequences than a wrong count.
+    // A queue that is closed or full has worse consequences than a wrong count of rejected senders.
     let _ = news.try_send(GazeNews::Rejected(1));
 }
 
@@ -87,7 +87,7 @@ struct LineReader {
 }
 
 impl LineReader {
-    /// Adds a byte; returns the content of the line that it ends, if any.
+    /// Adds a byte to the present line; returns the content of the line that the byte ends, if any.
     fn take(&mut self, byte: u8) -> Option<LineContent> {
         if byte != b'\n' {
             // The limit protects the memory against a sender that never ends its line.
@@ -100,7 +100,7 @@ impl LineReader {
         self.end()
     }
 
-    /// Ends the line and returns its content, if any.
+    /// Ends the present line and returns its content, if any.
     fn end(&mut self) -> Option<LineContent> {
         let code = if self.has_line || self.is_too_long { None } else { code_in(&self.line) };
         let found = match (code, self.is_too_long) {

@@ -19,7 +19,7 @@ const MAX_SAMPLES: usize = 5_184_000;
 pub struct GazeFile {
     /// Samples in the file's order, each with its time on the trial's clock in seconds.
     pub samples: Vec<(f64, GazeSample)>,
-    /// Number of malformed lines.
+    /// Number of malformed lines in the gaze file.
     pub malformed: u64,
 }
 

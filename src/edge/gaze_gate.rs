@@ -111,7 +111,7 @@ impl GazeGate {
             return;
         }
         let refused = GazeNews::Refused { from: from.to_canonical(), why, senders: self.untold };
-        // A closed or full channel has more serious consequences than a missing notice.
+        // A queue that is closed or full has worse consequences than a missing notice.
         if self.news.try_send(refused).is_ok() {
             (self.told, self.untold) = (Some(now), 0);
         }

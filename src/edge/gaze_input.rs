@@ -29,7 +29,7 @@ pub enum GazeNews {
         /// Number of senders rejected since the last such message.
         senders: u64,
     },
-    /// Number of messages dropped because the queue was full.
+    /// Number of tracker messages dropped because the queue to the session was full.
     Overrun(u64),
     /// A tracker's program started to send; its clock may differ from before.
     Began,
@@ -70,7 +70,7 @@ pub enum SenderRefusal {
     Unlisted,
     /// The sender has sent something else than the pairing code.
     Unpaired,
-    /// The pairing code was wrong.
+    /// The sender sent a wrong pairing code.
     WrongCode,
     /// The pairing code was not checked, because too many wrong ones came before.
     Locked,

@@ -46,7 +46,7 @@ pub struct GazeListener {
 }
 
 impl GazeListener {
-    /// Address to which other computers send.
+    /// Address to which gaze senders at other computers send.
     pub fn reachable(&self) -> SocketAddr {
         reachable(self.address)
     }
@@ -74,7 +74,7 @@ async fn take_connections(listener: TcpListener, gate: SharedGate, news: Sender<
     let table = ConnectionTable::new(LIMITS);
     while !news.is_closed() {
         let Ok((stream, from)) = listener.accept().await else {
-            // The process may be out of descriptors: the pause prevents a busy loop.
+            // The process may have run out of file descriptors: the pause prevents a busy loop.
             sleep(Duration::from_millis(100)).await;
             continue;
         };

@@ -12,7 +12,7 @@ use crate::gaze::surface::SurfaceMap;
 /// Description of valid gaze files, for error messages.
 const REMEDY: &str = "gaze on the display: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of \
                                  Pupil Cloud's Marker Mapper, or a recording's folder";
-/// Longest line of a table, in bytes.
+/// Longest line of a gaze table, in bytes.
 const MAX_LINE: u64 = 1 << 16;
 /// Columns that contain gaze in the scene camera's image, from which the gaze on the display cannot be computed.
 const SCENE_COLUMNS: [&str; 3] = ["gaze x [px]", "gaze position in reference image x [px]", "norm_pos_x"];
@@ -21,7 +21,7 @@ const SCENE_COLUMNS: [&str; 3] = ["gaze x [px]", "gaze position in reference ima
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum GazeExporter {
     PupilPlayer,
-    /// Marker Mapper and Neon Player, whose columns have the same names.
+    /// Pupil Cloud's Marker Mapper and Neon Player, whose columns have the same names.
     MarkerMapper,
 }
 

@@ -11,8 +11,8 @@ pub(super) fn reachable(mut listening: SocketAddr) -> SocketAddr {
     listening
 }
 
-/// Address of this machine in the network, found without sending anything (the target is a documentation address, RFC 5737 and
-/// RFC 3849).
+/// Address of this machine in the network, found without sending anything (the target is a documentation address, RFC
+/// 5737 and RFC 3849).
 fn address_outside(any: IpAddr) -> Option<IpAddr> {
     let elsewhere: IpAddr = match any {
         IpAddr::V4(_) => Ipv4Addr::new(192, 0, 2, 1).into(),

@@ -31,7 +31,7 @@ pub(super) enum PairingVerdict {
     Right,
     /// The code was wrong, and the address is locked for this time.
     Wrong(Duration),
-    /// The code was not checked: the address is locked for this time.
+    /// The code was not checked: the address is still locked for this time.
     Locked(Duration),
 }
 

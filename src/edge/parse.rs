@@ -16,19 +16,19 @@ use crate::session::plan::{Questionnaire, Tutorial};
 /// Kind of a file that people write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
-    /// A session file.
+    /// A session file: the settings of a session.
     Session,
-    /// A layout file of a kitchen.
+    /// A layout file of a kitchen: places, buttons and the display.
     Layout,
-    /// A recipe file of a kitchen.
+    /// A recipe file of a kitchen: items, dishes and their recipes.
     Recipes,
     /// A parameter file of the human model (beliefs and choices of simulated people).
     HumanModel,
-    /// A key file of the console.
+    /// A key file, which changes keys of the console.
     Keys,
-    /// A questionnaire.
+    /// A questionnaire for participants.
     Questionnaire,
-    /// A tutorial.
+    /// A tutorial for participants.
     Tutorial,
     /// Texts of the participant's display in a language.
     Language,

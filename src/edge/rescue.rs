@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::file_error::read_regular;
 use super::temporary::new_folder;
 
-/// Prefix of rescue folders in the system's temporary folder.
+/// Prefix of the folders for rescued recordings in the system's folder for temporary files.
 pub const RESCUED: &str = "tomcom-rescued-";
 /// File name of the note in the folder of a rescued recording.
 pub const RESCUE_NOTE_NAME: &str = "rescued.toml";

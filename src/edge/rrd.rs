@@ -61,7 +61,7 @@ impl RrdState {
     }
 }
 
-/// Length and checksum of a file.
+/// Length and CRC-32 checksum of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Sum {

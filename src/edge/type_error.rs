@@ -78,7 +78,7 @@ fn values(expected: &str) -> String {
     }
 }
 
-/// List of the known settings.
+/// The known settings as a list in words, from serde's notation.
 fn settings(expected: &str) -> String {
     expected.replace('`', "")
 }

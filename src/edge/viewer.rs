@@ -91,7 +91,8 @@ pub fn open(viewer: &Path, file: &Path, at_ns: Option<u64>) -> io::Result<()> {
 fn go_to(port: u16, at_ns: u64) -> io::Result<()> {
     let mut viewer = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
     viewer.set_read_timeout(Some(ANSWER))?;
-    // SetTimeCursorRequest { timeline (2): Timeline { name (1) }, time (3): TimelineTime { time (1) } }
+    // Protocol Buffers message: SetTimeCursorRequest { timeline (2): Timeline { name (1) }, time (3): TimelineTime {
+    // time (1) } }
     let mut request = field(2, &field(1, TRIAL_TIME.as_bytes()));
     request.extend(field(3, &[&[0x08], &varint(at_ns)[..]].concat()));
     let length = (request.len() as u32).to_be_bytes();

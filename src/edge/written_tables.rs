@@ -67,12 +67,12 @@ fn has_columns_of(header: &ByteRecord, table: Table) -> bool {
     header.iter().eq(columns(table).iter().map(|row| row.column.as_bytes()))
 }
 
-/// A CSV reader of all records including the header, with any number of cells and any bytes.
+/// A CSV reader of all records including the header, which accepts any number of cells and any bytes.
 pub fn reader<R: io::Read>(table: R) -> csv::Reader<R> {
     ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table)
 }
 
-/// All records of a small table; empty if the file does not exist.
+/// All records of a CSV table; empty if the file does not exist.
 ///
 /// # Errors
 /// The file exists but cannot be read.

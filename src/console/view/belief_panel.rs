@@ -38,7 +38,7 @@ pub(super) const QUIET: &str = "No false beliefs";
 /// Text of the belief panel before the trial's first estimate.
 const BEFORE: &str = "estimated from the trial's start on";
 
-/// Drawing context of the belief panel.
+/// Drawing context of the belief panel: session, present time, and estimates.
 struct Panel<'a> {
     session: &'a Session,
     now: SessionTime,

@@ -15,7 +15,7 @@ use crate::history::wording;
 use crate::measures::cause_codes::Code;
 use crate::session::Session;
 
-/// Columns of an error's number, and of its time.
+/// Columns of the number of an error in a rater's list, and of the error's time.
 const NUMBER: u16 = 4;
 const CLOCK: u16 = 6;
 /// Least width, in columns, of an error list that shows codes in full.

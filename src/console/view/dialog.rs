@@ -49,7 +49,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Sess
     }
 }
 
-/// Draws a question with the keys that confirm it.
+/// Draws a yes-or-no question with the keys that answer it.
 fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str) {
     let inside = open(brush, screen, (46, lines.len() as u16 + 5), title, "");
     for (row, line) in lines.iter().enumerate() {
@@ -121,7 +121,7 @@ const HELP_INDENT: u16 = 7;
 enum Line<'a> {
     Heading(&'a str),
     Key(&'a KeyBinding),
-    /// A sign of the panels with its meaning.
+    /// A sign that panels draw, with its meaning.
     Sign(&'static str, &'static str),
     Space,
 }

@@ -16,7 +16,7 @@ use crate::session::gaze_samples::faults;
 
 /// Time for which the last gaze sample is drawn, in seconds.
 const GAZE_S: f64 = 3.0;
-/// Length of the trail on the gaze map, in seconds.
+/// Duration of the trail of gaze on the gaze map, in seconds.
 const TRAIL_S: f64 = 2.0;
 
 /// Draws the gaze panel.

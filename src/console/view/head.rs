@@ -78,7 +78,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// Whether the console shows a recording that does not grow.
+/// Whether the console replays a recording that is no longer being made.
 fn is_replayed(model: &ConsoleModel) -> bool {
     model.playback.as_ref().is_some_and(|playback| !playback.follows)
 }

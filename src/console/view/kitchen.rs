@@ -1,5 +1,5 @@
-//! The kitchen panel, arranged like the wall display (robot left, shared places in the centre, human right): contents, recent
-//! changes, keys of signals and buttons, and the gaze.
+//! The kitchen panel, arranged like the wall display (robot left, shared places in the centre, human right): contents,
+//! recent changes, keys of signals and buttons, and the gaze.
 
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};

@@ -28,7 +28,7 @@ pub(super) struct ShownOffer<'a> {
     reason: Option<&'a Reason>,
 }
 
-/// The offer that the wizard sees now.
+/// The offer that is shown to the wizard now, if any.
 pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<ShownOffer<'a>> {
     if beliefs::visibility(session, model) < Visibility::Recommendation
         || session.spec.trial.condition == Condition::Assistant

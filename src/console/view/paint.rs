@@ -133,7 +133,7 @@ impl Painter<'_> {
         }
     }
 
-    /// The style of a role in this theme.
+    /// The style of a text role (such as a title or an alarm) in this theme.
     pub fn style(&self, role: TextRole) -> Style {
         self.theme.style(role)
     }

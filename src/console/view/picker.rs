@@ -18,7 +18,7 @@ use crossterm::event::KeyCode;
 
 /// Largest size of a list: columns and rows.
 const MOST: (u16, u16) = (72, 26);
-/// Rows around the list: frame, search line, separator, key hints.
+/// Rows around a list: frame, search line, separator, key hints.
 const AROUND: u16 = 6;
 /// Text that says how the entries of a list are filtered.
 pub(super) const TYPE: &str = "type to filter, without spaces: ";

@@ -10,7 +10,7 @@ use crate::console::panel::Panel;
 use crate::session::Session;
 use crate::session::settings::Visibility;
 
-/// Smallest usable terminal: columns and rows.
+/// Smallest terminal that the console supports: columns and rows.
 pub const LEAST: (u16, u16) = (72, 22);
 
 /// Least number of columns at which panels are placed side by side.
@@ -72,7 +72,7 @@ pub struct Regions {
 
 /// Least number of columns at which the offer and its reason fit into one line.
 const OFFER_COLUMNS: u16 = 140;
-/// Least width of the kitchen panel for unabbreviated names of usual length.
+/// Least width of the kitchen panel, in columns, at which names of usual length need no abbreviation.
 const KITCHEN_COLUMNS: u16 = 81;
 /// Height of the timeline with its title, in rows.
 const TIMELINE_ROWS: u16 = 7;
@@ -233,7 +233,7 @@ impl Regions {
         regions
     }
 
-    /// Area of a panel.
+    /// Screen area of a panel.
     pub fn panel_area(&self, panel: Panel) -> Rect {
         match panel {
             Panel::Kitchen => self.kitchen,
@@ -355,7 +355,7 @@ fn comparison_rows(room: ScreenSize, assistants: u16) -> u16 {
     }
 }
 
-/// Area inside a frame.
+/// Area inside the frame of a panel.
 pub fn inside(area: Rect) -> Rect {
     Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(2) }
 }

@@ -1,4 +1,4 @@
-//! The robot panel: ongoing press, progress of the arm, reason for being idle, and pose of the arm.
+//! The robot panel: ongoing press, progress of the arm, reason for being idle, and joint angles of the arm.
 
 use std::f64::consts::TAU;
 
@@ -168,7 +168,7 @@ fn release(model: &ConsoleModel) -> String {
         .unwrap_or_default()
 }
 
-/// Draws that the robot is held; returns the next column and the remaining width.
+/// Draws that the wizard holds the robot before its next press; returns the next column and the remaining width.
 fn held(brush: &mut Painter, x: u16, y: u16, columns: u16, model: &ConsoleModel) -> (u16, u16) {
     badge(brush, x, y, columns, " HELD ", &format!(" {} ", release(model)))
 }

@@ -10,7 +10,7 @@ use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::session::Session;
 
-/// Draws the position in the recording.
+/// Draws the bar of the position in the recording.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let (area, Some(playback)) = (regions.scrub, &model.playback) else { return };
     if area.area() == 0 {

@@ -28,7 +28,7 @@ type PagePart = (u16, String, TextRole);
 pub(super) struct Page {
     columns: u16,
     lines: Vec<Vec<PagePart>>,
-    /// Index of the line that must be visible.
+    /// Index of the line that must be visible if the page is longer than the screen.
     focus: usize,
     /// Lines that can be clicked, each with the key that a click stands for.
     keys: Vec<(usize, KeyChord)>,

@@ -4,7 +4,7 @@
 
 use ratatui::style::{Color, Modifier, Style};
 
-/// Role of a text on the screen, from which its style follows.
+/// Role of a text on the screen, such as a title or an alarm, from which its style follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextRole {
     /// Style of ordinary text.
@@ -43,7 +43,7 @@ pub enum TerminalBackground {
 pub struct Theme {
     /// Whether colours are used; without colours, weight and signs tell the same.
     pub colour: bool,
-    /// Whether signs beyond ASCII are used.
+    /// Whether the signs may be Unicode characters outside ASCII.
     pub unicode: bool,
     /// Terminal background that the colours must contrast with.
     pub ground: TerminalBackground,

@@ -44,11 +44,11 @@ struct Talk {
     allowed: (f64, Instant),
     /// Number of the page's last press.
     pressed: u64,
-    /// Last pressed button with its time on the server's clock.
+    /// Name of the last pressed button, and the time of the press on the server's clock.
     last: Option<(String, f64)>,
 }
 
-/// Serves a page until one side closes the connection.
+/// Serves a participant page until one side closes the connection.
 pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<ConnectionPlace>) {
     let now = Instant::now();
     let (page, size, life) = (String::new(), ActivePage::default(), PageLife::new(now));

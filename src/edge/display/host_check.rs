@@ -1,5 +1,5 @@
-//! Check of the `Host` and `Origin` headers. A browser lets every website connect to this machine, but no website can change
-//! these two headers.
+//! Check of the `Host` and `Origin` headers of HTTP requests. A browser lets every website connect to this machine, but
+//! no website can change these two headers.
 
 use axum::http::{HeaderMap, HeaderName, Uri, header};
 
@@ -10,7 +10,7 @@ use crate::edge::host_name::is_local;
 /// (DNS rebinding). In the network, the pairing code keeps foreign websites out.
 pub(super) fn has_own_host(headers: &HeaderMap, target: &Uri, has_code: bool) -> bool {
     let Some(host) = single(headers, header::HOST) else { return false };
-    // A host in the request line takes precedence over the header (RFC 9112, section 3.2.2).
+    // A host in the HTTP request line takes precedence over the `Host` header (RFC 9112, section 3.2.2).
     let is_named_alike = target.authority().is_none_or(|authority| authority.as_str() == host);
     is_named_alike && (has_code || is_local(host))
 }

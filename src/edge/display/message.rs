@@ -39,7 +39,7 @@ pub enum FromPage {
         #[serde(default)]
         waits: bool,
     },
-    /// New size of the page.
+    /// New size of the page, after its window was resized.
     Size {
         /// Width of the page in pixels.
         width: u32,
@@ -54,7 +54,7 @@ pub enum FromPage {
         t: f64,
         /// Round-trip time of the page's previous ping, in milliseconds.
         took: Option<f64>,
-        /// Whether the page is hidden.
+        /// Whether the page is hidden, such as behind another browser tab.
         #[serde(default)]
         hidden: bool,
     },
@@ -76,7 +76,7 @@ pub enum FromPage {
     },
     /// Report that the page has drawn the event with this sequence number.
     Drawn {
-        /// Sequence number of the event.
+        /// Sequence number of the event that was drawn.
         cue: u64,
         /// Time of the drawing, in milliseconds on the server's clock.
         at: f64,
@@ -95,7 +95,7 @@ pub enum FromPage {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub(super) enum ToPage {
-    /// Answer to a ping: the ping's time and the server's time.
+    /// Answer to a page's ping: the time in the ping, and the server's time.
     Pong { t: f64, at: f64 },
     /// Texts of the page in the participant's language.
     Words { words: BTreeMap<String, String> },
@@ -197,7 +197,7 @@ pub(super) fn robot(pose: &RobotPose) -> Arc<str> {
 }
 
 pub(super) fn text(message: &impl Serialize) -> Arc<str> {
-    // All messages have string keys, so serialisation cannot fail.
+    // Messages have only string keys, so serialisation cannot fail.
     Arc::from(serde_json::to_string(message).unwrap_or_default())
 }
 

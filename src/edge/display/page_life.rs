@@ -1,9 +1,9 @@
-//! Detection of pages that are gone. A browser answers the server's pings by itself, even if its page hangs. The page's own
-//! messages come from timers, which browsers throttle to one per minute while the page is hidden.
+//! Detection of participant pages that are gone. A browser answers the server's pings by itself, even if its page
+//! hangs. The page's own messages come from timers, which browsers throttle to one per minute while the page is hidden.
 
 use std::time::{Duration, Instant};
 
-/// Interval of the server's pings.
+/// Interval of the server's pings to a page.
 const PING: Duration = Duration::from_secs(2);
 /// Silence of a browser (no answer to pings) after which it counts as gone.
 const SILENCE: Duration = Duration::from_secs(8);

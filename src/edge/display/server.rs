@@ -85,7 +85,7 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> 
 async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers: Answers) {
     loop {
         let Ok((stream, from)) = listener.accept().await else {
-            // The process may be out of descriptors: the pause prevents a busy loop.
+            // The process may have run out of file descriptors: the pause prevents a busy loop.
             sleep(AGAIN).await;
             continue;
         };
@@ -117,7 +117,7 @@ async fn answer(stream: TcpStream, place: Arc<ConnectionPlace>, hub: Arc<ServerS
     http.timer(TokioTimer::new()).header_read_timeout(HEADER).keep_alive(false).max_buf_size(MAX_REQUEST);
     let served = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
     tokio::select! {
-        // Errors and time-outs close the connection as success does.
+        // Errors and time-outs close the connection in the same way as success does.
         _ = timeout(ANSWER, served) => {}
         () = place.closed() => {}
     }

@@ -55,7 +55,7 @@ impl DisplayStatus {
     }
 }
 
-/// Increments a counter.
+/// Adds 1 to a counter.
 pub(super) fn count(counter: &AtomicU64) {
     counter.fetch_add(1, Ordering::Relaxed);
 }

@@ -144,7 +144,7 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
     PreflightCheck::new("gaze", PreflightVerdict::Failed, found, "start what sends it; name and type under [lsl.gaze]")
 }
 
-/// Checks whether a gaze file can be replayed.
+/// Checks whether the session's gaze file can be replayed.
 fn file(tracker: &TrackerSpec) -> PreflightCheck {
     let path = tracker.file.as_deref().unwrap_or_default();
     let remedy =

@@ -19,7 +19,7 @@ pub enum ForgetError {
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
     Recording(WriteError),
-    /// A file cannot be read.
+    /// A file with possible data of the participant cannot be read.
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
     File(Box<FileError>),

@@ -38,7 +38,7 @@ struct Rulings {
 /// Why a decision about a recording cannot be recorded.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ExclusionError {
-    /// A file cannot be read.
+    /// The recording, or an earlier decision, cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),

@@ -121,8 +121,8 @@ pub fn is_damaged_log(name: &str) -> bool {
     number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// Renames an unusable log to the first free one of `events.jsonl.damaged`, `events.jsonl.damaged2`, …; returns its new path, or
-/// `None` if there was no log.
+/// Renames an unusable log to the first free one of `events.jsonl.damaged`, `events.jsonl.damaged2`, …; returns its new
+/// path, or `None` if there was no log.
 fn move_aside(log: &Path) -> io::Result<Option<PathBuf>> {
     let named = |n: u32| {
         let number = if n == 1 { String::new() } else { n.to_string() };

@@ -57,8 +57,8 @@ impl SimulatedLog {
     }
 }
 
-/// Checks that a simulated recording may be written to this folder: it may replace a recording with the same header, and a log
-/// that ends before the end of its header.
+/// Checks that a simulated recording may be written to this folder: it may replace a recording with the same header,
+/// and a log that ends before the end of its header.
 ///
 /// # Errors
 /// The folder holds another recording.
@@ -88,7 +88,7 @@ fn is_without_header(path: &Path) -> bool {
     line.is_ok_and(|line| ends_in_header(&line))
 }
 
-/// Whether this folder holds the complete recording of this header.
+/// Whether this folder holds the complete recording that has this header.
 fn is_whole(folder: &Path, header: &Header) -> bool {
     let ends = || -> io::Result<bool> {
         let mut log = open_regular(&folder.join(LOG_NAME))?;

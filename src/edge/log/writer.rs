@@ -85,7 +85,7 @@ impl LogWriter {
         Ok(LogWriter { folder, path, out, prompt, flushed_at: SessionTime::ZERO, settings, home, lock })
     }
 
-    /// The folder of the recording.
+    /// Folder of the recording that is being written.
     pub fn folder(&self) -> &Path {
         &self.folder
     }

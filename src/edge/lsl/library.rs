@@ -46,7 +46,8 @@ macro_rules! functions {
             fn find(library: &Library, place: &str) -> Result<Functions, LslError> {
                 Ok(Functions { $($name: {
                     let symbol = concat!("lsl_", stringify!($name));
-                    // SAFETY: the signatures are those of liblsl's header files, which have not changed since version 1.13.
+                    // SAFETY: the signatures are those of liblsl's header files, which have not changed since version
+                    // 1.13.
                     let found = unsafe { library.get::<unsafe extern "C" fn($($argument),*) $(-> $result)?>(symbol) };
                     *found.map_err(|_| LslError::Unfit { place: place.to_string(), lacks: symbol })?
                 },)* })

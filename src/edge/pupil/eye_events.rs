@@ -25,7 +25,7 @@ pub struct FixationWindow {
     pub id: u64,
     /// Position on the display, in fractions, if known.
     pub at: Option<[f64; 2]>,
-    /// Beginning and end in Pupil time, in seconds.
+    /// Beginning and end of the window in Pupil time, in seconds.
     pub span_s: [f64; 2],
     /// Spatial dispersion of the gaze samples, in degrees. For merged windows the largest value, which may be less than
     /// the dispersion of the whole fixation.

@@ -130,7 +130,8 @@ impl<'a> Listener<'a> {
         }
     }
 
-    /// Passes on a parsed message. If the queue is full, messages are counted and dropped, so that Capture is never blocked.
+    /// Passes on a parsed message. If the queue is full, messages are counted and dropped, so that Capture is never
+    /// blocked.
     fn pass(&mut self, told: PupilMessage) {
         let (now, mut malformed) = (Instant::now(), told.malformed);
         for gaze in told.gaze {

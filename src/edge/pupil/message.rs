@@ -4,7 +4,7 @@
 use rmpv::Value;
 use rmpv::decode::read_value_with_max_depth;
 
-/// Largest nesting depth of a message.
+/// Largest nesting depth of a Capture message.
 const MAX_DEPTH: usize = 16;
 /// Largest number of items in a datum.
 const MAX_ITEMS: usize = 4096;
@@ -25,7 +25,7 @@ const STOPPED: &str = "notify.recording.stopped";
 pub struct SurfaceGaze {
     /// Position in fractions of the surface, origin at the bottom left, y up; can lie outside of the surface.
     pub norm_pos: [f64; 2],
-    /// Confidence from 0 to 1.
+    /// Capture's confidence in the sample, from 0 to 1.
     pub confidence: f64,
     /// Time of the sample in Pupil time, in seconds.
     pub timestamp: f64,
@@ -83,11 +83,11 @@ pub struct PupilMessage {
     pub other_surface: Option<String>,
     /// Notification of the recorder, if the message contains one.
     pub recorder: Option<RecorderNews>,
-    /// Number of malformed items; 1 for a malformed message.
+    /// Number of malformed items in the message; 1 if the whole message is malformed.
     pub malformed: u64,
 }
 
-/// Parses a message with this topic; topics without a subscription are ignored.
+/// Parses a Capture message with this topic; topics without a subscription are ignored.
 pub fn read(topic: &[u8], payload: &[u8], surface: &str) -> PupilMessage {
     let Ok(topic) = std::str::from_utf8(topic) else { return PupilMessage::default() };
     let surface_seen = topic.strip_prefix(SURFACES);
@@ -214,7 +214,7 @@ fn time(item: &Value) -> Option<f64> {
     number(item, "timestamp").filter(|value| (0.0..1e10).contains(value))
 }
 
-/// The payload of a notification that starts a plugin of Capture.
+/// The payload of a notification with which Capture starts a plugin.
 pub fn start_plugin(name: &str) -> Vec<u8> {
     let text = |text: &str| Value::from(text);
     encode(vec![

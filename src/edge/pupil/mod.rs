@@ -42,7 +42,7 @@ pub struct CaptureAddress {
     pub port: u16,
     /// Name of the surface that Capture defines by the display's markers.
     pub surface: String,
-    /// Map from the surface to the display.
+    /// Map from the surface to the wall display.
     pub map: SurfaceMap,
     /// Whether Capture is to make a recording; its recordings are annotated in any case.
     pub records: bool,

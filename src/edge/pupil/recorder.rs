@@ -24,7 +24,7 @@ const LAST_FRAMES: Duration = Duration::from_millis(500);
 /// A request of the session to Capture.
 #[derive(Debug)]
 pub enum CaptureRequest {
-    /// Start a recording with this name.
+    /// Start a recording with this name in Capture.
     Record(String),
     /// End Capture's recording.
     StopRecording,
@@ -37,7 +37,7 @@ pub enum CaptureRequest {
         /// Labels of the trial's state from now on, with which a recording that begins later is annotated first.
         state: Vec<String>,
     },
-    /// Report when all earlier requests have been carried out.
+    /// Report when all earlier requests to Capture have been carried out.
     Report(oneshot::Sender<()>),
 }
 

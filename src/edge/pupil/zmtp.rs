@@ -52,7 +52,7 @@ fn broken(what: &str) -> io::Error {
 #[derive(Debug, Default)]
 pub struct FrameAssembler {
     bytes: Vec<u8>,
-    /// Number of bytes already consumed.
+    /// Number of received bytes that have been consumed already.
     read: usize,
     frames: ZmtpMessage,
     size: usize,
@@ -122,10 +122,10 @@ pub struct ZmtpConnection {
 }
 
 impl ZmtpConnection {
-    /// Connects and performs the handshake.
+    /// Connects to a ZeroMQ socket and performs the handshake.
     ///
     /// # Errors
-    /// Nothing listens at the address, or it does not speak the protocol.
+    /// Nothing listens at the address, or the other side does not speak the protocol.
     pub async fn open(address: &str, port: u16, role: SocketRole) -> io::Result<ZmtpConnection> {
         let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no answer");
         timeout(PATIENCE, ZmtpConnection::agree(address, port, role)).await.map_err(late)?
@@ -177,7 +177,7 @@ impl ZmtpConnection {
         }
     }
 
-    /// Waits for the next message; cancel safe.
+    /// Waits for the next ZeroMQ message; cancel safe.
     ///
     /// # Errors
     /// The connection ended, or the bytes are not a message.
@@ -190,7 +190,7 @@ impl ZmtpConnection {
         }
     }
 
-    /// Sends a message.
+    /// Sends a ZeroMQ message.
     ///
     /// # Errors
     /// The connection ended, or the other side accepts no data.

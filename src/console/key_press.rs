@@ -58,8 +58,7 @@ pub(super) fn press(
         model.dialog = None;
     }
     match action {
-        // The space bar types a space only in text input, where the trial is paused and the robot stands; everywhere
-        // else it stops the robot.
+        // In text input, where the robot stands, the space bar types a space instead of stopping it.
         _ if let Some(Dialog::Note(line)) = &model.dialog => {
             let line = line.clone();
             let counts = !chord.ctrl && (code != KeyCode::Enter || touch == Touch::Press);

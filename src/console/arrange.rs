@@ -23,7 +23,7 @@ pub enum MapElement {
 /// An element of the kitchen map with its box on the screen.
 #[derive(Clone, Debug)]
 pub struct MapBox {
-    /// Element of the kitchen that the box shows.
+    /// Kitchen element (location or storage) that the box on the screen shows.
     pub thing: MapElement,
     /// Rectangle of terminal cells in which the element is drawn.
     pub cells: Rect,
@@ -39,14 +39,14 @@ pub struct MapBox {
 pub struct AgentZone {
     /// Agent that reaches these columns of the kitchen map; `None` if both agents do.
     pub owner: Option<Agent>,
-    /// Rectangle of terminal cells that the zone takes.
+    /// Rectangle of terminal cells that the agent's zone takes.
     pub cells: Rect,
 }
 
 /// Kitchen map of the console: the boxes of all locations and storages, and the zones of the agents.
 #[derive(Clone, Debug)]
 pub struct KitchenMap {
-    /// Boxes of all locations and storages.
+    /// Boxes of all kitchen locations and ingredient storages on the map.
     pub spots: Vec<MapBox>,
     /// Zones of the two agents, whose names stand above the columns of the kitchen map.
     pub zones: Vec<AgentZone>,

@@ -34,7 +34,7 @@ pub struct EstimatedBelief {
     pub standing: BeliefStanding,
     /// Index of the value that the participant most probably believes.
     pub thinks: usize,
-    /// Index of the aspect's true value.
+    /// Index of the state aspect's true value.
     pub truth: usize,
     /// Expected probability of the value that the participant most probably believes.
     pub p: f32,

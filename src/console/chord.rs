@@ -36,15 +36,15 @@ const REMEDY: &str = "a character such as \"k\", a letter with ctrl such as \"ct
 pub struct KeyChord {
     /// Key code as the terminal reports it.
     pub code: KeyCode,
-    /// Whether ctrl is held.
+    /// Whether ctrl is held together with the key.
     pub ctrl: bool,
 }
 
 impl KeyChord {
-    /// The space bar, without ctrl.
+    /// Key chord of the space bar, without ctrl.
     pub const SPACE: KeyChord = KeyChord::plain(KeyCode::Char(' '));
 
-    /// This key without ctrl.
+    /// Key chord of this key without ctrl.
     pub const fn plain(code: KeyCode) -> KeyChord {
         KeyChord { code, ctrl: false }
     }

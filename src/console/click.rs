@@ -11,7 +11,7 @@ use crate::kitchen::AspectId;
 /// Action of a mouse click on the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClickAction {
-    /// Do what this key does.
+    /// Do what this key of the keyboard does.
     Key(KeyChord),
     /// Move the cursor to this row of the open list (counted among the rows that match the filter); choose the row if
     /// the cursor is already there.
@@ -31,16 +31,16 @@ pub enum ClickAction {
 pub struct ClickTarget {
     /// Screen cells that can be clicked.
     pub cells: Rect,
-    /// Action of a click on these cells.
+    /// Action of a mouse click on these screen cells.
     pub action: ClickAction,
 }
 
 /// The question whether to send a clicked signal; the signal is sent once the wizard confirms.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SendQuestion {
-    /// Key with the same action as the click.
+    /// Key of the keyboard with the same action as the click.
     pub chord: KeyChord,
-    /// Signal to be sent.
+    /// Signal that is sent to the participant once the wizard confirms.
     pub signal: Signal,
     /// Sequence number of the clicked offer; `None` if a signal was clicked that is not on offer.
     pub offer: Option<u64>,

@@ -16,7 +16,7 @@ const GAP: u16 = 2;
 pub struct CodebookEntry {
     /// Key that codes this cause; `None` for a heading and for continued lines of a definition.
     pub key: Option<KeyChord>,
-    /// Cause with its definition, or the heading's text.
+    /// Text of the entry: the error's cause with its definition, or a heading.
     pub words: String,
 }
 

@@ -56,7 +56,7 @@ fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
     Some(ConsoleCommand::Move(ReplayKey::ToEvent(error.press)))
 }
 
-/// Undoes the rater's last step, or redoes it.
+/// Undoes the rater's last change of a code, or redoes it.
 fn undone(model: &mut ConsoleModel, again: bool) -> Option<ConsoleCommand> {
     let coding = model.coding.as_mut()?;
     let press = if again { coding.redo() } else { coding.undo() };

@@ -10,7 +10,7 @@ use super::view::regions::{Regions, ScreenSize, below_title};
 pub struct CodingList {
     /// Screen area above the rows of errors: the coding progress, and the present error in words.
     pub head: Rect,
-    /// Screen area of the rows, one for each error.
+    /// Screen area of the rows of the list, one for each error.
     pub rows: Rect,
     /// Index of the error that is shown in the first row.
     pub first: usize,

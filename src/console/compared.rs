@@ -5,9 +5,9 @@ use crate::history::comparison::{LaneComparison, UnmatchedCommunication};
 /// Action of a key in the list of differences between wizard and assistant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ComparisonKey {
-    /// Go to the next difference.
+    /// Go to the next difference between wizard and assistant.
     Next,
-    /// Go to the previous difference.
+    /// Go to the previous difference between wizard and assistant.
     Last,
     /// Show what the wizard and the assistant each knew at the time of the difference.
     Open,

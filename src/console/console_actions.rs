@@ -23,7 +23,7 @@ use crate::session::offers;
 use crate::session::settings::Visibility;
 use crate::session::{Event, Phase, Session};
 
-/// Sends the signal of the open offer.
+/// Sends the signal of the open offer to the participant.
 fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if model.answered.is_some_and(|answered| model.clock.secs_since(answered) < ANSWER_S) {
         model.say(NoticeLevel::Refused, "not sent: this enter came right after that of a list");
@@ -41,7 +41,7 @@ fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand>
     }
 }
 
-/// Carries out the action of a key.
+/// Carries out the action of a key at the console.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
     match action {
         KeyAction::Signal(_, signal) => {

@@ -29,7 +29,7 @@ pub enum ConsoleCommand {
     Input(Event),
     /// Record the results of the preflight checks and start the trial.
     Start(Event),
-    /// Move a replay.
+    /// Move a replay to another position or change its speed.
     Move(ReplayKey),
     /// Save the rater's codes, and move the replay to the error whose code changed.
     Code {

@@ -44,7 +44,7 @@ const TRAIL: usize = 240;
 /// A dialog of the console that is open above its panels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Dialog {
-    /// Help: the table of keys.
+    /// Help of the console: the table of keys.
     Help,
     /// Question whether to end the session and close the console.
     Quit,
@@ -60,7 +60,7 @@ pub enum Dialog {
     Preflight,
     /// Gaze accuracy check: the targets, then the result.
     Calibration,
-    /// Text input of the wizard's free note.
+    /// Text input for the wizard's note.
     Note(TextInput),
     /// Text input of an answer to the shown questionnaire item: words or a number.
     Answer(TextInput),
@@ -73,7 +73,7 @@ pub enum Dialog {
 /// A short message of the console to the wizard, shown for a few seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// Text of the notice, in one line.
+    /// Text of the notice to the wizard, in one line.
     pub text: String,
     /// Severity of the notice.
     pub level: NoticeLevel,
@@ -97,16 +97,16 @@ pub enum RecordingStatus {
 pub struct ViewerStreamStatus {
     /// Address to which Rerun viewers connect; `None` if the stream is only written to a file.
     pub address: Option<String>,
-    /// Number of rows written to the stream.
+    /// Number of rows written to the Rerun stream.
     pub written: u64,
-    /// Number of rows dropped because the viewers were too slow.
+    /// Number of rows that the Rerun stream dropped because the viewers were too slow.
     pub dropped: u64,
 }
 
 /// State of the outgoing streams of the Lab Streaming Layer (LSL).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LslStatus {
-    /// Names of the streams that are sent.
+    /// Names of the LSL streams that are sent.
     pub streams: Vec<String>,
     /// Number of samples sent over LSL.
     pub sent: u64,
@@ -118,7 +118,7 @@ pub struct LslStatus {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PressedKey {
     pub code: KeyCode,
-    /// Time of the terminal's last report of the key.
+    /// Time at which the terminal last reported the key.
     pub reported: SessionTime,
     /// Time at which the key last counted as newly pressed.
     pub counted: SessionTime,
@@ -135,11 +135,11 @@ pub struct ConsoleModel {
     pub size: (u16, u16),
     /// Colours and signs of the console.
     pub theme: Theme,
-    /// Table of key bindings.
+    /// Table of the console's key bindings.
     pub keys: KeyBindings,
     /// Whose keys are active: the wizard's or the participant's.
     pub layer: KeyLayer,
-    /// Dialog that is open above the panels, if any.
+    /// Dialog that is open above the console's panels, if any.
     pub dialog: Option<Dialog>,
     /// Latest notice to the wizard.
     pub notice: Option<Notice>,
@@ -151,7 +151,7 @@ pub struct ConsoleModel {
     pub lsl: Option<LslStatus>,
     /// Free disk space of the recording's folder in bytes; `None` if unknown.
     pub free_bytes: Option<u64>,
-    /// Panel that is shown alone at full size, if any.
+    /// Panel of the console that is shown alone at full size, if any.
     pub alone: Option<Panel>,
     /// First visible column of the help, or first visible line of a training report.
     pub help_from: usize,
@@ -178,7 +178,7 @@ pub struct ConsoleModel {
     pub errors: Vec<SessionTime>,
     /// Judgement of the trial's signals at the times when they were sent (hit, late or needless).
     pub signals: SignalJudge,
-    /// History of the belief estimate.
+    /// History of the estimate of the participant's beliefs.
     pub belief: BeliefHistory,
     /// State aspect whose estimated belief is shown over time.
     pub belief_focus: Option<AspectId>,
@@ -202,7 +202,7 @@ pub struct ConsoleModel {
     pub(super) clicked: Option<(KeyChord, SessionTime)>,
     /// Whether the terminal reports key repeats as such, separate from presses.
     pub(super) exact_keys: bool,
-    /// Key that was pressed last, to detect key repeat.
+    /// Key that was pressed last, by which key repeat is detected.
     pub(super) pressed: Option<PressedKey>,
 }
 

@@ -17,11 +17,11 @@ pub struct DisplayHealth {
     pub round_trip_ms: Option<f64>,
     /// Delay from the participant's last press to its effect on the screen, in milliseconds.
     pub redraw_ms: Option<f64>,
-    /// Number of connected pages that only watch.
+    /// Number of connected participant pages that only watch.
     pub watching: u64,
     /// Number of messages from pages that could not be read.
     pub malformed: u64,
-    /// Number of connections that were rejected.
+    /// Number of rejected connections to the participant's display.
     pub refused: u64,
 }
 

@@ -27,16 +27,16 @@ pub const WAIVERS: [&str; 4] =
 pub enum SheetContent<'a> {
     /// Questions of a freeze probe, while the trial stands still.
     Probe(&'a OpenProbe),
-    /// Steps to tick in order.
+    /// Steps of a phase of the study plan, to be ticked in order.
     Steps {
-        /// Heading of the sheet.
+        /// Heading of the sheet with steps.
         title: &'static str,
-        /// Steps that are to be done, in this order.
+        /// Steps that the wizard has to do, in this order.
         steps: &'a [String],
     },
     /// Tutorial, which the participant reads on the display.
     Tutorial(&'a Tutorial),
-    /// Items of a questionnaire.
+    /// Items of a questionnaire for the participant.
     Questions(&'a Questionnaire),
     /// Choice after an unmet practice criterion: repeat the practice, or waive the criterion.
     Failed,
@@ -96,7 +96,7 @@ pub(super) fn stroke(session: &Session, code: KeyCode, advances: bool) -> Option
     }
 }
 
-/// Carries out a key of the open sheet.
+/// Carries out a key of the open sheet (a form at full size).
 pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKey) -> Option<ConsoleCommand> {
     let sheet = sheet(session)?;
     if let SheetContent::Probe(open) = sheet {

@@ -5,9 +5,9 @@ use crate::gaze::calibration::{GazeAccuracy, USABLE_DEG};
 /// Action that the console proposes after a gaze accuracy check, which enter carries out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationAdvice {
-    /// Accept the gaze with its measured offset subtracted.
+    /// Accept the gaze with its measured offset subtracted from all samples.
     Corrected,
-    /// Accept the gaze without a correction.
+    /// Accept the gaze samples without a correction.
     AsItIs,
     /// Repeat the check: with and without correction the gaze is too inaccurate, or no accuracy was measured.
     Repeat,

@@ -108,7 +108,7 @@ fn ask(model: &mut ConsoleModel, question: PickerQuestion) -> Option<ConsoleComm
     None
 }
 
-/// Handles a key in the text input of a note.
+/// Handles a key in the text input for the wizard's note.
 pub(super) fn write(
     model: &mut ConsoleModel,
     session: &Session,
@@ -131,7 +131,7 @@ pub(super) fn write(
     }
 }
 
-/// Handles a key in an open list.
+/// Handles a key in an open list of answers to a question.
 pub(super) fn pick(
     model: &mut ConsoleModel,
     session: &Session,

@@ -15,11 +15,11 @@ pub(super) const ANSWER_S: f64 = 0.7;
 /// Meaning of a terminal's key report: newly pressed, pressed again or held, held, or released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Touch {
-    /// The key was newly pressed.
+    /// The key was newly pressed, according to the terminal's report.
     Press,
     /// The key was pressed a second time, or has been held since the first press and begins to repeat.
     Again,
-    /// The key is held down.
+    /// The key is held down, according to the terminal's report.
     Held,
     Release,
 }

@@ -44,17 +44,17 @@ pub enum KeyAction {
     SwitchLayer,
     /// Manual intervention: correct the kitchen, steer the robot, or abort the trial.
     Hand(ManualAction),
-    /// Move a replay.
+    /// Move a replay to another position or change its speed.
     Move(ReplayKey),
     /// Change which panels or which time the screen shows.
     Look(PanelKey),
     /// Show the estimated belief about one state aspect over time; pressed again, the next aspect.
     Belief,
-    /// Action in the comparison of wizard and assistant.
+    /// Select or open a difference in the comparison of wizard and assistant.
     Differ(ComparisonKey),
     /// Action of a rater who codes errors.
     Rate(RaterKey),
-    /// Open or close the help.
+    /// Open or close the help of the console.
     Help,
     /// Open the list of all actions (the palette).
     Palette,
@@ -85,9 +85,9 @@ pub enum ManualAction {
     NoteInWords,
     /// Exclude the trial from the analysis for a reason, or include it again.
     Exclude,
-    /// Ask for a freeze probe.
+    /// Request a freeze probe of the participant.
     AskProbe,
-    /// Skip the rest of a freeze probe, for a reason.
+    /// Skip the remaining questions of a freeze probe, for a reason.
     SkipProbe,
 }
 
@@ -98,7 +98,7 @@ pub enum PanelKey {
     Next,
     /// Show the previous panel at full size.
     Last,
-    /// Show all panels.
+    /// Show all panels of the console.
     All,
     /// Scroll the shown panel back in time.
     Back,
@@ -113,19 +113,19 @@ pub enum PanelKey {
 /// Action of a rater who codes the causes of errors in a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RaterKey {
-    /// Go to the next error.
+    /// Go to the next error in the recording.
     Next,
-    /// Go to the previous error.
+    /// Go to the previous error in the recording.
     Last,
     /// Code the error as a false belief about this location; for an order, about the recipe of its dish, too.
     Belief(LocationId),
     /// Code the error with another cause, such as a slip.
     Cause(CauseKind),
-    /// Remove the error's code.
+    /// Remove the code of the present error.
     Clear,
-    /// Undo the last change of a code.
+    /// Undo the last change of an error's code.
     Undo,
-    /// Redo the change that was undone last.
+    /// Redo the change of a code that was undone last.
     Redo,
     /// Move the selection to the next error of the list.
     ChooseLater,
@@ -142,11 +142,11 @@ pub enum KeySection {
     Replay,
     /// Keys that send signals, by location.
     Signals,
-    /// Keys of the participant's buttons, by button name.
+    /// Keys of the participant's buttons in the kitchen, by button name.
     Buttons,
 }
 
-/// Writes the table's name as it stands in key files.
+/// Writes the name of the table as it stands in key files.
 impl fmt::Display for KeySection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -163,15 +163,15 @@ impl fmt::Display for KeySection {
 pub struct KeyBinding {
     /// Table of the key file that contains the action.
     pub section: KeySection,
-    /// Name of the action in that table.
+    /// Name of the action in that table of the key file.
     pub name: String,
     /// Keys of the action; the first one is shown on the screen.
     pub chords: Vec<KeyChord>,
-    /// Action of these keys.
+    /// Action that these keys carry out.
     pub action: KeyAction,
     /// Heading under which the help lists the action.
     pub group: &'static str,
-    /// Description of the action in the help.
+    /// Description of the action in the console's help.
     pub help: String,
     /// Label of the action in the console's lowest line, if it is shown there.
     pub footer: Option<&'static str>,
@@ -197,9 +197,10 @@ impl KeyBinding {
 /// Where an invalid key assignment stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyPlace {
-    /// In the key file, at this byte range.
+    /// The invalid key stands in the key file, at this byte range.
     File(Range<usize>),
-    /// In the kitchen's layout file, as the key of a signal (wizard) or of a button (participant).
+    /// The invalid key stands in the kitchen's layout file, as the key of a signal (wizard) or of a button
+    /// (participant).
     Layout(KeyLayer, char),
 }
 
@@ -209,8 +210,8 @@ pub enum KeyPlace {
 pub struct KeyError {
     /// Where the assignment stands: in the key file or in the layout file.
     pub place: KeyPlace,
-    /// What is wrong with the assignment.
+    /// What is wrong with the key assignment.
     pub found: String,
-    /// What a valid assignment would be.
+    /// What a valid key assignment would be.
     pub remedy: String,
 }

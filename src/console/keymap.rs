@@ -167,7 +167,7 @@ pub fn write(lines: &[KeyBinding]) -> String {
         let own: Vec<&KeyBinding> = lines.iter().filter(|line| line.section == section).collect();
         let entries: Vec<String> = own.iter().map(|line| entry(line)).collect();
         let widest = entries.iter().map(|entry| entry.chars().count()).max().unwrap_or(0);
-        // Writing to a string cannot fail.
+        // Writing to a string in memory cannot fail.
         let _ = writeln!(text, "\n[{section}]  # {about}");
         for (line, entry) in own.iter().zip(&entries) {
             let _ = writeln!(text, "{entry:widest$}  # {}", line.help);

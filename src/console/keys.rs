@@ -124,7 +124,7 @@ impl KeyBindings {
         self.bindings.iter().find(acts)
     }
 
-    /// The key that sends the signal about a location.
+    /// The key that sends the signal about a kitchen location.
     pub fn of_signal(&self, location: LocationId) -> Option<KeyChord> {
         let is_it = |line: &&KeyBinding| matches!(line.action, KeyAction::Signal(about, _) if about == location);
         self.bindings.iter().find(is_it).and_then(|line| line.chords.first().copied())
@@ -145,7 +145,7 @@ impl KeyBindings {
         self.chord_for(&KeyAction::Press(button))
     }
 
-    /// The first key of an action.
+    /// The first key of an action at the console.
     pub fn chord_for(&self, action: &KeyAction) -> Option<KeyChord> {
         self.bindings.iter().find(|line| line.action == *action).and_then(|line| line.chords.first().copied())
     }

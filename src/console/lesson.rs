@@ -12,7 +12,7 @@ pub struct TrainingPanel {
     pub feedback: Vec<TrainingFeedback>,
     /// Score of the training so far: "2 hit, 1 missed, 3 wrong".
     pub score: String,
-    /// Whether the training has started.
+    /// Whether the wizard training has started.
     pub begun: bool,
 }
 
@@ -23,6 +23,6 @@ pub struct TrainingFeedback {
     pub clock: SessionTime,
     /// Severity, which selects the style in which the feedback is drawn.
     pub level: NoticeLevel,
-    /// Text of the feedback, in one line.
+    /// Text of the feedback on a signal, in one line.
     pub text: String,
 }

@@ -156,7 +156,7 @@ pub(super) fn wheel(
     None
 }
 
-/// The panel under a screen cell.
+/// The panel of the console under a screen cell.
 fn panel_at(regions: &Regions, cell: (u16, u16)) -> Option<Panel> {
     Panel::ALL.into_iter().find(|panel| regions.panel_area(*panel).contains(cell.into()))
 }

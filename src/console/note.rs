@@ -20,7 +20,7 @@ impl TextInput {
         TextInput { at: letters.len(), letters }
     }
 
-    /// Handles an editing key.
+    /// Handles a key that edits the text input.
     pub fn key(&mut self, code: KeyCode) {
         match code {
             KeyCode::Char(letter) if self.letters.len() < MOST && !letter.is_control() => {

@@ -52,7 +52,7 @@ pub struct PickerEntry {
 /// An open list from which the wizard chooses the answer to a question.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picker {
-    /// Question that the list asks.
+    /// Question that the list asks the wizard.
     pub question: PickerQuestion,
     /// Filter and cursor of the list.
     pub cursor: ListCursor,
@@ -65,7 +65,7 @@ pub enum PickerOutcome {
     Nothing,
     /// The list was closed without an answer.
     Left,
-    /// This answer was chosen.
+    /// The wizard chose this answer from the list.
     This(PickerAnswer),
 }
 

@@ -11,9 +11,9 @@ pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINIT
 pub enum ReplayKey {
     /// Play or pause the replay.
     PlayPause,
-    /// Go to the next event that is not a gaze sample.
+    /// Go to the next event of the recording that is not a gaze sample.
     StepForward,
-    /// Go to the previous event that is not a gaze sample.
+    /// Go to the previous event of the recording that is not a gaze sample.
     StepBack,
     /// Go to the next landmark of this kind, such as an error or a signal.
     On(ReplayLandmark),
@@ -23,21 +23,21 @@ pub enum ReplayKey {
     SeekForward,
     /// Go ten seconds back in the recording.
     SeekBack,
-    /// Play at the next higher speed.
+    /// Play the recording at the next higher speed.
     Faster,
-    /// Play at the next lower speed.
+    /// Play the recording at the next lower speed.
     Slower,
     /// Go to the beginning of the recording, before its first event.
     ToStart,
     /// Go to the position after the event with this sequence number.
     ToEvent(u64),
-    /// Go to this session time.
+    /// Go to this session time of the recording.
     ToTime(SessionTime),
     /// Go to the end of the recording; in a recording that is still being made, stay at its growing end.
     ToEnd,
 }
 
-/// State of a replay.
+/// State of a replay: its position, its speed, and the recording's state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Playback {
     /// Name of the recording, as shown in the head line.
@@ -46,9 +46,9 @@ pub struct Playback {
     pub playing: bool,
     /// Playback speed, as an index into [`SPEEDS`].
     pub speed: usize,
-    /// Session time of the last event that is known.
+    /// Session time of the last known event of the recording.
     pub length: SessionTime,
-    /// Number of events up to the replay's position.
+    /// Number of events of the recording up to the replay's position.
     pub event: usize,
     /// Number of events in the recording, as far as they are known.
     pub events: usize,

@@ -53,7 +53,7 @@ pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
         )
 }
 
-/// Whether the trial may be repeated.
+/// Whether the trial may be repeated, since it was aborted or excluded.
 pub(super) fn can_redo(session: &Session) -> bool {
     matches!(session.phase, Phase::Over(_)) && (session.aborted.is_some() || session.excluded.is_some())
 }

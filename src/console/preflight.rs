@@ -37,7 +37,7 @@ pub fn all_ok(checks: &[PreflightCheck]) -> bool {
     checks.iter().all(|check| check.verdict == PreflightVerdict::Ok)
 }
 
-/// The key of an action, as text.
+/// Name of the key that carries out an action.
 fn key(model: &ConsoleModel, action: &KeyAction) -> String {
     model.keys.chord_for(action).map(|key| key.to_string()).unwrap_or_default()
 }

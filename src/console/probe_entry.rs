@@ -5,7 +5,7 @@
 pub struct ProbeEntry {
     /// Numbers of the probe and of the question that the answer belongs to.
     of: (u32, usize),
-    /// Number of the selected choice; 0 is "I don't know".
+    /// Number of the selected answer; 0 is "I don't know".
     pub choice: Option<usize>,
     /// Whether the last key was a digit, so that another digit continues the number.
     pub is_typed: bool,

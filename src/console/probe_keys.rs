@@ -15,11 +15,11 @@ use crate::session::{Event, Phase, Session};
 /// Who enters the answers to a freeze probe's questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProbeAnswerer {
-    /// The participant enters answers on the display.
+    /// The participant enters the answers on the display.
     Display,
     /// The wizard enters at the console what the participant says.
     Console,
-    /// The simulated participant answers.
+    /// The simulated participant gives the answers.
     Simulated,
 }
 

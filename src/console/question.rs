@@ -5,7 +5,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 /// A question to the user with numbered answers, shown before a recording begins.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct QuestionPage {
-    /// Heading of the question.
+    /// Heading of the question to the user.
     pub title: String,
     /// Text of the question, as paragraphs.
     pub text: Vec<String>,
@@ -13,10 +13,10 @@ pub struct QuestionPage {
     pub answers: Vec<String>,
 }
 
-/// Reply of the user to a question.
+/// Reply of the user to a question before a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QuestionReply {
-    /// Index of the selected answer.
+    /// Index of the answer that the user selected.
     Answer(usize),
     /// The user quits the program.
     Leave,

@@ -30,7 +30,7 @@ struct CodeChange {
 /// State of coding the errors of a recording: the codes so far, and the steps to undo.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaterSession {
-    /// One rater, or two raters together.
+    /// Whether one rater codes, or two raters settle their differences.
     pub party: CodingParty,
     /// Errors to be coded, in order of time; for two raters, only those that they have to settle.
     pub errors: Vec<ListedError>,
@@ -40,7 +40,7 @@ pub struct RaterSession {
     pub finished: Vec<String>,
     /// Row of the error list that the arrow keys have selected, while the replay does not stand at that error.
     pub chosen: Option<usize>,
-    /// Codes at the time when the recording was opened.
+    /// Codes of the errors at the time when the recording was opened.
     opened: Codes,
     done: Vec<CodeChange>,
     undone: Vec<CodeChange>,
@@ -69,12 +69,12 @@ impl RaterSession {
         self.errors.iter().position(|error| self.code(error).is_none())
     }
 
-    /// The code that an error has, if any.
+    /// The rater's code of an error, if there is one.
     pub fn code(&self, error: &ListedError) -> Option<&Code> {
         self.codes.0.get(&error.press)
     }
 
-    /// Number of errors that have a code.
+    /// Number of errors that have a rater's code.
     pub fn coded(&self) -> usize {
         self.errors.iter().filter(|error| self.code(error).is_some()).count()
     }
@@ -88,7 +88,7 @@ impl RaterSession {
         self.errors.iter().filter(is_new).count()
     }
 
-    /// Gives an error a code, or removes its code.
+    /// Gives an error a rater's code, or removes the code.
     pub fn give(&mut self, press: u64, code: Option<Code>) {
         let before = self.codes.0.get(&press).cloned();
         if before != code {
@@ -133,7 +133,7 @@ impl RaterSession {
         };
     }
 
-    /// Names of those who code: "R1", "R1 and R2".
+    /// Names of the raters: "R1", "R1 and R2".
     pub fn name(&self) -> String {
         match &self.party {
             CodingParty::Rater(rater) => rater.clone(),
@@ -151,7 +151,7 @@ impl RaterSession {
         format!("{coded} of {all} {what}{now}")
     }
 
-    /// An error's code in words; "-" if the error has none.
+    /// The rater's code of an error in words; "-" if there is none.
     pub fn words(code: Option<&Code>) -> String {
         code.map_or("-".to_string(), wording::code)
     }

@@ -8,9 +8,9 @@ use super::list_cursor::{ListCursor, ListReply};
 /// An open list from which the user chooses a recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordingPicker {
-    /// Question above the list.
+    /// Question above the list of recordings.
     pub title: String,
-    /// Headings of the list's columns.
+    /// Headings of the columns in the list of recordings.
     pub headings: Vec<String>,
     /// Cells of each recording's row.
     pub rows: Vec<Vec<String>>,
@@ -18,7 +18,7 @@ pub struct RecordingPicker {
     pub cursor: ListCursor,
 }
 
-/// Result of the list of recordings.
+/// Result of a key in the list of recordings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordingReply {
     /// The recording with this index in [`RecordingPicker::rows`] was chosen.
@@ -65,7 +65,7 @@ impl RecordingPicker {
         self.take(if steps > 0 { KeyCode::Up } else { KeyCode::Down });
     }
 
-    /// Handles a key that is pressed without ctrl.
+    /// Handles a key in the list of recordings that is pressed without ctrl.
     pub fn take(&mut self, code: KeyCode) -> Option<RecordingReply> {
         let left = self.left();
         match self.cursor.key(left.len(), code) {

@@ -40,7 +40,7 @@ pub fn ask(question: &str) -> Option<String> {
     Some(String::from_utf8_lossy(&answer).into_owned())
 }
 
-/// On other systems, terminals are not queried.
+/// On other operating systems, terminals are not queried.
 #[cfg(not(unix))]
 pub fn ask(_: &str) -> Option<String> {
     None

@@ -74,7 +74,7 @@ fn millis(time: SessionTime) -> i64 {
     (time.0 / 1_000_000) as i64
 }
 
-/// A time of the wall clock, in UTC.
+/// A date and time of the wall clock, in UTC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WallTime {
     /// Milliseconds since 1970-01-01 (UTC).
@@ -137,7 +137,7 @@ mod tests {
         assert!((told - 3_600_000).abs() < 100, "{told}");
         assert_eq!(clock.jump_at(shows(400), wall_after(3_600_400)), None);
         assert!(clock.jump_at(shows(400), wall_after(400)).is_some_and(|by_ms| by_ms < -3_599_000));
-        // The computer is suspended for a minute.
+        // In this test, the computer is suspended for a minute.
         assert_eq!(clock.at(after(60_400)), shows(400));
         assert!(clock.jump_at(shows(400), wall_after(60_400)).is_some_and(|by_ms| (59_900..60_100).contains(&by_ms)));
         assert_eq!(clock.at(after(60_500)), shows(500));

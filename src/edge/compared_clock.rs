@@ -29,7 +29,7 @@ pub(super) struct ComparedClock {
     /// For each reply, the other clock's time minus seconds since the anchor, and the round-trip time in seconds;
     /// newest last.
     answers: Vec<(f64, f64)>,
-    /// Instant at which the latest reply arrived.
+    /// Instant at which the latest reply of the other clock arrived.
     known_at: Instant,
 }
 
@@ -63,7 +63,7 @@ impl ComparedClock {
         step
     }
 
-    /// Shortest round trip of the replies, in seconds.
+    /// Shortest round trip of a request for the other clock's time, in seconds.
     fn least_s(&self) -> Option<f64> {
         self.answers.iter().map(|(_, took_s)| *took_s).min_by(f64::total_cmp)
     }

@@ -14,9 +14,9 @@ pub struct ConnectionLimits {
     /// Largest number of open connections. The sum over all servers of this program stays well below 1024, a usual
     /// limit of open files.
     pub most: usize,
-    /// Largest number of open connections per address.
+    /// Largest number of open network connections per address.
     pub per_address: usize,
-    /// Largest number of admitted connections.
+    /// Largest number of admitted network connections.
     pub admitted: usize,
     /// Largest number of admitted connections per address. Fewer than [`Self::per_address`] leave room for new
     /// connections.
@@ -51,7 +51,7 @@ struct ConnectionEntries {
     next: u64,
 }
 
-/// Open connections of one server.
+/// Open network connections of one server.
 #[derive(Debug)]
 pub struct ConnectionTable {
     limits: ConnectionLimits,
@@ -61,7 +61,7 @@ pub struct ConnectionTable {
 /// An open connection's entry in the table; dropping it removes the entry.
 #[derive(Debug)]
 pub struct ConnectionPlace {
-    /// Serial number of the connection.
+    /// Serial number of the network connection.
     pub number: u64,
     address: IpAddr,
     table: Arc<ConnectionTable>,
@@ -71,7 +71,7 @@ pub struct ConnectionPlace {
 /// A new connection, and whether another connection is closed to make room for it.
 #[derive(Debug)]
 pub struct Arrival {
-    /// Table entry of the new connection.
+    /// Table entry of the new network connection.
     pub place: ConnectionPlace,
     /// Whether another connection is closed to make room.
     pub made_room: bool,
@@ -126,7 +126,7 @@ impl ConnectionTable {
         candidates.min_by_key(|(_, entry)| (!is_waiting(entry), entry.heard)).map(|(index, _)| index)
     }
 
-    /// Number of open connections.
+    /// Number of open network connections.
     pub fn count(&self) -> usize {
         self.lock().entries.len()
     }
@@ -142,7 +142,7 @@ impl ConnectionPlace {
         self.address
     }
 
-    /// Records that data arrived on the connection.
+    /// Records that data arrived on the network connection.
     pub fn heard(&self, now: Instant) {
         self.change(|entry| entry.heard = now);
     }

@@ -32,9 +32,9 @@ const WRITTEN: &str = "2025-01-01";
 /// Findings of the command `tomcom doctor`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DoctorReport {
-    /// Whether no check failed.
+    /// Whether no check of `tomcom doctor` failed.
     pub healthy: bool,
-    /// Checks with their findings.
+    /// Checks of the computer with their findings.
     pub checks: Vec<PreflightCheck>,
 }
 
@@ -55,7 +55,7 @@ pub fn examine(spec: &SessionSpec, out: &Path) -> DoctorReport {
     DoctorReport { healthy, checks }
 }
 
-/// The findings as text.
+/// The findings of `tomcom doctor` as text.
 pub fn describe(findings: &DoctorReport) -> String {
     let line = |check: &PreflightCheck| {
         let mark = match check.verdict {
@@ -192,7 +192,7 @@ pub fn free_bytes(folder: &Path) -> io::Result<u64> {
     Ok(found.f_bavail.saturating_mul(found.f_frsize))
 }
 
-/// Not available on this operating system.
+/// Free disk space cannot be determined on this operating system.
 #[cfg(not(unix))]
 pub fn free_bytes(_: &Path) -> io::Result<u64> {
     Err(io::ErrorKind::Unsupported.into())

@@ -13,19 +13,19 @@ use crate::study::column::{Table, TableRow};
 use crate::study::dictionary::columns;
 use crate::study::report::page_head;
 
-/// File name of the report.
+/// File name of the analysis report.
 pub const REPORT_NAME: &str = "report.html";
-/// Name of the folder for temporary files.
+/// Name of the folder for temporary files of an analysis.
 const PARTS_NAME: &str = ".rows";
 
-/// An output file that cannot be written.
+/// An output file of an analysis that cannot be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 #[error("{}: cannot be written: {reason}", path.display())]
 #[diagnostic(help("another folder with --out, on a disk with free space"))]
 pub struct ExportError {
     /// File or folder that cannot be written.
     pub path: PathBuf,
-    /// Why the file cannot be written.
+    /// Why the output file cannot be written.
     pub reason: io::Error,
 }
 
@@ -42,7 +42,7 @@ impl Default for TableRows {
 }
 
 impl TableRows {
-    /// Adds a row to the table.
+    /// Adds a row to the CSV table.
     pub fn add(&mut self, row: &impl TableRow) {
         self.rows.serialize(row.cells()).expect("rows are flat, and written to memory");
     }

@@ -12,7 +12,7 @@ use super::place::place_of;
 use crate::base::features::{Feature, NotBuilt};
 use crate::base::printable::{printable, printable_lines};
 
-/// Result of reading a file.
+/// Result of reading a file, with an error that explains what is wrong with the file.
 pub type FileResult<T> = Result<T, FileError>;
 
 /// An error of a file that the program reads or writes: unreadable, unsuitable as a whole, or invalid in one place.
@@ -21,11 +21,11 @@ pub enum FileError {
     /// The file cannot be read or written.
     #[error("{}: cannot be read: {reason}", path.display())]
     Unreadable {
-        /// Path of the file.
+        /// Path of the file that cannot be read or written.
         path: PathBuf,
-        /// Why the file cannot be read.
+        /// Why the file cannot be read or written.
         reason: io::Error,
-        /// What a valid file would be.
+        /// What a valid file, or a suitable name for the file, would be.
         #[help]
         remedy: String,
     },
@@ -34,28 +34,28 @@ pub enum FileError {
     Unfit {
         /// Name of the folder, option or file.
         name: String,
-        /// What is wrong with it.
+        /// What is wrong with the folder, option or file.
         found: String,
-        /// What would be valid.
+        /// What folder, option or file would be valid.
         #[help]
         remedy: String,
     },
     /// A text file is invalid in one place.
     #[error("{name}:{line}: found {found}")]
     Wrong {
-        /// Name of the file, as messages show it.
+        /// Name of the invalid file, as messages show it.
         name: String,
-        /// Line of the error, counted from 1.
+        /// Line of the error in the file, counted from 1.
         line: usize,
-        /// What is wrong in that line.
+        /// What is wrong in that line of the file.
         found: String,
         /// Text of the file, for the excerpt in the message.
         #[source_code]
         text: Arc<NamedSource<String>>,
-        /// Place of the error in the text, in bytes.
+        /// Place of the error in the file's text, in bytes.
         #[label("here")]
         span: Option<SourceSpan>,
-        /// What would be valid.
+        /// What would be valid at this place of the file.
         #[help]
         remedy: String,
     },

@@ -227,7 +227,7 @@ pub fn built_in_session() -> FileResult<SessionFiles> {
 /// A compiled kitchen with its source texts, which go into the header of every recording.
 #[derive(Clone, Debug)]
 pub struct KitchenFiles {
-    /// Compiled kitchen.
+    /// Kitchen, compiled from its layout and recipe files.
     pub kitchen: Kitchen,
     /// Layout file of the kitchen.
     pub layout: FileText,

@@ -22,13 +22,13 @@ struct Pending {
     frame: Option<Vec<u8>>,
     /// Last bytes for the terminal, which restore its modes.
     last: Option<Vec<u8>>,
-    /// Whether the thread is writing.
+    /// Whether the thread is writing to the terminal.
     writing: bool,
-    /// Whether the rest of the present frame is skipped.
+    /// Whether the rest of the present frame is skipped, to end sooner.
     hurries: bool,
     /// Whether a write failed, since the terminal was closed.
     lost: bool,
-    /// Whether the thread has ended.
+    /// Whether the writing thread has ended.
     done: bool,
 }
 

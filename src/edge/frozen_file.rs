@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 use super::file_error::{FileError, FileResult, read_text};
 use crate::study::frozen_plan::{FROZEN_FORMAT, FrozenPlan};
 
-/// Text of the first line before the digest.
+/// Text of a frozen plan's first line before the digest.
 const HEAD: &str = "tomcom frozen plan, SHA-256 of all that follows this line: ";
 const REMEDY: &str = "a file that tomcom plan PLAN --freeze FILE wrote, unchanged";
 

@@ -31,7 +31,7 @@ pub(super) type SharedGate = Arc<Mutex<GazeGate>>;
 pub(super) struct GazeConnection {
     /// TCP stream of the connection.
     pub stream: TcpStream,
-    /// Network address of the sender.
+    /// Network address of the gaze sender.
     pub from: IpAddr,
     /// Entry of the connection in the table of connections.
     pub place: ConnectionPlace,
@@ -70,7 +70,7 @@ pub(super) fn lock(gate: &SharedGate) -> std::sync::MutexGuard<'_, GazeGate> {
 
 /// Content of a line of a gaze connection.
 enum LineContent {
-    /// The first line, with a pairing code.
+    /// The first line of the connection, with a pairing code.
     Pairing(String),
     News(GazeNews),
 }
@@ -80,9 +80,9 @@ enum LineContent {
 struct LineReader {
     line: Vec<u8>,
     is_too_long: bool,
-    /// Whether the first line is complete.
+    /// Whether the first line of the connection is complete.
     has_line: bool,
-    /// Whether a gaze sample has arrived.
+    /// Whether a gaze sample has arrived on the connection.
     has_begun: bool,
 }
 

@@ -104,7 +104,7 @@ impl GazeGate {
         }
     }
 
-    /// Reports a rejected sender.
+    /// Reports a rejected sender of gaze to the session.
     pub fn refuse(&mut self, from: IpAddr, why: SenderRefusal, now: Instant) {
         self.untold += 1;
         if self.told.is_some_and(|told| now.saturating_duration_since(told) < NOTICE) {

@@ -14,7 +14,7 @@ pub const WAITING: usize = 4096;
 pub enum GazeNews {
     /// Gaze sample, with the time at which it was taken if the tracker's clock has been compared with this computer's.
     Sample(GazeSample, Option<Instant>),
-    /// Number of malformed messages, lines or samples.
+    /// Number of malformed messages, lines or gaze samples.
     Malformed(u64),
     /// A gaze sample whose time stamp is invalid: this number.
     WrongTime(f64),
@@ -22,9 +22,9 @@ pub enum GazeNews {
     Rejected(u64),
     /// Senders at other computers were rejected because they are not admitted.
     Refused {
-        /// Address of the last rejected sender.
+        /// Network address of the last rejected gaze sender.
         from: IpAddr,
-        /// Why the last sender was rejected.
+        /// Why the last gaze sender was rejected.
         why: SenderRefusal,
         /// Number of senders rejected since the last such message.
         senders: u64,
@@ -33,9 +33,9 @@ pub enum GazeNews {
     Overrun(u64),
     /// A tracker's program started to send; its clock may differ from before.
     Began,
-    /// A tracker's program responds, with its name.
+    /// The program of an eye tracker responds; its name and version.
     Connected(String),
-    /// A tracker's program no longer responds.
+    /// The program of an eye tracker no longer responds, for this reason.
     Lost(String),
     /// Whether the tracker detects the display's markers now.
     SeesDisplay(bool),
@@ -50,15 +50,15 @@ pub enum GazeNews {
     },
     /// State of the recording that the tracker's program makes of the trial.
     Recording(TrackerRecording),
-    /// A finished fixation.
+    /// A finished fixation of the participant's gaze.
     Fixation(TrackerFixation),
-    /// Onset or offset of a blink.
+    /// Onset or offset of the participant's blink.
     Blink {
         /// Whether the eyes closed (onset); false if they opened (offset).
         is_onset: bool,
-        /// Confidence of the tracker, 0 to 1.
+        /// Confidence of the tracker in the blink, 0 to 1.
         confidence: f64,
-        /// Time of the onset or offset.
+        /// Time of the blink's onset or offset.
         taken: SampleTime,
     },
 }
@@ -106,7 +106,7 @@ pub struct TrackerFixation {
     pub duration_ms: f64,
     /// Spatial dispersion of the fixation's samples, in degrees.
     pub dispersion_deg: f64,
-    /// Confidence of the tracker, 0 to 1.
+    /// Confidence of the tracker in the fixation, 0 to 1.
     pub confidence: f64,
     /// Beginning of the fixation.
     pub began: SampleTime,

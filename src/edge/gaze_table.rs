@@ -17,7 +17,7 @@ const MAX_LINE: u64 = 1 << 16;
 /// Columns that contain gaze in the scene camera's image, from which the gaze on the display cannot be computed.
 const SCENE_COLUMNS: [&str; 3] = ["gaze x [px]", "gaze position in reference image x [px]", "norm_pos_x"];
 
-/// Program that exported the table.
+/// Program that exported the table of gaze.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum GazeExporter {
     PupilPlayer,
@@ -25,7 +25,7 @@ enum GazeExporter {
     MarkerMapper,
 }
 
-/// Indices of the columns that are used.
+/// Indices of those columns of a gaze table that are used.
 #[derive(Clone, Copy, Debug)]
 struct GazeColumns {
     exporter: GazeExporter,
@@ -39,7 +39,7 @@ struct GazeColumns {
     recording: Option<usize>,
 }
 
-/// Content of a row of the table.
+/// Content of a row of the gaze table.
 enum GazeRow {
     Sample(i64, GazeSample),
     /// The surface was not found in the scene, so the gaze on it is unknown.
@@ -96,12 +96,12 @@ pub(super) fn is_on_surface(path: &Path) -> bool {
     read.is_ok() && columns(path, &head_of(&head)).is_ok()
 }
 
-/// The header line as text, without a byte order mark.
+/// The header line of a gaze table as text, without a byte order mark.
 fn head_of(line: &[u8]) -> String {
     String::from_utf8_lossy(line).trim_start_matches('\u{feff}').trim().to_string()
 }
 
-/// Finds the used columns in the header line.
+/// Finds the used columns in the header line of a gaze table.
 fn columns(path: &Path, head: &str) -> FileResult<GazeColumns> {
     let names: Vec<&str> = head.split(',').map(str::trim).collect();
     let place = |name: &str| names.iter().position(|found| *found == name);

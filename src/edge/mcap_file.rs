@@ -18,7 +18,7 @@ const BEGINS: &[u8] = b"\x89MCAP0\r\n";
 const LIBRARY: &str = "tomcom";
 /// Suffix of the name of an MCAP file that is still being written.
 const BEGUN: &str = ".new";
-/// Encodings of messages and of their schemas.
+/// Encodings of an MCAP file's messages and of their schemas.
 const ENCODING: &str = "json";
 const SCHEMA_ENCODING: &str = "jsonschema";
 

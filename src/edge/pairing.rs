@@ -10,11 +10,11 @@ use std::time::{Duration, Instant};
 use super::connection_table::network_of;
 use super::pairing_code::is_code;
 
-/// Lock time after a wrong code.
+/// Time for which an address is locked after a wrong pairing code.
 const WAIT: Duration = Duration::from_secs(1);
 /// Number of wrong codes that count as typing errors; each further one doubles the lock time.
 const SLIPS: u32 = 4;
-/// Longest lock time.
+/// Longest time for which an address is locked.
 const LONGEST: Duration = Duration::from_secs(300);
 /// Time after the end of its lock at which an address's wrong codes are forgotten.
 const FORGOTTEN: Duration = Duration::from_secs(3600);
@@ -25,7 +25,7 @@ const MAX_ADDRESSES: usize = 1024;
 /// Number of paired pages that are remembered.
 const MAX_PAGES: usize = 64;
 
-/// Result of an attempt to pair.
+/// Result of an attempt to pair with a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PairingVerdict {
     Right,
@@ -100,7 +100,7 @@ impl PairingDesk {
     }
 }
 
-/// Lock time after this number of wrong codes.
+/// Time for which an address is locked after this number of wrong codes.
 fn wait_after(count: u32) -> Duration {
     let doublings = count.saturating_sub(SLIPS).min(16);
     (WAIT * 2_u32.pow(doublings)).min(LONGEST)

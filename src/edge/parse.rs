@@ -86,7 +86,7 @@ impl FileKind {
 
 /// A type into which files of one kind are parsed.
 pub trait ParsedFile: DeserializeOwned {
-    /// Kind of the files that this type is parsed from.
+    /// The kind of file that this type is parsed from.
     const KIND: FileKind;
 }
 

@@ -1,4 +1,4 @@
-//! Position of a setting in a TOML text.
+//! Finds the position of a setting in a TOML text, for error messages.
 
 use std::ops::Range;
 

@@ -92,7 +92,7 @@ struct Part {
     continues: Option<String>,
     consent: bool,
     instructed: bool,
-    /// Index of the phase that began last.
+    /// Index of the study phase that began last in the recording.
     phase: usize,
     presses: u32,
     trial_over: bool,

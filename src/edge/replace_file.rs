@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Suffix of the new file before it is renamed.
+/// Suffix of the name of the new file before it is renamed.
 const NEW: &str = ".new";
 
 /// Writes the content to a new file beside `path`, and renames it to `path`.

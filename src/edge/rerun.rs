@@ -54,7 +54,7 @@ const GAZE_EVERY: SessionTime = SessionTime(33_000_000);
 const SIGHT_MM: f32 = 9.0;
 const LINE_MM: f32 = 2.0;
 
-/// Identity of a Rerun stream.
+/// Identity of a Rerun stream: id and name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StreamIdentity {
     /// Unique id of the stream.
@@ -80,12 +80,12 @@ pub struct RerunWriter {
     streams: Vec<OpenStream>,
 }
 
-/// Stream to one of the outputs.
+/// Rerun stream to one of the outputs, file or server.
 struct OpenStream {
     stream: RecordingStream,
     /// Duration of the stream's pieces in session time; `None` if rows are passed on by the wall clock instead.
     piece: Option<SessionTime>,
-    /// Index of the present piece.
+    /// Index of the present piece (chunk) of the stream.
     nth: u64,
     /// Least time between two gaze samples that the stream contains.
     gaze_every: SessionTime,
@@ -155,7 +155,7 @@ impl OpenStream {
         OpenStream { stream, piece, nth: 0, gaze_every, gaze_at: None }
     }
 
-    /// Sets the time of the rows that are written next.
+    /// Sets the time of the rows that are written to the stream next.
     fn go_to(&mut self, moment: &SceneUpdate) {
         let nth = self.piece.map_or(0, |piece| moment.time.0 / piece.0);
         if nth != self.nth {

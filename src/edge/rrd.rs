@@ -20,7 +20,7 @@ const HEAD: u64 = 4096;
 const TAIL: u64 = 64;
 /// Suffix that is added to a Rerun file's name for the name of its seal file.
 const SEALED: &str = ".toml";
-/// Number of bytes that are read at a time.
+/// Number of bytes of a file that are read at a time.
 const PIECE: usize = 1 << 16;
 
 /// Text in the identity of every stream that this program version made of a recording from its beginning.
@@ -28,7 +28,7 @@ pub fn mark() -> String {
     format!("{MARK}{}{MARK_END}", scene::VERSION)
 }
 
-/// State of a Rerun file.
+/// State of a Rerun file: missing, incomplete, outdated or complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RrdState {
     /// The Rerun file does not exist.

@@ -24,9 +24,9 @@ pub const PORTS: u16 = 20;
 /// Numbers of written and dropped rows of a Rerun stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StreamCounts {
-    /// Number of rows written.
+    /// Number of rows written to the Rerun stream.
     pub written: u64,
-    /// Number of rows dropped.
+    /// Number of rows that the Rerun stream dropped.
     pub dropped: u64,
 }
 
@@ -96,7 +96,7 @@ impl RerunStream {
         }
     }
 
-    /// Numbers of rows written and dropped so far.
+    /// Numbers of rows written to the stream and dropped so far.
     pub fn fares(&self) -> StreamCounts {
         StreamCounts { written: self.counters.written.load(Relaxed), dropped: self.counters.dropped.load(Relaxed) }
     }

@@ -6,7 +6,7 @@ use std::fs::{DirBuilder, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// Number of names that are tried before giving up.
+/// Number of file names that are tried before giving up.
 const NAMES: u32 = 1000;
 
 /// Creates the folder `NAME`, or else the first of `NAME-2`, `NAME-3`, … that does not exist.

@@ -37,7 +37,7 @@ static TAKEN: Mutex<Option<Arc<FrameWriter>>> = Mutex::new(None);
 static OUT_OF_REACH: AtomicBool = AtomicBool::new(false);
 /// Completed when the terminal is first set up; from then on a panic restores the terminal.
 static HOOK: Once = Once::new();
-/// Time limit for output after a session.
+/// Time limit for output to the terminal after a session.
 const LAST_WORDS: Duration = Duration::from_millis(300);
 /// Time limit for the program's end after a signal, since a reader of its output may be stuck; closing a recording
 /// takes milliseconds.
@@ -53,7 +53,7 @@ pub struct TerminalScreen {
     frames: Arc<FrameWriter>,
 }
 
-/// Bytes of the frame that is being composed.
+/// Bytes of the terminal frame that is being composed.
 #[derive(Clone, Debug, Default)]
 struct ComposedFrame(Arc<Mutex<Vec<u8>>>);
 

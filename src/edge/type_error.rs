@@ -59,7 +59,7 @@ fn value(what: &str) -> String {
     }
 }
 
-/// Description of valid values.
+/// Description of a setting's valid values.
 fn values(expected: &str) -> String {
     let whole = |most: u64| format!("a whole number from 0 to {most}");
     match expected {

@@ -15,24 +15,24 @@ const PORT: u16 = 9900;
 /// Time limit for the viewer to become ready, and period of asking it.
 const READY: Duration = Duration::from_secs(30);
 const RETRY: Duration = Duration::from_millis(500);
-/// Time limit and size limit of the viewer's answer.
+/// Time limit and size limit of the viewer program's answer about its version.
 const ANSWER: Duration = Duration::from_secs(5);
 const ANSWER_BYTES: u64 = 1 << 16;
 
 /// Viewer program that was found on this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Viewer {
-    /// Path of a viewer whose version can read this program's streams.
+    /// A viewer whose version can read this program's streams is installed; its path.
     Ready(PathBuf),
-    /// Version of a viewer that has another version.
+    /// A viewer of another version is installed; its version.
     Other(String),
     /// There is no screen on which the viewer could open a window.
     NoScreen,
-    /// No viewer is installed.
+    /// No viewer program is installed.
     None,
 }
 
-/// How to install the viewer.
+/// How to install the Rerun viewer.
 pub const REMEDY: &str = "pip install rerun-sdk==0.36.3, or cargo install rerun-cli --locked --version 0.36.3";
 
 impl Viewer {

@@ -58,7 +58,7 @@ impl WrittenTables {
     }
 }
 
-/// The kind of study table with this name.
+/// The kind of a study's table that has this name.
 pub fn table_named(name: &str) -> Option<Table> {
     Table::ALL.into_iter().find(|table| table.name() == name)
 }

@@ -23,13 +23,13 @@ use crate::session::settings::Visibility;
 
 /// Least width, in columns, of a panel that shows each belief in one line.
 const ONE_LINE: u16 = 66;
-/// Least height, in rows, of a panel that has a frame.
+/// Least height of a belief panel with a frame, in rows.
 const FRAMED: u16 = 5;
 /// Height of a chart of a belief over time, with its title.
 const CHART_ROWS: u16 = 5;
-/// Columns of a probability bar and the gap before it.
+/// Columns of the bar for a belief's probability and of the gap before it.
 const BAR: u16 = 7;
-/// Columns of the scale at the left of a chart.
+/// Columns of the probability scale at the left of a chart.
 const SCALE: u16 = 6;
 
 /// Text of the belief panel while no belief is false.
@@ -188,7 +188,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws a belief in one line of a wide panel.
+    /// Draws an estimated belief in one line of a wide panel.
     fn row(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16) {
         let style = brush.style(role(belief));
         let mut end = self.certainty(belief);

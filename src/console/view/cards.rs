@@ -27,7 +27,7 @@ use crate::session::{Phase, Session};
 const COLUMNS: u16 = 62;
 const NAMES: u16 = 15;
 
-/// A line of a card: name, text, and the text's style.
+/// A line of a summary card: name, text, and the text's style.
 type Fact = (String, String, TextRole);
 
 fn fact(name: &str, text: String, role: TextRole) -> Fact {

@@ -23,7 +23,7 @@ const WIDE: u16 = 62;
 /// Columns of a code in full ("wrong about assembly board"), and in short ("assembly board").
 const WHOLE_CODE: u16 = 27;
 const SHORT_CODE: u16 = 14;
-/// Columns of the progress bar.
+/// Columns of the bar for the coding progress.
 const BAR: u16 = 16;
 
 /// Draws the codebook and the list of errors, while a rater codes errors.
@@ -91,7 +91,7 @@ fn draw_errors(brush: &mut Painter, regions: &Regions, coding: &RaterSession, ev
     }
 }
 
-/// Share of errors that have a code, from 0 to 1.
+/// Share of errors that have a rater's code, from 0 to 1.
 fn share(coding: &RaterSession) -> f64 {
     coding.coded() as f64 / coding.errors.len().max(1) as f64
 }

@@ -111,7 +111,7 @@ fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleMo
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &hints);
 }
 
-/// Least width of a help column, in characters.
+/// Least width of a column of the help, in characters.
 const HELP_COLUMNS: u16 = 39;
 /// Indent of the description in a help line, in characters.
 const HELP_INDENT: u16 = 7;
@@ -127,7 +127,7 @@ enum Line<'a> {
 }
 
 impl Line<'_> {
-    /// Width of the help line, in characters.
+    /// Width of a line of the help, in characters.
     fn columns(&self) -> u16 {
         match self {
             Line::Heading(text) => width(text),
@@ -138,7 +138,7 @@ impl Line<'_> {
     }
 }
 
-/// Legend of the signs that the panels use.
+/// Legend of the signs that the console's panels use.
 fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
     let meanings = [
         (signs.gaze, "the gaze; in the belief: it was just there"),
@@ -182,7 +182,7 @@ fn help_columns<'a>(keys: &'a KeyBindings, theme: &Theme, size: (u16, u16)) -> (
     (columns, fits)
 }
 
-/// Number of pages of the help after the first.
+/// Number of further pages of the help after the first.
 pub fn help_pages(model: &ConsoleModel) -> usize {
     let (columns, fits) = help_columns(&model.keys, &model.theme, model.size);
     columns.len() - fits

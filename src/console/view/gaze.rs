@@ -19,7 +19,7 @@ const GAZE_S: f64 = 3.0;
 /// Duration of the trail of gaze on the gaze map, in seconds.
 const TRAIL_S: f64 = 2.0;
 
-/// Draws the gaze panel.
+/// Draws the gaze panel: place, age and quality of the gaze.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.gaze;
     if area.area() == 0 {

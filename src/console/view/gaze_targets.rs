@@ -15,7 +15,7 @@ use crate::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use crate::session::Session;
 
 const COLUMNS: u16 = 76;
-/// Column at which the values of the result begin.
+/// Screen column at which the measured values begin.
 const VALUE: u16 = 15;
 
 /// Draws the present target of the gaze accuracy check in the kitchen panel.

@@ -14,7 +14,7 @@ use crate::session::settings::{Condition, GazeSource};
 use crate::session::tracker::TrackerConnection;
 use crate::session::{Phase, Session};
 
-/// Draws the head line.
+/// Draws the head line of the console: phase, clock, condition, devices.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.head;
     // The head line is as wide as the screen even if one panel is at full size.
@@ -103,7 +103,7 @@ fn clock(brush: &mut Painter, x: u16, y: u16, session: &Session, model: &Console
     brush.parts(x, y, 16, &[(&format!("{clock:>5}"), TextRole::Strong), (&limit, TextRole::Quiet)])
 }
 
-/// Who sends signals in this condition, in a word.
+/// Sender of signals in this condition, in a word: "unassisted", "assistant", "wizard".
 pub(super) fn condition(session: &Session) -> &'static str {
     match session.spec.trial.condition {
         Condition::None => "unassisted",

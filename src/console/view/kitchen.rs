@@ -138,9 +138,9 @@ struct Place<'a> {
     is_empty: bool,
     /// Seconds since a recent change of the location's content, and the agent that changed it.
     fresh: Option<(f64, Option<Agent>)>,
-    /// Whether the present signal highlights this location.
+    /// Whether the present signal highlights this kitchen location.
     is_shown: bool,
-    /// Whether the open offer is about this location.
+    /// Whether the open offer is about this kitchen location.
     is_offered: bool,
     /// Value that the participant falsely believes about this location.
     thinks: Option<String>,

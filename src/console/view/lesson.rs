@@ -7,7 +7,7 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::lesson::{TrainingFeedback, TrainingPanel};
 use crate::console::notice::NoticeLevel;
 
-/// Columns for the clock time.
+/// Columns for the clock time of a line of feedback.
 const CLOCK: u16 = 6;
 
 /// Draws the panel of a wizard training.

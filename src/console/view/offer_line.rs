@@ -28,7 +28,7 @@ pub(super) struct ShownOffer<'a> {
     reason: Option<&'a Reason>,
 }
 
-/// The offer that is shown to the wizard now, if any.
+/// The offer of a signal that is shown to the wizard now, if any.
 pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<ShownOffer<'a>> {
     if beliefs::visibility(session, model) < Visibility::Recommendation
         || session.spec.trial.condition == Condition::Assistant
@@ -154,7 +154,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// Why there is no offer, in words.
+/// Why no signal is offered to the wizard, in words.
 fn silence(session: &Session, model: &ConsoleModel) -> String {
     if session.spec.trial.condition == Condition::Assistant {
         return "The assistant sends the signals by itself".to_string();

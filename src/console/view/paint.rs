@@ -14,7 +14,7 @@ use crate::console::click::{ClickAction, ClickTarget};
 
 /// Draws on a screen buffer in a theme, and collects click targets.
 pub struct Painter<'a> {
-    /// Screen buffer that is drawn on.
+    /// Buffer of terminal cells that is drawn on.
     pub buffer: &'a mut Buffer,
     /// Colours and signs of the console.
     pub theme: Theme,
@@ -104,12 +104,12 @@ pub fn wrap_to(text: &str, columns: u16, rows: u16, ellipsis: &str) -> Vec<Strin
 }
 
 impl Painter<'_> {
-    /// A painter that draws on this buffer.
+    /// A painter that draws on this buffer of terminal cells.
     pub fn new(buffer: &mut Buffer, theme: Theme) -> Painter<'_> {
         Painter { buffer, theme, targets: Vec::new() }
     }
 
-    /// Marks these cells as clickable.
+    /// Marks these terminal cells as clickable.
     pub fn target(&mut self, cells: Rect, action: ClickAction) {
         self.targets.push(ClickTarget { cells, action });
     }
@@ -149,12 +149,12 @@ impl Painter<'_> {
         self.buffer.set_stringn(x, y, &text, usize::from(columns), Style::reset().patch(style)).0
     }
 
-    /// Whether a cell contains a visible character.
+    /// Whether a terminal cell contains a visible character.
     pub fn is_written(&self, x: u16, y: u16) -> bool {
         self.buffer.cell((x, y)).is_some_and(|cell| cell.symbol() != " ")
     }
 
-    /// Writes a text that ends before the column `right`.
+    /// Writes a text on the screen so that it ends before the column `right`.
     pub fn text_right(&mut self, right: u16, y: u16, columns: u16, text: &str, style: Style) {
         let text = fit(text, columns, self.theme.signs().ellipsis);
         self.text(right.saturating_sub(width(&text)), y, columns, &text, style);

@@ -35,11 +35,11 @@ struct ListPage<'a> {
     title: String,
     cursor: &'a ListCursor,
     rows: Vec<Row>,
-    /// Number of rows before filtering.
+    /// Number of rows of the list before filtering.
     all: usize,
-    /// What the space bar does while the list is open.
+    /// What the space bar does in the list, as a hint.
     space: &'a str,
-    /// What the enter key does while the list is open.
+    /// What the enter key does in the list, as a hint.
     takes: &'a str,
 }
 

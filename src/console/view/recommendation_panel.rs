@@ -27,10 +27,10 @@ pub(super) const NOTHING: f64 = 0.05;
 /// Columns reserved for the words of a signal ("[a] highlight assembly board"); a benefit bar is drawn only if these
 /// remain.
 const LONGEST_SIGNAL: u16 = 28;
-/// Mark of the signal that is on offer.
+/// Text that marks the signal on offer in the list of signals.
 const OFFERED: &str = "offered";
 
-/// Draws the ranked list of signals.
+/// Draws the list of signals, ranked by benefit.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.recommendation;
     if area.area() == 0 {
@@ -87,7 +87,7 @@ fn remark(session: &Session) -> &'static str {
     }
 }
 
-/// Why there is no list of signals.
+/// Why there is no ranked list of signals, in words.
 fn silence(session: &Session) -> &'static str {
     match (session.spec.asks_assistant(), session.is_running()) {
         (false, _) => "None: nobody asks the assistant in this session (shadow = \"off\"). The signals are yours.",
@@ -96,7 +96,7 @@ fn silence(session: &Session) -> &'static str {
     }
 }
 
-/// The benefit of a signal, in the concept's unit.
+/// The benefit of a signal in the unit of the communication concept: presses, or belief deviation.
 fn worth(option: &SignalOption, session: &Session) -> String {
     match session.spec.assistant.concept {
         ConceptName::Tom => format!("{:>4.2} ", option.benefit),

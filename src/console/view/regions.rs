@@ -16,7 +16,7 @@ pub const LEAST: (u16, u16) = (72, 22);
 /// Least number of columns at which panels are placed side by side.
 pub const ROOMY_COLUMNS: u16 = 112;
 
-/// Size class of the terminal.
+/// Size class of the terminal: small, medium or large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ScreenSize {
     /// Small terminal (80x24): panels shrink to lines.
@@ -30,17 +30,17 @@ pub enum ScreenSize {
 /// Screen areas of the console's panels; a panel with an empty area is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Regions {
-    /// Size class of the terminal.
+    /// Size class of the terminal: small, medium or large.
     pub room: ScreenSize,
-    /// Area of the head line.
+    /// Screen area of the head line.
     pub head: Rect,
     /// Area of the offer: one line, or two on narrow terminals.
     pub offer: Rect,
-    /// Area of the kitchen panel.
+    /// Screen area of the kitchen panel.
     pub kitchen: Rect,
-    /// Area of the belief panel.
+    /// Screen area of the belief panel.
     pub belief: Rect,
-    /// Area of the recommendation panel.
+    /// Screen area of the recommendation panel.
     pub recommendation: Rect,
     /// Area of the gaze map, which replaces beliefs and recommendations where the wizard may not see those.
     pub gaze_map: Rect,
@@ -48,25 +48,25 @@ pub struct Regions {
     pub shown: Rect,
     /// Area of the gaze panel: where the participant looks, and the gaze's quality.
     pub gaze: Rect,
-    /// Area of the robot panel.
+    /// Screen area of the robot panel.
     pub robot: Rect,
-    /// Area of the list of newest events.
+    /// Screen area of the list of newest events.
     pub events: Rect,
-    /// Area of the timeline.
+    /// Screen area of the timeline.
     pub timeline: Rect,
     /// Area of the comparison of wizard and assistants, which replaces the timeline.
     pub comparison: Rect,
-    /// Area of the wizard training's panel.
+    /// Screen area of the wizard training's panel.
     pub lesson: Rect,
-    /// Area of a rater's codebook.
+    /// Screen area of a rater's codebook.
     pub codebook: Rect,
-    /// Area of a rater's list of errors.
+    /// Screen area of a rater's list of errors.
     pub errors: Rect,
     /// Area of the bar that shows the position in a recording.
     pub scrub: Rect,
-    /// Area of the line of messages.
+    /// Screen area of the line of messages.
     pub message: Rect,
-    /// Area of the line of key hints.
+    /// Screen area of the line of key hints.
     pub footer: Rect,
 }
 
@@ -233,7 +233,7 @@ impl Regions {
         regions
     }
 
-    /// Screen area of a panel.
+    /// Screen area of a panel of the console.
     pub fn panel_area(&self, panel: Panel) -> Rect {
         match panel {
             Panel::Kitchen => self.kitchen,
@@ -307,7 +307,7 @@ impl Regions {
         if self.recommendation.area() > 0 { self.recommendation } else { self.offer }
     }
 
-    /// Names of the visible panels, as recorded in the log.
+    /// Names of the console's visible panels, as recorded in the log.
     pub fn panels(&self) -> Vec<&'static str> {
         let panels = [
             ("kitchen", self.kitchen),
@@ -355,7 +355,7 @@ fn comparison_rows(room: ScreenSize, assistants: u16) -> u16 {
     }
 }
 
-/// Area inside the frame of a panel.
+/// Screen area inside the frame of a panel.
 pub fn inside(area: Rect) -> Rect {
     Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(2) }
 }

@@ -114,7 +114,7 @@ fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
     brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, TextRole::Alarm), (&resume, TextRole::Text)]);
 }
 
-/// Style of a safety mode.
+/// Style in which a safety mode of the robot is drawn.
 fn mode_role(mode: SafetyMode) -> TextRole {
     match mode {
         SafetyMode::Normal => TextRole::Quiet,
@@ -159,7 +159,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
 }
 
-/// The key that releases the held robot, with words.
+/// Name of the key that releases the held robot, with words.
 fn release(model: &ConsoleModel) -> String {
     model
         .keys

@@ -226,7 +226,7 @@ fn item_form(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) -> (
     }
 }
 
-/// Adds the typed answer to the page, if there is one.
+/// Adds the typed answer to the questionnaire page, if there is one.
 fn typed(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) {
     page.space();
     page.text(0, &given.map_or_else(|| "_".to_string(), |given| form.words(given)), TextRole::Strong);

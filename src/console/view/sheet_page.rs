@@ -35,7 +35,7 @@ pub(super) struct Page {
 }
 
 impl Page {
-    /// An empty page that fits this screen area.
+    /// An empty text page that fits this screen area.
     pub(super) fn new(screen: Rect) -> Page {
         Page { columns: screen.width.saturating_sub(4).min(WIDEST).saturating_sub(4), ..Page::default() }
     }
@@ -108,7 +108,7 @@ impl Page {
     }
 }
 
-/// Key of a key hint that can be clicked.
+/// The key that a click on a key hint stands for.
 pub(super) fn plain(code: KeyCode) -> Option<KeyChord> {
     Some(KeyChord::plain(code))
 }

@@ -69,7 +69,7 @@ fn left(session: &Session, shown: &ShownSignal, model: &ConsoleModel) -> (f64, f
     (left_s, left_s / shown.until.secs_since(shown.since).max(1e-3))
 }
 
-/// Content of a signal in words.
+/// Content of the signal that the participant sees, in words.
 fn says(session: &Session, signal: &Signal) -> String {
     let kitchen = &session.kitchen;
     let Some(location) = signal.location(kitchen) else {

@@ -32,13 +32,13 @@ pub enum TextRole {
 /// Brightness of the terminal's background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TerminalBackground {
-    /// Light text on a dark background.
+    /// A terminal with light text on a dark background.
     Dark,
-    /// Dark text on a light background.
+    /// A terminal with dark text on a light background.
     Light,
 }
 
-/// Colours and signs of the console.
+/// Theme of the console: its colours and signs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theme {
     /// Whether colours are used; without colours, weight and signs tell the same.
@@ -80,7 +80,7 @@ pub struct Glyphs {
     pub touched: &'static str,
     /// Sign for a manual intervention of the experimenter.
     pub by_hand: &'static str,
-    /// Arrow from one thing to another.
+    /// Sign for a direction: an arrow from one thing to another.
     pub to: &'static str,
     /// Sign for a content that has just changed.
     pub changed: &'static str,
@@ -88,9 +88,9 @@ pub struct Glyphs {
     pub recording: &'static str,
     /// Sign for a paused trial.
     pub pause: &'static str,
-    /// Ellipsis for text that was cut off.
+    /// Sign for text that was cut off: an ellipsis.
     pub ellipsis: &'static str,
-    /// Vertical bar signs from low to full, for curves.
+    /// Signs for curves: vertical bars from low to full.
     pub levels: [&'static str; 8],
     /// Sign for a missing value.
     pub dash: &'static str,
@@ -145,7 +145,7 @@ const ASCII: Glyphs = Glyphs {
 };
 
 impl Theme {
-    /// Signs of this theme: Unicode or ASCII.
+    /// The signs of this theme: those in Unicode or those in ASCII.
     pub fn signs(&self) -> &'static Glyphs {
         if self.unicode { &UNICODE } else { &ASCII }
     }
@@ -166,11 +166,11 @@ impl Theme {
         Some(if ground == TerminalBackground::Dark { dark } else { light })
     }
 
-    /// Style of a text role in this theme.
+    /// The style (colour, weight) of a text role in this theme.
     pub fn style(&self, role: TextRole) -> Style {
         let modifier = match role {
             TextRole::Text | TextRole::Human | TextRole::Robot => Modifier::empty(),
-            // Without colours, dim text replaces grey.
+            // Without colours, quiet text is drawn dim instead of grey.
             TextRole::Quiet | TextRole::Frame if self.colour => Modifier::empty(),
             TextRole::Quiet | TextRole::Frame => Modifier::DIM,
             TextRole::Strong | TextRole::Signal | TextRole::Gaze | TextRole::Alarm | TextRole::FalseBelief => {

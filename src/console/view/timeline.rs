@@ -26,7 +26,7 @@ const TICKS_S: [f64; 4] = [10.0, 20.0, 30.0, 60.0];
 const LABEL_COLUMNS: f64 = 8.0;
 const LABELS: u16 = 10;
 
-/// Draws the timeline.
+/// Draws the timeline of presses, signals, orders and notes.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.timeline;
     if area.area() == 0 {
@@ -37,7 +37,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let rows: &[&str] = match is_small {
         // In a low timeline, signals, orders and notes share a row.
         true => &["", "human", "robot", "events"],
-        // The timeline of a rater has no signals.
+        // A rater's timeline shows no signals.
         false if model.coding.is_some() => &["", "human", "robot", "", "orders", "notes"],
         false if has_offers(inside, session, model) => &["", "human", "robot", "signals", "orders", "notes", "offers"],
         false => &["", "human", "robot", "signals", "orders", "notes"],

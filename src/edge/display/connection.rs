@@ -18,7 +18,7 @@ use super::status::{ActivePage, count};
 use crate::edge::connection_table::ConnectionPlace;
 use crate::edge::pairing::PairingVerdict;
 
-/// Time limit for a page's first message.
+/// Time limit for the first message of a participant page.
 const HELLO: Duration = Duration::from_secs(5);
 /// Time after which a page that accepts no message is disconnected.
 const STUCK: Duration = Duration::from_secs(5);
@@ -42,7 +42,7 @@ struct Talk {
     faults: u32,
     /// Budget of messages that the page may send (token bucket), with the time of its last update.
     allowed: (f64, Instant),
-    /// Number of the page's last press.
+    /// Number of the last press on the participant's page.
     pressed: u64,
     /// Name of the last pressed button, and the time of the press on the server's clock.
     last: Option<(String, f64)>,

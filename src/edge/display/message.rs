@@ -10,7 +10,7 @@ use super::page_input::PageReply;
 use crate::display::{DisplayScene, DisplayUpdate, RobotPose};
 use crate::session::answer_value::AnswerValue;
 
-/// Longest message of a page, in bytes.
+/// Longest message of a participant page, in bytes.
 pub(super) const MAX_BYTES: usize = 4096;
 /// Longest name or other text in a page's message, in bytes.
 const MAX_TEXT: usize = 64;
@@ -29,9 +29,9 @@ pub enum FromPage {
     Hello {
         /// Random name of the page, which it keeps when it is loaded again.
         page: String,
-        /// Width of the page in pixels.
+        /// Width of the participant's page in pixels.
         width: u32,
-        /// Height of the page in pixels.
+        /// Height of the participant's page in pixels.
         height: u32,
         /// Pairing code that was typed into the page.
         code: Option<String>,
@@ -39,11 +39,11 @@ pub enum FromPage {
         #[serde(default)]
         waits: bool,
     },
-    /// New size of the page, after its window was resized.
+    /// New size of the participant's page, after its window was resized.
     Size {
-        /// Width of the page in pixels.
+        /// Width of the participant's page in pixels.
         width: u32,
-        /// Height of the page in pixels.
+        /// Height of the participant's page in pixels.
         height: u32,
     },
     /// A watching page asks to take part.
@@ -186,7 +186,7 @@ pub(super) fn sight(sight: &DisplayUpdate, left: Option<(f64, f64)>) -> Arc<str>
     text(&Message { kind: "sight", sight, at, left_s })
 }
 
-/// The message with the robot's pose.
+/// The message to the page with the robot's pose.
 pub(super) fn robot(pose: &RobotPose) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {

@@ -50,7 +50,7 @@ pub struct PageConnection {
     sight: watch::Sender<Arc<str>>,
     robot: watch::Sender<Arc<str>>,
     status: Arc<DisplayStatus>,
-    /// Instant at which the server's clock was zero.
+    /// Instant at which the display server's clock was zero.
     began: Instant,
 }
 
@@ -126,7 +126,7 @@ impl PageConnection {
         self.robot.send_replace(message::robot(pose));
     }
 
-    /// Counters of the connected pages.
+    /// State and counters of the connected pages.
     pub fn counts(&self) -> DisplayCounts {
         self.status.counts()
     }

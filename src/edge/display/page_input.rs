@@ -9,18 +9,18 @@ use crate::session::answer_value::AnswerValue;
 /// An input to the session from the participant page that takes part.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PageInput {
-    /// A page is connected and takes part.
+    /// A participant page is connected and takes part.
     Connected {
-        /// Width of the page in pixels.
+        /// Width of the participant's page in pixels.
         width_px: u32,
-        /// Height of the page in pixels.
+        /// Height of the participant's page in pixels.
         height_px: u32,
     },
-    /// The page is disconnected.
+    /// The participant's page is disconnected.
     Lost,
-    /// A press of a kitchen button.
+    /// A press of a kitchen button on the participant's page.
     Press {
-        /// Name of the pressed button.
+        /// Name of the pressed kitchen button.
         button: String,
         /// Time of the press, on this computer's clock.
         at: Instant,
@@ -91,9 +91,9 @@ pub enum PageReply {
         probe: u32,
         /// Number of the question, counted from 1.
         question: u32,
-        /// Number of the choice, counted from 1.
+        /// Number of the chosen answer, counted from 1.
         choice: Option<u16>,
-        /// Names of the items of a stack.
+        /// Names of the items of which the answered stack consists.
         items: Vec<String>,
         /// How sure the participant is of the answer, from 1 to 3, if that is asked.
         sure: Option<u8>,

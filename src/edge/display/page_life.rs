@@ -12,7 +12,7 @@ const VISIBLE: Duration = Duration::from_secs(8);
 /// Time without a message after which a hidden page counts as hanging.
 const HIDDEN: Duration = Duration::from_secs(90);
 
-/// Times of a page's last signs of life.
+/// Times of a participant page's last signs of life.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PageLife {
     /// Arrival of the last WebSocket frame of any kind, answers to pings included.
@@ -24,7 +24,7 @@ pub(super) struct PageLife {
 }
 
 impl PageLife {
-    /// State of a page that has just sent something.
+    /// Signs of life of a page that has just sent something.
     pub fn new(now: Instant) -> PageLife {
         PageLife { heard: now, spoke: now, pinged: now, is_hidden: false }
     }
@@ -37,7 +37,7 @@ impl PageLife {
         }
     }
 
-    /// Records whether the page is hidden.
+    /// Records whether the participant's page is hidden.
     pub fn hide(&mut self, is_hidden: bool) {
         self.is_hidden = is_hidden;
     }
@@ -47,7 +47,7 @@ impl PageLife {
         self.pinged = now;
     }
 
-    /// Time of the next ping, or of giving up the page.
+    /// Time of the server's next ping, or of giving up the page.
     pub fn next(&self) -> Instant {
         (self.pinged + PING).min(self.gone_at())
     }

@@ -30,7 +30,7 @@ use crate::edge::connection_table::ConnectionPlace;
 const POLICY: &str = "default-src 'self'; connect-src 'self' ws:; img-src data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 /// Time limit for receiving the head of an HTTP request.
 const HEADER: Duration = Duration::from_secs(5);
-/// Time limit for HTTP request and response together.
+/// Time limit for an HTTP request and its response together.
 const ANSWER: Duration = Duration::from_secs(30);
 /// Longest head of an HTTP request, in bytes.
 const MAX_REQUEST: usize = 16 * 1024;
@@ -40,7 +40,7 @@ const AGAIN: Duration = Duration::from_millis(100);
 /// Response to somebody who opened the page by another host name.
 const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
-/// Files of the page: path, content type, content.
+/// Files of the participant's page: path, content type, content.
 const FILES: [(&str, &str, &str); 11] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
@@ -81,7 +81,7 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> 
     }
 }
 
-/// Accepts connections until the server stops.
+/// Accepts network connections until the server stops.
 async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers: Answers) {
     loop {
         let Ok((stream, from)) = listener.accept().await else {

@@ -37,10 +37,10 @@ pub(super) struct PageFeed {
 pub(super) struct ServerState {
     /// Pairing code and attempts at it; `None` if no code is required.
     pairing: Option<Mutex<PairingDesk>>,
-    /// Texts of the page, by key.
+    /// Texts of the participant's page, by key.
     pub words: BTreeMap<String, String>,
     pub inputs: Sender<PageInput>,
-    /// Messages for the pages.
+    /// Messages for the participant's pages.
     pub told: PageFeed,
     pub status: Arc<DisplayStatus>,
     /// Connection number and page name of the page that takes part.
@@ -63,7 +63,7 @@ impl ServerState {
         ServerState { pairing, words, inputs, told, status, acting, connections, began }
     }
 
-    /// Whether pages need a pairing code.
+    /// Whether participant pages need a pairing code.
     pub fn has_code(&self) -> bool {
         self.pairing.is_some()
     }
@@ -79,7 +79,7 @@ impl ServerState {
         }
     }
 
-    /// Time on the server's clock, in milliseconds.
+    /// Time on the display server's clock, in milliseconds.
     pub fn now_ms(&self) -> f64 {
         self.began.elapsed().as_secs_f64() * 1000.0
     }

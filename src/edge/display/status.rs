@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// State of the participant page that takes part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ActivePage {
-    /// Width of the page in pixels.
+    /// Width of the participant's page in pixels.
     pub width_px: u32,
-    /// Height of the page in pixels.
+    /// Height of the participant's page in pixels.
     pub height_px: u32,
     /// Last measured round-trip time between page and server, in milliseconds.
     pub round_trip_ms: Option<f64>,
@@ -21,7 +21,7 @@ pub struct ActivePage {
 pub struct DisplayCounts {
     /// State of the page that takes part, if there is one.
     pub page: Option<ActivePage>,
-    /// Number of pages that only watch.
+    /// Number of participant pages that only watch.
     pub watching: u64,
     /// Number of malformed messages from pages.
     pub malformed: u64,
@@ -38,7 +38,7 @@ pub(super) struct DisplayStatus {
 }
 
 impl DisplayStatus {
-    /// The present state and counters.
+    /// The present state and counters of the participant's pages.
     pub fn counts(&self) -> DisplayCounts {
         let page = *self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         DisplayCounts {

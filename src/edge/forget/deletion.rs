@@ -23,20 +23,20 @@ pub enum ForgetError {
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
     File(Box<FileError>),
-    /// A file cannot be deleted or rewritten.
+    /// A file with data of the participant cannot be deleted or rewritten.
     #[error("nothing was deleted: {}: cannot be deleted or written anew: {reason}", path.display())]
     #[diagnostic(help("the right to write to its folder, on a disk with free space"))]
     Unwritable {
         /// File or folder that cannot be deleted or rewritten.
         path: PathBuf,
-        /// Why it cannot be deleted or rewritten.
+        /// Why the file or folder cannot be deleted or rewritten.
         reason: io::Error,
     },
     /// Files have changed since the participant's data were listed.
     #[error("nothing was deleted: files in {} have changed since they were listed", folder.display())]
     #[diagnostic(help("run the command again, when nothing else writes there"))]
     Changed {
-        /// Folder with the changed files.
+        /// Folder with files that have changed.
         folder: PathBuf,
     },
 }
@@ -133,7 +133,7 @@ struct Replacement {
 }
 
 impl Replacement {
-    /// Writes the new content to a file beside the old one.
+    /// Writes the new content of a file to another file beside it.
     fn begin(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Replacement> {
         let mut name = path.file_name().unwrap_or_default().to_os_string();
         name.push(format!(".tomcom-{}.new", std::process::id()));

@@ -24,9 +24,9 @@ pub(super) enum RecordingOwner {
 
 /// Content of the first line of a log.
 enum FirstLine {
-    /// There is no log.
+    /// The folder contains no log.
     Missing,
-    /// The log is of another program.
+    /// The first line belongs to a log of another program.
     Foreign,
     Damaged,
     Header {

@@ -24,17 +24,17 @@ const MAX_BYTES: u64 = 64 << 20;
 /// Everything that a folder contains about one participant code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParticipantData {
-    /// The participant's code.
+    /// Code of the participant whose data are to be deleted.
     pub code: String,
-    /// Folder that was searched.
+    /// Folder that was searched for data of the participant.
     pub root: PathBuf,
     /// The system's folder for temporary files, which was searched as well.
     pub temporary: PathBuf,
     /// Folders of the participant's recordings, including later parts of continued recordings.
     pub recordings: Vec<PathBuf>,
-    /// Files in these folders that are deleted.
+    /// Files in the folders of the participant's recordings that are deleted.
     pub recording_files: Vec<PathBuf>,
-    /// Other files that are deleted as a whole.
+    /// Other files about the participant that are deleted as a whole.
     pub files: Vec<PathBuf>,
     /// CSV tables about several participants, each with the number of rows that are deleted.
     pub tables: Vec<(PathBuf, u64)>,
@@ -115,7 +115,7 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
     Ok(found)
 }
 
-/// Search in the files of one folder.
+/// Search for data of the participant in the files of one folder.
 struct FolderLook<'a> {
     tables: &'a FolderTables,
     /// Whether the folder is, or is inside, the folder of one of the participant's recordings.

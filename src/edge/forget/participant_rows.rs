@@ -179,7 +179,7 @@ impl FolderTables {
         })
     }
 
-    /// Which person a row is about.
+    /// Which person a row of a table is about.
     fn whose(&self, row: &ByteRecord, key: KeyColumns, subject: &ForgetSubject) -> NamedPerson {
         let cell = |column: Option<usize>| column.and_then(|column| row.get(column));
         let participant = cell(key.participant).map(|cell| subject.participant(&String::from_utf8_lossy(cell)));

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::session::participant_code::{is_participant_code, without_seed};
 
-/// Which person a name or a row is about.
+/// Which person a name or a row of a table is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NamedPerson {
     /// The participant whose data are to be deleted.

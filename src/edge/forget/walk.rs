@@ -27,9 +27,9 @@ const EXPORTED: &str = "a BIDS data set of tomcom export with the participant in
 /// A file that is or may be about the participant and is left, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LeftFile {
-    /// Path of the file that is left.
+    /// Path of the file that is not deleted.
     pub path: PathBuf,
-    /// Why the file is left, in words.
+    /// Why the file is not deleted, in words.
     pub reason: String,
 }
 
@@ -43,12 +43,12 @@ impl LeftFile {
     }
 }
 
-/// Kind of an entry in a folder.
+/// Kind of an entry in a folder: file, folder or something else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum EntryKind {
     File,
     Folder,
-    /// A symbolic link, a pipe, or a device.
+    /// A symbolic link, a named pipe, or a device.
     Other,
 }
 

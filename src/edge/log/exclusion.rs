@@ -24,7 +24,7 @@ pub struct ExclusionRecord {
     /// Reason of the decision; may be empty if the recording is included again.
     #[serde(default)]
     pub reason: String,
-    /// Time of the decision (UTC, RFC 3339).
+    /// Time of the decision about the recording (UTC, RFC 3339).
     pub at: String,
 }
 
@@ -42,7 +42,7 @@ pub enum ExclusionError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
-    /// The decision cannot be written.
+    /// The decision about the recording cannot be written to its folder.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),

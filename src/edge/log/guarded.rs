@@ -13,7 +13,7 @@ const TAIL: u64 = 64 << 10;
 /// Length of the further stretch that every check compares with the copy, in bytes; consecutive checks go through the
 /// whole log.
 const STRETCH: u64 = 1 << 20;
-/// Bytes that are compared at a time.
+/// Number of bytes of log and copy that are compared at a time.
 #[cfg(unix)]
 const PIECE: usize = 64 << 10;
 
@@ -136,7 +136,7 @@ fn nameless(folder: &Path) -> io::Result<File> {
     std::fs::remove_file(path).map(|()| file)
 }
 
-/// Not available on this operating system.
+/// Files without a name are not available on this operating system.
 #[cfg(not(unix))]
 fn nameless(_folder: &Path) -> io::Result<File> {
     Err(io::Error::from(io::ErrorKind::Unsupported))

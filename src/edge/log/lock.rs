@@ -27,7 +27,7 @@ pub struct RecordingLock {
 /// The program that writes a recording at present, as far as the lock file tells.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LockHolder {
-    /// Process id of the writing program.
+    /// Process id of the program that writes the recording.
     pub pid: Option<u32>,
     /// Address at which viewers can watch the running session.
     pub viewers: Option<String>,

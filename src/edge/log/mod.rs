@@ -42,7 +42,7 @@ pub enum WriteError {
     Unwritable {
         /// File or folder that cannot be written.
         path: PathBuf,
-        /// Why it cannot be written.
+        /// Why the recording's file or folder cannot be written.
         reason: io::Error,
         /// Folder to which the recording was saved, if it is no longer at its place.
         saved: Option<PathBuf>,
@@ -54,9 +54,9 @@ pub enum WriteError {
          saved one as {LOG_NAME}.damaged"
     ))]
     Damaged {
-        /// Path of the log.
+        /// Path of the damaged log.
         path: PathBuf,
-        /// Damage that was found, in words.
+        /// Damage of the log that was found, in words.
         found: String,
         /// Folder to which the recording was saved, if it could be saved.
         saved: Option<PathBuf>,
@@ -67,7 +67,7 @@ pub enum WriteError {
     InUse {
         /// Folder of the recording.
         folder: PathBuf,
-        /// Process id of that program, if known.
+        /// Process id of the program that writes the recording, if known.
         pid: Option<u32>,
     },
     /// Another program is coding the errors of this recording as the same rater.
@@ -78,7 +78,7 @@ pub enum WriteError {
         folder: PathBuf,
         /// Name of the rater, or of the two raters who settle their differences.
         raters: String,
-        /// Process id of that program, if known.
+        /// Process id of the program that codes the errors, if known.
         pid: Option<u32>,
     },
     /// The recording has already been continued.
@@ -87,16 +87,16 @@ pub enum WriteError {
     Continued {
         /// Folder of the recording.
         folder: PathBuf,
-        /// Folder of the recording's next part.
+        /// Folder of the part that continues the recording.
         part: PathBuf,
     },
-    /// The folder already contains something else.
+    /// The folder for a recording already contains something else.
     #[error("{}: {what} is there already", folder.display())]
     #[diagnostic(help("another folder, or remove that one first: only the same session replaces its recording"))]
     Taken {
         /// Folder that was to contain the recording.
         folder: PathBuf,
-        /// What the folder contains.
+        /// What the folder contains instead.
         what: &'static str,
     },
 }

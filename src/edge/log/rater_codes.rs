@@ -26,7 +26,7 @@ const REMEDY: &str = "as many fields as the first line has";
 pub struct CodeRow {
     /// Line of the row in the file, for error messages.
     pub line: usize,
-    /// Name of the recording's folder.
+    /// Name of the folder of the coded recording.
     pub recording: String,
     /// Name of the rater.
     pub rater: String,
@@ -150,7 +150,7 @@ pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
     })
 }
 
-/// An error about one line of a raters' table.
+/// An error about one line of a table of raters' codes.
 pub fn wrong_line(path: &Path, text: &str, line: usize, found: String, remedy: &str) -> FileError {
     let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     let length = text[before..].lines().next().map_or(0, str::len);

@@ -24,9 +24,9 @@ const MAX_PARTS: usize = 100;
 pub struct LogLine {
     /// Number of the line in the file, counted from 1; line 1 is the header.
     pub number: usize,
-    /// Line as it is in the file, without its line end.
+    /// Line of the log as it is in the file, without its line end.
     pub text: String,
-    /// Event that the line contains.
+    /// Event that the line of the log contains.
     pub stamped: Stamped,
 }
 

@@ -19,14 +19,14 @@ const LAST: u64 = 256;
 /// State of a simulated session's log before the simulation.
 #[derive(Debug)]
 pub enum SimulatedLog {
-    /// A new log, to be written.
+    /// The log is new and has to be written.
     Begun {
         /// Writer of the new log.
         log: Box<LogWriter>,
         /// New path of an old log that ended before the end of its header.
         moved: Option<PathBuf>,
     },
-    /// The recording exists and is complete.
+    /// The simulated recording exists and is complete.
     Whole,
 }
 

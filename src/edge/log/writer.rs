@@ -1,4 +1,4 @@
-//! Writer of recordings.
+//! Writer of recordings: creates the folder, the settings and the log, and appends events.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -20,7 +20,7 @@ const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);
 /// Suffix of the folders of later parts: `<recording>-part2`, `<recording>-part3`, …
 const PART: &str = "-part";
 
-/// Writes the log of a session.
+/// Writer of the log of a session, one event per line.
 #[derive(Debug)]
 pub struct LogWriter {
     folder: PathBuf,
@@ -92,7 +92,7 @@ impl LogWriter {
 
     /// Writes into the lock file the address at which viewers can watch.
     pub fn announce(&mut self, viewers: &str) {
-        // A failure has no further consequences.
+        // If the address cannot be written into the lock file, that has no further consequences.
         let _ = self.lock.announce(viewers);
     }
 

@@ -23,9 +23,9 @@ use crate::session::settings::LslGazeSpec;
 const LOOK_S: f64 = 1.0;
 /// Time limit for connecting to a stream, for its metadata, and for the first clock comparison, in seconds.
 const CONNECT_S: f64 = 5.0;
-/// Time limit for waiting for a sample, in seconds.
+/// Time limit for waiting for a gaze sample, in seconds.
 const SAMPLE_S: f64 = 0.2;
-/// Period of clock comparisons.
+/// Period of comparing LSL's clock with this computer's.
 const COMPARE: Duration = Duration::from_secs(1);
 /// Longest time for which the program's end waits for the end of the reading thread.
 const END: Duration = Duration::from_secs(2);
@@ -94,7 +94,7 @@ fn channels(stream: &LslGazeSpec, labels: &[String]) -> Result<GazeChannels, Str
 /// Nobody receives the gaze any more, so that reading ends.
 struct NobodyListens;
 
-/// Reader of a gaze stream.
+/// Reader of a gaze stream of the Lab Streaming Layer.
 struct GazeInlet {
     library: LslLibrary,
     stream: LslGazeSpec,
@@ -150,7 +150,7 @@ impl GazeInlet {
         Ok(Some(format!("the stream {name} on {host} ended")))
     }
 
-    /// Passes on samples until the stream is lost.
+    /// Passes on gaze samples until the LSL stream is lost.
     fn pass(&mut self, inlet: &LslInletHandle, channels: &GazeChannels) -> Result<(), NobodyListens> {
         let mut clock = ComparedClock::new();
         (0..ANSWERS).for_each(|_| compare(&mut clock, &self.library));
@@ -176,7 +176,7 @@ impl GazeInlet {
         }
     }
 
-    /// Passes a sample on to the session.
+    /// Passes a gaze sample of an LSL stream on to the session.
     fn take(
         &mut self,
         stamp_s: f64,

@@ -31,7 +31,7 @@ const IRREGULAR: f64 = 0.0;
 /// in seconds.
 const KEPT_OUT: i32 = 360;
 const KEPT_IN: i32 = 10;
-/// Largest number of streams that one search can find.
+/// Largest number of LSL streams that one search can find.
 pub(super) const MOST_FOUND: u16 = 32;
 /// Error that a function of liblsl returns on a time-out (`lsl_timeout_error`).
 const TIMEOUT: i32 = -1;
@@ -91,7 +91,7 @@ functions! {
 #[derive(Clone, Copy, Debug)]
 pub struct LslLibrary {
     functions: &'static Functions,
-    /// Version of the library, times 100.
+    /// Version of the LSL library, times 100.
     pub version: i32,
 }
 
@@ -214,7 +214,7 @@ impl Functions {
     /// # Safety
     /// `from` is null or a text that ends with a zero byte.
     unsafe fn read(from: *const c_char) -> String {
-        // SAFETY: guaranteed by the caller.
+        // SAFETY: the caller guarantees that `from` is null or a valid text.
         if from.is_null() { String::new() } else { unsafe { CStr::from_ptr(from) }.to_string_lossy().into_owned() }
     }
 }
@@ -246,7 +246,7 @@ impl LslOutletHandle {
 
     /// Whether any program reads the outgoing stream.
     pub fn has_consumers(&self) -> bool {
-        // SAFETY: the outlet lives as long as this value.
+        // SAFETY: the outlet exists as long as this value.
         unsafe { (self.functions.have_consumers)(self.pointer) != 0 }
     }
 }
@@ -274,13 +274,13 @@ impl FoundStream {
             .map(|get| unsafe { Functions::read(get(self.info)) })
     }
 
-    /// Whether the samples of the stream are texts.
+    /// Whether the samples of the LSL stream are texts.
     pub fn is_text(&self) -> bool {
         // SAFETY: the description exists as long as this value.
         unsafe { (self.functions.get_channel_format)(self.info) == STRING }
     }
 
-    /// Number of channels of the stream.
+    /// Number of channels of the LSL stream.
     pub fn channel_count(&self) -> usize {
         // SAFETY: the description exists as long as this value.
         usize::try_from(unsafe { (self.functions.get_channel_count)(self.info) }).unwrap_or(0)

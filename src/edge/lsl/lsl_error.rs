@@ -9,9 +9,9 @@ pub enum LslError {
     /// The LSL library lacks a required function.
     #[error("{place} is no liblsl of version 1.17.7 or newer: it lacks {lacks}")]
     Unfit {
-        /// Path of the library.
+        /// Path of the LSL library that lacks the function.
         place: String,
-        /// Name of the missing function.
+        /// Name of the function that the LSL library lacks.
         lacks: &'static str,
     },
     /// The LSL library refuses to offer the stream of this name.
@@ -23,7 +23,7 @@ pub enum LslError {
 }
 
 impl LslError {
-    /// Advice for the user about this error.
+    /// Advice for the user about this error of the Lab Streaming Layer.
     pub fn remedy(&self) -> &'static str {
         match self {
             LslError::Missing(_) | LslError::Unfit { .. } => {

@@ -30,7 +30,7 @@ const COMPARE: Duration = Duration::from_secs(1);
 /// A sample for a stream, with the time of the event that it describes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedSample {
-    /// Stream that the sample is sent to.
+    /// LSL stream that the sample is sent to.
     pub outlet: LslOutlet,
     /// Instant of the event that the sample describes.
     pub at: Instant,
@@ -38,7 +38,7 @@ pub struct TimedSample {
     pub values: SampleValues,
 }
 
-/// Numbers of sent, dropped and refused samples.
+/// Numbers of samples sent over LSL, dropped, and refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LslCounts {
     /// Number of samples that the library accepted.
@@ -59,7 +59,7 @@ struct Counters {
 /// Streams that are offered to other programs until this value is dropped.
 #[derive(Debug)]
 pub struct LslStreams {
-    /// Descriptions of the offered streams.
+    /// Descriptions of the LSL streams on offer.
     pub descriptions: Vec<StreamDescription>,
     /// Queue to the sending thread; `None` once no more samples will be sent.
     packets: Option<SyncSender<Vec<TimedSample>>>,
@@ -106,7 +106,7 @@ impl LslStreams {
         }
     }
 
-    /// The counts so far.
+    /// Numbers of samples sent, dropped and refused so far.
     pub fn counts(&self) -> LslCounts {
         let Counters { sent, dropped, refused } = &*self.counters;
         LslCounts { sent: sent.load(Relaxed), dropped: dropped.load(Relaxed), refused: refused.load(Relaxed) }
@@ -128,7 +128,7 @@ fn offer_all(
     streams.iter().map(|stream| Ok((stream.outlet, library.offer(stream)?))).collect()
 }
 
-/// Sends the queued samples until the queue is closed.
+/// Sends the queued samples over LSL until the queue is closed.
 fn send(
     library: LslLibrary,
     outlets: &BTreeMap<LslOutlet, LslOutletHandle>,

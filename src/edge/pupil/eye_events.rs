@@ -21,7 +21,7 @@ const APART_S: f64 = 1.0;
 /// A window of a fixation as Capture sends it, or several merged windows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixationWindow {
-    /// Capture's id of the fixation.
+    /// Pupil Capture's id of the fixation.
     pub id: u64,
     /// Position on the display, in fractions, if known.
     pub at: Option<[f64; 2]>,

@@ -67,7 +67,7 @@ impl<'a> Listener<'a> {
         }
     }
 
-    /// Reads messages until the connection fails.
+    /// Reads Capture's messages until the connection fails.
     pub async fn listen(&mut self, backbone: &mut ZmtpConnection) -> io::Error {
         let connected = Instant::now();
         let mut seen: Option<Instant> = None;

@@ -6,7 +6,7 @@ use rmpv::decode::read_value_with_max_depth;
 
 /// Largest nesting depth of a Capture message.
 const MAX_DEPTH: usize = 16;
-/// Largest number of items in a datum.
+/// Largest number of items in a datum of a Capture message.
 const MAX_ITEMS: usize = 4096;
 /// Longest surface name that is passed on, in bytes.
 const MAX_NAME: usize = 100;
@@ -15,12 +15,12 @@ const MAX_NAME: usize = 100;
 pub const SURFACES: &str = "surfaces.";
 /// Topic of annotations, to which Capture's annotation plugin subscribes.
 pub const ANNOTATION: &str = "annotation";
-/// Further topics that the program subscribes to.
+/// Further topics of Capture's messages that the program subscribes to.
 pub const TOPICS: [&str; 4] = ["fixations", "blinks", STARTED, STOPPED];
 const STARTED: &str = "notify.recording.started";
 const STOPPED: &str = "notify.recording.stopped";
 
-/// A gaze sample on a surface.
+/// A gaze sample on a surface, as Capture sends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceGaze {
     /// Position in fractions of the surface, origin at the bottom left, y up; can lie outside of the surface.
@@ -34,26 +34,26 @@ pub struct SurfaceGaze {
 /// A fixation as Capture sends it; messages with the same id repeat while the fixation lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilFixation {
-    /// Capture's id of the fixation.
+    /// Pupil Capture's id of the fixation.
     pub id: u64,
     /// Position on the surface; `None` if the position is given in the scene camera's image.
     pub on_surface: Option<[f64; 2]>,
-    /// Capture's confidence, 0 to 1.
+    /// Capture's confidence in the fixation, 0 to 1.
     pub confidence: f64,
     /// Beginning of the fixation in Pupil time, in seconds.
     pub timestamp: f64,
     /// Duration of the fixation so far, in milliseconds.
     pub duration_ms: f64,
-    /// Spatial dispersion of the gaze samples, in degrees.
+    /// Spatial dispersion of the fixation's gaze samples, in degrees.
     pub dispersion_deg: f64,
 }
 
-/// Onset or offset of a blink.
+/// Onset or offset of a blink, as Capture sends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilBlink {
     /// Whether the lids closed (onset); false if they opened (offset).
     pub is_onset: bool,
-    /// Capture's confidence, 0 to 1.
+    /// Capture's confidence in the blink, 0 to 1.
     pub confidence: f64,
     /// Time of the onset or offset in Pupil time, in seconds.
     pub timestamp: f64,
@@ -73,9 +73,9 @@ pub enum RecorderNews {
 pub struct PupilMessage {
     /// Whether the message is about the requested surface, which shows that the tracker detects it.
     pub sees_surface: bool,
-    /// Gaze samples in the order in which they were taken.
+    /// Gaze samples in the message, in the order in which they were taken.
     pub gaze: Vec<SurfaceGaze>,
-    /// Fixations that continue or have ended.
+    /// Fixations in the message, which continue or have ended.
     pub fixations: Vec<PupilFixation>,
     /// Onset or offset of a blink, if the message contains one.
     pub blink: Option<PupilBlink>,

@@ -26,7 +26,7 @@ use recorder::CaptureRecorder;
 pub use recorder::CaptureRequest;
 use zmtp::{SocketRole, ZmtpConnection};
 
-/// Time between attempts to connect to Capture.
+/// Time between attempts to connect to Pupil Capture.
 const RETRY: Duration = Duration::from_millis(300);
 /// Capacity of the queue of requests to Capture.
 const ORDERS: usize = 256;
@@ -139,7 +139,7 @@ impl Follower {
     }
 
     async fn tell(&mut self, news: GazeNews) {
-        // If the receiver was dropped, the outer loop ends.
+        // If the receiver of gaze messages was dropped, the outer loop ends.
         let _ = self.news.send(news).await;
     }
 

@@ -30,9 +30,9 @@ pub enum CaptureRequest {
     StopRecording,
     /// Annotate Capture's recording with an event.
     Annotate {
-        /// Name of the event.
+        /// Name of the event that is annotated.
         label: String,
-        /// Instant of the event.
+        /// Instant of the event that is annotated.
         at: Instant,
         /// Labels of the trial's state from now on, with which a recording that begins later is annotated first.
         state: Vec<String>,
@@ -50,9 +50,9 @@ pub enum CaptureAction {
     Stop,
     /// Send an annotation to Capture.
     Annotate {
-        /// Name of the event.
+        /// Name of the event that is annotated.
         label: String,
-        /// Instant of the event.
+        /// Instant of the event that is annotated.
         at: Instant,
         /// Begin of the recording; an earlier event is annotated at this instant.
         not_before: Option<Instant>,
@@ -66,20 +66,20 @@ pub enum CaptureAction {
 /// Who started the recording that runs in Capture while the session wants one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RecordingOwner {
-    /// No recording is known.
+    /// No recording of Capture is known.
     Nobody,
-    /// This program started the recording.
+    /// This program started Capture's recording.
     Us,
-    /// The lab started the recording, or none could be started.
+    /// The lab started Capture's recording, or none could be started.
     Lab,
 }
 
-/// Why further requests have to wait.
+/// Why further requests to Capture have to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Hold {
-    /// The recording is about to begin, at the latest at this instant.
+    /// Capture's recording is about to begin, at the latest at this instant.
     Beginning(Instant),
-    /// The recording is ended at this instant.
+    /// Capture's recording is ended at this instant.
     Ending(Instant),
 }
 
@@ -88,7 +88,7 @@ enum Hold {
 pub struct CaptureRecorder {
     /// Whether Capture is to make a recording; its recordings are annotated in any case.
     records: bool,
-    /// Name of the recording that the session wants now.
+    /// Name of the Capture recording that the session wants now.
     wanted: Option<String>,
     owner: RecordingOwner,
     /// Instant at which Capture announced the present recording.
@@ -154,7 +154,7 @@ impl CaptureRecorder {
         (self.hold, self.listens_by) = (None, None);
     }
 
-    /// Handles a request of the session.
+    /// Handles a request of the session to Capture.
     pub fn order(&mut self, request: CaptureRequest, now: Instant) -> Vec<CaptureAction> {
         self.waiting.push_back(request);
         let mut actions = Vec::new();
@@ -212,7 +212,7 @@ impl CaptureRecorder {
         hold.into_iter().chain(self.listens_by).min()
     }
 
-    /// Does what is due at this time.
+    /// Does what is due at this time, such as ending Capture's recording.
     pub fn pass(&mut self, now: Instant) -> Vec<CaptureAction> {
         let mut actions = Vec::new();
         if self.listens_by.is_some_and(|by| by <= now) {
@@ -265,7 +265,7 @@ impl CaptureRecorder {
         actions.push(CaptureAction::Stop);
     }
 
-    /// Carries out waiting requests until one has to wait.
+    /// Carries out waiting requests to Capture until one has to wait.
     fn go_on(&mut self, now: Instant, actions: &mut Vec<CaptureAction>) {
         while self.hold.is_none() && self.listens_by.is_none() {
             match self.waiting.pop_front() {

@@ -9,7 +9,7 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-/// A ZeroMQ message, as its frames.
+/// A ZeroMQ message, as a list of its frames.
 pub type ZmtpMessage = Vec<Vec<u8>>;
 
 /// Longest message, in bytes of all frames, and largest number of frames.
@@ -59,7 +59,7 @@ pub struct FrameAssembler {
 }
 
 impl FrameAssembler {
-    /// Adds received bytes.
+    /// Adds bytes received from the ZeroMQ socket.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.drain(..self.read);
         self.read = 0;
@@ -232,7 +232,7 @@ impl ZmtpConnection {
     }
 }
 
-/// A property of a READY command, as bytes.
+/// A property in ZeroMQ's READY command, as bytes.
 fn property(name: &str, value: &str) -> Vec<u8> {
     let mut bytes = vec![name.len() as u8];
     bytes.extend(name.as_bytes());

@@ -42,7 +42,7 @@ type Property = (String, Vec<SerializedComponentBatch>);
 /// What a viewer does when it has opened a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ViewerStart {
-    /// The viewer stands at the beginning.
+    /// The viewer stands at the beginning of the recording.
     Waiting,
     /// The viewer follows the newest data of a running session.
     Following,
@@ -57,7 +57,7 @@ pub(super) struct ViewerLayout {
 }
 
 impl ViewerLayout {
-    /// The layout for these recordings.
+    /// The viewer's layout for these recordings.
     pub(super) fn from_lanes(lanes: &[StreamLane], opens: ViewerStart) -> ViewerLayout {
         let mut properties = Vec::new();
         let root: ContainerLike = match lanes {
@@ -111,7 +111,7 @@ impl ViewerLayout {
     }
 }
 
-/// Layout of a single recording.
+/// Viewer layout for a single recording.
 fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let above = Horizontal::new([kitchen(lane), arm(lane, properties)]).with_column_shares([3.0, 2.0]);
     let wrong = StateTimelineView::new("Believed wrong")
@@ -134,7 +134,7 @@ fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 2.0]).into()
 }
 
-/// Layout of one of several recordings.
+/// Viewer layout for one of several recordings side by side.
 fn beside(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let belief = beliefs(lane, "P(truth)", properties);
     let below = Horizontal::new([belief, benefit(lane, properties)]);
@@ -151,7 +151,7 @@ fn titled(lane: &StreamLane, name: &str) -> String {
     if lane.title.is_empty() { name.to_string() } else { format!("{}: {name}", lane.title) }
 }
 
-/// A view with one property.
+/// A view of the Rerun viewer with one property.
 fn with(
     view: impl Into<ContainerLike>,
     name: &str,

@@ -17,7 +17,7 @@ const RECENT: usize = 16;
 /// cannot be merged.
 pub(super) type Merge<M> = fn(&[M]) -> Option<(M, usize)>;
 
-/// A piece of the stream, with one entity's data.
+/// A piece (chunk) of the stream, with data of one entity.
 #[derive(Debug)]
 struct KeptPiece<M> {
     message: M,
@@ -40,7 +40,7 @@ pub(super) struct KeptMessages<M> {
     most_bytes: usize,
     merge: Merge<M>,
     bytes: usize,
-    /// Pieces by number, in the order of arrival.
+    /// Pieces of the stream by number, in the order of arrival.
     pieces: BTreeMap<u64, KeptPiece<M>>,
     /// Numbers of pieces that may be removed, since there is a newer piece of the same entity.
     outdated: BTreeSet<u64>,
@@ -186,7 +186,7 @@ mod tests {
         let (mut from, mut read) = (0, Vec::new());
         for step in 0..1000 {
             kept.add(step.to_string(), 100, Some(["human/gaze", "robot/arm"][step % 2]));
-            // The viewer is a few pieces behind.
+            // The viewer has not yet read the last few pieces.
             if step % 10 == 9 {
                 while let Some((number, message)) = kept.next(from) {
                     (from, read) = (number + 1, [read, vec![message]].concat());

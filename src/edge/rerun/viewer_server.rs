@@ -39,7 +39,7 @@ use crate::edge::host_name::is_local;
 
 /// Largest number of connections at a time; further ones are closed at once.
 const MOST_CONNECTIONS: usize = 32;
-/// Time limit for the first request of a connection.
+/// Time limit for the first request of a viewer's connection.
 const ASKS: Duration = Duration::from_secs(5);
 /// Period of checking whether a viewer still responds, and time limit for its response: a stopped viewer does not
 /// respond.
@@ -49,7 +49,7 @@ const PONG: Duration = Duration::from_secs(20);
 const LAST: Duration = Duration::from_secs(1);
 /// Pause after a failure to accept a connection, such as too many open files.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Memory of a message besides its data, in bytes.
+/// Memory that a message needs besides its data, in bytes.
 const OVERHEAD: usize = 512;
 
 /// A message of the stream, as received from the SDK or encoded for viewers.
@@ -107,7 +107,7 @@ impl ViewerServer {
     }
 }
 
-/// Completes at the end of the stream.
+/// Completes when the stream ends.
 async fn over(mut told: watch::Receiver<u64>) {
     while told.changed().await.is_ok() {}
 }
@@ -131,7 +131,7 @@ impl LogSink for ViewerServer {
     }
 }
 
-/// Merges pieces of one entity into one.
+/// Merges pieces (chunks) of one entity into one.
 fn merged(pieces: &[StreamMessage]) -> Option<(StreamMessage, usize)> {
     let mut chunks = Vec::new();
     let mut recording = None;
@@ -174,11 +174,11 @@ impl SharedStream {
     }
 }
 
-/// Rerun's gRPC service for messages, for reading only.
+/// Rerun's gRPC service for stream messages, for reading only.
 #[derive(Clone)]
 struct ViewerService(Arc<SharedStream>);
 
-/// A streamed gRPC response.
+/// A gRPC response that consists of many messages.
 type Answers<T> = Pin<Box<dyn Stream<Item = Result<T, Status>> + Send>>;
 
 fn read_only<T>() -> Result<Response<T>, Status> {
@@ -222,7 +222,7 @@ impl MessageProxyService for ViewerService {
     }
 }
 
-/// Accepts connections until the server stops.
+/// Accepts connections of viewers until the server stops.
 async fn serve(listener: std::net::TcpListener, is_loopback: bool, service: ViewerService) -> io::Result<()> {
     let listener = TcpListener::from_std(listener)?;
     let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));

@@ -45,7 +45,7 @@ pub fn expire(model: &mut ConsoleModel, session: &Session) {
     let is_late = model.clock.secs_since(question.asked) > WAITS_S;
     let open = session.offers.open().filter(|offer| offer.opened > question.asked && Some(offer.seq) != question.offer);
     if is_late || open.is_some() {
-        let why = if is_late { "nobody answered" } else { "an offer has appeared" };
+        let why = if is_late { "no answer in time" } else { "an offer has appeared" };
         model.dialog = None;
         model.say(NoticeLevel::Refused, format!("not sent: {why}; click again"));
     }
@@ -75,7 +75,7 @@ pub(super) fn confirm(model: &mut ConsoleModel, session: &Session, question: Sen
     let now_meant = offers::enter(session, model.now).ok().map(|(offer, _)| offer.seq);
     match question.offer {
         Some(offer) if now_meant != Some(offer) => {
-            model.say(NoticeLevel::Refused, "not sent: the offer that was clicked is closed");
+            model.say(NoticeLevel::Refused, "not sent: the clicked offer has closed");
             None
         }
         Some(_) => act(model, session, KeyAction::Accept),

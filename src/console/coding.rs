@@ -33,13 +33,13 @@ pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterKey) -> Optio
         RaterKey::Clear => None,
     };
     if let Some(error) = chosen.and_then(|chosen| coding.errors.get(chosen)) {
-        let words = format!("not coded: error {} is chosen; enter goes there, esc stays here", error.error);
+        let words = format!("not coded: error {} is only selected; enter goes to it, esc stays here", error.error);
         coding.chosen = chosen;
         model.say(NoticeLevel::Refused, words);
         return None;
     }
     let Some(press) = coding.present(events).map(|error| error.press) else {
-        model.say(NoticeLevel::Refused, "there is no error yet that could be coded");
+        model.say(NoticeLevel::Refused, "there is no error before this point of the recording");
         return None;
     };
     coding.give(press, code);
@@ -61,7 +61,7 @@ fn undone(model: &mut ConsoleModel, again: bool) -> Option<ConsoleCommand> {
     let coding = model.coding.as_mut()?;
     let press = if again { coding.redo() } else { coding.undo() };
     if press.is_none() {
-        let nothing = if again { "nothing to do again" } else { "nothing to undo since the recording was opened" };
+        let nothing = if again { "nothing to redo" } else { "nothing to undo since the recording was opened" };
         model.say(NoticeLevel::Refused, nothing);
     }
     press.map(|press| ConsoleCommand::Code { press })

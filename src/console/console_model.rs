@@ -287,7 +287,7 @@ impl ConsoleModel {
         let has_doubled = self.rejected_senders.checked_ilog2() > before.checked_ilog2();
         if has_doubled {
             let told = count(self.rejected_senders, "sender", "senders");
-            self.warn(format!("gaze: {told} rejected and not read: no JSON object, or not the tracker's address"));
+            self.warn(format!("gaze: {told} rejected: no JSON object, or not the eye tracker's address"));
         }
     }
 

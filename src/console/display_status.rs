@@ -58,11 +58,11 @@ impl DisplayHealth {
             return PreflightCheck::new(
                 "display",
                 PreflightVerdict::Failed,
-                format!("no page is connected{code}"),
+                format!("participant's page not connected{code}"),
                 open,
             );
         };
-        let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms there and back"));
+        let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms round trip"));
         let others = match self.watching {
             0 => String::new(),
             watching => format!(", {watching} more watching"),
@@ -76,7 +76,7 @@ impl DisplayHealth {
         let is_slow = self.round_trip_ms.is_some_and(|ms| ms > SLOW_MS);
         let (verdict, remedy) = match (is_small, is_slow) {
             (true, _) => (PreflightVerdict::Warning, "full screen (F11) on a display of at least 1280x720"),
-            (false, true) => (PreflightVerdict::Warning, "a page on this computer, or a wire instead of radio"),
+            (false, true) => (PreflightVerdict::Warning, "a page on this computer, or a cable instead of Wi-Fi"),
             (false, false) => (PreflightVerdict::Ok, ""),
         };
         PreflightCheck::new("display", verdict, found, remedy)

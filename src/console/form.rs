@@ -20,7 +20,7 @@ use crate::session::{Event, Phase, Session};
 
 /// Preset reasons for waiving the practice criterion.
 pub const WAIVERS: [&str; 4] =
-    ["knows the task all the same", "no time for more practice", "trouble with a device", "other, see the notes"];
+    ["knows the task anyway", "no time for more practice", "technical problem", "other, see the notes"];
 
 /// Content of a sheet, a form of the console at full size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,10 +116,10 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
             let last = protocol.ticks.iter().rposition(|done| *done)?;
             tell(model, session, ProtocolEvent::Ticked { step: last + 1, done: false })
         }
-        (SheetContent::Steps { .. }, _) => refuse(model, "enter ticks the step, backspace takes the last tick back"),
+        (SheetContent::Steps { .. }, _) => refuse(model, "enter ticks the step, backspace unticks the last one"),
         (SheetContent::Questions(_), _) if protocol.confirmed => match stroke {
             SheetKey::Confirm => leave(model, session),
-            _ => refuse(model, "the answers are confirmed"),
+            _ => refuse(model, "the answers are already confirmed"),
         },
         (SheetContent::Questions(questionnaire), stroke) => ask(model, session, questionnaire, protocol, stroke),
         (SheetContent::Failed, SheetKey::Confirm) => match model.waiver.take().and_then(|index| WAIVERS.get(index)) {
@@ -150,7 +150,7 @@ fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke
         },
         SheetKey::Digit(0) => return tell(model, session, ProtocolEvent::Tutorial(TutorialEvent::Ended { by })),
         SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip => {
-            return refuse(model, "arrows turn the participant's page, 0 skips the rest");
+            return refuse(model, "arrows turn the participant's page, 0 ends the tutorial");
         }
         SheetKey::Leave => return leave(model, session),
     };
@@ -184,7 +184,9 @@ fn ask(
                 None => refuse(model, "the item has no such option"),
             }
         }
-        (SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip, _) => refuse(model, "go back to the item first"),
+        (SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip, _) => {
+            refuse(model, "to change an answer, go back to its item first")
+        }
         (SheetKey::Back | SheetKey::Undo, _) => {
             let item = id(protocol.item.checked_sub(1)?)?;
             tell(model, session, ProtocolEvent::ItemShown { item })
@@ -236,7 +238,7 @@ pub(super) fn type_answer(
             let answer = match (&form, text.parse()) {
                 (ItemForm::Text { .. }, _) => Ok(AnswerValue::Text(text)),
                 (_, Ok(number)) => Ok(AnswerValue::Number(number)),
-                (_, Err(_)) => Err("a whole number is asked for"),
+                (_, Err(_)) => Err("enter a whole number"),
             };
             match answer.and_then(|answer| form.admit(&answer).map(|()| answer)) {
                 Ok(answer) => return tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),

@@ -86,7 +86,7 @@ pub(super) fn press(
         // Digits of a number follow one another quickly: the number 11 is two presses, not a held key.
         _ if touch == Touch::Held && !probe_keys::takes_digit(model, session, code) => {
             if model.dialog.is_none() {
-                model.say(NoticeLevel::Refused, format!("\"{chord}\" is held down: it counts once"));
+                model.say(NoticeLevel::Refused, format!("\"{chord}\" is held down: it counts as one press"));
             }
             None
         }
@@ -95,7 +95,7 @@ pub(super) fn press(
             on_sheet(model, session, code, action, touch)
         }
         Some(action) if touch == Touch::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
-            model.say(NoticeLevel::Refused, format!("\"{chord}\" may be held down: press again"));
+            model.say(NoticeLevel::Refused, format!("\"{chord}\" may be held down: press it again"));
             None
         }
         action if model.dialog.is_some() => answer(model, session, chord, action, touch),
@@ -137,7 +137,7 @@ fn choose(
     model.answered = Some(model.clock);
     match action {
         KeyAction::Signal(..) | KeyAction::Accept => {
-            model.say(NoticeLevel::Done, format!("press {chord} to {help}: a list sends nothing"));
+            model.say(NoticeLevel::Done, format!("press {chord} to {help}: signals are not sent from a list"));
             None
         }
         _ => press(model, session, chord.code, chord, Touch::Press),
@@ -167,16 +167,13 @@ fn on_sheet(
         // Answers are always taken: a lost answer would shift the following answers to wrong items unnoticed, but an
         // additional one is seen.
         (Some(SheetKey::Confirm | SheetKey::Leave), _) if touch == Touch::Again => {
-            model.say(NoticeLevel::Refused, "not yet: read it, then press the key again");
+            model.say(NoticeLevel::Refused, "too soon: read the text, then press the key again");
             None
         }
         (Some(stroke), _) => form::write(model, session, stroke),
         (None, Some(action)) if acts_on_sheet(session, &action) => act(model, session, action),
         (None, _) => {
-            model.say(
-                NoticeLevel::Refused,
-                "this key has no meaning before the trial: the last line of the sheet says what has",
-            );
+            model.say(NoticeLevel::Refused, "this key has no effect here: the last line of the sheet names the keys");
             None
         }
     }

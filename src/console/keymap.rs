@@ -82,7 +82,7 @@ impl KeyMap {
                     let names: Vec<&str> = known().map(|line| line.name.as_str()).collect();
                     return Err(KeyError {
                         place: KeyPlace::File(name.span()),
-                        found: format!("\"{}\", which nothing in [{section}] is called", name.get_ref()),
+                        found: format!("\"{}\", which is not a name in [{section}]", name.get_ref()),
                         remedy: format!("one of {}", names.join(", ")),
                     });
                 }
@@ -128,7 +128,7 @@ fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, Ke
             Ok(chord) if chord == KeyChord::SPACE && line.action != KeyAction::StopRobot => {
                 return wrong(
                     "\"space\", which is the robot stop, always".to_string(),
-                    "another key: nothing may stand between the space bar and the robot stop",
+                    "another key: the space bar always stops the robot",
                 );
             }
             Ok(chord) if chords.contains(&chord) => {
@@ -143,7 +143,9 @@ fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, Ke
             format!("{:?}, without the space bar", names.get_ref().0),
             "\"space\", or a list with \"space\" and other keys: the space bar is the robot stop, always",
         ),
-        KeyAction::Quit if chords.is_empty() => wrong("[]".to_string(), "a key: without one nobody gets out"),
+        KeyAction::Quit if chords.is_empty() => {
+            wrong("[]".to_string(), "a key: without one the program cannot be quit")
+        }
         _ => Ok(chords),
     }
 }

@@ -79,10 +79,10 @@ impl Picker {
     pub fn title(&self, session: &Session) -> String {
         match self.question {
             PickerQuestion::Place => "Correct the kitchen: which place?".to_string(),
-            PickerQuestion::Content(place) => format!("What is at {}?", session.kitchen.location(place).label()),
+            PickerQuestion::Content(place) => format!("What is really at {}?", session.kitchen.location(place).label()),
             PickerQuestion::Button => "The robot's next press".to_string(),
             PickerQuestion::Abort => "Abort the trial: why?".to_string(),
-            PickerQuestion::Exclude => "Leave the trial out: why?".to_string(),
+            PickerQuestion::Exclude => "Exclude the trial from the analysis: why?".to_string(),
             PickerQuestion::SkipProbe(probe) => format!("Skip the rest of probe {probe}: why?"),
         }
     }

@@ -71,11 +71,11 @@ fn probes(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
         ProbeAnswerer::Simulated => PreflightCheck::ok("probes", found("answered by the simulated participant")),
         ProbeAnswerer::Console if !is_wanted(session) => PreflightCheck::ok("probes", found("on the console")),
         ProbeAnswerer::Console => {
-            let remedy = "open the participant's page; else read the questions out, and enter the answers here";
+            let remedy = "open the participant's page, or read the questions out and enter the answers here";
             PreflightCheck::new(
                 "probes",
                 PreflightVerdict::Warning,
-                found("on the console: no page is connected"),
+                found("on the console: participant's page not connected"),
                 remedy,
             )
         }
@@ -85,12 +85,18 @@ fn probes(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
 fn recording(model: &ConsoleModel) -> PreflightCheck {
     match &model.recording {
         RecordingStatus::On(folder) => PreflightCheck::ok("recording", folder.clone()),
-        RecordingStatus::Off => {
-            PreflightCheck::new("recording", PreflightVerdict::Failed, "nothing is recorded", "start the program anew")
-        }
-        RecordingStatus::Lost => {
-            PreflightCheck::new("recording", PreflightVerdict::Failed, "it cannot be written", "start the program anew")
-        }
+        RecordingStatus::Off => PreflightCheck::new(
+            "recording",
+            PreflightVerdict::Failed,
+            "the session is not recorded",
+            "restart the program",
+        ),
+        RecordingStatus::Lost => PreflightCheck::new(
+            "recording",
+            PreflightVerdict::Failed,
+            "the recording cannot be written",
+            "restart the program",
+        ),
     }
 }
 
@@ -111,7 +117,7 @@ fn viewers(viewers: &ViewerStreamStatus) -> PreflightCheck {
         ),
         (dropped, _) => warning(
             format!("{found}; {dropped} rows dropped"),
-            "end what else keeps the processor busy; tomcom review makes the stream from the log",
+            "close other programs that use the processor; tomcom review makes the stream from the log",
         ),
     }
 }
@@ -121,7 +127,7 @@ fn lsl(status: &LslStatus) -> PreflightCheck {
     match status.lost {
         0 => PreflightCheck::ok("lsl", found),
         lost => {
-            let remedy = "end what else keeps the processor busy; the log has every event";
+            let remedy = "close other programs that use the processor; the log has every event";
             PreflightCheck::new("lsl", PreflightVerdict::Warning, format!("{found}; {lost} samples lost"), remedy)
         }
     }
@@ -129,10 +135,13 @@ fn lsl(status: &LslStatus) -> PreflightCheck {
 
 fn keyboard(model: &ConsoleModel) -> PreflightCheck {
     match model.focused {
-        true => PreflightCheck::ok("keyboard", "keys arrive here"),
-        false => {
-            PreflightCheck::new("keyboard", PreflightVerdict::Failed, "keys go elsewhere", "click into this window")
-        }
+        true => PreflightCheck::ok("keyboard", "this window has the keyboard focus"),
+        false => PreflightCheck::new(
+            "keyboard",
+            PreflightVerdict::Failed,
+            "this window does not have the keyboard focus",
+            "click into this window",
+        ),
     }
 }
 
@@ -158,7 +167,8 @@ fn go(model: &mut ConsoleModel, session: &Session, overridden: bool) -> Option<C
         return None;
     }
     model.dialog = None;
-    let words = if overridden { "the trial runs, although not all was ok" } else { "all is ok: the trial runs" };
+    let words =
+        if overridden { "the trial runs, although not all checks are ok" } else { "all checks are ok: the trial runs" };
     model.say(NoticeLevel::Done, words);
     Some(ConsoleCommand::Start(Event::Preflight { checks, overridden }))
 }

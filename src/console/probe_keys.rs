@@ -53,7 +53,7 @@ pub fn status(session: &Session, model: &ConsoleModel) -> Option<String> {
         });
     }
     if let Some(waiting) = &book.waiting {
-        return Some(format!("{} waits", numbered(session, waiting.number)));
+        return Some(format!("{} is delayed", numbered(session, waiting.number)));
     }
     // A participant who reads the console must not know when the next probe comes.
     let foresees = session.spec.participant.kind == ParticipantKind::Keyboard;
@@ -84,7 +84,7 @@ pub(super) fn write(
     if stroke == SheetKey::Leave {
         let (event, words) = match session.can_be_paused() {
             true => (Event::TrialPaused, "the probe is paused"),
-            false => (Event::TrialResumed, "the probe goes on"),
+            false => (Event::TrialResumed, "the probe continues"),
         };
         return send(model, session, event, NoticeLevel::Done, words);
     }
@@ -98,7 +98,7 @@ pub(super) fn write(
     let confidence = session.spec.probes.as_ref().is_some_and(|probes| probes.confidence);
     match stroke {
         SheetKey::Digit(digit @ 1..=3) if entry.asks_sure => entry.sure = Some(digit),
-        SheetKey::Digit(_) if entry.asks_sure => return refuse(model, "how sure: 1, 2 or 3"),
+        SheetKey::Digit(_) if entry.asks_sure => return refuse(model, "how sure is the participant? 1, 2 or 3"),
         SheetKey::Digit(digit) => {
             let begun = entry.choice.filter(|_| entry.is_typed).unwrap_or(0);
             let number = 10 * begun + usize::from(digit);
@@ -107,7 +107,9 @@ pub(super) fn write(
             }
             (entry.choice, entry.is_typed) = (Some(number), true);
         }
-        SheetKey::Forward | SheetKey::Back if entry.asks_sure => return refuse(model, "how sure: 1, 2 or 3"),
+        SheetKey::Forward | SheetKey::Back if entry.asks_sure => {
+            return refuse(model, "how sure is the participant? 1, 2 or 3");
+        }
         SheetKey::Forward | SheetKey::Back => {
             let by = if stroke == SheetKey::Forward { 1 } else { -1 };
             let to = entry.choice.map_or(0, |choice| choice.saturating_add_signed(by)).min(choices);
@@ -118,9 +120,11 @@ pub(super) fn write(
         SheetKey::Undo if entry.asks_sure => (entry.asks_sure, entry.sure) = (false, None),
         SheetKey::Undo => entry.choice = entry.choice.filter(|&choice| choice > 9).map(|choice| choice / 10),
         SheetKey::Confirm => match entry.choice {
-            None => return refuse(model, "first the number of the choice; 0: the participant does not know"),
+            None => return refuse(model, "enter the number of the choice first; 0: the participant does not know"),
             Some(1..) if confidence && !entry.asks_sure => entry.asks_sure = true,
-            Some(1..) if confidence && entry.sure.is_none() => return refuse(model, "how sure: 1, 2 or 3"),
+            Some(1..) if confidence && entry.sure.is_none() => {
+                return refuse(model, "how sure is the participant? 1, 2 or 3");
+            }
             Some(number) => {
                 let answer = number.checked_sub(1).and_then(|index| question.choices.get(index)).cloned();
                 let (probe, question, on) = (open.number, index as u32 + 1, Answering::Console);

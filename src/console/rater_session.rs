@@ -178,7 +178,7 @@ impl RaterSession {
             CodingParty::Rater(_) if number == 0 => "no error in this recording: nothing to code".to_string(),
             CodingParty::Rater(rater) => {
                 let next = match self.finished.first() {
-                    None => "another rater codes alone, with --rater".to_string(),
+                    None => "a second rater codes independently, with --rater".to_string(),
                     Some(other) => format!("tomcom codes compares, --settle {other} {rater} settles"),
                 };
                 format!("all {number} coded; next: {next}")

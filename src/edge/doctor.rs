@@ -245,6 +245,6 @@ fn timer() -> PreflightCheck {
         "timer",
         verdict,
         format!("wakes at most {late_ms:.1} ms late"),
-        "end what else keeps the processor busy",
+        "close other programs that use the processor",
     )
 }

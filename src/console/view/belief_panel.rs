@@ -36,7 +36,7 @@ const SCALE: u16 = 6;
 pub(super) const QUIET: &str = "No false beliefs";
 
 /// Text of the belief panel before the trial's first estimate.
-const BEFORE: &str = "estimated from the trial's start on";
+const BEFORE: &str = "estimated once the trial has started";
 
 /// Drawing context of the belief panel: session, present time, and estimates.
 struct Panel<'a> {
@@ -78,7 +78,7 @@ impl Panel<'_> {
     }
 
     fn remark(&self) -> String {
-        let order = if are_by_cost(self.session) { "by presses lost" } else { "oldest first" };
+        let order = if are_by_cost(self.session) { "most costly first" } else { "oldest first" };
         match self.of_standing(BeliefStanding::False).count() {
             0 => "estimated".to_string(),
             number => format!("{number} false, {order}"),
@@ -107,7 +107,7 @@ impl Panel<'_> {
                 let is_any_false = told[index..].iter().any(|belief| is_false(belief));
                 let role = if is_any_false { TextRole::FalseBelief } else { TextRole::Quiet };
                 let style = brush.style(role);
-                let words = format!("{} {left} more false or unsure", brush.theme.signs().ellipsis);
+                let words = format!("{} {left} more false or unsure beliefs", brush.theme.signs().ellipsis);
                 brush.text(area.x, y, area.width, &words, style);
                 return;
             }

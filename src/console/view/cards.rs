@@ -105,7 +105,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     let errors = format!("{errors} in {} of the human ({share:.0} %)", count(u64::from(human), "press", "presses"));
     let clock = session.trial_clock(model.now);
     let paused = if session.paused_total > SessionTime::ZERO {
-        format!(", and {} of pauses", session.paused_total)
+        format!(", plus {} of pauses", session.paused_total)
     } else {
         String::new()
     };
@@ -118,7 +118,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     facts.extend(signals(session, model));
     facts.push(fact("time", format!("{clock}{paused}"), TextRole::Text));
     if let Some(practice) = session.protocol.as_ref().and_then(|protocol| protocol.practice.as_ref()) {
-        let met = if practice.met { "met: the practice is complete" } else { "not met, and waived" };
+        let met = if practice.met { "met" } else { "not met, waived" };
         facts.push(fact("criterion", met.to_string(), TextRole::Strong));
     }
     let mut keys = Vec::new();
@@ -126,7 +126,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     keys.extend(on.and_then(|on| Some((model.keys.chord_for(&KeyAction::Advance)?, on))));
     if can_redo(session) {
         keys.extend(
-            model.keys.chord_for(&KeyAction::Hand(ManualAction::Redo)).map(|key| (key, "do it again".to_string())),
+            model.keys.chord_for(&KeyAction::Hand(ManualAction::Redo)).map(|key| (key, "repeat the trial".to_string())),
         );
     }
     keys.extend(model.keys.chord_for(&KeyAction::Quit).map(|key| (key, "close the session".to_string())));

@@ -41,7 +41,7 @@ fn draw_codebook(brush: &mut Painter, area: Rect, session: &Session, model: &Con
         return;
     }
     let inside = match is_panel {
-        true => brush.panel(area, "Codebook", "why was it an error?"),
+        true => brush.panel(area, "Codebook", "why did the error happen?"),
         false => area,
     };
     let (left, columns) = (inside.x + 1, inside.width.saturating_sub(2));
@@ -133,7 +133,7 @@ fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usi
             }
         }
     } else {
-        lines.push(("before the first error: enter goes there".to_string(), TextRole::Quiet));
+        lines.push(("no error reached yet: enter goes to the first one".to_string(), TextRole::Quiet));
     }
     for (row, (line, role)) in lines.iter().enumerate().take(usize::from(head.height.saturating_sub(1))) {
         let style = brush.style(*role);

@@ -33,7 +33,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     };
     let Some(seen) = &compared.seen else {
         let quiet = brush.style(TextRole::Quiet);
-        brush.text(inside.x + 1, inside.y, inside.width, "compared from the first order or press on", quiet);
+        brush.text(inside.x + 1, inside.y, inside.width, "the comparison starts with the first order or press", quiet);
         return;
     };
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
@@ -175,7 +175,7 @@ fn differences(
         let number = format!("{:>3}/{}  ", index + 1, seen.differences.len());
         let role = if is_chosen { TextRole::Strong } else { TextRole::Quiet };
         let open = model.keys.chord_for(&KeyAction::Differ(ComparisonKey::Open)).filter(|_| is_chosen);
-        let open = open.map_or(String::new(), |key| format!("  {key} opens it"));
+        let open = open.map_or(String::new(), |key| format!("  {key} shows details"));
         let headline = seen.headline(difference);
         let room = area.width.saturating_sub(width(&open) + 1);
         let x = brush.parts(area.x + 1, y, room, &[(&number, TextRole::Quiet), (&headline, role)]);

@@ -32,12 +32,12 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Sess
         Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."], "y"),
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
-                _ if model.lesson.is_some() => &["The training ends here, without a result."],
+                _ if model.lesson.is_some() => &["The training ends without a saved result."],
                 Phase::Running | Phase::Paused => {
                     &["The trial is not over. Only y ends it.", "The session ends, the recording is kept."]
                 }
                 _ if !session.is_step_done() => {
-                    &["Not everything of this step is done.", "It can be continued, or done again."]
+                    &["This step of the study is not complete.", "It can be continued or repeated."]
                 }
                 _ => &["The session ends, the recording is kept."],
             };
@@ -68,7 +68,7 @@ fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
         .flat_map(|(index, line)| wrap(line, columns - 4).into_iter().map(move |line| (index == 0, line)))
         .collect();
     let rows = wrapped.len() as u16 + 2;
-    let inside = open(brush, screen, (columns, rows), "What each knew", "any key closes");
+    let inside = open(brush, screen, (columns, rows), "What wizard and assistant knew", "any key closes");
     for (row, (is_head, line)) in wrapped.iter().enumerate().take(usize::from(inside.height)) {
         let style = brush.style(if *is_head { TextRole::Strong } else { TextRole::Text });
         brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
@@ -107,7 +107,7 @@ fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleMo
         let style = brush.style(if from + row == 0 { TextRole::Strong } else { TextRole::Text });
         brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
     }
-    let hints = [("enter", "goes on; it is recorded, too", Some(KeyChord::plain(KeyCode::Enter)))];
+    let hints = [("enter", "continue; this report is saved", Some(KeyChord::plain(KeyCode::Enter)))];
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &hints);
 }
 
@@ -141,28 +141,28 @@ impl Line<'_> {
 /// Legend of the signs that the console's panels use.
 fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
     let meanings = [
-        (signs.gaze, "the gaze; in the belief: it was just there"),
-        (signs.trail, "where the gaze was before"),
-        (signs.rules[1], "changed just now, by whom: the colour"),
-        (signs.changed, "changed so long ago"),
-        (signs.rules[2], "shown to the participant"),
-        (signs.to, "the robot goes there; trial or robot goes on"),
-        (signs.bar_full, "how sure a belief is; what a signal saves"),
-        (signs.bar_empty, "what it may save more, by its error"),
-        (signs.frame[5], "between those: what a signal costs"),
+        (signs.gaze, "where the participant looks or just looked"),
+        (signs.trail, "where the participant looked before"),
+        (signs.rules[1], "content just changed; colour: by whom"),
+        (signs.changed, "time since the content changed"),
+        (signs.rules[2], "highlighted on the participant's display"),
+        (signs.to, "robot's next press; trial or robot resumed"),
+        (signs.bar_full, "probability of a belief; presses saved"),
+        (signs.bar_empty, "presses saved, up to one standard error more"),
+        (signs.frame[5], "line between those: cost of a signal"),
         (signs.press, "press"),
         (signs.no_effect, "ineffective press"),
         (signs.error, "error; trial excluded"),
         (signs.served, "order served"),
-        ("+", "new order; more than there is room for"),
-        (signs.taken_back, "taken back; robot's press skipped"),
-        (signs.by_hand, "by the experimenter's hand"),
+        ("+", "new order; further entries without room"),
+        (signs.taken_back, "signal taken back; robot's press skipped"),
+        (signs.by_hand, "manual intervention of the experimenter"),
         (signs.stopped, "robot stopped"),
         (signs.touched, "a person touched the arm"),
-        (signs.levels[3], "angle of a joint of the arm, the base first"),
+        (signs.levels[3], "joint angles of the arm, from the base on"),
         (signs.pause, "trial paused; robot held"),
-        ("*", "note in words"),
-        ("!", "the keyboard was elsewhere"),
+        ("*", "typed note"),
+        ("!", "keyboard focus was lost"),
     ];
     meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()
 }

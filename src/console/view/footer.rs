@@ -31,7 +31,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
         let alarm = brush.theme.badge(TextRole::Alarm);
-        let words = " THE KEYBOARD IS ELSEWHERE, and the robot stop with it: click into this window ";
+        let words = " KEYBOARD FOCUS LOST: keys and robot stop do not work; click into this window ";
         brush.text(area.x, area.y, area.width, &format!("{words:<width$}", width = usize::from(area.width)), alarm);
         return;
     }
@@ -136,7 +136,7 @@ pub fn message(brush: &mut Painter, regions: &Regions, session: &Session, model:
     if let Some(Dialog::Send(question)) = &model.dialog {
         let words = wording::signal(&question.signal);
         let strong = brush.theme.badge(TextRole::Strong);
-        let text = format!(" Send {words}? enter or a second click sends it, esc leaves it ");
+        let text = format!(" Send {words}? enter or a second click sends it, esc cancels ");
         brush.text(area.x + 1, area.y, area.width - 1, &text, strong);
         return;
     }
@@ -149,7 +149,7 @@ pub fn message(brush: &mut Painter, regions: &Regions, session: &Session, model:
         let resume = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| model.playback.is_none());
         let resume = resume.map_or(String::new(), |key| format!("; {key} resumes it"));
         let alarm = brush.style(TextRole::Alarm);
-        brush.text(area.x + 2, area.y, area.width - 2, &format!("The arm stands: {why}{resume}"), alarm);
+        brush.text(area.x + 2, area.y, area.width - 2, &format!("The arm has stopped: {why}{resume}"), alarm);
     }
 }
 
@@ -170,9 +170,9 @@ fn is_over(session: &Session, model: &ConsoleModel) -> bool {
 pub(super) fn onward(session: &Session) -> Option<String> {
     session.protocol.as_ref().filter(|_| session.phase != Phase::Closed)?;
     Some(match session.next_phase() {
-        _ if session.aborted.is_some() => "do it again".to_string(),
-        Some(phase) => format!("on to the {}", phase.name()),
-        None => "done: next recording".to_string(),
+        _ if session.aborted.is_some() => "repeat the trial".to_string(),
+        Some(phase) => format!("next: {}", phase.name()),
+        None => "next recording".to_string(),
     })
 }
 
@@ -186,13 +186,13 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
     let plays = model.playback.as_ref().is_some_and(|playback| playback.playing);
     let is_over = is_over(session, model);
     let word = match binding.action {
-        KeyAction::Hand(ManualAction::Redo) => can_redo(session).then_some("do it again"),
+        KeyAction::Hand(ManualAction::Redo) => can_redo(session).then_some("repeat the trial"),
         KeyAction::Advance if model.lesson.is_some() => {
             let begun = model.lesson.as_ref().is_some_and(|lesson| lesson.begun);
             Some(if plays {
                 "pause"
             } else if begun {
-                "go on"
+                "continue"
             } else {
                 "start"
             })
@@ -204,7 +204,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
             _ => Some("start"),
         },
         KeyAction::Move(ReplayKey::PlayPause) => Some(if plays { "pause" } else { "play" }),
-        KeyAction::Quit if is_over && session.is_step_done() => Some("closes the session"),
+        KeyAction::Quit if is_over && session.is_step_done() => Some("close the session"),
         // After the trial the robot rests, and the line of key hints offers only the next step.
         KeyAction::StopRobot
         | KeyAction::ResumeRobot

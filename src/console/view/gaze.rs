@@ -93,7 +93,7 @@ pub fn draw_map(brush: &mut Painter, regions: &Regions, session: &Session, model
     if regions.gaze_map.area() == 0 {
         return;
     }
-    let inside = brush.panel(regions.gaze_map, "Gaze map", "seconds since it was looked at");
+    let inside = brush.panel(regions.gaze_map, "Gaze map", "seconds since the last look");
     let cell = |point: [f64; 2]| {
         let along = |value: f64, low: u16, length: u16| low + (value.clamp(0.0, 0.999) * f64::from(length)) as u16;
         (along(point[0], inside.x, inside.width), along(point[1], inside.y, inside.height))

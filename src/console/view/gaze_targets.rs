@@ -36,7 +36,7 @@ pub fn target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Ses
 /// Draws the result of the gaze accuracy check, once all targets have been shown.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let Some(outcome) = session.calibration.as_ref().and_then(|check| check.result.as_ref()) else { return };
-    let inside = open(brush, screen, (COLUMNS, 13), "Calibration check", "space stops the robot");
+    let inside = open(brush, screen, (COLUMNS, 13), "Gaze accuracy check", "space stops the robot");
     let columns = inside.width.saturating_sub(2);
     let mut y = inside.y + 1;
     let mut line = |brush: &mut Painter, name: &str, text: &str, role: TextRole| {
@@ -47,9 +47,9 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     let esc = KeyChord::plain(KeyCode::Esc);
     let again = format!("enter or {REPEAT}");
     let Some(found) = &outcome.found else {
-        line(brush, "accuracy", "not known: too few usable samples at the targets", TextRole::Alarm);
-        line(brush, "fix", "look at every target; see that the tracker sends gaze", TextRole::Text);
-        let hints = [(again.as_str(), "repeats it", Some(KeyChord::char(REPEAT))), ("esc", "leaves", Some(esc))];
+        line(brush, "accuracy", "not measured: too few usable samples at the targets", TextRole::Alarm);
+        line(brush, "fix", "look at every target; check that the tracker sends gaze", TextRole::Text);
+        let hints = [(again.as_str(), "repeat", Some(KeyChord::char(REPEAT))), ("esc", "cancel", Some(esc))];
         brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), columns, &hints);
         return;
     };
@@ -64,17 +64,17 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     let (words, role) = verdict(found.corrected_deg);
     line(
         brush,
-        "offset off",
+        "corrected",
         &format!("{:.2} deg, {:.1} cm: {words}", found.corrected_deg, cm(found.corrected_deg)),
         role,
     );
-    line(brush, "precision", &format!("{:.2} deg from sample to sample", found.precision_deg), TextRole::Text);
+    line(brush, "precision", &format!("{:.2} deg (RMS between samples)", found.precision_deg), TextRole::Text);
     line(brush, "targets", &targets(found), TextRole::Text);
     let taken = chosen(model, Some(found));
     let rows = [
-        (CORRECTED, "takes it with the offset taken off", CalibrationAdvice::Corrected),
-        (AS_IT_IS, "takes it as it is", CalibrationAdvice::AsItIs),
-        (REPEAT, "repeats the check", CalibrationAdvice::Repeat),
+        (CORRECTED, "accept with the offset subtracted", CalibrationAdvice::Corrected),
+        (AS_IT_IS, "accept without correction", CalibrationAdvice::AsItIs),
+        (REPEAT, "repeat the check", CalibrationAdvice::Repeat),
     ];
     y += 1;
     for (key, does, is) in rows {
@@ -88,7 +88,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
         brush.key_target(inside.x + 1, y, end, chord);
         y += 1;
     }
-    let parts = [("         esc  ", TextRole::Strong), ("leaves it as it was", TextRole::Quiet)];
+    let parts = [("         esc  ", TextRole::Strong), ("cancel: the gaze stays as before", TextRole::Quiet)];
     let end = brush.parts(inside.x + 1, y, columns, &parts);
     brush.key_target(inside.x + 1, y, end, esc);
 }
@@ -105,8 +105,8 @@ fn verdict(accuracy_deg: f64) -> (&'static str, TextRole) {
 fn targets(found: &GazeAccuracy) -> String {
     let one = |target: &crate::gaze::calibration::TargetAccuracy| match target.accuracy_deg {
         Some(deg) => format!("{deg:.1}"),
-        None => "not seen".to_string(),
+        None => "no gaze".to_string(),
     };
     let each: Vec<String> = found.targets.iter().map(one).collect();
-    format!("{} deg, the centre first", each.join(", "))
+    format!("{} deg, centre first", each.join(", "))
 }

@@ -46,10 +46,10 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
     }
     let start = model.keys.chord_for(&KeyAction::Advance);
     let (key, chord, does) = match all_ok(&checks) {
-        true => (start.map_or(String::new(), |key| key.to_string()), start, "starts the trial"),
-        false => (OVERRIDE.to_string(), Some(KeyChord::char(OVERRIDE)), "starts all the same"),
+        true => (start.map_or(String::new(), |key| key.to_string()), start, "start the trial"),
+        false => (OVERRIDE.to_string(), Some(KeyChord::char(OVERRIDE)), "start the trial anyway"),
     };
-    let esc = ("esc", "leaves", Some(KeyChord::plain(KeyCode::Esc)));
+    let esc = ("esc", "close", Some(KeyChord::plain(KeyCode::Esc)));
     let hints = [(key.as_str(), does, chord), esc];
     let hints = if session.phase == Phase::Ready { &hints[..] } else { &hints[1..] };
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), hints);
@@ -69,8 +69,8 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
 
 /// Draws the text input of the wizard's note.
 pub fn note(brush: &mut Painter, screen: Rect, text: &TextInput) {
-    let says = "The trial is paused and the robot stands: only here the space bar types a space.";
-    input_line(brush, screen, text, ("A note", "the trial is paused"), says);
+    let says = "The trial is paused and the robot stands, so the space bar types a space here.";
+    input_line(brush, screen, text, ("Note", "the trial is paused"), says);
 }
 
 /// Draws the text input of a questionnaire answer below its item.
@@ -78,7 +78,7 @@ pub fn answer(brush: &mut Painter, screen: Rect, session: &Session, text: &TextI
     let shown = session.protocol.as_ref().map_or(0, |protocol| protocol.item);
     let item = session.questionnaire().and_then(|asked| asked.items.get(shown));
     let says = item.map_or("", |item| item.text.as_str());
-    input_line(brush, screen, text, ("The answer", "no trial runs"), says);
+    input_line(brush, screen, text, ("Answer", "no trial is running"), says);
 }
 
 fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remark): (&str, &str), says: &str) {
@@ -97,6 +97,6 @@ fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remar
         brush.text(x, inside.y + 3 + row as u16, columns, line, quiet);
     }
     let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
-    let hints = [("enter", "keeps it", enter), ("esc", "leaves", esc)];
+    let hints = [("enter", "save", enter), ("esc", "cancel", esc)];
     brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
 }

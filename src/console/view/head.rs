@@ -141,7 +141,7 @@ fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
 pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize) -> Vec<(String, TextRole)> {
     let mut healths = Vec::new();
     if !model.focused && model.playback.is_none() {
-        healths.push((" NO KEYBOARD ".to_string(), TextRole::Alarm));
+        healths.push((" NO KEYBOARD FOCUS ".to_string(), TextRole::Alarm));
     }
     let excluded = model.playback.as_ref().is_some_and(|playback| playback.excluded) || session.excluded.is_some();
     if excluded {
@@ -156,7 +156,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
             let label = format!("{state} {speed}{follows} {what} {event}/{events}");
             healths.push((label, TextRole::Strong));
             match (playback.follows, playback.running) {
-                (false, true) => healths.push(("still running: --follow".to_string(), TextRole::Strong)),
+                (false, true) => healths.push(("still recording: --follow".to_string(), TextRole::Strong)),
                 (false, false) if playback.cut => healths.push(("cut".to_string(), TextRole::Alarm)),
                 _ => {}
             }
@@ -217,7 +217,7 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
         {
             return ("NO TRACKER".to_string(), TextRole::Alarm);
         }
-        (TrackerConnection::Connected { .. }, Some(false)) => return ("TAGS NOT SEEN".to_string(), TextRole::Alarm),
+        (TrackerConnection::Connected { .. }, Some(false)) => return ("NO DISPLAY TAGS".to_string(), TextRole::Alarm),
         _ => {}
     }
     let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= 1.0);
@@ -228,6 +228,6 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
             (format!("NO GAZE {:.0} s", model.now.secs_since(at)), TextRole::Alarm)
         }
         (None, None) if session.is_running() => ("NO GAZE".to_string(), TextRole::Alarm),
-        _ => ("gaze waits".to_string(), TextRole::Quiet),
+        _ => ("no gaze yet".to_string(), TextRole::Quiet),
     }
 }

@@ -37,13 +37,13 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
     if regions.room > ScreenSize::Small {
         let remark = match model.layer {
-            KeyLayer::Wizard if model.coding.is_some() => "[key]: wrong about this",
+            KeyLayer::Wizard if model.coding.is_some() => "[key]: false belief about this place",
             KeyLayer::Wizard if model.playback.is_some() => "",
             KeyLayer::Wizard if session.spec.trial.condition == Condition::None => "unassisted: no signals",
             KeyLayer::Wizard if session.spec.trial.condition == Condition::Assistant => {
                 "the assistant sends the signals"
             }
-            KeyLayer::Wizard => "[key] tells the participant",
+            KeyLayer::Wizard => "[key] sends a signal about this place",
             KeyLayer::Participant => "[key] is the participant's button",
         };
         brush.panel(area, &session.kitchen.title, remark);

@@ -106,7 +106,7 @@ impl ShownOffer<'_> {
         let thinks = if p < 0.5 { "may think" } else { "thinks" };
         let mut said =
             vec![format!("{thinks} {}, is {}", reason.believes, reason.truth), format!("{}{age}", percent(p))];
-        said.extend(reason.prevents.as_ref().map(|button| format!("next press: {}", wording::location(button))));
+        said.extend(reason.prevents.as_ref().map(|button| format!("expected error: {}", wording::location(button))));
         said
     }
 }
@@ -157,7 +157,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
 /// Why no signal is offered to the wizard, in words.
 fn silence(session: &Session, model: &ConsoleModel) -> String {
     if session.spec.trial.condition == Condition::Assistant {
-        return "The assistant sends the signals by itself".to_string();
+        return "The assistant sends the signals, without the wizard".to_string();
     }
     if !session.spec.asks_assistant() {
         return "The assistant does not advise in this session (shadow = \"off\")".to_string();
@@ -182,9 +182,9 @@ fn too_little(session: &Session) -> String {
     match best.filter(|best| best.net <= 0.0 && assistant.concept == ConceptName::TomCom) {
         Some(best) if best.benefit >= NOTHING => {
             let (words, benefit, price) = (wording::signal(&best.signal), best.benefit, assistant.price());
-            format!("none worth a signal: {words} would save {benefit:.1} presses and costs {price:.1}")
+            format!("no signal is worth its cost: {words} saves {benefit:.1} presses, costs {price:.1}")
         }
-        Some(_) => "and no signal would save a press".to_string(),
+        Some(_) => "no signal would save a press".to_string(),
         None => "no signal is offered".to_string(),
     }
 }

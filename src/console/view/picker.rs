@@ -21,7 +21,7 @@ const MOST: (u16, u16) = (72, 26);
 /// Rows around a list: frame, search line, separator, key hints.
 const AROUND: u16 = 6;
 /// Text that says how the entries of a list are filtered.
-pub(super) const TYPE: &str = "type to filter, without spaces: ";
+pub(super) const TYPE: &str = "type to filter (no spaces): ";
 
 /// A row of a list: text, remark at the right, and whether choosing the row has an effect now.
 struct Row {
@@ -49,7 +49,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picke
     let rows = rows.map(|choice| Row { label: choice.label, remark: choice.remark, counts: true }).collect();
     let all = Picker::new(picker.question).choices(session).len();
     let title = picker.title(session);
-    ListPage { title, cursor: &picker.cursor, rows, all, space: STOPS, takes: "takes it" }.draw(brush, screen);
+    ListPage { title, cursor: &picker.cursor, rows, all, space: STOPS, takes: "choose" }.draw(brush, screen);
 }
 
 /// Text for what the space bar does in a list of a live session.
@@ -68,7 +68,7 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
     let rows = palette::actions(&model.keys, model.layer, cursor).iter().map(row).collect();
     let all = palette::actions(&model.keys, model.layer, &ListCursor::default());
     let has_signals = all.iter().any(|line| matches!(line.action, KeyAction::Signal(..)));
-    let takes = if has_signals { "does it (signals: shows the key)" } else { "does it" };
+    let takes = if has_signals { "do it (signals: show the key)" } else { "do it" };
     let space = if model.playback.is_none() { STOPS } else { "" };
     let title = "All actions".to_string();
     ListPage { title, cursor, rows, all: all.len(), space, takes }.draw(brush, screen);
@@ -94,10 +94,10 @@ impl ListPage<'_> {
             brush.target(cells, ClickAction::Row(first + line));
         }
         if self.rows.is_empty() {
-            brush.text(list.x, list.y, list.width, "nothing is called so: bksp deletes", quiet);
+            brush.text(list.x, list.y, list.width, "no entry matches; bksp deletes a letter", quiet);
         }
         let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
-        let hints = [("up/down", "choose", None), ("enter", self.takes, enter), ("esc", "back", esc)];
+        let hints = [("up/down", "select", None), ("enter", self.takes, enter), ("esc", "back", esc)];
         brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
     }
 }

@@ -36,17 +36,17 @@ pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Sess
     let mut page = Page::new(screen);
     let who = answerer(session, model);
     if let Some(address) = model.display.as_ref().and_then(DisplayHealth::to_open).filter(|_| is_wanted(session)) {
-        page.text(0, &format!("no page is connected: {address}"), TextRole::Alarm);
+        page.text(0, &format!("the participant's page is not connected: {address}"), TextRole::Alarm);
     }
     let question =
         open.shown.filter(|_| open.closed.is_none()).and_then(|shown| Some((shown, open.questions.get(shown)?)));
     match question {
-        _ if open.is_paused() => page.text(0, "The probe is paused: its time stands still.", TextRole::Strong),
+        _ if open.is_paused() => page.text(0, "The probe is paused, and so is its time limit.", TextRole::Strong),
         Some((index, question)) => ask(&mut page, (open, index, question), (session, model), who),
         None if open.closed.is_some() => {
-            page.text(0, "No more questions: the trial goes on by itself after the count-down.", TextRole::Text);
+            page.text(0, "No more questions: the trial continues by itself after the count-down.", TextRole::Text);
         }
-        None => page.text(0, "The kitchen is off the display; the first question comes.", TextRole::Text),
+        None => page.text(0, "The kitchen is hidden on the display; the first question follows.", TextRole::Text),
     }
     answers(&mut page, open, session, model);
     let title = status(session, model).unwrap_or_default();
@@ -58,13 +58,13 @@ pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Sess
     let mut hints: Vec<KeyHint> = Vec::new();
     if question.is_some() && who == ProbeAnswerer::Console && !open.is_paused() {
         hints.push(("0-9", "number", None));
-        hints.push(("enter", "answers", plain(KeyCode::Enter)));
+        hints.push(("enter", "answer", plain(KeyCode::Enter)));
     }
     if open.closed.is_none() && skip.is_some() {
-        hints.push((&skip_key, "skips the rest", skip));
+        hints.push((&skip_key, "skip the rest", skip));
     }
     if pause.is_some() {
-        hints.push((&pause_key, if open.is_paused() { "goes on" } else { "pauses" }, pause));
+        hints.push((&pause_key, if open.is_paused() { "continue" } else { "pause" }, pause));
     }
     page.draw(pen, screen, &capital(&title), &left, &hints);
 }
@@ -87,7 +87,7 @@ fn ask(
         0,
         match who {
             ProbeAnswerer::Display => "The participant answers on the display.",
-            ProbeAnswerer::Console => "Read it out, and enter the number of the answer.",
+            ProbeAnswerer::Console => "Read the question out, and enter the number of the answer.",
             ProbeAnswerer::Simulated => "The simulated participant answers.",
         },
         TextRole::Quiet,
@@ -97,7 +97,7 @@ fn ask(
     let is_chosen = |number: usize| who == ProbeAnswerer::Console && entry.choice == Some(number);
     let numbered = choices.iter().enumerate().map(|(index, choice)| (index + 1, choice.as_str()));
     let cells: Vec<(usize, String)> = numbered
-        .chain([(0, "does not know")])
+        .chain([(0, "participant does not know")])
         .map(|(number, words)| (number, cell(number, words, is_chosen(number))))
         .collect();
     let widest = cells.iter().map(|(_, text)| width(text)).max().unwrap_or(1) + 2;
@@ -149,7 +149,7 @@ fn answers(page: &mut Page, open: &OpenProbe, session: &Session, model: &Console
 }
 
 fn answered(wording: &ProbeWording, question: &ProbeQuestion, given: &ProbeAnswer) -> String {
-    let Some(name) = &given.answer else { return "does not know".to_string() };
+    let Some(name) = &given.answer else { return "participant does not know".to_string() };
     let index = question.choices.iter().position(|choice| choice == name);
     let words = index.and_then(|index| wording.choices.get(index)).unwrap_or(name);
     let sure = given.confidence.and_then(|step| SURE.get(usize::from(step).checked_sub(1)?));

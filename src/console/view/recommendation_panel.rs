@@ -36,7 +36,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     if area.area() == 0 {
         return;
     }
-    let inside = brush.panel(area, "What signals would save", remark(session));
+    let inside = brush.panel(area, "Signals by benefit", remark(session));
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let Some(advice) = &session.advice else {
         return quietly(brush, inside, silence(session));
@@ -62,7 +62,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
     if !useless.is_empty() && y < inside.bottom() {
         let what = match session.spec.assistant.concept {
-            ConceptName::Tom => "would tell nothing new",
+            ConceptName::Tom => "would not change a belief",
             _ => "would save nothing",
         };
         let text = format!("{} {what}", count(useless.len() as u64, "signal", "signals"));
@@ -83,16 +83,16 @@ fn remark(session: &Session) -> &'static str {
         ConceptName::TomCom => "presses",
         ConceptName::Tom => "belief deviation",
         ConceptName::Dev => "DEV",
-        ConceptName::None => "no concept",
+        ConceptName::None => "no communication concept",
     }
 }
 
 /// Why there is no ranked list of signals, in words.
 fn silence(session: &Session) -> &'static str {
     match (session.spec.asks_assistant(), session.is_running()) {
-        (false, _) => "None: nobody asks the assistant in this session (shadow = \"off\"). The signals are yours.",
-        (true, true) => "None yet: it comes after the first order or press.",
-        (true, false) => "None: the assistant advises while the trial runs.",
+        (false, _) => "No advice in this session (shadow = \"off\"): choose the signals yourself.",
+        (true, true) => "No advice yet: it begins with the first order or press.",
+        (true, false) => "No advice: the assistant advises only while the trial runs.",
     }
 }
 
@@ -175,10 +175,10 @@ fn cost_line(
 ) {
     let price = session.spec.assistant.price();
     let left = match session.spec.assistant.concept {
-        ConceptName::Tom => format!("{price:>4.2} is the threshold"),
-        ConceptName::Dev => "DEV proposes presses after an error; they stand in the line of the offer".to_string(),
+        ConceptName::Tom => format!("{price:>4.2} threshold for a signal"),
+        ConceptName::Dev => "DEV proposes presses after an error, in the line of the offer".to_string(),
         ConceptName::None => String::new(),
-        ConceptName::TomCom => format!("{price:>4.1} is what a signal costs"),
+        ConceptName::TomCom => format!("{price:>4.1} cost of a signal"),
     };
     let quiet = brush.style(TextRole::Quiet);
     let end = brush.text(inside.x, y, inside.width, &left, quiet);

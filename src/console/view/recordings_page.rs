@@ -58,10 +58,10 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
         brush.target(Rect { y, height: 1, ..list }, ClickAction::Row(first + line));
     }
     if left.is_empty() {
-        brush.text(list.x, list.y, list.width, "No recording has this; backspace deletes a letter", quiet);
+        brush.text(list.x, list.y, list.width, "no recording matches; bksp deletes a letter", quiet);
     }
     let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
-    let hints = [("up/down", "choose", None), ("enter", "opens it", enter), ("esc", "back", esc)];
+    let hints = [("up/down", "select", None), ("enter", "open", enter), ("esc", "back", esc)];
     brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
 }
 

@@ -38,7 +38,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let remark = match (session.robot.stopped, session.robot.held, &model.playback) {
         (true, ..) => "STOPPED".to_string(),
         (false, true, _) => release(model),
-        (false, false, None) => "space stops it".to_string(),
+        (false, false, None) => "space stops the robot".to_string(),
         (false, false, Some(_)) => String::new(),
     };
     let mode = session.robot.arm.mode;
@@ -77,7 +77,7 @@ fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mom
     let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
     let bars: String = moment.joints.iter().map(bar).collect();
     let is_over = matches!(session.phase, Phase::Over(_) | Phase::Closed);
-    let phase = if session.robot.stopped || is_over { "stands" } else { wording::arm_phase(moment.phase) };
+    let phase = if session.robot.stopped || is_over { "stopped" } else { wording::arm_phase(moment.phase) };
     let phase = format!("{phase:<10} ");
     let hand = match moment.hand_away_m {
         away_m if away_m < 0.005 => " hand at arm".to_string(),
@@ -130,20 +130,20 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     }
     let (x, columns) = if session.robot.held { held(brush, x, y, columns, model) } else { (x, columns) };
     let (x, columns) = match session.robot.arm.mode {
-        SafetyMode::Safeguard => badge(brush, x, y, columns, " WAITS ", " for the hand "),
+        SafetyMode::Safeguard => badge(brush, x, y, columns, " WAITS ", " until the hand is farther away "),
         _ => (x, columns),
     };
     if matches!(session.phase, Phase::Over(_) | Phase::Closed) {
-        brush.parts(x, y, columns, &[("stands: the trial is over", TextRole::Quiet)]);
+        brush.parts(x, y, columns, &[("stopped: the trial is over", TextRole::Quiet)]);
         return;
     }
     let Some((button, since, until)) = session.robot.intention else {
         let why = match session.robot.idle {
             _ if session.robot.held => "",
             Some(IdleReason::NoOrder) => "waits: there is no order",
-            Some(IdleReason::HumanTurn) => "waits: only the human can go on",
-            Some(IdleReason::Skipped) => "waits: its only press was skipped",
-            None => "has nothing to press",
+            Some(IdleReason::HumanTurn) => "waits: only the human can act now",
+            Some(IdleReason::Skipped) => "waits: its only possible press was skipped",
+            None => "no press planned",
         };
         brush.parts(x, y, columns, &[(why, TextRole::Quiet)]);
         return;
@@ -153,7 +153,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     let left_s = until.secs_since(now);
     let label = format!("{} {}", brush.theme.signs().to, wording::button(&session.kitchen, Agent::Robot, button));
     let bar = 8.min(columns / 4);
-    let by = if session.robot.driven_to.is_some() { " driven" } else { "" };
+    let by = if session.robot.driven_to.is_some() { " by wizard" } else { "" };
     brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
     let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, TextRole::Robot);
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
@@ -164,7 +164,7 @@ fn release(model: &ConsoleModel) -> String {
     model
         .keys
         .chord_for(&KeyAction::Hand(ManualAction::HoldRobot))
-        .map(|key| format!("{key} releases it"))
+        .map(|key| format!("{key} releases the robot"))
         .unwrap_or_default()
 }
 

@@ -43,9 +43,9 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
 /// Label of the key that leaves the sheet: the name of the next phase.
 fn onward(session: &Session) -> String {
     match session.next_phase() {
-        Some(phase) => format!("on to the {}", phase.name()),
-        None if session.step().is_some_and(|(step, _)| step.is_tutorial_alone()) => "leaves the tutorial".to_string(),
-        None => "on to the next recording".to_string(),
+        Some(phase) => format!("next: {}", phase.name()),
+        None if session.step().is_some_and(|(step, _)| step.is_tutorial_alone()) => "leave the tutorial".to_string(),
+        None => "next recording".to_string(),
     }
 }
 
@@ -77,7 +77,7 @@ fn draw_steps(
         page.focus_here();
     }
     let on = if open.is_some() { "this step is done".to_string() } else { onward(session) };
-    let undo = ("bksp", "takes the last tick back", plain(KeyCode::Backspace));
+    let undo = ("bksp", "untick the last step", plain(KeyCode::Backspace));
     let hints = [("enter", on.as_str(), plain(KeyCode::Enter)), undo];
     let has_ticks = protocol.ticks.contains(&true);
     page.draw(pen, screen, heads.0, heads.1, if has_ticks { &hints } else { &hints[..1] });
@@ -93,7 +93,7 @@ fn draw_tutorial(
     let mut page = Page::new(screen);
     let Some((_, state)) = session.tutorial() else { return };
     if let Some(address) = model.display.as_ref().and_then(DisplayHealth::to_open) {
-        page.text(0, &format!("no page is connected: {address}"), TextRole::Alarm);
+        page.text(0, &format!("the participant's page is not connected: {address}"), TextRole::Alarm);
     }
     for (index, step) in tutorial.steps.iter().enumerate() {
         let is_shown = index == state.step && !state.is_over;
@@ -251,13 +251,13 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
     let (Some(criterion), Some(practice)) = (step.criterion, &protocol.practice) else { return };
     let mut page = Page::new(screen);
     let rate = criterion.error_rate.map_or(String::new(), |rate| format!(", at most {:.0} % errors", 100.0 * rate));
-    page.text(0, &format!("Asked for: {} orders served{rate}.", criterion.orders), TextRole::Text);
+    page.text(0, &format!("Required: {} orders served{rate}.", criterion.orders), TextRole::Text);
     let share = 100.0 * f64::from(practice.errors) / f64::from(practice.presses.max(1));
     let (orders, presses, errors) = (practice.orders, practice.presses, practice.errors);
-    let found = format!("Found: {orders} served, {errors} errors in {presses} presses ({share:.0} %).");
+    let found = format!("Reached: {orders} served, {errors} errors in {presses} presses ({share:.0} %).");
     page.text(0, &found, TextRole::Strong);
     page.space();
-    page.text(0, "To go on to the first trial all the same, say why:", TextRole::Text);
+    page.text(0, "To waive the criterion and start the first trial, choose a reason:", TextRole::Text);
     for (index, reason) in WAIVERS.iter().enumerate() {
         let is_chosen = waiver == Some(index);
         let mark = if is_chosen { format!(" [{}]", index + 1) } else { format!("  {} ", index + 1) };
@@ -265,12 +265,12 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
     }
     let waivers = format!("1-{}", WAIVERS.len());
     let hints = [
-        ("enter", if waiver.is_some() { "go on for this reason" } else { "practise again" }, plain(KeyCode::Enter)),
+        ("enter", if waiver.is_some() { "waive for this reason" } else { "practise again" }, plain(KeyCode::Enter)),
         (waivers.as_str(), "choose a reason", None),
-        ("left", "choose none", plain(KeyCode::Left)),
+        ("left", "deselect", plain(KeyCode::Left)),
     ];
     let hints = if waiver.is_some() { &hints } else { &hints[..2] };
-    page.draw(pen, screen, "The criterion is not met", where_, hints);
+    page.draw(pen, screen, "The practice criterion is not met", where_, hints);
 }
 
 /// Draws a question to the user before a recording, on an otherwise empty screen.
@@ -286,6 +286,6 @@ pub fn draw_question(question: &QuestionPage, theme: Theme, frame: &mut Frame) {
         page.marked(&format!("  {}", index + 1), answer, TextRole::Strong);
     }
     page.focus_here();
-    let keys = [("esc", "leave: nothing is recorded", plain(KeyCode::Esc))];
+    let keys = [("esc", "quit without recording", plain(KeyCode::Esc))];
     page.draw(&mut Pen { brush: &mut brush, with_keys: true }, screen, &question.title, "", &keys);
 }

@@ -20,7 +20,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
         return;
     }
-    let back = model.keys.chord_for(&KeyAction::TakeBack).map(|key| format!("{key} takes it back"));
+    let back = model.keys.chord_for(&KeyAction::TakeBack).map(|key| format!("{key} takes the signal back"));
     let remark = session.shown.as_ref().and(back).unwrap_or_default();
     let inside = brush.panel(area, "On the participant's display", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
@@ -43,7 +43,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         return;
     }
     let Some(shown) = &session.shown else {
-        brush.parts(x, y, columns, &[("no signal: the kitchen only", TextRole::Quiet)]);
+        brush.parts(x, y, columns, &[("no signal, only the kitchen", TextRole::Quiet)]);
         return;
     };
     let title = match (&shown.signal, columns > 60) {
@@ -83,7 +83,7 @@ fn says(session: &Session, signal: &Signal) -> String {
             None => format!("{}: {content}", kitchen.location(location).label()),
         },
         Signal::Highlight(_) | Signal::Propose(_) => {
-            format!("look here: {} holds {content}", kitchen.location(location).label())
+            format!("highlight: {} holds {content}", kitchen.location(location).label())
         }
     }
 }

@@ -107,7 +107,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         KeyAction::Belief => {
             let ranked: Vec<AspectId> = beliefs(session, model).iter().map(|belief| belief.aspect).collect();
             if ranked.is_empty() {
-                model.say(NoticeLevel::Refused, "beliefs are estimated once the trial has started");
+                model.say(NoticeLevel::Refused, "beliefs are estimated after the trial's start");
             }
             model.focus_next_belief(&ranked);
             None

@@ -123,7 +123,7 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
             KeyAction::SwitchLayer,
             CONSOLE,
             "switch keys: wizard or participant",
-            Some("switch keys"),
+            Some("switch"),
         ),
     ];
     lines.extend(signals(kitchen));

@@ -36,7 +36,7 @@ const SCALE: u16 = 6;
 pub(super) const QUIET: &str = "No false beliefs";
 
 /// Text of the belief panel before the trial's first estimate.
-const BEFORE: &str = "estimated once the trial has started";
+const BEFORE: &str = "estimated after the trial's start";
 
 /// Drawing context of the belief panel: session, present time, and estimates.
 struct Panel<'a> {

@@ -175,7 +175,7 @@ fn differences(
         let number = format!("{:>3}/{}  ", index + 1, seen.differences.len());
         let role = if is_chosen { TextRole::Strong } else { TextRole::Quiet };
         let open = model.keys.chord_for(&KeyAction::Differ(ComparisonKey::Open)).filter(|_| is_chosen);
-        let open = open.map_or(String::new(), |key| format!("  {key} shows details"));
+        let open = open.map_or(String::new(), |key| format!("  {key} details"));
         let headline = seen.headline(difference);
         let room = area.width.saturating_sub(width(&open) + 1);
         let x = brush.parts(area.x + 1, y, room, &[(&number, TextRole::Quiet), (&headline, role)]);

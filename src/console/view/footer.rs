@@ -149,7 +149,7 @@ pub fn message(brush: &mut Painter, regions: &Regions, session: &Session, model:
         let resume = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| model.playback.is_none());
         let resume = resume.map_or(String::new(), |key| format!("; {key} resumes it"));
         let alarm = brush.style(TextRole::Alarm);
-        brush.text(area.x + 2, area.y, area.width - 2, &format!("The arm has stopped: {why}{resume}"), alarm);
+        brush.text(area.x + 2, area.y, area.width - 2, &format!("Arm stopped: {why}{resume}"), alarm);
     }
 }
 
@@ -192,7 +192,7 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
             Some(if plays {
                 "pause"
             } else if begun {
-                "continue"
+                "resume"
             } else {
                 "start"
             })

@@ -141,7 +141,7 @@ fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
 pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize) -> Vec<(String, TextRole)> {
     let mut healths = Vec::new();
     if !model.focused && model.playback.is_none() {
-        healths.push((" NO KEYBOARD FOCUS ".to_string(), TextRole::Alarm));
+        healths.push((" NO KEYBOARD ".to_string(), TextRole::Alarm));
     }
     let excluded = model.playback.as_ref().is_some_and(|playback| playback.excluded) || session.excluded.is_some();
     if excluded {
@@ -228,6 +228,6 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
             (format!("NO GAZE {:.0} s", model.now.secs_since(at)), TextRole::Alarm)
         }
         (None, None) if session.is_running() => ("NO GAZE".to_string(), TextRole::Alarm),
-        _ => ("no gaze yet".to_string(), TextRole::Quiet),
+        _ => ("gaze idle".to_string(), TextRole::Quiet),
     }
 }

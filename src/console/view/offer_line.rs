@@ -106,7 +106,7 @@ impl ShownOffer<'_> {
         let thinks = if p < 0.5 { "may think" } else { "thinks" };
         let mut said =
             vec![format!("{thinks} {}, is {}", reason.believes, reason.truth), format!("{}{age}", percent(p))];
-        said.extend(reason.prevents.as_ref().map(|button| format!("expected error: {}", wording::location(button))));
+        said.extend(reason.prevents.as_ref().map(|button| format!("next error: {}", wording::location(button))));
         said
     }
 }

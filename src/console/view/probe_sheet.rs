@@ -64,7 +64,7 @@ pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Sess
         hints.push((&skip_key, "skip the rest", skip));
     }
     if pause.is_some() {
-        hints.push((&pause_key, if open.is_paused() { "continue" } else { "pause" }, pause));
+        hints.push((&pause_key, if open.is_paused() { "resume" } else { "pause" }, pause));
     }
     page.draw(pen, screen, &capital(&title), &left, &hints);
 }
@@ -97,7 +97,7 @@ fn ask(
     let is_chosen = |number: usize| who == ProbeAnswerer::Console && entry.choice == Some(number);
     let numbered = choices.iter().enumerate().map(|(index, choice)| (index + 1, choice.as_str()));
     let cells: Vec<(usize, String)> = numbered
-        .chain([(0, "participant does not know")])
+        .chain([(0, "does not know")])
         .map(|(number, words)| (number, cell(number, words, is_chosen(number))))
         .collect();
     let widest = cells.iter().map(|(_, text)| width(text)).max().unwrap_or(1) + 2;
@@ -149,7 +149,7 @@ fn answers(page: &mut Page, open: &OpenProbe, session: &Session, model: &Console
 }
 
 fn answered(wording: &ProbeWording, question: &ProbeQuestion, given: &ProbeAnswer) -> String {
-    let Some(name) = &given.answer else { return "participant does not know".to_string() };
+    let Some(name) = &given.answer else { return "does not know".to_string() };
     let index = question.choices.iter().position(|choice| choice == name);
     let words = index.and_then(|index| wording.choices.get(index)).unwrap_or(name);
     let sure = given.confidence.and_then(|step| SURE.get(usize::from(step).checked_sub(1)?));

@@ -60,7 +60,7 @@ fn a_lost_keyboard_is_an_alarm_and_an_event() {
     assert_eq!(focus(false), None);
     for size in SIZES {
         let screen = stage.screen(size);
-        assert!(screen.contains("NO KEYBOARD FOCUS") && screen.contains("KEYBOARD FOCUS LOST"), "{screen}");
+        assert!(screen.contains("NO KEYBOARD") && screen.contains("KEYBOARD FOCUS LOST"), "{screen}");
     }
     assert_eq!(
         input(update(&mut stage.model, &stage.session, ConsoleMessage::Focus(true))),
@@ -210,12 +210,12 @@ fn an_arm_that_stopped_itself_is_told_for_as_long_as_it_stands() {
     for size in SIZES {
         let screen = stage.screen(size);
         assert!(
-            screen.contains("The arm has stopped: protective stop: contact with a person, 126 N; ^r resumes it"),
+            screen.contains("Arm stopped: protective stop: contact with a person, 126 N; ^r resumes it"),
             "{screen}"
         );
     }
     stage.at(61.0, Event::RobotResumed);
-    assert!(!stage.screen((120, 40)).contains("The arm has stopped"));
+    assert!(!stage.screen((120, 40)).contains("Arm stopped"));
 }
 
 #[test]

@@ -49,8 +49,8 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
             let names: Vec<&str> = concepts.iter().map(|concept| concept.title()).collect();
             format!("the wizard sees what {} would say", names.join(", "))
         }
-        Event::FocusLost => "the terminal lost the keyboard".to_string(),
-        Event::FocusRegained => "the terminal has the keyboard again".to_string(),
+        Event::FocusLost => "the terminal lost the keyboard focus".to_string(),
+        Event::FocusRegained => "the terminal has the keyboard focus again".to_string(),
         Event::Press { agent, button, .. } => {
             format!("{} presses {}{}", agent.name(), said(button), verdict(stamped, follower))
         }
@@ -63,23 +63,25 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::RobotIntends { button, .. } => format!("robot sets out for {}", said(button)),
         Event::RobotAborts { button, reason } => format!("robot gives up {}: {}", said(button), reason.words()),
         Event::RobotIdles { reason: IdleReason::NoOrder } => "robot idles: no order".to_string(),
-        Event::RobotIdles { reason: IdleReason::HumanTurn } => "robot idles: only the human can go on".to_string(),
-        Event::RobotIdles { reason: IdleReason::Skipped } => "robot idles: its only press was skipped".to_string(),
+        Event::RobotIdles { reason: IdleReason::HumanTurn } => "robot idles: only the human can act now".to_string(),
+        Event::RobotIdles { reason: IdleReason::Skipped } => {
+            "robot idles: its only possible press was skipped".to_string()
+        }
         // The arm slows near the hand and speeds up again too often for a line each.
         Event::RobotSafety { mode: SafetyMode::Normal | SafetyMode::Reduced, .. } => return None,
         Event::RobotSafety { mode, force_n, joint } => {
             format!("robot's arm: {}", wording::arm_stopped(*mode, *force_n, *joint))
         }
-        Event::RobotTouched { force_n } => format!("robot's arm was touched, with {force_n:.0} N"),
+        Event::RobotTouched { force_n } => format!("robot's arm: contact with a person, {force_n:.0} N"),
         Event::RobotHeld { .. } => "robot held by the wizard before its next press".to_string(),
         Event::RobotReleased { .. } => "robot released by the wizard".to_string(),
         Event::RobotSkipped { .. } => "the wizard skips the robot's press".to_string(),
-        Event::RobotDriven { button, .. } => format!("the wizard drives the robot to {}", said(button)),
+        Event::RobotDriven { button, .. } => format!("the wizard chose the robot's press: {}", said(button)),
         Event::KitchenCorrected { location, content } => {
             format!("corrected by hand: {} holds {}", said(location), kitchen.worded(content))
         }
         Event::RobotStopped => "robot stopped by the wizard".to_string(),
-        Event::RobotResumed => "robot goes on".to_string(),
+        Event::RobotResumed => "robot resumed".to_string(),
         // A recommendation gets a line only if it advises a signal.
         Event::Advised(advice) => advised(kitchen, advice, follower.session.spec.assistant.concept)?,
         Event::OfferOpened(offer) => offered(offer),

@@ -1,8 +1,9 @@
-//! The kitchen map of the console, computed from the areas on the wall display.
+//! Kitchen map of the console: the panel of the kitchen, arranged like the areas on the participant's wall display.
 //!
-//! The display is divided along lines that cross no area: the strip of the orders, then columns, then rows. The cells of the panel
-//! are divided in the same way, so that the boxes of every kitchen are readable. Every cell maps to a point of the display and back,
-//! which places the gaze mark and lets the mouse pointer serve as gaze.
+//! The wall display is divided along lines that cross no area: the strip of the orders, then columns, then rows. The
+//! cells of the console's kitchen panel are divided in the same way, so that the boxes of every kitchen are readable.
+//! Every terminal cell maps to a point of the wall display and back, so that the gaze mark can be placed and the mouse
+//! pointer can serve as gaze.
 
 use ratatui::layout::Rect;
 
@@ -10,47 +11,48 @@ use crate::kitchen::{Agent, DisplayArea, Kitchen, LocationId, LocationKind};
 use crate::session::Session;
 use crate::session::settings::ParticipantKind;
 
-/// An element of the kitchen map.
+/// An element of the kitchen map: a location or an ingredient storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapElement {
-    /// A location of the kitchen.
+    /// Location of the kitchen, such as a hand, a board or an order.
     Location(LocationId),
-    /// An index into [`Kitchen::storages`].
+    /// Ingredient storage, as an index into [`Kitchen::storages`].
     Storage(usize),
 }
 
-/// An element with its box on the screen.
+/// An element of the kitchen map with its box on the screen.
 #[derive(Clone, Debug)]
 pub struct MapBox {
-    /// What stands there.
+    /// Kitchen element (location or storage) that the box on the screen shows.
     pub thing: MapElement,
-    /// Its rectangle of terminal cells.
+    /// Rectangle of terminal cells in which the element is drawn.
     pub cells: Rect,
     area: DisplayArea,
-    /// Region of the display, and of the screen, that belongs to the element; the regions cover everything.
+    /// Regions of the wall display and of the screen that belong to the element; the regions of all elements together
+    /// cover everything.
     display: Bounds,
     screen: Bounds,
 }
 
-/// Columns of the map that belong to one agent, or to both.
+/// Columns of the kitchen map that one agent reaches, or that both agents reach.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AgentZone {
-    /// Whose columns these are; none: both agents reach them.
+    /// Agent that reaches these columns of the kitchen map; `None` if both agents do.
     pub owner: Option<Agent>,
-    /// The rectangle of terminal cells.
+    /// Rectangle of terminal cells that the agent's zone takes.
     pub cells: Rect,
 }
 
-/// The kitchen map.
+/// Kitchen map of the console: the boxes of all locations and storages, and the zones of the agents.
 #[derive(Clone, Debug)]
 pub struct KitchenMap {
-    /// Everything that is drawn, with its place.
+    /// Boxes of all kitchen locations and ingredient storages on the map.
     pub spots: Vec<MapBox>,
-    /// Zones of the agents, whose names stand above the columns.
+    /// Zones of the two agents, whose names stand above the columns of the kitchen map.
     pub zones: Vec<AgentZone>,
 }
 
-/// A rectangle as lower and upper end along each axis (0 is x, 1 is y).
+/// A rectangle as lower and upper bound along each axis (0 is x, 1 is y).
 #[derive(Clone, Copy, Debug)]
 struct Bounds([[f64; 2]; 2]);
 
@@ -63,17 +65,20 @@ struct Item {
 
 const MIN_CARD: u16 = 12;
 const MAX_ORDER: u16 = 44;
-/// Columns beside the name of the participant's hand: rule and gap; where it has a key, that and its space, too.
+/// Columns beside the name of the participant's hand: for rule and gap, and for a key with its space where the hand has
+/// a key.
 const OWN_HAND: u16 = 2;
 const KEYED_OWN_HAND: u16 = 4;
 
 impl KitchenMap {
-    /// Computes the map of a kitchen in these cells; `with_keys` reserves room for the keys of the human's storage.
+    /// Computes the kitchen map of a kitchen in these terminal cells; `with_keys` reserves room for the keys of the
+    /// human's storage.
     pub fn new(kitchen: &Kitchen, cells: Rect, with_keys: bool) -> KitchenMap {
         KitchenMap::with_room(kitchen, cells, with_keys, OWN_HAND)
     }
 
-    /// The map of a session in these cells; `is_coded` says that a rater codes its errors.
+    /// The kitchen map of a session in these terminal cells; `is_coded` says that a rater codes the errors of the
+    /// session.
     pub fn for_session(session: &Session, is_coded: bool, cells: Rect) -> KitchenMap {
         match is_coded {
             true => KitchenMap::for_rater(&session.kitchen, cells),
@@ -84,7 +89,7 @@ impl KitchenMap {
         }
     }
 
-    /// The map for a rater, for whom the participant's own hand has a key, too.
+    /// The kitchen map for a rater, for whom the participant's hand has a key, too.
     fn for_rater(kitchen: &Kitchen, cells: Rect) -> KitchenMap {
         KitchenMap::with_room(kitchen, cells, false, KEYED_OWN_HAND)
     }
@@ -100,7 +105,7 @@ impl KitchenMap {
             let all: Vec<&Item> = items.iter().collect();
             return KitchenMap::columns(&all, cells, [0.0, 1.0]);
         }
-        // An order takes one line on small screens, else lines for name, dish and recipe.
+        // An order takes one line on small screens, else separate lines for name, dish and recipe.
         let strip_rows = if cells.height >= 18 { 4 } else { 1 };
         let (strip_cells, body_cells) = match above {
             true => split_rows(cells, strip_rows),
@@ -119,7 +124,7 @@ impl KitchenMap {
         plan
     }
 
-    /// Arranges items in columns with common rows below the line of the zones.
+    /// Arranges kitchen elements in columns with common rows, below the line that names the agents' zones.
     fn columns(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> KitchenMap {
         let (line, cells) = split_rows(cells, 1);
         let columns = clusters(items, 0);
@@ -158,7 +163,8 @@ impl KitchenMap {
         KitchenMap { spots: cover(spots), zones }
     }
 
-    /// The display point (fractions) under the centre of a cell, continued beyond the panel.
+    /// The point of the wall display under the centre of a terminal cell, as fractions of width and height;
+    /// extrapolated for cells outside the kitchen panel.
     pub fn display_point(&self, column: u16, row: u16) -> [f64; 2] {
         let cell = [f64::from(column) + 0.5, f64::from(row) + 0.5];
         match self.nearest(cell, |spot| spot.screen) {
@@ -167,14 +173,14 @@ impl KitchenMap {
         }
     }
 
-    /// The cell where a display point is drawn.
+    /// The terminal cell at which a point of the wall display is drawn.
     pub fn cell(&self, point: [f64; 2]) -> Option<(u16, u16)> {
         let spot = self.nearest(point, |spot| spot.display)?;
         let [x, y] = [0, 1].map(|axis| along(point[axis], &spot.knots(axis), |knot| knot));
         (x >= 0.0 && y >= 0.0).then_some((x as u16, y as u16))
     }
 
-    /// The box whose bounds contain the point, or the nearest box.
+    /// The kitchen element whose bounds contain the point, or else the nearest element.
     fn nearest(&self, point: [f64; 2], bounds: impl Fn(&MapBox) -> Bounds) -> Option<&MapBox> {
         let distance = |spot: &MapBox| {
             let outside = |axis: usize| {
@@ -188,7 +194,8 @@ impl KitchenMap {
 }
 
 impl MapBox {
-    /// Pairs of display value and screen value along an axis.
+    /// Pairs of wall display coordinate and terminal coordinate along one axis, between which coordinates are
+    /// interpolated.
     fn knots(&self, axis: usize) -> [(f64, f64); 4] {
         let (area, cells) = match axis {
             0 => ([self.area.x, self.area.x + self.area.w], [self.cells.x, self.cells.right()]),
@@ -204,7 +211,7 @@ impl MapBox {
     }
 }
 
-/// Piecewise linear map through four knots, continued at both ends with the slope of the middle piece.
+/// Piecewise linear interpolation through four knots, extrapolated at both ends with the slope of the middle piece.
 fn along(value: f64, knots: &[(f64, f64); 4], order: impl Fn((f64, f64)) -> (f64, f64)) -> f64 {
     let knots = knots.map(order);
     let piece = |a: (f64, f64), b: (f64, f64)| match b.0 - a.0 {
@@ -229,10 +236,11 @@ fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
     let location = |(index, location): (usize, &crate::kitchen::Location)| {
         let owner = if let LocationKind::Hand(agent) = location.kind { Some(agent) } else { None };
         let thing = MapElement::Location(LocationId(index as u8));
-        // Rule, key and gap beside the name (the own hand seldom has a key); orders stand in a strip of their own.
+        // Columns beside a location's name for rule, key and gap (the participant's hand seldom has a key); orders
+        // stand in a strip of their own.
         let beside = match location.kind {
             LocationKind::Hand(Agent::Human) => own_hand,
-            // Without brackets around the key there is room for those of the storage.
+            // Without brackets around a location's key, there is room for the keys of the storage.
             _ if with_keys => 4,
             _ => 5,
         };
@@ -243,7 +251,8 @@ fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
         thing: MapElement::Storage(index),
         area: storage.display,
         owner: Some(storage.agent),
-        // A space before the name, and room for the key; the robot's keeps away from what is right of it.
+        // Columns for a space before the storage's name and for its key; the robot's storage keeps a gap to its right
+        // neighbour.
         min_columns: storage.label.chars().count() as u16
             + match storage.agent {
                 Agent::Human if with_keys => 4,
@@ -269,7 +278,7 @@ fn extent(item: &Item, axis: usize) -> [f64; 2] {
     if axis == 0 { [area.x, area.x + area.w] } else { [area.y, area.y + area.h] }
 }
 
-/// Groups of items whose extents along an axis overlap, in order.
+/// Groups of kitchen elements whose extents along an axis overlap, in the order of the axis.
 fn clusters<'a>(items: &[&'a Item], axis: usize) -> Vec<Vec<&'a Item>> {
     let mut sorted = items.to_vec();
     sorted.sort_by(|a, b| extent(a, axis)[0].total_cmp(&extent(b, axis)[0]));
@@ -286,14 +295,14 @@ fn clusters<'a>(items: &[&'a Item], axis: usize) -> Vec<Vec<&'a Item>> {
     groups
 }
 
-/// Every item in a row of its own, from top to bottom.
+/// Puts every kitchen element into a row of its own, from top to bottom.
 fn clusters_forced<'a>(items: &[&'a Item]) -> Vec<Vec<&'a Item>> {
     let mut sorted = items.to_vec();
     sorted.sort_by(|a, b| (a.area.y + a.area.h / 2.0).total_cmp(&(b.area.y + b.area.h / 2.0)));
     sorted.into_iter().map(|item| vec![item]).collect()
 }
 
-/// Where the part of a group begins and ends: in the middle of the gaps to its neighbours.
+/// Bounds of a group of kitchen elements along an axis: the middles of the gaps to the neighbouring groups.
 fn ends(groups: &[Vec<&Item>], index: usize, axis: usize, whole: [f64; 2]) -> [f64; 2] {
     let low = |group: &[&Item]| group.iter().map(|item| extent(item, axis)[0]).fold(f64::INFINITY, f64::min);
     let high = |group: &[&Item]| group.iter().map(|item| extent(item, axis)[1]).fold(f64::NEG_INFINITY, f64::max);
@@ -305,7 +314,8 @@ fn ends(groups: &[Vec<&Item>], index: usize, axis: usize, whole: [f64; 2]) -> [f
     [from, to.max(from)]
 }
 
-/// Widths of the columns: their needs first, then the rest divided among columns with locations.
+/// Widths of the kitchen map's columns: first what their names need, then equal shares of the rest for columns with
+/// locations.
 fn widths(columns: &[Vec<&Item>], total: u16) -> Vec<u16> {
     let need: Vec<u16> = columns.iter().map(|c| c.iter().map(|item| item.min_columns).max().unwrap_or(0)).collect();
     let grows = |column: &[&Item]| column.iter().any(|item| matches!(item.thing, MapElement::Location(_)));
@@ -322,7 +332,7 @@ fn widths(columns: &[Vec<&Item>], total: u16) -> Vec<u16> {
         }
         widths.push(width);
     }
-    // A deficit is taken from the widest columns.
+    // Missing columns of the terminal are taken from the widest columns of the kitchen map.
     for _ in total..sum {
         if let Some(widest) = widths.iter_mut().max() {
             *widest -= 1;
@@ -331,7 +341,7 @@ fn widths(columns: &[Vec<&Item>], total: u16) -> Vec<u16> {
     widths
 }
 
-/// Row `index` of `count` equal rows.
+/// Row number `index` of an area that is divided into `count` rows of equal height.
 fn share(cells: Rect, count: usize, index: usize) -> Rect {
     let edge = |index: usize| cells.y + (usize::from(cells.height) * index / count.max(1)) as u16;
     Rect { y: edge(index), height: edge(index + 1) - edge(index), ..cells }
@@ -345,7 +355,7 @@ fn owner(column: &[&Item]) -> Option<Agent> {
 fn spot(item: &Item, region: Rect, display: Bounds) -> MapBox {
     let cells = match item.thing {
         MapElement::Location(_) => {
-            // Low cards leave air between them; where there is much room, they grow with it.
+            // Low boxes leave an empty row between them; in a tall region, the boxes grow.
             let height = match region.height {
                 rows @ 0..=4 => rows.min(3),
                 rows => 4 + (rows / 10).min(2),
@@ -380,7 +390,7 @@ fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<MapBo
     groups.iter().enumerate().map(place).collect()
 }
 
-/// Corrects boxes whose end lies before their beginning.
+/// Extends the display region of every box so that it contains the box's own area.
 fn cover(mut spots: Vec<MapBox>) -> Vec<MapBox> {
     for spot in &mut spots {
         for axis in 0..2 {

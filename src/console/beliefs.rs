@@ -1,4 +1,4 @@
-//! The estimated beliefs as the wizard is told of them: one name, one certainty and one order in every view.
+//! The participant's estimated beliefs as the console shows them: same names, certainties and order in every view.
 
 use super::console_model::ConsoleModel;
 use super::key_action::KeyLayer;
@@ -10,41 +10,44 @@ use crate::kitchen::{AspectId, AspectKind, Kitchen, LocationId};
 use crate::session::settings::Visibility;
 use crate::session::{Phase, Session};
 
-/// Least expected probability of a value that the participant is said to think.
+/// Least expected probability of a value for the console to say that the participant believes that value.
 const THINKS: f32 = 0.5;
 
-/// Whether a belief is right, as far as the estimate can tell.
+/// Whether an estimated belief of the participant is probably false, unsure or right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum BeliefStanding {
-    /// The participant probably thinks a wrong value.
+    /// The participant probably believes a wrong value.
     False,
-    /// The truth is improbable, and so is every other value; or the truth is what is thought, and not surely enough.
+    /// The true value is improbable and so is every other value; or the true value is probable, but a signal about the
+    /// aspect is on offer.
     Unsure,
-    /// The participant probably knows the truth.
+    /// The participant probably knows the true value.
     Right,
 }
 
-/// An estimated belief about one aspect.
+/// Estimated belief of the participant about one state aspect (a location's content or a recipe).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EstimatedBelief {
-    /// What the belief is about.
+    /// State aspect that the belief is about.
     pub aspect: AspectId,
-    /// Whether it is right.
+    /// Whether the belief is probably false, unsure or right.
     pub standing: BeliefStanding,
-    /// Index of the most probable value.
+    /// Index of the value that the participant most probably believes.
     pub thinks: usize,
-    /// Index of the true value.
+    /// Index of the state aspect's true value.
     pub truth: usize,
-    /// Expected probability of the most probable value.
+    /// Expected probability of the value that the participant most probably believes.
     pub p: f32,
-    /// Since when the truth has been improbable; none: it is not.
+    /// Session time since which the true value has been improbable in the estimate; `None` while it is not.
     pub since: Option<SessionTime>,
-    /// Presses that the best signal about it would save; 0 where the wizard sees no recommendations.
+    /// Expected number of presses that the best signal about this aspect saves; 0 where the wizard sees no
+    /// recommendations.
     pub cost: f64,
 }
 
-/// The beliefs at the drawn time: what the open offer is about, then false ones, then unsure ones, each by their cost in presses
-/// and by their age. Empty before the trial's first estimate, and where the wizard may not see the estimate.
+/// The participant's estimated beliefs at the drawn session time, sorted: first those that the open offer would
+/// correct, then false ones, then unsure ones; among equals by expected saving of a signal (presses), then by age.
+/// Empty before the trial's first estimate, and where the wizard may not see the estimate.
 pub fn beliefs(session: &Session, model: &ConsoleModel) -> Vec<EstimatedBelief> {
     let moments = model.belief.until(model.now);
     let may_see = visibility(session, model) >= Visibility::Belief && session.phase != Phase::Ready;
@@ -56,7 +59,7 @@ pub fn beliefs(session: &Session, model: &ConsoleModel) -> Vec<EstimatedBelief> 
         let standing = match held.is_false() {
             true if thinks != truth && held.p >= THINKS => BeliefStanding::False,
             true => BeliefStanding::Unsure,
-            // A signal is offered only where the truth is not sure enough.
+            // A belief that an offered signal is about counts as unsure even if its most probable value is true.
             false if offered.contains(&aspect) => BeliefStanding::Unsure,
             false => BeliefStanding::Right,
         };
@@ -72,8 +75,8 @@ pub fn beliefs(session: &Session, model: &ConsoleModel) -> Vec<EstimatedBelief> 
     beliefs
 }
 
-/// What the screen shows: what the settings allow to the wizard. Who presses the participant's buttons at this keyboard sees
-/// neither the estimate nor offers.
+/// What the console may show of the assistant's estimate and advice, as the session's settings allow. A person who
+/// presses the participant's buttons at this keyboard sees neither the estimate nor offers.
 pub fn visibility(session: &Session, model: &ConsoleModel) -> Visibility {
     match model.layer {
         KeyLayer::Wizard => session.spec.console.visibility,
@@ -81,7 +84,8 @@ pub fn visibility(session: &Session, model: &ConsoleModel) -> Visibility {
     }
 }
 
-/// What the open offer is about; without a reason, all that its signal tells.
+/// The state aspects that the open offer is about: that of the offer's reason or, without a reason, all aspects that
+/// the offered signal tells.
 fn offered(session: &Session) -> Vec<AspectId> {
     let Some(offer) = session.offers.open().filter(|offer| offer.advice.visible) else { return Vec::new() };
     let kitchen = &session.kitchen;
@@ -92,14 +96,15 @@ fn offered(session: &Session) -> Vec<AspectId> {
     }
 }
 
-/// Whether beliefs are ordered by their cost: a concept that counts presses advises, and the wizard sees it.
+/// Whether beliefs are ordered by the presses that a signal would save: only if the wizard sees recommendations, and
+/// the concept (TomCom) counts presses.
 pub fn are_by_cost(session: &Session) -> bool {
     session.spec.console.visibility == Visibility::Recommendation
         && session.spec.assistant.concept == ConceptName::TomCom
         && session.advice.is_some()
 }
 
-/// By aspect, the expected saving of the best signal that tells it.
+/// For each state aspect, the expected saving (in presses) of the best signal that tells it.
 fn costs(session: &Session) -> Vec<f64> {
     let mut costs = vec![0.0; session.kitchen.aspects.len()];
     let advice = session.advice.as_ref().filter(|_| are_by_cost(session));
@@ -111,7 +116,8 @@ fn costs(session: &Session) -> Vec<f64> {
     costs
 }
 
-/// Where the belief is shown in the kitchen: at its location, or at an order of its dish; the signal about this place tells it.
+/// The kitchen location at which the belief is shown: the location itself or, for a recipe, the first order of its
+/// dish. The signal about this location tells the aspect.
 pub fn place(session: &Session, aspect: AspectId) -> Option<LocationId> {
     match session.kitchen.aspects[aspect.index()].kind {
         AspectKind::Location(location) => Some(location),
@@ -122,7 +128,8 @@ pub fn place(session: &Session, aspect: AspectId) -> Option<LocationId> {
     }
 }
 
-/// The name of what a belief is about: "cooking pot", "recipe of order 1"; a dish that no order wants is named itself.
+/// Name of the state aspect that a belief is about: "cooking pot", "recipe of order 1"; for a dish that nobody ordered,
+/// with the dish's name.
 pub fn name(session: &Session, aspect: AspectId) -> String {
     let kitchen = &session.kitchen;
     match (kitchen.aspects[aspect.index()].kind, place(session, aspect)) {
@@ -132,12 +139,12 @@ pub fn name(session: &Session, aspect: AspectId) -> String {
     }
 }
 
-/// A value of an aspect in words.
+/// A value of a state aspect in words.
 pub fn value(kitchen: &Kitchen, aspect: AspectId, value: usize) -> &str {
     &kitchen.aspects[aspect.index()].wordings[value]
 }
 
-/// A probability as the screen shows it: "83 %".
+/// A probability as the console shows it: "83 %".
 pub fn percent(p: f64) -> String {
     format!("{:.0} %", 100.0 * p)
 }

@@ -1,10 +1,10 @@
-//! A key with its names in key files and on the screen.
+//! A key of the keyboard, with its names in key files and on the screen.
 
 use std::fmt;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// Special keys: name in key files, and name on the screen.
+/// Special keys: name in key files, name on the screen, and key code.
 const NAMED: [(&str, &str, KeyCode); 16] = [
     ("space", "space", KeyCode::Char(' ')),
     ("tab", "tab", KeyCode::Tab),
@@ -24,43 +24,43 @@ const NAMED: [(&str, &str, KeyCode); 16] = [
     ("end", "end", KeyCode::End),
 ];
 
-/// Letters that with ctrl arrive as other keys in most terminals.
+/// Letters that most terminals report as another key when they are pressed together with ctrl.
 const SENT_AS: [(char, &str); 4] = [('h', "backspace"), ('i', "tab"), ('j', "enter"), ('m', "enter")];
 
-/// Description of a valid key name.
+/// Error text that describes valid key names.
 const REMEDY: &str = "a character such as \"k\", a letter with ctrl such as \"ctrl+k\", f1 to f12, or one of space, \
                           tab, backtab, enter, backspace, esc, insert, delete, left, right, up, down, pgup, pgdn, home, end";
 
-/// A key, with or without control.
+/// A key of the keyboard, pressed with or without ctrl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KeyChord {
-    /// The key, as the terminal reports it.
+    /// Key code as the terminal reports it.
     pub code: KeyCode,
-    /// Whether control is held.
+    /// Whether ctrl is held together with the key.
     pub ctrl: bool,
 }
 
 impl KeyChord {
-    /// The space bar.
+    /// Key chord of the space bar, without ctrl.
     pub const SPACE: KeyChord = KeyChord::plain(KeyCode::Char(' '));
 
-    /// This key without control.
+    /// Key chord of this key without ctrl.
     pub const fn plain(code: KeyCode) -> KeyChord {
         KeyChord { code, ctrl: false }
     }
 
-    /// The key that types this character, without control.
+    /// The key that types this character, without ctrl.
     pub const fn char(key: char) -> KeyChord {
         KeyChord::plain(KeyCode::Char(key))
     }
 
-    /// The key that types this character, with control.
+    /// The key that types this character, with ctrl.
     pub const fn ctrl(key: char) -> KeyChord {
         KeyChord { code: KeyCode::Char(key), ctrl: true }
     }
 
-    /// The chord of a key event; capitals count as small letters, so that caps lock has no effect, and the space bar stops the
-    /// robot also while control is held.
+    /// The key chord of a terminal's key event. Capitals count as small letters, so that caps lock has no effect; the
+    /// space bar counts as pressed without ctrl, so that it stops the robot in any case.
     pub fn from_event(key: &KeyEvent) -> KeyChord {
         let code = match key.code {
             KeyCode::Char(letter) => KeyCode::Char(small(letter)),
@@ -70,12 +70,12 @@ impl KeyChord {
         KeyChord { code, ctrl }
     }
 
-    /// The key of a letter in a layout.
+    /// The key chord for a letter that a kitchen's layout file assigns.
     pub fn of_letter(letter: char) -> KeyChord {
         KeyChord::char(small(letter))
     }
 
-    /// Parses a key name of a key file.
+    /// Parses the name of a key in a key file.
     ///
     /// # Errors
     /// The text found, and a description of a valid one.
@@ -108,7 +108,7 @@ impl KeyChord {
         }
     }
 
-    /// The name in key files: "ctrl+r", "backspace".
+    /// The chord's name in key files: "ctrl+r", "backspace".
     pub fn name(&self) -> String {
         let plain = match (self.code, self.named()) {
             (_, Some((name, _))) => name.to_string(),
@@ -123,7 +123,7 @@ impl KeyChord {
     }
 }
 
-/// The name on the screen: "^r", "bksp".
+/// Writes the chord's name on the screen: "^r", "bksp".
 impl fmt::Display for KeyChord {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.ctrl {

@@ -1,5 +1,5 @@
-//! What can be clicked: while the view draws, it notes cells together with what a click on them does. A click goes the way of the
-//! key that does the same.
+//! Click targets of the console: while the view draws, it notes screen cells together with the action of a click on
+//! them. A click takes the same way through the program as the key with the same action.
 
 use ratatui::layout::Rect;
 
@@ -8,41 +8,42 @@ use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::kitchen::AspectId;
 
-/// What a click does.
+/// Action of a mouse click on the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClickAction {
-    /// What this key does.
+    /// Do what this key of the keyboard does.
     Key(KeyChord),
-    /// Go to this row of the open list, of those that are left; on the row under the cursor: take it.
+    /// Move the cursor to this row of the open list (counted among the rows that match the filter); choose the row if
+    /// the cursor is already there.
     Row(usize),
-    /// Open the palette with this filter, for keys that share a hint.
+    /// Open the list of all actions (the palette) with this filter text; for hints that several keys share.
     Palette(&'static str),
-    /// Show the belief about this aspect over time.
+    /// Show the estimated belief about this state aspect over time.
     Belief(AspectId),
-    /// Go to this error of the list, while errors are coded.
+    /// While a rater codes errors: go to the error with this index in the list.
     Error(usize),
     /// Move a replay to this session time.
     Seek(SessionTime),
 }
 
-/// Cells that can be clicked.
+/// Screen cells that can be clicked, with the action of a click.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClickTarget {
-    /// The cells on the screen.
+    /// Screen cells that can be clicked.
     pub cells: Rect,
-    /// What a click on them does.
+    /// Action of a mouse click on these screen cells.
     pub action: ClickAction,
 }
 
-/// A clicked signal that is sent once it is confirmed.
+/// The question whether to send a clicked signal; the signal is sent once the wizard confirms.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SendQuestion {
-    /// The key of what was clicked.
+    /// Key of the keyboard with the same action as the click.
     pub chord: KeyChord,
-    /// The signal.
+    /// Signal that is sent to the participant once the wizard confirms.
     pub signal: Signal,
-    /// Sequence number of the offer that was clicked, if it was the offer.
+    /// Sequence number of the clicked offer; `None` if a signal was clicked that is not on offer.
     pub offer: Option<u64>,
-    /// Time of the click, on the clock of keys.
+    /// Time of the click, on the console's own clock ([`super::console_model::ConsoleModel::clock`]).
     pub asked: SessionTime,
 }

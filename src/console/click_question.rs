@@ -1,4 +1,5 @@
-//! A click on a signal or on the offer asks once before it sends, unless the session file says `click_sends = true`.
+//! Confirmation of mouse clicks that send: a click on a signal or on the offer asks the wizard first, unless the
+//! session file says `click_sends = true`.
 
 use crossterm::event::KeyCode;
 
@@ -14,7 +15,8 @@ use crate::communication::{Sender, Signal};
 use crate::session::offers;
 use crate::session::{Event, Session};
 
-/// Asks whether to send a clicked signal, or the signal of the clicked offer; or says why it cannot be sent.
+/// Asks the wizard whether to send a clicked signal or the clicked offer's signal; or says why the signal cannot be
+/// sent.
 pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, action: &KeyAction) {
     let asked = match action {
         KeyAction::Signal(_, signal) => match refusal(session, model.now, &shown(signal)) {
@@ -33,22 +35,24 @@ pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, 
     }
 }
 
-/// The question waits so long for its answer, in seconds: an enter that comes later is not meant for it.
+/// Time after which the question whether to send closes, in seconds: a later enter key is probably not an answer to it.
 const WAITS_S: f64 = 5.0;
 
-/// Closes a question that has waited too long, and one that an offer has overtaken: enter means the offer then.
+/// Closes the question whether to send a clicked signal once it is too old, or once a newer offer has opened: from then
+/// on, enter accepts that offer.
 pub fn expire(model: &mut ConsoleModel, session: &Session) {
     let Some(Dialog::Send(question)) = &model.dialog else { return };
     let is_late = model.clock.secs_since(question.asked) > WAITS_S;
     let open = session.offers.open().filter(|offer| offer.opened > question.asked && Some(offer.seq) != question.offer);
     if is_late || open.is_some() {
-        let why = if is_late { "nobody answered" } else { "an offer has appeared" };
+        let why = if is_late { "no answer in time" } else { "an offer has appeared" };
         model.dialog = None;
         model.say(NoticeLevel::Refused, format!("not sent: {why}; click again"));
     }
 }
 
-/// Answers the question: enter sends, if it is pressed and not held; esc leaves.
+/// A key while the console asks whether to send a clicked signal: enter sends if it is newly pressed (not held), esc
+/// cancels.
 pub(super) fn answer(
     model: &mut ConsoleModel,
     session: &Session,
@@ -65,13 +69,13 @@ pub(super) fn answer(
     }
 }
 
-/// Sends what was clicked. Of an offer only the one that was clicked.
+/// Sends the clicked signal. After a click on an offer, nothing is sent if that offer has closed meanwhile.
 pub(super) fn confirm(model: &mut ConsoleModel, session: &Session, question: SendQuestion) -> Option<ConsoleCommand> {
     model.dialog = None;
     let now_meant = offers::enter(session, model.now).ok().map(|(offer, _)| offer.seq);
     match question.offer {
         Some(offer) if now_meant != Some(offer) => {
-            model.say(NoticeLevel::Refused, "not sent: the offer that was clicked is closed");
+            model.say(NoticeLevel::Refused, "not sent: the clicked offer has closed");
             None
         }
         Some(_) => act(model, session, KeyAction::Accept),

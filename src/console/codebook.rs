@@ -1,4 +1,4 @@
-//! The codebook: the codes that a rater can give, with their keys and definitions.
+//! The rater's codebook on the console: the error causes that a rater can code, with their keys and definitions.
 
 use ratatui::text::Span;
 
@@ -8,15 +8,15 @@ use super::keys::KeyBindings;
 use crate::kitchen::Kitchen;
 use crate::measures::cause_codes::CauseKind;
 
-/// Columns between two entries of a line.
+/// Columns between two codebook entries in a line.
 const GAP: u16 = 2;
 
-/// A piece of the codebook: a key, and what it says.
+/// An entry of the rater's codebook: a key and the error cause that it codes, or a heading.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodebookEntry {
-    /// The key; none for a heading, and for the rest of a definition.
+    /// Key that codes this cause; `None` for a heading and for continued lines of a definition.
     pub key: Option<KeyChord>,
-    /// The code in words, or the heading.
+    /// Text of the entry: the error's cause with its definition, or a heading.
     pub words: String,
 }
 
@@ -25,17 +25,17 @@ impl CodebookEntry {
         CodebookEntry { key: None, words }
     }
 
-    /// Columns that the entry takes, with a space behind its key.
+    /// Columns that the codebook entry takes, with a space after its key.
     fn columns(&self) -> u16 {
         key_columns(self.key) + columns_of(&self.words)
     }
 }
 
-/// A line of the codebook: entries, each with the columns before it.
+/// A line of the codebook: entries, each with the number of columns before it.
 pub type CodebookLine = Vec<(u16, CodebookEntry)>;
 
-/// The codebook for a panel of so many columns: causes with their definitions, a line each, then the places about which something
-/// can be believed wrong.
+/// The codebook for a panel with this number of columns: first the causes with their definitions, one a line, then the
+/// places about which a belief can be false.
 pub fn full(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<CodebookLine> {
     let mut lines: Vec<CodebookLine> = Vec::new();
     for CodebookEntry { key, words } in of_kinds(keys, |kind| Some(kind.definition())) {
@@ -58,7 +58,7 @@ pub fn full(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<Codebook
     lines
 }
 
-/// The codebook in as few lines of at most `columns` as possible.
+/// The codebook without definitions, in as few lines of at most `columns` as possible.
 pub fn compact(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<CodebookLine> {
     let mut beliefs = vec![CodebookEntry::heading(CauseKind::Belief.title().to_string())];
     beliefs.extend(places(keys, kitchen));
@@ -67,7 +67,7 @@ pub fn compact(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<Codeb
     lines
 }
 
-/// The places about which something can be believed wrong: "q order 1".
+/// Codebook entries of the places about which a belief can be false: "q order 1".
 fn places(keys: &KeyBindings, kitchen: &Kitchen) -> Vec<CodebookEntry> {
     let entry = |line: &KeyBinding| match line.action {
         KeyAction::Rate(RaterKey::Belief(location)) => {
@@ -78,7 +78,7 @@ fn places(keys: &KeyBindings, kitchen: &Kitchen) -> Vec<CodebookEntry> {
     keys.bindings.iter().filter_map(entry).collect()
 }
 
-/// The codes without a place: "1 slip: nothing was believed wrong".
+/// Codebook entries of the error causes that need no place: "1 slip: nothing was believed wrong".
 fn of_kinds(keys: &KeyBindings, definition: impl Fn(CauseKind) -> Option<&'static str>) -> Vec<CodebookEntry> {
     let entry = |kind: CauseKind| {
         let key = Some(keys.chord_for(&KeyAction::Rate(RaterKey::Cause(kind)))?);
@@ -104,7 +104,7 @@ fn flow(entries: Vec<CodebookEntry>, columns: u16) -> Vec<CodebookLine> {
     lines
 }
 
-/// The text in lines of at most `columns`, broken between words.
+/// Breaks a text between words into lines of at most `columns` characters.
 fn wrap(text: &str, columns: u16) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -116,7 +116,7 @@ fn wrap(text: &str, columns: u16) -> Vec<String> {
     lines
 }
 
-/// Columns of a key and the space behind it.
+/// Columns of a key and the space after it.
 fn key_columns(key: Option<KeyChord>) -> u16 {
     key.map_or(0, |key| columns_of(&key.to_string()) + 1)
 }

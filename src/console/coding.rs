@@ -1,4 +1,4 @@
-//! Coding the errors of a recording: which error one stands at, and what the rater says about it.
+//! The rater's actions at the console: going from error to error in a recording, and coding the cause of each error.
 
 use super::console_message::ConsoleCommand;
 use super::console_model::ConsoleModel;
@@ -8,7 +8,7 @@ use super::playback::ReplayKey;
 use crate::measures::cause_codes::Code;
 use crate::session::Session;
 
-/// Does what a key asks for.
+/// Carries out an action of the rater's keys.
 pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterKey) -> Option<ConsoleCommand> {
     let events = model.playback.as_ref().map_or(0, |playback| playback.event);
     let coding = model.coding.as_mut()?;
@@ -33,20 +33,20 @@ pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterKey) -> Optio
         RaterKey::Clear => None,
     };
     if let Some(error) = chosen.and_then(|chosen| coding.errors.get(chosen)) {
-        let words = format!("not coded: error {} is chosen; enter goes there, esc stays here", error.error);
+        let words = format!("not coded: error {} is only selected; enter goes to it, esc stays here", error.error);
         coding.chosen = chosen;
         model.say(NoticeLevel::Refused, words);
         return None;
     }
     let Some(press) = coding.present(events).map(|error| error.press) else {
-        model.say(NoticeLevel::Refused, "there is no error yet that could be coded");
+        model.say(NoticeLevel::Refused, "there is no error before this point of the recording");
         return None;
     };
     coding.give(press, code);
     Some(ConsoleCommand::Code { press })
 }
 
-/// Goes to an error, if there is one.
+/// Moves the replay to the error with this index, if there is one.
 fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
     let errors = model.coding.as_ref().map(|coding| &coding.errors)?;
     let Some(error) = to.and_then(|to| errors.get(to)) else {
@@ -56,18 +56,18 @@ fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
     Some(ConsoleCommand::Move(ReplayKey::ToEvent(error.press)))
 }
 
-/// Takes a step back, or does it again.
+/// Undoes the rater's last change of a code, or redoes it.
 fn undone(model: &mut ConsoleModel, again: bool) -> Option<ConsoleCommand> {
     let coding = model.coding.as_mut()?;
     let press = if again { coding.redo() } else { coding.undo() };
     if press.is_none() {
-        let nothing = if again { "nothing to do again" } else { "nothing to undo since the recording was opened" };
+        let nothing = if again { "nothing to redo" } else { "nothing to undo since the recording was opened" };
         model.say(NoticeLevel::Refused, nothing);
     }
     press.map(|press| ConsoleCommand::Code { press })
 }
 
-/// Goes to an error of the list.
+/// Moves the replay to the error with this index in the list.
 pub(super) fn go_to(model: &mut ConsoleModel, index: usize) -> Option<ConsoleCommand> {
     if let Some(coding) = &mut model.coding {
         coding.chosen = None;

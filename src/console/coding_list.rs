@@ -1,30 +1,30 @@
-//! Where the rows of the list of errors stand.
+//! Position of the list of errors on the rater's screen.
 
 use ratatui::layout::Rect;
 
 use super::rater_session::{CodingParty, RaterSession};
 use super::view::regions::{Regions, ScreenSize, below_title};
 
-/// The list of errors on the screen.
+/// The rater's list of errors on the screen.
 #[derive(Clone, Copy, Debug)]
 pub struct CodingList {
-    /// Lines above the rows: progress, and the present error in words.
+    /// Screen area above the rows of errors: the coding progress, and the present error in words.
     pub head: Rect,
-    /// The rows.
+    /// Screen area of the rows of the list, one for each error.
     pub rows: Rect,
-    /// Index of the error in the first row.
+    /// Index of the error that is shown in the first row.
     pub first: usize,
 }
 
 impl CodingList {
-    /// The list while the replay stands after so many events.
+    /// Layout of the list of errors while the replay stands after this number of events.
     pub fn new(regions: &Regions, coding: &RaterSession, events: usize) -> CodingList {
         let area = regions.errors;
         let is_lines = regions.room == ScreenSize::Small || area.height < 8;
         let (inside, head_rows) = match (&coding.party, is_lines) {
             (CodingParty::Pair { .. }, true) if area.height > 3 => (area, 2),
             (_, true) => (area, 1),
-            // A bar, then what comes next or the present error.
+            // Lines above the list of errors: the progress bar, and the present error or the next step.
             (CodingParty::Rater(_), false) => (below_title(area), 3),
             (CodingParty::Pair { .. }, false) => (below_title(area), 4),
         };

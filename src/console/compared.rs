@@ -1,35 +1,35 @@
-//! The comparison of wizard and assistants at the console: which difference is looked at.
+//! Which difference between wizard and assistant the console's comparison shows.
 
 use crate::history::comparison::{LaneComparison, UnmatchedCommunication};
 
-/// What a key asks of the list of differences.
+/// Action of a key in the list of differences between wizard and assistant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ComparisonKey {
-    /// Go to the next difference.
+    /// Go to the next difference between wizard and assistant.
     Next,
-    /// Go to the difference before.
+    /// Go to the previous difference between wizard and assistant.
     Last,
-    /// Shows what each knew then.
+    /// Show what the wizard and the assistant each knew at the time of the difference.
     Open,
 }
 
-/// The comparison at the console, and the difference that is looked at.
+/// Comparison of wizard and assistants at the console, with the selected difference.
 #[derive(Clone, Debug, Default)]
 pub struct ComparisonView {
-    /// None until the first press or order.
+    /// Newest comparison; `None` until the trial's first press or order.
     pub seen: Option<LaneComparison>,
-    /// None: the newest.
+    /// Selected communication that has no match; `None` selects the newest one.
     chosen: Option<UnmatchedCommunication>,
 }
 
 impl ComparisonView {
-    /// Takes over what was compared meanwhile; what was chosen stays chosen.
+    /// Takes over the newest comparison; the selected difference stays selected if it is still one.
     pub fn show(&mut self, newest: LaneComparison) {
         self.chosen = self.chosen.filter(|chosen| newest.differences.contains(chosen));
         self.seen = Some(newest);
     }
 
-    /// The difference that is looked at: its place in the list, and the comparison.
+    /// Index of the selected difference, and the comparison that contains it.
     pub fn chosen(&self) -> Option<(usize, &LaneComparison)> {
         let seen = self.seen.as_ref()?;
         let newest = seen.differences.len().checked_sub(1)?;
@@ -37,7 +37,7 @@ impl ComparisonView {
         Some((self.chosen.and_then(is_it).unwrap_or(newest), seen))
     }
 
-    /// Goes on to the next difference, or back to the last; at the newest the newest is followed.
+    /// Selects the next or the previous difference. From the last one on, the newest difference is always selected.
     pub fn choose(&mut self, step: ComparisonKey) {
         let Some((at, seen)) = self.chosen() else { return };
         let to = match step {

@@ -1,4 +1,4 @@
-//! Actions of the console, as the key table names them.
+//! Actions of the console: what each entry of the key table does.
 
 use super::beliefs::{beliefs, visibility};
 use super::coding;
@@ -23,10 +23,10 @@ use crate::session::offers;
 use crate::session::settings::Visibility;
 use crate::session::{Event, Phase, Session};
 
-/// Sends the signal of the offer that the wizard has read.
+/// Sends the signal of the open offer to the participant.
 fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if model.answered.is_some_and(|answered| model.clock.secs_since(answered) < ANSWER_S) {
-        model.say(NoticeLevel::Refused, "not sent: this enter came right after that of a list");
+        model.say(NoticeLevel::Refused, "not sent: enter was pressed right after a list; press it again");
         return None;
     }
     match offers::enter(session, model.now) {
@@ -41,7 +41,7 @@ fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand>
     }
 }
 
-/// Does what a key stands for.
+/// Carries out the action of a key at the console.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction) -> Option<ConsoleCommand> {
     match action {
         KeyAction::Signal(_, signal) => {
@@ -60,12 +60,16 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             let button = session.kitchen.button(Agent::Human, button).name.clone();
             send(model, session, Event::Press { agent: Agent::Human, button, at_ns: None }, NoticeLevel::Refused, &why)
         }
-        KeyAction::TakeBack => {
-            send(model, session, Event::SignalEnded { reason: SignalEnd::TakenBack }, NoticeLevel::Done, "taken back")
-        }
+        KeyAction::TakeBack => send(
+            model,
+            session,
+            Event::SignalEnded { reason: SignalEnd::TakenBack },
+            NoticeLevel::Done,
+            "the signal is taken back",
+        ),
         KeyAction::Note(index) => {
             let note = session.spec.console.notes.get(index)?.clone();
-            let words = format!("marked: {note}");
+            let words = format!("note recorded: {note}");
             send(model, session, Event::Marker { note }, NoticeLevel::Done, &words)
         }
         KeyAction::Advance => advance(model, session),
@@ -83,8 +87,8 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         KeyAction::Hand(hand) => hands::act(model, session, hand),
         KeyAction::SwitchLayer => {
             let (layer, words) = match model.layer {
-                KeyLayer::Wizard => (KeyLayer::Participant, "from now on, keys press the participant's buttons"),
-                KeyLayer::Participant => (KeyLayer::Wizard, "from now on, keys send the wizard's signals"),
+                KeyLayer::Wizard => (KeyLayer::Participant, "keys now press the participant's buttons"),
+                KeyLayer::Participant => (KeyLayer::Wizard, "keys now send the wizard's signals"),
             };
             model.layer = layer;
             let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility(session, model), model.comparison.is_some());
@@ -97,13 +101,13 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             None
         }
         KeyAction::Belief if visibility(session, model) < Visibility::Belief => {
-            model.say(NoticeLevel::Refused, "the belief is not shown in this session");
+            model.say(NoticeLevel::Refused, "beliefs are not shown in this session");
             None
         }
         KeyAction::Belief => {
             let ranked: Vec<AspectId> = beliefs(session, model).iter().map(|belief| belief.aspect).collect();
             if ranked.is_empty() {
-                model.say(NoticeLevel::Refused, "the belief is estimated from the trial's start on");
+                model.say(NoticeLevel::Refused, "beliefs are estimated after the trial's start");
             }
             model.focus_next_belief(&ranked);
             None
@@ -121,7 +125,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             model.dialog = Some(Dialog::Palette(ListCursor::default()));
             None
         }
-        // A recording loses nothing by being left; a training does.
+        // A replay can be left without a question, for nothing is lost; a wizard training asks first.
         KeyAction::Quit if model.playback.is_some() && model.lesson.is_none() => Some(ConsoleCommand::Quit),
         KeyAction::Quit if session.phase == Phase::Closed => Some(ConsoleCommand::Quit),
         KeyAction::Quit => {
@@ -132,12 +136,12 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
     }
 }
 
-/// Another difference between wizard and assistant, or what each knew at this one.
+/// Selects another difference between wizard and assistant, or shows what each of them knew at the selected difference.
 pub(super) fn differ(model: &mut ConsoleModel, session: &Session, step: ComparisonKey) {
     let Some(compared) = &mut model.comparison else { return };
     compared.choose(step);
     match compared.chosen() {
-        None => model.say(NoticeLevel::Refused, "they do not differ yet"),
+        None => model.say(NoticeLevel::Refused, "wizard and assistant do not differ yet"),
         Some((at, seen)) if step == ComparisonKey::Open => {
             model.dialog = Some(Dialog::Difference(seen.opened(&session.kitchen, &seen.differences[at])));
         }

@@ -1,11 +1,11 @@
-//! Messages to the console, and commands from it.
+//! Messages that the console receives, and commands that it returns.
 
 use crossterm::event::KeyEvent;
 
 use super::playback::ReplayKey;
 use crate::session::Event;
 
-/// An input to the console.
+/// Input of the console: a key, a mouse event or a change of the terminal.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConsoleMessage {
     /// A key was pressed, repeated or released.
@@ -22,23 +22,23 @@ pub enum ConsoleMessage {
     Focus(bool),
 }
 
-/// A command of the console to the shell that runs it.
+/// A command of the console to the program that runs it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ConsoleCommand {
-    /// An input of the session.
+    /// Apply this event to the session.
     Input(Event),
-    /// Record the preflight results and start the trial.
+    /// Record the results of the preflight checks and start the trial.
     Start(Event),
-    /// Seek in a recording.
+    /// Move a replay to another position or change its speed.
     Move(ReplayKey),
-    /// Save the rater's codes, and show the error of which one changed.
+    /// Save the rater's codes, and move the replay to the error whose code changed.
     Code {
-        /// Sequence number of the press that was the error.
+        /// Sequence number of the press whose code changed.
         press: u64,
     },
-    /// Close this recording and repeat its trial in another one.
+    /// Close this recording and repeat its trial in a new recording.
     Redo,
-    /// Close this finished recording and continue with the next one of the series.
+    /// Close this finished recording and continue with the participant's next recording.
     Next,
     /// Close the console; in a live run the session ends.
     Quit,

@@ -1,4 +1,4 @@
-//! The state of the console besides the session: active keys, open dialog, last notice.
+//! State of the console besides the session: active keys, open dialog, latest notice.
 
 use std::collections::VecDeque;
 
@@ -31,86 +31,86 @@ use crate::kitchen::{Agent, AspectId};
 use crate::session::settings::GazeSource;
 use crate::session::{TimelineEntry, TimelineEvent};
 
-/// Display time of a notice, in seconds.
+/// Time for which a notice is shown, in seconds.
 const NOTICE_S: f64 = 4.0;
 
-/// Largest number of senders of gaze that give a notice.
+/// Largest number of different rejections (address and reason) of gaze senders for which notices are given.
 const REFUSED: usize = 16;
-/// Least time between two notices about the same sender of gaze, in seconds.
+/// Least time between two notices about the same rejected gaze sender, in seconds.
 const REFUSED_AGAIN_S: f64 = 10.0;
-/// Number of gaze samples in the trail of the gaze map.
+/// Number of recent gaze samples that the gaze map draws.
 const TRAIL: usize = 240;
 
-/// An open dialog.
+/// A dialog of the console that is open above its panels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Dialog {
-    /// The table of keys.
+    /// Help of the console: the table of keys.
     Help,
-    /// Asks whether to end the session and leave.
+    /// Question whether to end the session and close the console.
     Quit,
-    /// Asks whether to end the trial.
+    /// Question whether to end the trial.
     EndTrial,
-    /// A list to choose an entry from.
+    /// List from which the wizard chooses an answer.
     Pick(Picker),
-    /// The list of all actions that have keys.
+    /// List of all actions that have keys (the palette).
     Palette(ListCursor),
-    /// Asks whether to send the signal that was clicked.
+    /// Question whether to send the signal that was clicked.
     Send(SendQuestion),
-    /// The preflight checks.
+    /// List of the preflight checks.
     Preflight,
-    /// The gaze accuracy check: targets, then the result.
+    /// Gaze accuracy check: the targets, then the result.
     Calibration,
-    /// Input of a free text note.
+    /// Text input for the wizard's note.
     Note(TextInput),
-    /// Input of an answer to the shown item of a questionnaire: words or a number.
+    /// Text input of an answer to the shown questionnaire item: words or a number.
     Answer(TextInput),
     /// Details of a difference between wizard and assistant, as lines of text.
     Difference(Vec<String>),
-    /// Report of a training, as lines of text; closed with enter.
+    /// Report of a wizard training, as lines of text; closed with enter.
     Report(Vec<String>),
 }
 
-/// A message to the wizard.
+/// A short message of the console to the wizard, shown for a few seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// The line.
+    /// Text of the notice to the wizard, in one line.
     pub text: String,
-    /// How urgent it is.
+    /// Severity of the notice.
     pub level: NoticeLevel,
-    /// Time on [`ConsoleModel::clock`].
+    /// Time at which the notice was given, on [`ConsoleModel::clock`].
     pub at: SessionTime,
 }
 
-/// State of the recording.
+/// State of the session's recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RecordingStatus {
-    /// Nothing is recorded.
+    /// The session is not recorded.
     Off,
-    /// Written to this folder.
+    /// The session is recorded into this folder.
     On(String),
-    /// The log cannot be written.
+    /// The recording can no longer be written.
     Lost,
 }
 
-/// State of the stream to Rerun viewers.
+/// State of the stream to viewers of the Rerun program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewerStreamStatus {
-    /// Address at which viewers connect; `None` if the stream is only written to its file.
+    /// Address to which Rerun viewers connect; `None` if the stream is only written to a file.
     pub address: Option<String>,
-    /// Number of rows written.
+    /// Number of rows written to the Rerun stream.
     pub written: u64,
-    /// Number of rows dropped because the viewers were too slow.
+    /// Number of rows that the Rerun stream dropped because the viewers were too slow.
     pub dropped: u64,
 }
 
-/// State of the streams of the Lab Streaming Layer.
+/// State of the outgoing streams of the Lab Streaming Layer (LSL).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LslStatus {
-    /// Which streams are sent.
+    /// Names of the LSL streams that are sent.
     pub streams: Vec<String>,
-    /// Number of samples sent.
+    /// Number of samples sent over LSL.
     pub sent: u64,
-    /// Number of samples that were dropped or refused.
+    /// Number of samples that LSL dropped or refused.
     pub lost: u64,
 }
 
@@ -118,95 +118,96 @@ pub struct LslStatus {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PressedKey {
     pub code: KeyCode,
-    /// Time of the last report by the terminal.
+    /// Time at which the terminal last reported the key.
     pub reported: SessionTime,
-    /// Time at which it last counted as a press.
+    /// Time at which the key last counted as newly pressed.
     pub counted: SessionTime,
 }
 
-/// State of the console: everything that concerns only the screen and the keyboard.
+/// State of the console: everything that concerns only the screen and the keyboard, not the trial.
 #[derive(Clone, Debug)]
 pub struct ConsoleModel {
-    /// Session time that is drawn.
+    /// Session time that the console draws.
     pub now: SessionTime,
-    /// A clock for keys and notices that also runs while a replay is paused.
+    /// Clock for keys and notices, which also runs while a replay is paused.
     pub clock: SessionTime,
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
-    /// Colours and signs.
+    /// Colours and signs of the console.
     pub theme: Theme,
-    /// The table of keys.
+    /// Table of the console's key bindings.
     pub keys: KeyBindings,
-    /// The layer of keys that is active.
+    /// Whose keys are active: the wizard's or the participant's.
     pub layer: KeyLayer,
-    /// What is open above the panels.
+    /// Dialog that is open above the console's panels, if any.
     pub dialog: Option<Dialog>,
-    /// The newest line to the wizard.
+    /// Latest notice to the wizard.
     pub notice: Option<Notice>,
     /// Whether the session is recorded.
     pub recording: RecordingStatus,
-    /// The stream to Rerun's viewers, if there is one.
+    /// State of the stream to Rerun viewers, if there is one.
     pub viewers: Option<ViewerStreamStatus>,
-    /// The streams of the Lab Streaming Layer, if there are any.
+    /// State of the streams of the Lab Streaming Layer, if there are any.
     pub lsl: Option<LslStatus>,
     /// Free disk space of the recording's folder in bytes; `None` if unknown.
     pub free_bytes: Option<u64>,
-    /// The panel that is shown at full size, if any.
+    /// Panel of the console that is shown alone at full size, if any.
     pub alone: Option<Panel>,
-    /// First visible column of the help, or first visible line of a report.
+    /// First visible column of the help, or first visible line of a training report.
     pub help_from: usize,
-    /// Scroll position of the list of events, in entries.
+    /// Scroll position of the list of events: number of newer entries that are skipped.
     pub events_back: usize,
-    /// Scroll position of the timeline, in seconds.
+    /// Scroll position of the timeline: seconds before the present.
     pub timeline_back_s: u32,
     /// Whether the terminal has keyboard focus.
     pub focused: bool,
-    /// Display point under the mouse pointer, in fractions; outside 0 to 1 beside the kitchen.
+    /// Point of the wall display under the mouse pointer, in fractions of its size; below 0 or above 1 while the
+    /// pointer is outside the kitchen panel.
     pub pointer: Option<[f64; 2]>,
-    /// Latest gaze samples with their times, the oldest first, for the gaze map.
+    /// Latest gaze samples with their times, oldest first, for the gaze map.
     pub trail: VecDeque<(SessionTime, GazeSample)>,
-    /// Number of rejected senders of gaze: connections and datagrams that are not a tracker's.
+    /// Number of rejected gaze senders: connections and datagrams that did not come from the eye tracker.
     pub rejected_senders: u64,
-    /// Notices that were given of senders that nobody let in, and when last.
+    /// Notices that were given about rejected gaze senders, with the time of the last one.
     refused_senders: Vec<(String, SessionTime)>,
-    /// How senders of gaze at other computers pair, if they do.
+    /// Address and pairing code for gaze senders at other computers, if they may connect.
     pub gaze_pairing: Option<GazePairing>,
     /// State of the participant's display, if there is one.
     pub display: Option<DisplayHealth>,
     /// Times of the human's errors, in order.
     pub errors: Vec<SessionTime>,
-    /// How the signals of this trial were judged when they were sent.
+    /// Judgement of the trial's signals at the times when they were sent (hit, late or needless).
     pub signals: SignalJudge,
-    /// History of the belief estimate.
+    /// History of the estimate of the participant's beliefs.
     pub belief: BeliefHistory,
-    /// Aspect whose belief is shown over time.
+    /// State aspect whose estimated belief is shown over time.
     pub belief_focus: Option<AspectId>,
     /// Comparison of wizard and assistants, if it is shown.
     pub comparison: Option<ComparisonView>,
     /// Training panel, in a wizard training.
     pub lesson: Option<TrainingPanel>,
-    /// Rater session, while the errors of a recording are coded.
+    /// The rater's codes, while the errors of a recording are coded.
     pub coding: Option<RaterSession>,
-    /// Playback position, in a replay.
+    /// Playback position and speed, in a replay.
     pub playback: Option<Playback>,
-    /// The answer to the question of a probe that is being entered here.
+    /// Answer to the current probe question that is being entered at this console.
     pub probe_entry: ProbeEntry,
-    /// Index of the chosen reason for waiving the criterion of the practice, until enter confirms it.
+    /// Index of the selected reason for waiving the practice criterion, until enter confirms it.
     pub waiver: Option<usize>,
-    /// What the wizard has chosen to do with the result of a gaze check, until enter confirms it.
+    /// What the wizard has selected to do with the result of a gaze accuracy check, until enter confirms it.
     pub gaze_choice: Option<CalibrationAdvice>,
-    /// Time at which enter took a row of a list, on [`ConsoleModel::clock`].
+    /// Time at which enter last chose a row of a list, on [`ConsoleModel::clock`].
     pub(super) answered: Option<SessionTime>,
-    /// The key of the last click, and its time on [`ConsoleModel::clock`].
+    /// Key that the last mouse click stood for, with the click's time on [`ConsoleModel::clock`].
     pub(super) clicked: Option<(KeyChord, SessionTime)>,
-    /// Whether the terminal distinguishes key repeat from key press.
+    /// Whether the terminal reports key repeats as such, separate from presses.
     pub(super) exact_keys: bool,
-    /// The last pressed key, to detect key repeat.
+    /// Key that was pressed last, by which key repeat is detected.
     pub(super) pressed: Option<PressedKey>,
 }
 
 impl ConsoleModel {
-    /// A console before its first frame.
+    /// State of a console before its first frame.
     pub fn new(keys: KeyBindings, theme: Theme, size: (u16, u16)) -> ConsoleModel {
         ConsoleModel {
             now: SessionTime::ZERO,
@@ -250,26 +251,26 @@ impl ConsoleModel {
         }
     }
 
-    /// Shows a notice.
+    /// Shows a notice to the wizard.
     pub fn say(&mut self, level: NoticeLevel, text: impl Into<String>) {
         self.notice = Some(Notice { text: text.into(), level, at: self.clock });
     }
 
-    /// Shows a warning about something that came from outside, unless an alarm is shown.
+    /// Shows a warning about an outside cause, unless an alarm is shown.
     pub fn warn(&mut self, text: impl Into<String>) {
         if !self.is_alarmed() {
             self.say(NoticeLevel::Refused, text);
         }
     }
 
-    /// Removes the last notice, unless it is an alarm: it was about the last key, and another key is pressed.
+    /// Removes the latest notice when another key is pressed, unless the notice is an alarm.
     pub(super) fn forget_notice(&mut self) {
         if !self.is_alarmed() {
             self.notice = None;
         }
     }
 
-    /// The last notice, while it is shown.
+    /// The latest notice, for the few seconds that it is shown.
     pub fn shown_notice(&self) -> Option<&Notice> {
         self.notice.as_ref().filter(|notice| self.clock.secs_since(notice.at) < NOTICE_S)
     }
@@ -278,20 +279,20 @@ impl ConsoleModel {
         self.shown_notice().is_some_and(|notice| notice.level == NoticeLevel::Alarm)
     }
 
-    /// Counts rejected senders of gaze. The first one, and every doubling of their number, gives a notice: whoever sends can
-    /// neither flood the notices nor replace an alarm.
+    /// Counts rejected gaze senders. A notice is given for the first one and for every doubling of their number, so
+    /// that a flood of senders can neither fill the notices nor replace an alarm.
     pub fn count_rejected(&mut self, more: u64) {
         let before = self.rejected_senders;
         self.rejected_senders += more;
         let has_doubled = self.rejected_senders.checked_ilog2() > before.checked_ilog2();
         if has_doubled {
             let told = count(self.rejected_senders, "sender", "senders");
-            self.warn(format!("gaze: {told} rejected and not read: no JSON object, or not the tracker's address"));
+            self.warn(format!("gaze: {told} rejected: no JSON object, or not the eye tracker's address"));
         }
     }
 
-    /// Counts senders of gaze that nobody let in, the last one at this address and for this reason. Each address gives a notice for a
-    /// reason now and then, and no more than a few do.
+    /// Counts gaze senders that were not admitted; `address` and `why` describe the last of them. Repeated notices
+    /// about the same address and reason are rate limited, and so is the number of addresses that give notices.
     pub fn refuse_sender(&mut self, address: &str, why: &str, senders: u64) {
         self.rejected_senders += senders;
         let told = format!("gaze from {address} is rejected: {why}");
@@ -305,7 +306,7 @@ impl ConsoleModel {
         self.warn(told);
     }
 
-    /// Adds a gaze sample to the trail of the gaze map.
+    /// Adds a gaze sample to the trail that the gaze map draws.
     pub fn see(&mut self, at: SessionTime, sample: GazeSample) {
         if self.trail.len() == TRAIL {
             self.trail.pop_front();
@@ -313,7 +314,8 @@ impl ConsoleModel {
         self.trail.push_back((at, sample));
     }
 
-    /// Shows the next aspect in this order over time, at full size; after the last one, all panels.
+    /// Shows the estimated belief about the next state aspect of this list over time, at full size; after the last
+    /// aspect, shows all panels.
     pub fn focus_next_belief(&mut self, ranked: &[AspectId]) {
         let at = self.belief_focus.and_then(|focus| ranked.iter().position(|&aspect| aspect == focus));
         let next = match (self.belief_focus, at) {
@@ -323,13 +325,13 @@ impl ConsoleModel {
         self.focus_belief(next.copied());
     }
 
-    /// Shows this aspect over time, at full size; without one, all panels.
+    /// Shows the estimated belief about this state aspect over time, at full size; `None` shows all panels.
     pub fn focus_belief(&mut self, aspect: Option<AspectId>) {
         self.belief_focus = aspect;
         self.alone = aspect.map(|_| Panel::Belief);
     }
 
-    /// Whether a timeline entry is an error of the human.
+    /// Whether a timeline entry is a press that was an error of the human.
     pub fn is_error(&self, entry: &TimelineEntry) -> bool {
         matches!(entry.what, TimelineEvent::Press { agent: Agent::Human, .. })
             && self.errors.binary_search(&entry.time).is_ok()

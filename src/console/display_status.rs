@@ -1,37 +1,37 @@
-//! The participant's display, as far as the wizard has to know: where it is, whether somebody is there, how quick it is.
+//! State of the participant's display as the wizard needs it: its address, whether a page is connected, and its delays.
 
 use crate::session::Session;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::settings::ParticipantKind;
 
-/// The participant's display.
+/// State of the participant's display: the web page on the wall screen and its connection.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DisplayHealth {
-    /// "http://127.0.0.1:50022".
+    /// Address of the display's web page: "http://127.0.0.1:50022".
     pub url: String,
-    /// What the page asks for, if the network reaches it.
+    /// Pairing code that the web page asks for; `None` if the page can only be opened at this computer.
     pub code: Option<String>,
-    /// The page that takes part: its size in pixels.
+    /// Size in pixels of the page that the participant uses; `None` if no such page is connected.
     pub page: Option<[u32; 2]>,
-    /// There and back, in milliseconds.
+    /// Round-trip time between the program and the page, in milliseconds.
     pub round_trip_ms: Option<f64>,
-    /// From the last press to its effect on the screen, in milliseconds.
+    /// Delay from the participant's last press to its effect on the screen, in milliseconds.
     pub redraw_ms: Option<f64>,
-    /// Pages that only watch.
+    /// Number of connected participant pages that only watch.
     pub watching: u64,
-    /// Messages that could not be read.
+    /// Number of messages from pages that could not be read.
     pub malformed: u64,
-    /// Connections that were not let in.
+    /// Number of rejected connections to the participant's display.
     pub refused: u64,
 }
 
-/// Smaller screens are hard to read from where the participant stands, in pixels.
+/// Least size of the participant's page in pixels; a smaller screen is hard to read from where the participant stands.
 const SMALL_PX: [u32; 2] = [1280, 720];
-/// A page that needs longer there and back delays presses, in milliseconds.
+/// Round-trip time above which presses at the page are noticeably delayed, in milliseconds.
 const SLOW_MS: f64 = 30.0;
 
 impl DisplayHealth {
-    /// For the line of what is alive; true: it is as it should be.
+    /// State of the participant's display for the console's head line; `true` if all is well.
     pub fn line(&self) -> (String, bool) {
         match (self.page, self.redraw_ms.or(self.round_trip_ms)) {
             (None, _) => ("NO DISPLAY".to_string(), false),
@@ -44,13 +44,13 @@ impl DisplayHealth {
         format!("open {} in a browser, full screen", self.url)
     }
 
-    /// What is to be opened, with its pairing code, as long as no page takes part.
+    /// Address to open for the participant, with the pairing code, while no participant page is connected.
     pub fn to_open(&self) -> Option<String> {
         let code = self.code.as_ref().map_or(String::new(), |code| format!("; pairing code {code}"));
         self.page.is_none().then(|| self.address() + &code)
     }
 
-    /// What is looked at before a trial.
+    /// Preflight check of the participant's display.
     pub fn check(&self) -> PreflightCheck {
         let Some([width, height]) = self.page else {
             let code = self.code.as_ref().map_or(String::new(), |code| format!(", pairing code {code}"));
@@ -58,11 +58,11 @@ impl DisplayHealth {
             return PreflightCheck::new(
                 "display",
                 PreflightVerdict::Failed,
-                format!("no page is connected{code}"),
+                format!("participant's page not connected{code}"),
                 open,
             );
         };
-        let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms there and back"));
+        let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms round trip"));
         let others = match self.watching {
             0 => String::new(),
             watching => format!(", {watching} more watching"),
@@ -76,14 +76,14 @@ impl DisplayHealth {
         let is_slow = self.round_trip_ms.is_some_and(|ms| ms > SLOW_MS);
         let (verdict, remedy) = match (is_small, is_slow) {
             (true, _) => (PreflightVerdict::Warning, "full screen (F11) on a display of at least 1280x720"),
-            (false, true) => (PreflightVerdict::Warning, "a page on this computer, or a wire instead of radio"),
+            (false, true) => (PreflightVerdict::Warning, "a page on this computer, or a cable instead of Wi-Fi"),
             (false, false) => (PreflightVerdict::Ok, ""),
         };
         PreflightCheck::new("display", verdict, found, remedy)
     }
 }
 
-/// Whether the participant is at the display.
+/// Whether the session's participant uses the display.
 pub fn is_wanted(session: &Session) -> bool {
     session.spec.participant.kind == ParticipantKind::Display
 }

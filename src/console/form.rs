@@ -1,5 +1,6 @@
-//! Forms around a trial: steps to tick, questionnaire items, and an unmet criterion. Only enter confirms; arrows go between items,
-//! digits answer or choose, and the advance key leaves a form that is complete. What is confirmed or answered is an event.
+//! Sheets around a trial (forms at full size): steps to tick, questionnaire items, and an unmet practice criterion.
+//! Enter confirms; arrows go between items, digits answer or choose, and the advance key leaves a completed sheet. What
+//! is confirmed or answered is recorded as an event.
 
 use crossterm::event::KeyCode;
 
@@ -17,32 +18,32 @@ use crate::session::protocol::{Protocol, ProtocolEvent};
 use crate::session::tutorial::{TutorialEvent, TutorialReader};
 use crate::session::{Event, Phase, Session};
 
-/// Preset reasons for waiving the criterion of the practice.
+/// Preset reasons for waiving the practice criterion.
 pub const WAIVERS: [&str; 4] =
-    ["knows the task all the same", "no time for more practice", "trouble with a device", "other, see the notes"];
+    ["knows the task anyway", "no time for more practice", "technical problem", "other, see the notes"];
 
-/// Content of the form sheet.
+/// Content of a sheet, a form of the console at full size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SheetContent<'a> {
-    /// A freeze probe: the trial stands still.
+    /// Questions of a freeze probe, while the trial stands still.
     Probe(&'a OpenProbe),
-    /// Steps to tick in order.
+    /// Steps of a phase of the study plan, to be ticked in order.
     Steps {
-        /// The heading of the sheet.
+        /// Heading of the sheet with steps.
         title: &'static str,
-        /// What is to be done, in this order.
+        /// Steps that the wizard has to do, in this order.
         steps: &'a [String],
     },
-    /// The tutorial, through which the participant goes on the display.
+    /// Tutorial, which the participant reads on the display.
     Tutorial(&'a Tutorial),
-    /// The items of a questionnaire.
+    /// Items of a questionnaire for the participant.
     Questions(&'a Questionnaire),
-    /// The criterion was not met: repeat the practice, or waive it.
+    /// Choice after an unmet practice criterion: repeat the practice, or waive the criterion.
     Failed,
 }
 
 impl SheetContent<'_> {
-    /// Name in the log, as part of the wizard's visible screen.
+    /// Name of the sheet in the log, as part of the wizard's visible screen.
     pub fn name(&self) -> &'static str {
         match self {
             SheetContent::Probe(_) => "probe",
@@ -54,7 +55,7 @@ impl SheetContent<'_> {
     }
 }
 
-/// The sheet of the running phase, if it has one.
+/// The sheet of the session's present phase, if that phase has one.
 pub fn sheet(session: &Session) -> Option<SheetContent<'_>> {
     if let Some(open) = session.probes.open.as_ref().filter(|_| session.phase == Phase::Paused) {
         return Some(SheetContent::Probe(open));
@@ -75,7 +76,7 @@ pub fn sheet(session: &Session) -> Option<SheetContent<'_>> {
     }
 }
 
-/// The meaning of a key on a sheet, if any; `advances` marks the key that starts and pauses trials.
+/// The meaning of a key on the open sheet, if any; `advances` says that it is the key that starts and pauses trials.
 pub(super) fn stroke(session: &Session, code: KeyCode, advances: bool) -> Option<SheetKey> {
     let shown = session.protocol.as_ref().and_then(|protocol| session.questionnaire()?.form(protocol.item));
     match code {
@@ -95,7 +96,7 @@ pub(super) fn stroke(session: &Session, code: KeyCode, advances: bool) -> Option
     }
 }
 
-/// Carries out a key of the sheet.
+/// Carries out a key of the open sheet (a form at full size).
 pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKey) -> Option<ConsoleCommand> {
     let sheet = sheet(session)?;
     if let SheetContent::Probe(open) = sheet {
@@ -115,10 +116,10 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
             let last = protocol.ticks.iter().rposition(|done| *done)?;
             tell(model, session, ProtocolEvent::Ticked { step: last + 1, done: false })
         }
-        (SheetContent::Steps { .. }, _) => refuse(model, "enter ticks the step, backspace takes the last tick back"),
+        (SheetContent::Steps { .. }, _) => refuse(model, "enter ticks the step, backspace unticks the last one"),
         (SheetContent::Questions(_), _) if protocol.confirmed => match stroke {
             SheetKey::Confirm => leave(model, session),
-            _ => refuse(model, "the answers are confirmed"),
+            _ => refuse(model, "the answers are already confirmed"),
         },
         (SheetContent::Questions(questionnaire), stroke) => ask(model, session, questionnaire, protocol, stroke),
         (SheetContent::Failed, SheetKey::Confirm) => match model.waiver.take().and_then(|index| WAIVERS.get(index)) {
@@ -137,7 +138,7 @@ pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKe
     }
 }
 
-/// The wizard turns the participant's page, or ends the tutorial.
+/// Carries out a sheet key during the tutorial: the wizard turns the participant's page, or ends the tutorial.
 fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke: SheetKey) -> Option<ConsoleCommand> {
     let by = TutorialReader::Wizard;
     let Some((_, state)) = session.tutorial_step() else { return leave(model, session) };
@@ -149,7 +150,7 @@ fn read(model: &mut ConsoleModel, session: &Session, tutorial: &Tutorial, stroke
         },
         SheetKey::Digit(0) => return tell(model, session, ProtocolEvent::Tutorial(TutorialEvent::Ended { by })),
         SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip => {
-            return refuse(model, "arrows turn the participant's page, 0 skips the rest");
+            return refuse(model, "arrows turn the participant's page, 0 ends the tutorial");
         }
         SheetKey::Leave => return leave(model, session),
     };
@@ -183,7 +184,9 @@ fn ask(
                 None => refuse(model, "the item has no such option"),
             }
         }
-        (SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip, _) => refuse(model, "go back to the item first"),
+        (SheetKey::Digit(_) | SheetKey::Letter(_) | SheetKey::Skip, _) => {
+            refuse(model, "to change an answer, go back to its item first")
+        }
         (SheetKey::Back | SheetKey::Undo, _) => {
             let item = id(protocol.item.checked_sub(1)?)?;
             tell(model, session, ProtocolEvent::ItemShown { item })
@@ -201,12 +204,13 @@ fn ask(
     }
 }
 
-/// Whether the answer is typed on a line of its own.
+/// Whether a questionnaire item is answered by typing text or a number, instead of by one digit key.
 fn is_typed(form: &ItemForm) -> bool {
     matches!(form, ItemForm::Number { .. } | ItemForm::Text { .. } | ItemForm::Slider { .. })
 }
 
-/// Opens the line of the answer with its first letter. Words that were answered before stand in it, to be corrected.
+/// Opens the text input for an answer with its first letter. A text that was answered before is kept in it to be
+/// corrected.
 fn begin_typing(model: &mut ConsoleModel, protocol: &Protocol, letter: char) -> Option<ConsoleCommand> {
     let mut line = match protocol.given(protocol.item) {
         Some(AnswerValue::Text(words)) => TextInput::with_text(words),
@@ -217,7 +221,7 @@ fn begin_typing(model: &mut ConsoleModel, protocol: &Protocol, letter: char) -> 
     None
 }
 
-/// A key on the line of an answer. What is no answer to the item stays, with the reason.
+/// Handles a key in the text input of an answer. An invalid answer stays in the input, and a notice gives the reason.
 pub(super) fn type_answer(
     model: &mut ConsoleModel,
     session: &Session,
@@ -234,7 +238,7 @@ pub(super) fn type_answer(
             let answer = match (&form, text.parse()) {
                 (ItemForm::Text { .. }, _) => Ok(AnswerValue::Text(text)),
                 (_, Ok(number)) => Ok(AnswerValue::Number(number)),
-                (_, Err(_)) => Err("a whole number is asked for"),
+                (_, Err(_)) => Err("enter a whole number"),
             };
             match answer.and_then(|answer| form.admit(&answer).map(|()| answer)) {
                 Ok(answer) => return tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
@@ -247,7 +251,7 @@ pub(super) fn type_answer(
     None
 }
 
-/// Goes from a finished phase to the next one, or to the next recording.
+/// Leaves a finished phase for the next phase or for the next recording.
 pub(super) fn leave(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if session.protocol.is_some() && session.aborted.is_some() {
         return Some(ConsoleCommand::Redo);

@@ -1,20 +1,20 @@
-//! What the result of a gaze check advises.
+//! What to do with the result of a gaze accuracy check.
 
 use crate::gaze::calibration::{GazeAccuracy, USABLE_DEG};
 
-/// What enter does with a result: what is best for the gaze.
+/// Action that the console proposes after a gaze accuracy check, which enter carries out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationAdvice {
-    /// Accept the gaze with its measured offset taken away.
+    /// Accept the gaze with its measured offset subtracted from all samples.
     Corrected,
-    /// Accept the gaze as it is.
+    /// Accept the gaze samples without a correction.
     AsItIs,
-    /// Both are too far off, or nothing was found.
+    /// Repeat the check: with and without correction the gaze is too inaccurate, or no accuracy was measured.
     Repeat,
 }
 
 impl CalibrationAdvice {
-    /// Of what was found.
+    /// The proposed action for a measured gaze accuracy; `None` if the check measured none.
     pub fn for_result(found: Option<&GazeAccuracy>) -> CalibrationAdvice {
         match found {
             Some(found) if found.accuracy_deg.min(found.corrected_deg) > USABLE_DEG => CalibrationAdvice::Repeat,

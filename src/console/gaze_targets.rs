@@ -1,5 +1,5 @@
-//! The check of the calibration at the console: a key begins it, the targets are shown on the wall display and in the
-//! kitchen, and the wizard says what comes of the result.
+//! Gaze accuracy check at the console: a key begins it, targets are shown on the wall display and in the kitchen panel,
+//! and the wizard decides what to do with the result.
 
 use crossterm::event::KeyCode;
 
@@ -12,14 +12,14 @@ use crate::gaze::calibration::GazeAccuracy;
 use crate::session::accuracy_check::CalibrationEvent;
 use crate::session::{Event, Session};
 
-/// The key that chooses the gaze as it is.
+/// Key that selects accepting the gaze without a correction.
 pub const AS_IT_IS: char = 'u';
-/// The key that chooses it with the offset taken off.
+/// Key that selects accepting the gaze with its measured offset subtracted.
 pub const CORRECTED: char = 'o';
-/// The key that repeats the check.
+/// Key that repeats the gaze accuracy check.
 pub const REPEAT: char = 'r';
 
-/// Begins a check, or begins it again.
+/// Begins a gaze accuracy check, or begins it again.
 pub(super) fn begin(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     model.gaze_choice = None;
     let event = Event::Calibration(CalibrationEvent::begin());
@@ -31,14 +31,14 @@ pub(super) fn begin(model: &mut ConsoleModel, session: &Session) -> Option<Conso
     begun
 }
 
-/// What enter does with the result: what the wizard has chosen, or else what is best.
+/// What enter does with the check's result: the wizard's selection, or else the proposed action.
 pub fn chosen(model: &ConsoleModel, found: Option<&GazeAccuracy>) -> CalibrationAdvice {
     let best = CalibrationAdvice::for_result(found);
     found.and(model.gaze_choice).unwrap_or(best)
 }
 
-/// A key while a check goes on, or its result is shown. Letters choose, and only enter takes the gaze; a repetition takes nothing, and
-/// begins at once.
+/// Handles a key during a gaze accuracy check or at its result. Letters select an action and enter accepts the gaze;
+/// the key to repeat needs no enter.
 pub(super) fn answer(
     model: &mut ConsoleModel,
     session: &Session,

@@ -1,4 +1,5 @@
-//! Manual interventions at the console: keys that correct the kitchen and the robot, and the lists that they open.
+//! The experimenter's manual interventions at the console: keys that correct the recorded state of the kitchen and
+//! steer the robot, and the lists that they open.
 
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
@@ -14,27 +15,31 @@ use crate::session::probes::ProbeEvent;
 use crate::session::{Event, Phase, Session};
 use crossterm::event::KeyCode;
 
-/// Carries out an intervention, or opens its list.
+/// Carries out a manual intervention of the experimenter, or opens the list that it needs.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualAction) -> Option<ConsoleCommand> {
     let by = Sender::Wizard;
     match hand {
         ManualAction::Correct if !matches!(session.phase, Phase::Running | Phase::Paused) => {
-            refuse(model, "the kitchen is corrected during a trial")
+            refuse(model, "the kitchen can be corrected only during a trial")
         }
         ManualAction::Correct => ask(model, PickerQuestion::Place),
         ManualAction::HoldRobot if session.robot.held => {
             let words = match session.robot.stopped {
-                true => "the robot is released, and still stopped",
-                false => "the robot goes on by itself",
+                true => "the robot is released but still stopped",
+                false => "the robot is released and continues",
             };
             send(model, session, Event::RobotReleased { by }, NoticeLevel::Done, words)
         }
         ManualAction::HoldRobot => {
             send(model, session, Event::RobotHeld { by }, NoticeLevel::Done, "the robot is held")
         }
-        ManualAction::SkipPress => send(model, session, Event::RobotSkipped { by }, NoticeLevel::Done, "skipped"),
-        ManualAction::DriveRobot if !session.is_running() => refuse(model, "the robot is driven while the trial runs"),
-        ManualAction::DriveRobot if session.robot.stopped => refuse(model, "the robot is stopped: let it go on first"),
+        ManualAction::SkipPress => {
+            send(model, session, Event::RobotSkipped { by }, NoticeLevel::Done, "the robot's press is skipped")
+        }
+        ManualAction::DriveRobot if !session.is_running() => {
+            refuse(model, "the robot's press can be chosen only while the trial runs")
+        }
+        ManualAction::DriveRobot if session.robot.stopped => refuse(model, "the robot is stopped: resume it first"),
         ManualAction::DriveRobot => ask(model, PickerQuestion::Button),
         ManualAction::Abort if !matches!(session.phase, Phase::Running | Phase::Paused) => {
             refuse(model, "there is no trial to abort")
@@ -46,7 +51,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
             None
         }
         ManualAction::NoteInWords if session.phase != Phase::Paused => {
-            refuse(model, "notes in words only when paused: the space bar has to stop the robot")
+            refuse(model, "notes can be typed only in a pause, since the space bar stops the robot")
         }
         ManualAction::NoteInWords => {
             model.dialog = Some(Dialog::Note(TextInput::default()));
@@ -62,36 +67,37 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
         }
         ManualAction::Exclude => ask(model, PickerQuestion::Exclude),
         ManualAction::AskProbe => {
-            let words = "a probe is asked for";
+            let words = "a freeze probe is requested";
             send(model, session, Event::Probe(ProbeEvent::Requested), NoticeLevel::Done, words)
         }
         ManualAction::SkipProbe => match skippable(session) {
             Some(probe) => ask(model, PickerQuestion::SkipProbe(probe)),
-            None => refuse(model, "no probe is open"),
+            None => refuse(model, "no freeze probe is open"),
         },
     }
 }
 
-/// Number of the probe whose questions can be skipped.
+/// Number of the freeze probe whose remaining questions can be skipped now.
 pub(super) fn skippable(session: &Session) -> Option<u32> {
     let open = session.probes.open.as_ref()?;
     (open.closed.is_none() && session.phase == Phase::Paused).then_some(open.number)
 }
 
-/// Closes the list of reasons of a probe that is over: the next probe is not skipped for them.
+/// Closes the list of reasons for skipping a freeze probe once that probe is over, so that the reason does not skip the
+/// next probe.
 pub fn expire(model: &mut ConsoleModel, session: &Session) {
     if let Some(Dialog::Pick(Picker { question: PickerQuestion::SkipProbe(probe), .. })) = model.dialog
         && skippable(session) != Some(probe)
     {
         model.dialog = None;
-        model.say(NoticeLevel::Refused, format!("probe {probe} was over before it was skipped"));
+        model.say(NoticeLevel::Refused, format!("probe {probe} ended before it was skipped"));
     }
 }
 
 fn redo(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     match session.phase {
         Phase::Over(_) if session.aborted.is_some() || session.excluded.is_some() => Some(ConsoleCommand::Redo),
-        Phase::Over(_) => refuse(model, "only a trial that was aborted or excluded is done again"),
+        Phase::Over(_) => refuse(model, "only an aborted or excluded trial can be repeated"),
         _ => refuse(model, "abort the trial first"),
     }
 }
@@ -106,7 +112,7 @@ fn ask(model: &mut ConsoleModel, question: PickerQuestion) -> Option<ConsoleComm
     None
 }
 
-/// A key on the line for a note.
+/// Handles a key in the text input for the wizard's note.
 pub(super) fn write(
     model: &mut ConsoleModel,
     session: &Session,
@@ -119,7 +125,7 @@ pub(super) fn write(
         KeyCode::Enter if line.text().is_empty() => None,
         KeyCode::Enter => {
             let note = line.text();
-            send(model, session, Event::Marker { note }, NoticeLevel::Done, "the note is kept")
+            send(model, session, Event::Marker { note }, NoticeLevel::Done, "the note is saved")
         }
         _ => {
             line.key(code);
@@ -129,7 +135,7 @@ pub(super) fn write(
     }
 }
 
-/// A key in an open list.
+/// Handles a key in an open list of answers to a question.
 pub(super) fn pick(
     model: &mut ConsoleModel,
     session: &Session,
@@ -142,7 +148,7 @@ pub(super) fn pick(
             return None;
         }
         PickerOutcome::Left => {
-            // From the second question back to the first.
+            // Esc in the list of contents goes back to the list of places.
             let back =
                 matches!(picker.question, PickerQuestion::Content(_)).then(|| Picker::new(PickerQuestion::Place));
             model.dialog = back.map(Dialog::Pick);
@@ -162,7 +168,7 @@ pub(super) fn pick(
             send(model, session, event, NoticeLevel::Done, &words)
         }
         (_, PickerAnswer::Button(button)) => {
-            let words = format!("the robot sets out for {}", wording::button(kitchen, Agent::Robot, button));
+            let words = format!("the robot's next press: {}", wording::button(kitchen, Agent::Robot, button));
             let button = kitchen.button(Agent::Robot, button).name.clone();
             send(model, session, Event::RobotDriven { by: Sender::Wizard, button }, NoticeLevel::Done, &words)
         }

@@ -1,30 +1,30 @@
-//! Tells a pressed key from a held one, also where the terminal reports neither repeats nor releases.
+//! Detection of held keys, also in terminals that report neither key repeats nor key releases.
 
 use crossterm::event::{KeyEvent, KeyEventKind};
 
 use super::console_model::{ConsoleModel, PressedKey};
 use super::key_action::{KeyAction, ManualAction};
 
-/// A key that the terminal reports again within this time is held down, not pressed again: terminals repeat a held key
-/// about every 0.03 s, and no finger is that fast. Only where the terminal does not report repeats as such.
+/// Largest time between two reports of one key, in seconds, for the key to count as held down: terminals repeat a held
+/// key about every 0.03 s, and no finger is that fast. Used only where the terminal does not report repeats as such.
 const REPEAT_S: f64 = 0.15;
-/// A question is not answered by its own key within this time: longer than the usual delay before key repeat sets in
-/// (0.25 to 0.7 s), when a key that stays down can not be told from a second press.
+/// Time in seconds for which a question ignores the key that opened it: longer than the usual delay before key repeat
+/// sets in (0.25 to 0.7 s), during which a held key cannot be told from a second press.
 pub(super) const ANSWER_S: f64 = 0.7;
 
-/// What a report of the terminal says of a key.
+/// Meaning of a terminal's key report: newly pressed, pressed again or held, held, or released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Touch {
-    /// It went down just now.
+    /// The key was newly pressed, according to the terminal's report.
     Press,
-    /// It was pressed a second time, or is held down since the first and begins to repeat.
+    /// The key was pressed a second time, or has been held since the first press and begins to repeat.
     Again,
-    /// It is held down.
+    /// The key is held down, according to the terminal's report.
     Held,
     Release,
 }
 
-/// What this report says of its key; remembers the key.
+/// Classifies a key report of the terminal, and remembers the key for the next report.
 pub(super) fn touch(model: &mut ConsoleModel, key: &KeyEvent) -> Touch {
     match key.kind {
         KeyEventKind::Press if model.exact_keys => return Touch::Press,
@@ -34,8 +34,8 @@ pub(super) fn touch(model: &mut ConsoleModel, key: &KeyEvent) -> Touch {
             return if kind == KeyEventKind::Release { Touch::Release } else { Touch::Held };
         }
     }
-    // Only the key that went down last repeats. The wait runs from the press that counted, so that trying again is no way
-    // to wait for ever.
+    // Only the key that was pressed last repeats. The waiting time runs from the press that counted, so that repeated
+    // attempts do not prolong it.
     let now = model.clock;
     let last = model.pressed.filter(|last| last.code == key.code);
     let touch = match last.map(|last| (now.secs_since(last.reported), now.secs_since(last.counted))) {
@@ -48,8 +48,8 @@ pub(super) fn touch(model: &mut ConsoleModel, key: &KeyEvent) -> Touch {
     touch
 }
 
-/// Whether a second press within the delay of key repeat counts where the terminal does not tell it from a held key. What
-/// does the opposite the second time does not, nor does what is written down each time.
+/// Whether a second press shortly after the first counts although the terminal cannot tell it from a held key. It does
+/// not count for actions that toggle, nor for actions that are recorded each time.
 pub(super) fn may_follow_at_once(action: &KeyAction) -> bool {
     let once = [ManualAction::HoldRobot, ManualAction::SkipPress].map(KeyAction::Hand);
     !matches!(action, KeyAction::Advance | KeyAction::SwitchLayer | KeyAction::Note(_)) && !once.contains(action)

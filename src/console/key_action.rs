@@ -1,4 +1,4 @@
-//! Actions of keys, and the entries of the key table.
+//! Actions of keys, and the entries of the console's key table.
 
 use std::fmt;
 use std::ops::Range;
@@ -10,27 +10,27 @@ use crate::communication::Signal;
 use crate::kitchen::{ButtonId, LocationId};
 use crate::measures::cause_codes::CauseKind;
 
-/// Key layer: the wizard's keys, or the buttons of a person who plays the participant at this keyboard.
+/// Whose keys are active: the wizard's, or the buttons of a person who plays the participant at this keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyLayer {
-    /// Keys send signals.
+    /// The wizard's keys: letters send signals.
     Wizard,
-    /// Keys press the human's buttons.
+    /// The participant's keys: letters press the human's buttons in the kitchen.
     Participant,
 }
 
-/// Action of a key.
+/// Action of a key at the console.
 #[derive(Clone, Debug, PartialEq)]
 pub enum KeyAction {
-    /// Send this signal about this location.
+    /// Send this signal about this location to the participant.
     Signal(LocationId, Signal),
-    /// Press this button of the human.
+    /// Press this button of the human in the kitchen.
     Press(ButtonId),
-    /// Send the recommended signal.
+    /// Accept the open offer: send the recommended signal.
     Accept,
-    /// Take the shown signal back.
+    /// End the signal that the participant sees.
     TakeBack,
-    /// Set a marker with this preset note.
+    /// Record a marker with this preset note.
     Note(usize),
     /// Start, pause or resume the trial.
     Advance,
@@ -38,36 +38,36 @@ pub enum KeyAction {
     EndTrial,
     /// Stop the robot at once.
     StopRobot,
-    /// Let a stopped robot go on.
+    /// Release the robot after a stop.
     ResumeRobot,
     /// Change between the wizard's keys and the participant's buttons.
     SwitchLayer,
-    /// Correct the kitchen, steer the robot, or abort the trial.
+    /// Manual intervention: correct the kitchen, steer the robot, or abort the trial.
     Hand(ManualAction),
-    /// Move a replay.
+    /// Move a replay to another position or change its speed.
     Move(ReplayKey),
-    /// Change what the screen shows.
+    /// Change which panels or which time the screen shows.
     Look(PanelKey),
-    /// Show the belief about one aspect over time; again for the next aspect.
+    /// Show the estimated belief about one state aspect over time; pressed again, the next aspect.
     Belief,
-    /// A key of the comparison of wizard and assistant.
+    /// Select or open a difference in the comparison of wizard and assistant.
     Differ(ComparisonKey),
-    /// A key of the rater, to code an error.
+    /// Action of a rater who codes errors.
     Rate(RaterKey),
-    /// Open or close the help.
+    /// Open or close the help of the console.
     Help,
-    /// Open the list of all actions.
+    /// Open the list of all actions (the palette).
     Palette,
     /// Ask whether to end the session and leave.
     Quit,
 }
 
-/// A manual intervention of the experimenter.
+/// A manual intervention of the experimenter during or around a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ManualAction {
-    /// Correct the content of a location.
+    /// Correct the recorded content of a location.
     Correct,
-    /// Hold the robot before its next press, or release it.
+    /// Keep the robot from starting its next press, or release it.
     HoldRobot,
     /// Skip the robot's ongoing press.
     SkipPress,
@@ -75,78 +75,78 @@ pub enum ManualAction {
     DriveRobot,
     /// Abort the trial, for a reason.
     Abort,
-    /// Do a trial again that was aborted or excluded.
+    /// Repeat a trial that was aborted or excluded.
     Redo,
     /// Show the preflight checks.
     Preflight,
     /// Start a gaze accuracy check.
     Calibrate,
-    /// Write a free text note.
+    /// Write a note in free text.
     NoteInWords,
-    /// Exclude the trial from the analysis for a reason, or take that back.
+    /// Exclude the trial from the analysis for a reason, or include it again.
     Exclude,
-    /// Ask for a freeze probe.
+    /// Request a freeze probe of the participant.
     AskProbe,
-    /// Skip the rest of a freeze probe, for a reason.
+    /// Skip the remaining questions of a freeze probe, for a reason.
     SkipProbe,
 }
 
-/// A navigation key of the screen.
+/// Key that changes which panels or which time the screen shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PanelKey {
     /// Show the next panel at full size; after the last one, all panels.
     Next,
-    /// Show the panel before it alone.
+    /// Show the previous panel at full size.
     Last,
-    /// Show all panels.
+    /// Show all panels of the console.
     All,
-    /// Scroll back in time.
+    /// Scroll the shown panel back in time.
     Back,
-    /// Scroll forward in time.
+    /// Scroll the shown panel forward in time.
     Forward,
-    /// Show an earlier part of the timeline.
+    /// Scroll the timeline to an earlier time.
     Earlier,
-    /// Show a later part of the timeline.
+    /// Scroll the timeline to a later time.
     Later,
 }
 
-/// A key of the rater.
+/// Action of a rater who codes the causes of errors in a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RaterKey {
-    /// Go to the next error.
+    /// Go to the next error in the recording.
     Next,
-    /// Go to the error before.
+    /// Go to the previous error in the recording.
     Last,
-    /// Code a false belief about this location, or about the order and the recipe of its dish.
+    /// Code the error as a false belief about this location; for an order, about the recipe of its dish, too.
     Belief(LocationId),
-    /// Code another cause.
+    /// Code the error with another cause, such as a slip.
     Cause(CauseKind),
-    /// Remove the code of the error.
+    /// Remove the code of the present error.
     Clear,
-    /// Take the last code back.
+    /// Undo the last change of an error's code.
     Undo,
-    /// Do what was undone again.
+    /// Redo the change of a code that was undone last.
     Redo,
-    /// Choose the error below in the list.
+    /// Move the selection to the next error of the list.
     ChooseLater,
-    /// Choose the error above in the list.
+    /// Move the selection to the previous error of the list.
     ChooseEarlier,
 }
 
-/// A table of a key file.
+/// A table of a key file, the TOML file that assigns keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeySection {
-    /// Keys of the live console.
+    /// Keys of the console in a live session.
     Console,
-    /// Keys of the replay console.
+    /// Keys of the console in a replay.
     Replay,
-    /// Keys of signals, by location.
+    /// Keys that send signals, by location.
     Signals,
-    /// Keys of the participant's buttons, by name.
+    /// Keys of the participant's buttons in the kitchen, by button name.
     Buttons,
 }
 
-/// The name of the table.
+/// Writes the name of the table as it stands in key files.
 impl fmt::Display for KeySection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -158,34 +158,34 @@ impl fmt::Display for KeySection {
     }
 }
 
-/// An entry of the key table.
+/// An entry of the key table: an action with its keys and texts.
 #[derive(Clone, Debug)]
 pub struct KeyBinding {
-    /// Table of the key file that contains the entry.
+    /// Table of the key file that contains the action.
     pub section: KeySection,
-    /// Its name in that section.
+    /// Name of the action in that table of the key file.
     pub name: String,
-    /// Its keys; the first one is shown on the screen.
+    /// Keys of the action; the first one is shown on the screen.
     pub chords: Vec<KeyChord>,
-    /// What the keys do.
+    /// Action that these keys carry out.
     pub action: KeyAction,
-    /// Heading in the help.
+    /// Heading under which the help lists the action.
     pub group: &'static str,
-    /// What the help says about it.
+    /// Description of the action in the console's help.
     pub help: String,
-    /// Label in the footer, if it is shown there.
+    /// Label of the action in the console's lowest line, if it is shown there.
     pub footer: Option<&'static str>,
-    /// Key layer of the entry; `None` for all layers.
+    /// Layer in which the keys are active (wizard's or participant's); `None` for both.
     pub layer: Option<KeyLayer>,
 }
 
 impl KeyBinding {
-    /// Whether two entries can be active at the same time and so need different keys.
+    /// Whether two key bindings can be active at the same time and therefore need different keys.
     pub(super) fn meets(&self, other: &KeyBinding) -> bool {
         self.layer.is_none() || other.layer.is_none() || self.layer == other.layer
     }
 
-    /// Its first key, if that is a letter.
+    /// First key of the binding, if that is a letter without ctrl.
     pub(super) fn letter(&self) -> Option<char> {
         match self.chords.first()?.code {
             crossterm::event::KeyCode::Char(letter) => Some(letter),
@@ -194,23 +194,24 @@ impl KeyBinding {
     }
 }
 
-/// Source of an invalid key.
+/// Where an invalid key assignment stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum KeyPlace {
-    /// The key file, at this byte range.
+    /// The invalid key stands in the key file, at this byte range.
     File(Range<usize>),
-    /// The layout, as the key of a signal (wizard) or of a button (participant).
+    /// The invalid key stands in the kitchen's layout file, as the key of a signal (wizard) or of a button
+    /// (participant).
     Layout(KeyLayer, char),
 }
 
-/// An invalid key.
+/// An invalid key assignment, with its source and a remedy.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{found}")]
 pub struct KeyError {
-    /// Where the key is bound: in the key file or in the layout.
+    /// Where the assignment stands: in the key file or in the layout file.
     pub place: KeyPlace,
-    /// What is wrong.
+    /// What is wrong with the key assignment.
     pub found: String,
-    /// What would be right.
+    /// What a valid key assignment would be.
     pub remedy: String,
 }

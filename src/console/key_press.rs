@@ -1,4 +1,5 @@
-//! A pressed key: who takes it (dialog, sheet or console), and whether it counts.
+//! Handling of a pressed key: which part of the console takes it (dialog, sheet or main view), and whether it counts as
+//! a press.
 
 use crossterm::event::{KeyCode, KeyEvent};
 
@@ -26,7 +27,7 @@ use super::view::dialog::{help_pages, report_rest};
 use crate::session::event::EndReason;
 use crate::session::{Event, Phase, Session};
 
-/// Takes a report of the terminal about a key.
+/// Handles a terminal's report about a key.
 pub(super) fn key(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -> Option<ConsoleCommand> {
     match touch(model, key) {
         Touch::Release => None,
@@ -39,7 +40,8 @@ pub(super) fn key(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -
     }
 }
 
-/// Takes a key that is pressed or held, or a click that does the same. `code` is the key as it was typed, with capitals.
+/// Handles a key that is pressed or held, or a mouse click that stands for a key. `code` is the key as it was typed,
+/// with capitals.
 pub(super) fn press(
     model: &mut ConsoleModel,
     session: &Session,
@@ -52,11 +54,11 @@ pub(super) fn press(
         if matches!(chord.code, KeyCode::Enter | KeyCode::Esc) {
             return click_question::answer(model, session, chord.code, touch == Touch::Press);
         }
-        // Every other key means itself.
+        // Every key other than enter and esc closes the question and keeps its own meaning.
         model.dialog = None;
     }
     match action {
-        // Only where the trial is paused, and the robot stands, does the space bar type a space.
+        // In text input, where the robot stands, the space bar types a space instead of stopping it.
         _ if let Some(Dialog::Note(line)) = &model.dialog => {
             let line = line.clone();
             let counts = !chord.ctrl && (code != KeyCode::Enter || touch == Touch::Press);
@@ -81,10 +83,10 @@ pub(super) fn press(
         _ if model.dialog == Some(Dialog::Calibration) => {
             gaze_targets::answer(model, session, chord.code, touch == Touch::Press)
         }
-        // Digits of a number follow one another quickly: 11 is no held 1.
+        // Digits of a number follow one another quickly: the number 11 is two presses, not a held key.
         _ if touch == Touch::Held && !probe_keys::takes_digit(model, session, code) => {
             if model.dialog.is_none() {
-                model.say(NoticeLevel::Refused, format!("\"{chord}\" is held down: it counts once"));
+                model.say(NoticeLevel::Refused, format!("\"{chord}\" is held down: it counts as one press"));
             }
             None
         }
@@ -93,7 +95,7 @@ pub(super) fn press(
             on_sheet(model, session, code, action, touch)
         }
         Some(action) if touch == Touch::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
-            model.say(NoticeLevel::Refused, format!("\"{chord}\" may be held down: press again"));
+            model.say(NoticeLevel::Refused, format!("\"{chord}\" may be held down: press it again"));
             None
         }
         action if model.dialog.is_some() => answer(model, session, chord, action, touch),
@@ -105,7 +107,8 @@ pub(super) fn press(
     }
 }
 
-/// Takes a key of an open list: quick typing and held arrows count; the key that opened it, and a held enter, answer nothing.
+/// Handles a key of an open list. Quick typing and held arrow keys count; a held enter key, and keys with ctrl such as
+/// the one that opened the list, do not.
 fn in_list(model: &mut ConsoleModel, session: &Session, chord: KeyChord, touch: Touch) -> Option<ConsoleCommand> {
     if chord.ctrl || (chord.code == KeyCode::Enter && touch != Touch::Press) {
         return None;
@@ -117,7 +120,8 @@ fn in_list(model: &mut ConsoleModel, session: &Session, chord: KeyChord, touch: 
     }
 }
 
-/// Takes a key of the palette. The chosen action is done as by its key; but no list sends a signal, so of those the key is told.
+/// Handles a key of the palette. The chosen action is carried out as if its key were pressed; but signals are never
+/// sent from a list, so for them a notice tells the key.
 fn choose(
     model: &mut ConsoleModel,
     session: &Session,
@@ -133,15 +137,15 @@ fn choose(
     model.answered = Some(model.clock);
     match action {
         KeyAction::Signal(..) | KeyAction::Accept => {
-            model.say(NoticeLevel::Done, format!("press {chord} to {help}: a list sends nothing"));
+            model.say(NoticeLevel::Done, format!("press {chord} to {help}: signals are not sent from a list"));
             None
         }
         _ => press(model, session, chord.code, chord, Touch::Press),
     }
 }
 
-/// Whether the question of quitting takes the place of the dialog: of those that wait for something else. A check of the
-/// gaze is ended first.
+/// Whether the question of quitting may replace the open dialog. A gaze accuracy check or a text input has to be ended
+/// first.
 fn may_leave_for_quit(model: &ConsoleModel) -> bool {
     matches!(
         model.dialog,
@@ -149,7 +153,8 @@ fn may_leave_for_quit(model: &ConsoleModel) -> bool {
     )
 }
 
-/// A key while a sheet lies in front of the console: of the others, those that help and leave still work.
+/// Handles a key while a sheet covers the console: besides the sheet's own keys, only those for help, for leaving, and
+/// for repairs work.
 fn on_sheet(
     model: &mut ConsoleModel,
     session: &Session,
@@ -158,25 +163,23 @@ fn on_sheet(
     touch: Touch,
 ) -> Option<ConsoleCommand> {
     match (form::stroke(session, code, action == Some(KeyAction::Advance)), action) {
-        // Nobody reads a step so fast: the key is still down from the last one. An answer is always taken: one that is lost
-        // would put those after it at the wrong items, one too many is seen.
+        // A confirming key within the key repeat delay probably is still held from the previous step, and is refused.
+        // Answers are always taken: a lost answer would shift the following answers to wrong items unnoticed, but an
+        // additional one is seen.
         (Some(SheetKey::Confirm | SheetKey::Leave), _) if touch == Touch::Again => {
-            model.say(NoticeLevel::Refused, "not yet: read it, then press the key again");
+            model.say(NoticeLevel::Refused, "too soon: read the text, then press the key again");
             None
         }
         (Some(stroke), _) => form::write(model, session, stroke),
         (None, Some(action)) if acts_on_sheet(session, &action) => act(model, session, action),
         (None, _) => {
-            model.say(
-                NoticeLevel::Refused,
-                "this key has no meaning before the trial: the last line of the sheet says what has",
-            );
+            model.say(NoticeLevel::Refused, "this key has no effect here: the last line of the sheet names the keys");
             None
         }
     }
 }
 
-/// The space bar: works in every view, and does nothing twice.
+/// Stops the robot (space bar), in every view; has no effect if the wizard has stopped the robot already.
 fn stop_robot(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     if session.robot.is_stopped_by_wizard() {
         return None;
@@ -215,7 +218,7 @@ fn answer(
         Dialog::EndTrial => action == Some(KeyAction::EndTrial),
         _ => false,
     };
-    // A nervous second press ends no trial.
+    // A second press of the key that opened the question does not confirm the end of a running trial.
     let goes_on = matches!(session.phase, Phase::Running | Phase::Paused);
     if again && (goes_on || touch == Touch::Again) {
         return None;
@@ -229,7 +232,8 @@ fn answer(
     }
 }
 
-/// A report is not closed by a key that was meant for what went before: only by enter, and by the key that quits.
+/// Handles a key in a training report, which only enter and the quit key close, so that a key meant for the training
+/// does not close it.
 fn report(model: &mut ConsoleModel, code: KeyCode, action: Option<KeyAction>) {
     match (code, action) {
         (KeyCode::Enter, _) | (_, Some(KeyAction::Quit)) => model.dialog = None,
@@ -243,7 +247,7 @@ fn report(model: &mut ConsoleModel, code: KeyCode, action: Option<KeyAction>) {
     }
 }
 
-/// A key without a meaning here: says so if it has one in the other layer.
+/// Handles a key without a meaning in the active layer: a notice says whether it has one in the other layer.
 fn unknown(model: &mut ConsoleModel, session: &Session, code: KeyCode) {
     let KeyCode::Char(key) = code else { return };
     let other = if model.layer == KeyLayer::Wizard { KeyLayer::Participant } else { KeyLayer::Wizard };

@@ -1,4 +1,4 @@
-//! The key file: its format, its application to the key table, and its output.
+//! Key files: their format, how a key file changes the key table, and how the key table is written as a key file.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
@@ -12,7 +12,7 @@ use super::chord::KeyChord;
 use super::key_action::ManualAction;
 use super::key_action::{KeyAction, KeyBinding, KeyError, KeyPlace, KeySection};
 
-/// A parsed key file: for each table, action names with their keys. Missing actions keep their keys.
+/// A parsed key file: for each table, action names with their keys. Actions that are not in the file keep their keys.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct KeyMap {
@@ -24,7 +24,7 @@ pub struct KeyMap {
 
 type Table = BTreeMap<Spanned<String>, Spanned<Names>>;
 
-/// The keys of one action: `"q"`, `["q", "ctrl+c"]`, or none: `[]`.
+/// The keys of one action in a key file: `"q"`, `["q", "ctrl+c"]`, or none: `[]`.
 #[derive(Clone, Debug, Default)]
 struct Names(Vec<String>);
 
@@ -68,12 +68,12 @@ impl KeyMap {
         self.table(line.section).iter().find(|(name, _)| *name.get_ref() == line.name)
     }
 
-    /// Byte range of an entry in the file.
+    /// Byte range of a key binding's entry in the key file.
     pub(super) fn place(&self, line: &KeyBinding) -> Option<Range<usize>> {
         self.entry(line).map(|(name, keys)| name.span().start..keys.span().end)
     }
 
-    /// Applies the file to the key tables of the live console and of the replay.
+    /// Applies the key file to the key tables of the live console and of the replay.
     pub(super) fn apply(&self, live: &mut [KeyBinding], replay: &mut [KeyBinding]) -> Result<(), KeyError> {
         for section in [KeySection::Console, KeySection::Replay, KeySection::Signals, KeySection::Buttons] {
             let known = || live.iter().chain(replay.iter()).filter(move |line| line.section == section);
@@ -82,7 +82,7 @@ impl KeyMap {
                     let names: Vec<&str> = known().map(|line| line.name.as_str()).collect();
                     return Err(KeyError {
                         place: KeyPlace::File(name.span()),
-                        found: format!("\"{}\", which nothing in [{section}] is called", name.get_ref()),
+                        found: format!("\"{}\", which is not a name in [{section}]", name.get_ref()),
                         remedy: format!("one of {}", names.join(", ")),
                     });
                 }
@@ -101,8 +101,8 @@ impl KeyMap {
 }
 
 impl KeyMap {
-    /// Takes from the palette and from the keys of probes, unless the file is about them, the keys that the file gives to others: the
-    /// files in recordings may be older than these actions, and the palette finds every action.
+    /// Removes from the palette and from the probe actions, unless the key file assigns them keys, every key that the
+    /// file assigns to another action. Key files in old recordings may not know these newer actions.
     fn spare_keys(&self, lines: &mut [KeyBinding]) {
         let is_given = |line: &&KeyBinding| self.entry(line).is_some();
         let given: Vec<KeyChord> = lines.iter().filter(is_given).flat_map(|line| line.chords.clone()).collect();
@@ -116,7 +116,7 @@ impl KeyMap {
     }
 }
 
-/// The keys that the file assigns to an entry.
+/// The keys that the key file assigns to an action.
 fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, KeyError> {
     let wrong = |found: String, remedy: &str| {
         let place = KeyPlace::File(names.span());
@@ -128,7 +128,7 @@ fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, Ke
             Ok(chord) if chord == KeyChord::SPACE && line.action != KeyAction::StopRobot => {
                 return wrong(
                     "\"space\", which is the robot stop, always".to_string(),
-                    "another key: nothing may stand between the space bar and the robot stop",
+                    "another key: the space bar always stops the robot",
                 );
             }
             Ok(chord) if chords.contains(&chord) => {
@@ -143,12 +143,14 @@ fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, Ke
             format!("{:?}, without the space bar", names.get_ref().0),
             "\"space\", or a list with \"space\" and other keys: the space bar is the robot stop, always",
         ),
-        KeyAction::Quit if chords.is_empty() => wrong("[]".to_string(), "a key: without one nobody gets out"),
+        KeyAction::Quit if chords.is_empty() => {
+            wrong("[]".to_string(), "a key: without one the program cannot be quit")
+        }
         _ => Ok(chords),
     }
 }
 
-/// The whole key table as a key file with a comment for each entry; reading it back gives the same table.
+/// Writes the whole key table as a key file with a comment for each action; reading it back gives the same table.
 pub fn write(lines: &[KeyBinding]) -> String {
     let mut text = String::from(
         "# The keys of tomcom's console, ready to be changed. A session file names this file (relative to itself):\n\
@@ -167,7 +169,7 @@ pub fn write(lines: &[KeyBinding]) -> String {
         let own: Vec<&KeyBinding> = lines.iter().filter(|line| line.section == section).collect();
         let entries: Vec<String> = own.iter().map(|line| entry(line)).collect();
         let widest = entries.iter().map(|entry| entry.chars().count()).max().unwrap_or(0);
-        // Writing to a string cannot fail.
+        // Writing to a string in memory cannot fail.
         let _ = writeln!(text, "\n[{section}]  # {about}");
         for (line, entry) in own.iter().zip(&entries) {
             let _ = writeln!(text, "{entry:widest$}  # {}", line.help);

@@ -1,7 +1,7 @@
-//! The key table, the single source of key bindings, footer, help and key badges.
+//! The key table, from which key handling, hint line, help and the key labels on the screen follow.
 //!
-//! Keys of signals and buttons come from the layout, all other keys from `super::table`; a key file ([`super::keymap`]) can
-//! change both. The space bar always stops the robot, in every view and layer.
+//! Keys of signals and buttons come from the kitchen's layout file, all other keys from `super::table`; a key file
+//! ([`super::keymap`]) can change both. The space bar always stops the robot, in every view and layer.
 
 use super::chord::KeyChord;
 use super::key_action::{KeyAction, KeyBinding, KeyError, KeyLayer, KeyPlace, KeySection, ManualAction, RaterKey};
@@ -12,16 +12,16 @@ use crate::history::landmark::ReplayLandmark;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, LocationKind};
 use crate::session::settings::{ParticipantKind, SessionSpec};
 
-/// The key table.
+/// Key bindings of a console: the key table.
 #[derive(Clone, Debug)]
 pub struct KeyBindings {
-    /// The lines, in the order of the help.
+    /// Key bindings in the order of the help.
     pub bindings: Vec<KeyBinding>,
-    /// Key of the signal about each location, as the timeline shows it.
+    /// Key of the signal about each location, by which the timeline marks signals.
     marks: Vec<Option<KeyChord>>,
-    /// Entries that are active only in a comparison of wizard and assistant.
+    /// Key bindings that are active only in a comparison of wizard and assistant.
     comparing: Vec<KeyBinding>,
-    /// Entries that are active only while errors are coded.
+    /// Key bindings that are active only while a rater codes errors.
     coding: Vec<KeyBinding>,
 }
 
@@ -29,7 +29,7 @@ impl KeyBindings {
     /// The key table of a live session.
     ///
     /// # Errors
-    /// A key with two meanings, or an invalid entry of the key file.
+    /// A key has two meanings, or an entry of the key file is invalid.
     pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<KeyBindings, KeyError> {
         let Consoles { comparing, mut bindings, .. } =
             Consoles::from_bindings(lines(kitchen, map)?, KeySection::Console);
@@ -54,7 +54,7 @@ impl KeyBindings {
         Ok(KeyBindings { bindings, marks, comparing, coding: Vec::new() })
     }
 
-    /// The key table of a training: signals, and keys of the console itself.
+    /// The key table of a wizard training: signals, and keys that affect only the screen.
     ///
     /// # Errors
     /// As of [`KeyBindings::live`].
@@ -86,14 +86,14 @@ impl KeyBindings {
         Ok(KeyBindings { bindings, marks, comparing, coding })
     }
 
-    /// Adds the keys of the comparison.
+    /// Adds the keys of the comparison of wizard and assistant.
     pub fn with_comparison(mut self) -> KeyBindings {
         self.bindings.append(&mut self.comparing);
         self
     }
 
-    /// Adds the keys of a rater: letters of signals then code false beliefs, so no letter quits the program, and the arrows choose
-    /// an error. Removes those that would tell what is estimated or sent.
+    /// Adds the keys of a rater: letters of signals then code false beliefs, so no letter quits the program, and the
+    /// arrow keys select an error. Removes keys that would reveal estimates or sent signals to the rater.
     pub fn with_coding(mut self, kitchen: &Kitchen) -> KeyBindings {
         use ReplayKey::{BackTo, On};
         use ReplayLandmark::{FalseBelief, Signal};
@@ -118,13 +118,13 @@ impl KeyBindings {
         self
     }
 
-    /// The entry of a key in a layer.
+    /// The key binding of a key in a layer (wizard's or participant's keys).
     pub fn find(&self, layer: KeyLayer, chord: KeyChord) -> Option<&KeyBinding> {
         let acts = |line: &&KeyBinding| line.chords.contains(&chord) && line.layer.is_none_or(|only| only == layer);
         self.bindings.iter().find(acts)
     }
 
-    /// The key of the signal about a location.
+    /// The key that sends the signal about a kitchen location.
     pub fn of_signal(&self, location: LocationId) -> Option<KeyChord> {
         let is_it = |line: &&KeyBinding| matches!(line.action, KeyAction::Signal(about, _) if about == location);
         self.bindings.iter().find(is_it).and_then(|line| line.chords.first().copied())
@@ -135,23 +135,23 @@ impl KeyBindings {
         self.chord_for(&KeyAction::Rate(RaterKey::Belief(location)))
     }
 
-    /// Key of the signal about a location as the timeline shows it, also in a replay.
+    /// Key of the signal about a location as the timeline shows it, also in a replay, where no signal can be sent.
     pub fn mark(&self, location: LocationId) -> Option<KeyChord> {
         self.marks.get(location.index()).copied().flatten()
     }
 
-    /// The participant's key of a button.
+    /// The participant's key that presses a kitchen button.
     pub fn of_button(&self, button: ButtonId) -> Option<KeyChord> {
         self.chord_for(&KeyAction::Press(button))
     }
 
-    /// The key of an action of the console.
+    /// The first key of an action at the console.
     pub fn chord_for(&self, action: &KeyAction) -> Option<KeyChord> {
         self.bindings.iter().find(|line| line.action == *action).and_then(|line| line.chords.first().copied())
     }
 }
 
-/// Entries of a console: comparison, coding, and all others.
+/// Key bindings of a console: those of the comparison, those of a rater, and all others.
 struct Consoles {
     comparing: Vec<KeyBinding>,
     coding: Vec<KeyBinding>,
@@ -171,7 +171,8 @@ impl Consoles {
     }
 }
 
-/// All entries of both consoles for a kitchen, with the keys of a key file. No key has two meanings under any settings.
+/// All key bindings of the live console and of the replay for a kitchen, after a key file is applied. No key has two
+/// meanings under any settings.
 ///
 /// # Errors
 /// A key with two meanings, or an invalid entry of the key file.
@@ -180,7 +181,7 @@ pub fn lines(kitchen: &Kitchen, map: &KeyMap) -> Result<Vec<KeyBinding>, KeyErro
     let mut replay = table::replay();
     map.apply(&mut live, &mut replay)?;
     for lines in [&live, &replay] {
-        // The keys of the layout are checked last, so that an error message is about them.
+        // The keys of the layout file are checked last, so that an error message about a conflict names the layout.
         let (ours, letters): (Vec<&KeyBinding>, Vec<&KeyBinding>) =
             lines.iter().partition(|line| matches!(line.section, KeySection::Console | KeySection::Replay));
         let ordered: Vec<&KeyBinding> = ours.into_iter().chain(letters).collect();
@@ -196,7 +197,7 @@ pub fn lines(kitchen: &Kitchen, map: &KeyMap) -> Result<Vec<KeyBinding>, KeyErro
     Ok(live)
 }
 
-/// The error about a key with two meanings, located in the key file or else in the layout.
+/// The error about a key with two meanings, located in the key file or else in the layout file.
 fn clash(map: &KeyMap, earlier: &KeyBinding, line: &KeyBinding, chord: KeyChord) -> KeyError {
     let (name, layer) = (chord.name(), line.layer.unwrap_or(KeyLayer::Wizard));
     let in_file = map.place(line).map(|place| (place, line, earlier));

@@ -1,28 +1,28 @@
-//! Wizard training at the console: the task, and feedback on each signal.
+//! State of a wizard training at the console: the task, and feedback on each signal.
 
 use super::notice::NoticeLevel;
 use crate::base::time::SessionTime;
 
-/// Content of the training panel.
+/// Content of the wizard training's panel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrainingPanel {
-    /// Task and scoring rules, as paragraphs; shown until there is feedback.
+    /// Task and scoring rules of the training, as paragraphs; shown until there is feedback.
     pub task: Vec<String>,
-    /// Feedback on signals and omissions, the oldest first.
+    /// Feedback on signals and on missed signals, oldest first.
     pub feedback: Vec<TrainingFeedback>,
-    /// The score so far: "2 hit, 1 missed, 3 wrong".
+    /// Score of the training so far: "2 hit, 1 missed, 3 wrong".
     pub score: String,
-    /// Whether the training has started.
+    /// Whether the wizard training has started.
     pub begun: bool,
 }
 
-/// Feedback on a signal or on an omission.
+/// Feedback on a signal that the trainee sent or missed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrainingFeedback {
-    /// Time on the trial's clock.
+    /// Time of the feedback on the trial's clock.
     pub clock: SessionTime,
-    /// How it is drawn.
+    /// Severity, which selects the style in which the feedback is drawn.
     pub level: NoticeLevel,
-    /// The line.
+    /// Text of the feedback on a signal, in one line.
     pub text: String,
 }

@@ -1,33 +1,33 @@
-//! Filter and cursor of every list: arrows or typing find the row, enter takes it, esc goes back. The space bar is the robot stop, so
-//! the filter has no spaces, and rows are searched without theirs.
+//! Filter and cursor of every list at the console: arrow keys or typed text select a row, enter chooses it, esc closes
+//! the list. The space bar stops the robot, so filters contain no spaces, and spaces in rows are ignored.
 
 use crossterm::event::KeyCode;
 
-/// How far a page key goes.
+/// Number of rows that the page up and page down keys move the cursor.
 const PAGE: usize = 10;
 
 /// Filter and cursor of an open list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ListCursor {
-    /// What was typed.
+    /// Typed text by which the rows are filtered.
     pub filter: String,
-    /// The row under the cursor, of those that are left.
+    /// Index of the row under the cursor, among the rows that match the filter.
     pub at: usize,
 }
 
-/// What came of a key.
+/// Result of a key in an open list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ListReply {
     /// The list stays open.
     Open,
-    /// It was left.
+    /// The list was closed without a choice.
     Left,
-    /// The row under the cursor was taken.
+    /// The row under the cursor was chosen.
     Taken,
 }
 
 impl ListCursor {
-    /// Takes a key, with `rows` rows left.
+    /// Handles a key, where `rows` rows match the filter.
     pub fn key(&mut self, rows: usize, code: KeyCode) -> ListReply {
         let last = rows.saturating_sub(1);
         let before = self.filter.len();
@@ -42,7 +42,7 @@ impl ListCursor {
             KeyCode::Esc if self.filter.is_empty() => return ListReply::Left,
             KeyCode::Esc => self.filter.clear(),
             KeyCode::Backspace => drop(self.filter.pop()),
-            // Signs are not searched, so a question mark does not empty the list.
+            // Punctuation is not part of the filter, so that a question mark does not empty the list.
             KeyCode::Char(letter) if letter.is_alphanumeric() => self.filter.push(letter),
             _ => {}
         }
@@ -50,8 +50,8 @@ impl ListCursor {
         ListReply::Open
     }
 
-    /// Whether a row with this text is left: its letters and digits contain what was typed, or what was typed is made of
-    /// beginnings of its words in their order ("traw" for "tuna raw").
+    /// Whether a row with this text matches the filter: the row's letters and digits contain the filter, or the filter
+    /// consists of beginnings of the row's words in their order ("traw" for "tuna raw").
     pub fn keeps(&self, text: &str) -> bool {
         let wanted: Vec<char> = self.filter.to_lowercase().chars().collect();
         let text = text.to_lowercase();
@@ -65,7 +65,7 @@ impl ListCursor {
     }
 }
 
-/// Whether `wanted` is made of beginnings of some of these words, in their order.
+/// Whether `wanted` consists of beginnings of some of these words, in their order.
 fn begins(words: &[Vec<char>], wanted: &[char]) -> bool {
     let Some((word, rest)) = words.split_first() else { return wanted.is_empty() };
     let common = word.iter().zip(wanted).take_while(|(letter, typed)| letter == typed).count();

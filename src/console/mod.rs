@@ -1,5 +1,6 @@
-//! The wizard's console in the Elm architecture: `key -> Message -> update -> Option<Command>`, and a [`view()`] that only reads.
-//! Whatever affects participant, robot or analysis becomes an event; everything else stays in the [`ConsoleModel`].
+//! The wizard's console in the Elm architecture: `key -> Message -> update -> Option<Command>`, and a [`view()`] that
+//! only reads. Whatever affects the participant, the robot or the analysis becomes an event of the session; everything
+//! else stays in the [`ConsoleModel`].
 
 pub mod arrange;
 mod beliefs;

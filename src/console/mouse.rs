@@ -1,4 +1,5 @@
-//! The mouse: the pointer as gaze, clicks on what the view offers, and the wheel. A click does what a key does, by the same way.
+//! The mouse at the console: the pointer as simulated gaze, clicks on what the view marks as clickable, and the wheel.
+//! A click takes the same way through the program as the key with the same action.
 
 use crossterm::event::KeyCode;
 
@@ -23,10 +24,11 @@ use super::view::regions::Regions;
 use crate::kitchen::{Agent, ButtonAction as Use, ButtonId, LocationId};
 use crate::session::Session;
 
-/// A second click within this time belongs to the first: it confirms nothing.
+/// Longest time between the two clicks of a double click, in seconds: the second click of a double click does not
+/// confirm a question.
 const DOUBLE_CLICK_S: f64 = 0.25;
 
-/// Notes where the pointer is on the display, which may stand for the gaze.
+/// Remembers the point of the wall display under the mouse pointer, which can stand for the participant's gaze.
 pub(super) fn point(model: &mut ConsoleModel, session: &Session, (column, row): (u16, u16)) {
     let regions = Regions::showing(model.size, session, model);
     model.pointer = Some(map(model, session, &regions).display_point(column, row));
@@ -36,16 +38,16 @@ fn map(model: &ConsoleModel, session: &Session, regions: &Regions) -> KitchenMap
     KitchenMap::for_session(session, model.coding.is_some(), regions.kitchen_inside())
 }
 
-/// Handles a click: on what the view offers it does what the key does; on a place it tells the place's key; elsewhere it shows the
-/// panel at full size, or all panels again.
+/// Handles a click: on a click target, does what its key does; on a place of the kitchen, tells the place's key;
+/// elsewhere, shows the panel at full size, or all panels again.
 pub(super) fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) -> Option<ConsoleCommand> {
-    // The click that brings the keyboard back to this window means nothing else.
+    // A click that only gives this window the keyboard focus has no other effect.
     if !model.focused {
         return None;
     }
     model.forget_notice();
     let targets = click_targets(session, model);
-    // What was drawn last lies above.
+    // Of overlapping click targets, the one that was drawn last counts.
     let target = targets.iter().rev().find(|target| target.cells.contains(cell.into()));
     match target.map(|target| target.action) {
         Some(ClickAction::Key(chord)) => key(model, session, chord),
@@ -70,7 +72,8 @@ pub(super) fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16
     }
 }
 
-/// Does what a key does. A signal is asked about first; the second click on it confirms.
+/// Handles a click that stands for a key. A click on a signal opens the question whether to send it; a second click
+/// confirms.
 fn key(model: &mut ConsoleModel, session: &Session, chord: KeyChord) -> Option<ConsoleCommand> {
     let now = model.clock;
     if let Some(Dialog::Send(question)) = &model.dialog
@@ -91,7 +94,7 @@ fn key(model: &mut ConsoleModel, session: &Session, chord: KeyChord) -> Option<C
     press(model, session, chord.code, chord, if is_again { Touch::Again } else { Touch::Press })
 }
 
-/// Goes to a row of the open list; takes the row if the cursor was there.
+/// Moves the cursor to a row of the open list; chooses the row if the cursor was already there.
 fn choose(model: &mut ConsoleModel, session: &Session, row: usize) -> Option<ConsoleCommand> {
     let cursor = match &mut model.dialog {
         Some(Dialog::Pick(picker)) => &mut picker.cursor,
@@ -105,7 +108,7 @@ fn choose(model: &mut ConsoleModel, session: &Session, row: usize) -> Option<Con
     None
 }
 
-/// A click on the panels.
+/// Handles a click on the panels outside all click targets.
 fn look(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
     let regions = Regions::showing(model.size, session, model);
     if regions.kitchen_inside().contains(cell.into()) {
@@ -121,7 +124,7 @@ fn look(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
     }
 }
 
-/// Shows the key of a location and its meaning.
+/// Shows the key of a kitchen location and what the key does.
 fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
     let is_main = |action| matches!(action, Use::Use(at) | Use::Serve(at) if at == location);
     let buttons = &session.kitchen.buttons[Agent::Human.index()];
@@ -134,10 +137,10 @@ fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
     });
     let told = line.and_then(|line| Some(format!("{}: {}", line.chords.first()?, line.help)));
     let label = session.kitchen.location(location).label();
-    model.say(NoticeLevel::Done, told.unwrap_or_else(|| format!("{label}: no key is about it")));
+    model.say(NoticeLevel::Done, told.unwrap_or_else(|| format!("{label}: no key for this place")));
 }
 
-/// Handles the mouse wheel over a cell: in a list or a text it is an arrow key.
+/// Handles the mouse wheel: in a list or a help text it acts as an arrow key; over a panel it scrolls that panel.
 pub(super) fn wheel(
     model: &mut ConsoleModel,
     session: &Session,
@@ -153,7 +156,7 @@ pub(super) fn wheel(
     None
 }
 
-/// The panel under a cell.
+/// The panel of the console under a screen cell.
 fn panel_at(regions: &Regions, cell: (u16, u16)) -> Option<Panel> {
     Panel::ALL.into_iter().find(|panel| regions.panel_area(*panel).contains(cell.into()))
 }

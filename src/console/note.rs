@@ -1,12 +1,12 @@
-//! A line that can be edited: a note in words while the trial is paused, or an answer that is typed before or after a trial. Only here
-//! the space bar types a space; no trial runs, and the robot stands.
+//! Single-line text input: the wizard's note while the trial is paused, or a typed answer before or after a trial. Only
+//! here the space bar types a space instead of stopping the robot, since no trial runs and the robot stands.
 
 use crossterm::event::KeyCode;
 
-/// No line is longer, in characters.
+/// Longest text that can be typed, in characters.
 const MOST: usize = 500;
 
-/// A line of text with a cursor.
+/// A text input of one line with a cursor.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextInput {
     letters: Vec<char>,
@@ -14,13 +14,13 @@ pub struct TextInput {
 }
 
 impl TextInput {
-    /// A line that holds this text, with the cursor behind it.
+    /// A text input that holds this text, with the cursor at its end.
     pub fn with_text(text: &str) -> TextInput {
         let letters: Vec<char> = text.chars().take(MOST).collect();
         TextInput { at: letters.len(), letters }
     }
 
-    /// Takes a key that edits.
+    /// Handles a key that edits the text input.
     pub fn key(&mut self, code: KeyCode) {
         match code {
             KeyCode::Char(letter) if self.letters.len() < MOST && !letter.is_control() => {
@@ -42,12 +42,12 @@ impl TextInput {
         }
     }
 
-    /// What was written.
+    /// The typed text, without spaces at its ends.
     pub fn text(&self) -> String {
         self.letters.iter().collect::<String>().trim().to_string()
     }
 
-    /// What stands before the cursor, under it, and after it, cut to `columns` around the cursor.
+    /// The typed text before the cursor, under it, and after it, cut to `columns` around the cursor.
     pub fn parts(&self, columns: usize) -> [String; 3] {
         let room = columns.max(2) - 1;
         let first = (self.at + 1).saturating_sub(room);

@@ -1,28 +1,28 @@
-//! The panels that may be shown alone.
+//! Panels of the console that can be shown alone at full size.
 
 use crate::session::settings::Visibility;
 
-/// A panel that may be shown alone.
+/// A panel of the console that can be shown alone at full size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Panel {
-    /// The kitchen as it truly is, with the wizard's keys.
+    /// Kitchen as it truly is, with the wizard's keys.
     Kitchen,
-    /// The estimate of the participant's belief.
+    /// Estimate of the participant's beliefs.
     Belief,
-    /// What the assistant advises.
+    /// Signals that the assistant advises.
     Recommendation,
-    /// Where the participant looked lately.
+    /// Map of the places where the participant looked lately.
     GazeMap,
-    /// The newest events.
+    /// List of the newest events.
     Events,
-    /// Presses, signals and errors over time.
+    /// Timeline of presses, signals and errors.
     Timeline,
-    /// Wizard and assistants side by side.
+    /// Comparison of the wizard's and the assistants' signals on one time axis.
     Comparison,
 }
 
 impl Panel {
-    /// In the order in which the keys go through them.
+    /// All panels, in the order in which the keys go through them.
     pub(super) const ALL: [Panel; 7] = [
         Panel::Comparison,
         Panel::Kitchen,
@@ -33,7 +33,7 @@ impl Panel {
         Panel::Timeline,
     ];
 
-    /// Whether the wizard may see it.
+    /// Whether the wizard may see the panel under this visibility setting.
     pub(super) fn may_be_seen(self, visibility: Visibility, compares: bool) -> bool {
         match self {
             Panel::Comparison => compares,

@@ -1,4 +1,4 @@
-//! Panel navigation: a single panel at full size, and scrolling back in time. It does not affect the participant;
+//! Panel navigation: a single panel at full size, and scrolling back in time. Neither affects the participant;
 //! [`super::screen`] records what the wizard's screen shows.
 
 use super::beliefs::visibility;
@@ -8,10 +8,10 @@ use super::panel::Panel;
 use super::view::dialog::help_pages;
 use crate::session::Session;
 
-/// One scroll step: in the timeline in seconds, in the list of events in lines.
+/// One scroll step: seconds in the timeline, entries in the list of events.
 const STEP: (u32, usize) = (5, 1);
 
-/// Carries out a panel key.
+/// Carries out a key that changes which panels or which time the screen shows.
 pub fn look(model: &mut ConsoleModel, session: &Session, look: PanelKey) {
     let visibility = visibility(session, model);
     let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility, model.comparison.is_some());
@@ -46,7 +46,7 @@ pub fn leaf(model: &mut ConsoleModel, look: PanelKey) {
     };
 }
 
-/// Scrolls a panel with a time axis, or else the list of events if it is visible.
+/// Scrolls a panel that has a time axis, or else the list of events if it is visible.
 pub(super) fn scroll(model: &mut ConsoleModel, session: &Session, panel: Option<Panel>, steps: i64) {
     if matches!(panel, Some(Panel::Timeline | Panel::Comparison)) {
         let back_s = i64::from(model.timeline_back_s) + steps * i64::from(STEP.0);

@@ -1,4 +1,5 @@
-//! A list with a question: which place, which content, which press, which reason. Its keys are those of every list ([`super::list_cursor`]).
+//! A list from which the wizard chooses the answer to a question: which place, which content, which press, which
+//! reason. Its keys are those of every list ([`super::list_cursor`]).
 
 use crossterm::event::KeyCode;
 
@@ -7,86 +8,86 @@ use crate::history::wording;
 use crate::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind};
 use crate::session::Session;
 
-/// What is asked.
+/// Question that a list of answers asks the wizard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PickerQuestion {
-    /// Which location holds something else than the program thinks?
+    /// Which location has another content than the program assumes?
     Place,
-    /// What does this location hold?
+    /// What is the content of this location?
     Content(LocationId),
     /// Which button shall the robot press next?
     Button,
     /// Why is the trial aborted?
     Abort,
-    /// Why is it left out of the analysis?
+    /// Why is the trial excluded from the analysis?
     Exclude,
-    /// Why is the rest of the probe with this number skipped?
+    /// Why are the remaining questions of the freeze probe with this number skipped?
     SkipProbe(u32),
 }
 
-/// What can be answered.
+/// Answer that the wizard chose from a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PickerAnswer {
-    /// A location.
+    /// Location whose content is to be corrected.
     Place(LocationId),
-    /// What lies at the location.
+    /// True content of the location.
     Content(ContentId),
-    /// A button of the robot.
+    /// Button that the robot shall press next.
     Button(ButtonId),
-    /// Why the trial is aborted, or not to be counted, or the probe is skipped.
+    /// Reason for aborting or excluding the trial, or for skipping the probe.
     Reason(String),
 }
 
-/// A line of the list.
+/// An entry of a list from which the wizard chooses.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PickerEntry {
-    /// What choosing it answers.
+    /// Answer that choosing the entry gives.
     pub answer: PickerAnswer,
-    /// The text that is shown and searched.
+    /// Text of the entry, which is shown and searched.
     pub label: String,
-    /// What else there is to know, at the right.
+    /// Further information, shown at the right of the entry.
     pub remark: String,
 }
 
-/// An open list.
+/// An open list from which the wizard chooses the answer to a question.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picker {
-    /// What is asked.
+    /// Question that the list asks the wizard.
     pub question: PickerQuestion,
-    /// Filter and cursor.
+    /// Filter and cursor of the list.
     pub cursor: ListCursor,
 }
 
-/// What came of a key.
+/// Result of a key in a list of answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PickerOutcome {
     /// The list stays open.
     Nothing,
-    /// It was left without an answer.
+    /// The list was closed without an answer.
     Left,
-    /// This was chosen.
+    /// The wizard chose this answer from the list.
     This(PickerAnswer),
 }
 
 impl Picker {
-    /// An open list without a filter, with the cursor on the first line.
+    /// An open list without a filter, with the cursor on the first entry.
     pub fn new(question: PickerQuestion) -> Picker {
         Picker { question, cursor: ListCursor::default() }
     }
 
-    /// The question in words.
+    /// The list's question in words.
     pub fn title(&self, session: &Session) -> String {
         match self.question {
             PickerQuestion::Place => "Correct the kitchen: which place?".to_string(),
-            PickerQuestion::Content(place) => format!("What is at {}?", session.kitchen.location(place).label()),
+            PickerQuestion::Content(place) => format!("What is really at {}?", session.kitchen.location(place).label()),
             PickerQuestion::Button => "The robot's next press".to_string(),
             PickerQuestion::Abort => "Abort the trial: why?".to_string(),
-            PickerQuestion::Exclude => "Leave the trial out: why?".to_string(),
+            PickerQuestion::Exclude => "Exclude the trial from the analysis: why?".to_string(),
             PickerQuestion::SkipProbe(probe) => format!("Skip the rest of probe {probe}: why?"),
         }
     }
 
-    /// The lines that are left of the list.
+    /// Entries of the list that match the filter.
     pub fn choices(&self, session: &Session) -> Vec<PickerEntry> {
         let mut choices = self.all(session);
         choices.retain(|choice| self.cursor.keeps(&choice.label));
@@ -102,7 +103,7 @@ impl Picker {
         }
     }
 
-    /// Takes a key.
+    /// Handles a key in the list.
     pub fn key(&mut self, session: &Session, code: KeyCode) -> PickerOutcome {
         let mut choices = self.choices(session);
         match self.cursor.key(choices.len(), code) {
@@ -124,7 +125,7 @@ fn places(session: &Session) -> Vec<PickerEntry> {
     places.map(choice).collect()
 }
 
-/// What the place can hold, but for what the program thinks it holds.
+/// Contents that the location can have, except the one that the program assumes.
 fn contents(session: &Session, place: LocationId) -> Vec<PickerEntry> {
     let kitchen = &session.kitchen;
     let can_be = |id: ContentId| id.is_empty() || kitchen.accepts(place, id);
@@ -146,7 +147,7 @@ fn buttons(session: &Session) -> Vec<PickerEntry> {
         PickerEntry { answer: PickerAnswer::Button(id), label: wording::button(kitchen, Agent::Robot, id), remark }
     };
     let mut choices: Vec<PickerEntry> = ids.map(choice).collect();
-    // What does something comes first.
+    // Buttons that have an effect now come first.
     choices.sort_by_key(|choice| !choice.remark.is_empty());
     choices
 }

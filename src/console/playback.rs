@@ -1,4 +1,4 @@
-//! State of a replay: position, speed, and its keys.
+//! State of a replay: position, speed, and the replay's keys.
 
 use crate::base::time::SessionTime;
 use crate::history::landmark::ReplayLandmark;
@@ -6,64 +6,64 @@ use crate::history::landmark::ReplayLandmark;
 /// Speeds of a replay as multiples of real time; infinity for as fast as possible.
 pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINITY];
 
-/// A key of the replay.
+/// Action of a replay's keys: play, move, or change the speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReplayKey {
-    /// Play or pause.
+    /// Play or pause the replay.
     PlayPause,
-    /// Go to the next event that is not a gaze sample.
+    /// Go to the next event of the recording that is not a gaze sample.
     StepForward,
-    /// Go to the previous event that is not a gaze sample.
+    /// Go to the previous event of the recording that is not a gaze sample.
     StepBack,
-    /// Go to the next landmark of this kind.
+    /// Go to the next landmark of this kind, such as an error or a signal.
     On(ReplayLandmark),
-    /// Go to the previous landmark of this kind.
+    /// Go to the previous landmark of this kind, such as an error or a signal.
     BackTo(ReplayLandmark),
-    /// Go ten seconds forward.
+    /// Go ten seconds forward in the recording.
     SeekForward,
-    /// Go ten seconds back.
+    /// Go ten seconds back in the recording.
     SeekBack,
-    /// Play at the next higher speed.
+    /// Play the recording at the next higher speed.
     Faster,
-    /// Play at the next lower speed.
+    /// Play the recording at the next lower speed.
     Slower,
-    /// Go to the beginning, before the first event.
+    /// Go to the beginning of the recording, before its first event.
     ToStart,
     /// Go to the position after the event with this sequence number.
     ToEvent(u64),
-    /// Go to this session time.
+    /// Go to this session time of the recording.
     ToTime(SessionTime),
-    /// Go to the end; a followed recording stays at its growing end.
+    /// Go to the end of the recording; in a recording that is still being made, stay at its growing end.
     ToEnd,
 }
 
-/// State of a replay.
+/// State of a replay: its position, its speed, and the recording's state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Playback {
-    /// Name of the recording, for the head line.
+    /// Name of the recording, as shown in the head line.
     pub name: String,
-    /// The replay moves on by itself.
+    /// Whether the replay is playing, not paused.
     pub playing: bool,
-    /// An index into [`SPEEDS`].
+    /// Playback speed, as an index into [`SPEEDS`].
     pub speed: usize,
-    /// Time of the last known event.
+    /// Session time of the last known event of the recording.
     pub length: SessionTime,
-    /// Number of events applied so far.
+    /// Number of events of the recording up to the replay's position.
     pub event: usize,
-    /// Number of events known in all.
+    /// Number of events in the recording, as far as they are known.
     pub events: usize,
-    /// Whether the recording is followed while it is made.
+    /// Whether the replay follows a recording that is still being made.
     pub follows: bool,
-    /// Whether the recording was cut off (no end event).
+    /// Whether the recording is incomplete: it has no end event.
     pub cut: bool,
-    /// Whether the recording is still being written but not followed.
+    /// Whether the recording is still being made, but the replay does not follow it.
     pub running: bool,
     /// Whether the recording was excluded from the analysis after it was closed.
     pub excluded: bool,
 }
 
 impl Playback {
-    /// A replay at its beginning.
+    /// A replay at the beginning of a recording.
     pub fn new(name: String) -> Playback {
         Playback {
             name,
@@ -79,7 +79,7 @@ impl Playback {
         }
     }
 
-    /// The speed in words: "2x", "0.25x", "max".
+    /// The playback speed in words: "2x", "0.25x", "max".
     pub fn speed_label(&self) -> String {
         let speed = SPEEDS[self.speed.min(SPEEDS.len() - 1)];
         if speed.is_finite() { format!("{speed}x") } else { "max".to_string() }

@@ -1,4 +1,4 @@
-//! Which actions do something now: the hint line shows no others.
+//! Which actions have an effect now: the line of key hints shows only those.
 
 use super::beliefs::{beliefs, visibility};
 use super::compared::ComparisonKey;
@@ -18,24 +18,24 @@ use crate::session::probes::ProbeEvent;
 use crate::session::settings::Visibility;
 use crate::session::{Event, Phase, Session};
 
-/// Whether an action would do something now, through whatever lies in front of the console.
+/// Whether an action would have an effect now, given the dialog or sheet that covers the console.
 pub(super) fn is_possible(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
     reaches(session, model, action) && does(session, model, action)
 }
 
-/// The same once the open dialog is closed.
+/// Whether an action would have an effect once the open dialog is closed.
 pub(super) fn is_possible_behind(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
     (!has_sheet(session, model) || acts_on_sheet(session, action)) && does(session, model, action)
 }
 
-/// Whether a sheet lies in front of the console and takes the keys.
+/// Whether a sheet (a form at full size) covers the console and takes the keys.
 fn has_sheet(session: &Session, model: &ConsoleModel) -> bool {
     model.playback.is_none() && sheet(session).is_some()
 }
 
-/// Whether an action is possible while a sheet lies in front of the console: what helps, leaves, or mends.
+/// Whether an action is possible while a sheet covers the console: help, quitting, the robot stop, and repairs.
 pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
-    // In a probe the trial can also be ended.
+    // During a freeze probe, the trial can also be ended or aborted.
     let in_probe = matches!(
         action,
         KeyAction::EndTrial
@@ -53,7 +53,7 @@ pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
         )
 }
 
-/// Whether the trial can be done again.
+/// Whether the trial may be repeated, since it was aborted or excluded.
 pub(super) fn can_redo(session: &Session) -> bool {
     matches!(session.phase, Phase::Over(_)) && (session.aborted.is_some() || session.excluded.is_some())
 }
@@ -65,9 +65,9 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
     match &model.dialog {
         None if has_sheet(session, model) => acts_on_sheet(session, action),
         None => true,
-        // Enter answers the question, esc leaves it.
+        // Enter answers the question whether to send, and esc closes it, so both keys lose their usual action.
         Some(Dialog::Send(_)) => !matches!(action, KeyAction::Accept | KeyAction::Look(PanelKey::All)),
-        // In text input the space bar types a space.
+        // In text input the space bar types a space instead of stopping the robot.
         Some(Dialog::Note(_) | Dialog::Answer(_) | Dialog::Report(_)) => false,
         Some(Dialog::Preflight) => match action {
             KeyAction::Advance => preflight::all_ok(&preflight::checks(session, model)),
@@ -82,7 +82,7 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
     }
 }
 
-/// Whether the console's state lets an action do something.
+/// Whether an action would have an effect in the present state of session and console, apart from open dialogs.
 fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
     let admits = |event: Event| admit(session, &event).is_ok();
     let runs = matches!(session.phase, Phase::Running | Phase::Paused);
@@ -110,7 +110,7 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
     }
 }
 
-/// Whether the key that starts, pauses and goes on does so.
+/// Whether the key that starts, pauses and resumes a trial has an effect now.
 fn advances(session: &Session, model: &ConsoleModel) -> bool {
     match session.phase {
         _ if model.lesson.is_some() => true,
@@ -144,7 +144,7 @@ fn moves(playback: &Playback, to: ReplayKey) -> bool {
     let (at_start, at_end) = (playback.event == 0, playback.event == playback.events);
     match to {
         ReplayKey::StepBack | ReplayKey::SeekBack | ReplayKey::ToStart | ReplayKey::BackTo(_) => !at_start,
-        // A recording that grows is followed from its end on.
+        // A replay that already follows a growing recording cannot go further to its end.
         ReplayKey::ToEnd => !playback.follows && playback.events > 0,
         ReplayKey::StepForward | ReplayKey::SeekForward | ReplayKey::On(_) => !at_end,
         ReplayKey::Faster => playback.speed + 1 < SPEEDS.len(),

@@ -1,5 +1,5 @@
-//! Preflight checks at the console. If all are ok the trial starts at once; else a list shows the problems with remedies, and the
-//! wizard fixes them or overrides them. The results are recorded.
+//! Preflight checks at the console. If all are ok, the trial starts at once; else a list shows the problems with
+//! remedies, and the wizard fixes or overrides them. The results are recorded.
 
 use core::net::SocketAddr;
 
@@ -17,10 +17,10 @@ use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, partici
 use crate::session::probes::of_trial;
 use crate::session::{Event, Session};
 
-/// The key that overrides failed checks and starts the trial.
+/// The key that overrides failed preflight checks and starts the trial.
 pub const OVERRIDE: char = 'o';
 
-/// Runs all preflight checks.
+/// Runs all preflight checks: participant, gaze, display, robot, recording, disk, keyboard, streams.
 pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     let mut checks = participant(session, model.now, &key(model, &KeyAction::Hand(ManualAction::Calibrate)));
     checks.extend(model.gaze_pairing.as_ref().and_then(|pairing| pairing.check(session, model.now)));
@@ -32,12 +32,12 @@ pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     checks
 }
 
-/// Whether all checks are ok.
+/// Whether all preflight checks are ok.
 pub fn all_ok(checks: &[PreflightCheck]) -> bool {
     checks.iter().all(|check| check.verdict == PreflightVerdict::Ok)
 }
 
-/// The key of an action.
+/// Name of the key that carries out an action.
 fn key(model: &ConsoleModel, action: &KeyAction) -> String {
     model.keys.chord_for(action).map(|key| key.to_string()).unwrap_or_default()
 }
@@ -61,7 +61,7 @@ fn robot(session: &Session, model: &ConsoleModel) -> PreflightCheck {
     }
 }
 
-/// The freeze probes of the trial, and where they are answered.
+/// Preflight check of the trial's freeze probes: their number, and where they are answered.
 fn probes(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
     let probes = of_trial(&session.spec)?;
     let minutes = session.spec.trial.seconds / 60.0;
@@ -71,11 +71,11 @@ fn probes(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
         ProbeAnswerer::Simulated => PreflightCheck::ok("probes", found("answered by the simulated participant")),
         ProbeAnswerer::Console if !is_wanted(session) => PreflightCheck::ok("probes", found("on the console")),
         ProbeAnswerer::Console => {
-            let remedy = "open the participant's page; else read the questions out, and enter the answers here";
+            let remedy = "open the participant's page, or read the questions out and enter the answers here";
             PreflightCheck::new(
                 "probes",
                 PreflightVerdict::Warning,
-                found("on the console: no page is connected"),
+                found("on the console: participant's page not connected"),
                 remedy,
             )
         }
@@ -85,12 +85,18 @@ fn probes(session: &Session, model: &ConsoleModel) -> Option<PreflightCheck> {
 fn recording(model: &ConsoleModel) -> PreflightCheck {
     match &model.recording {
         RecordingStatus::On(folder) => PreflightCheck::ok("recording", folder.clone()),
-        RecordingStatus::Off => {
-            PreflightCheck::new("recording", PreflightVerdict::Failed, "nothing is recorded", "start the program anew")
-        }
-        RecordingStatus::Lost => {
-            PreflightCheck::new("recording", PreflightVerdict::Failed, "it cannot be written", "start the program anew")
-        }
+        RecordingStatus::Off => PreflightCheck::new(
+            "recording",
+            PreflightVerdict::Failed,
+            "the session is not recorded",
+            "restart the program",
+        ),
+        RecordingStatus::Lost => PreflightCheck::new(
+            "recording",
+            PreflightVerdict::Failed,
+            "the recording cannot be written",
+            "restart the program",
+        ),
     }
 }
 
@@ -111,7 +117,7 @@ fn viewers(viewers: &ViewerStreamStatus) -> PreflightCheck {
         ),
         (dropped, _) => warning(
             format!("{found}; {dropped} rows dropped"),
-            "end what else keeps the processor busy; tomcom review makes the stream from the log",
+            "close other programs that use the processor; tomcom review makes the stream from the log",
         ),
     }
 }
@@ -121,7 +127,7 @@ fn lsl(status: &LslStatus) -> PreflightCheck {
     match status.lost {
         0 => PreflightCheck::ok("lsl", found),
         lost => {
-            let remedy = "end what else keeps the processor busy; the log has every event";
+            let remedy = "close other programs that use the processor; the log has every event";
             PreflightCheck::new("lsl", PreflightVerdict::Warning, format!("{found}; {lost} samples lost"), remedy)
         }
     }
@@ -129,14 +135,17 @@ fn lsl(status: &LslStatus) -> PreflightCheck {
 
 fn keyboard(model: &ConsoleModel) -> PreflightCheck {
     match model.focused {
-        true => PreflightCheck::ok("keyboard", "keys arrive here"),
-        false => {
-            PreflightCheck::new("keyboard", PreflightVerdict::Failed, "keys go elsewhere", "click into this window")
-        }
+        true => PreflightCheck::ok("keyboard", "this window has the keyboard focus"),
+        false => PreflightCheck::new(
+            "keyboard",
+            PreflightVerdict::Failed,
+            "this window does not have the keyboard focus",
+            "click into this window",
+        ),
     }
 }
 
-/// Starts the trial if all checks are ok; else opens the list.
+/// Starts the trial if all preflight checks are ok; else opens the list of checks.
 pub(super) fn start(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     match all_ok(&checks(session, model)) {
         true => go(model, session, false),
@@ -158,12 +167,13 @@ fn go(model: &mut ConsoleModel, session: &Session, overridden: bool) -> Option<C
         return None;
     }
     model.dialog = None;
-    let words = if overridden { "the trial runs, although not all was ok" } else { "all is ok: the trial runs" };
+    let words =
+        if overridden { "the trial runs, although not all checks are ok" } else { "all checks are ok: the trial runs" };
     model.say(NoticeLevel::Done, words);
     Some(ConsoleCommand::Start(Event::Preflight { checks, overridden }))
 }
 
-/// Handles a key while the list is open.
+/// Handles a key while the list of preflight checks is open.
 pub(super) fn answer(
     model: &mut ConsoleModel,
     session: &Session,
@@ -177,13 +187,13 @@ pub(super) fn answer(
             model.dialog = None;
             None
         }
-        // Keys that fix a problem also work in the list.
+        // Keys that fix a problem also work in the list of preflight checks.
         (_, Some(KeyAction::ResumeRobot)) => super::sending::resume_robot(model, session),
         (_, Some(KeyAction::Hand(ManualAction::HoldRobot))) if is_press => {
             super::hands::act(model, session, ManualAction::HoldRobot)
         }
         (_, Some(KeyAction::Advance)) if is_press && is_ok => go(model, session, false),
-        // A problem may have been fixed in the meantime.
+        // If the problem has been fixed in the meantime, the start does not count as an override.
         (KeyCode::Char(OVERRIDE), _) if is_press => go(model, session, !is_ok),
         _ => None,
     }

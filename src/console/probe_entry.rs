@@ -1,22 +1,22 @@
-//! An answer to the question of a probe while it is entered at the console.
+//! Answer to a freeze probe's question while the wizard enters it at the console.
 
-/// An answer that is being entered at the console.
+/// Answer to a freeze probe's question while the wizard enters it at the console.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ProbeEntry {
-    /// Numbers of the probe and of the question that it is for.
+    /// Numbers of the probe and of the question that the answer belongs to.
     of: (u32, usize),
-    /// Number of the choice; 0: "I don't know".
+    /// Number of the selected answer; 0 is "I don't know".
     pub choice: Option<usize>,
-    /// The last key was a digit: the next one continues the number.
+    /// Whether the last key was a digit, so that another digit continues the number.
     pub is_typed: bool,
-    /// The choice is confirmed, and how sure the participant is comes next.
+    /// Whether the choice is confirmed, so that the participant's confidence is entered next.
     pub asks_sure: bool,
-    /// How sure the participant is, from 1 to 3.
+    /// How sure the participant is of the answer, from 1 (a guess) to 3 (certain).
     pub sure: Option<u8>,
 }
 
 impl ProbeEntry {
-    /// What is entered for this question: what was, or nothing yet where that was for another one.
+    /// The entry for this question: unchanged if it belongs to this question, else empty.
     pub fn for_question(self, probe: u32, question: usize) -> ProbeEntry {
         let of = (probe, question);
         if self.of == of { self } else { ProbeEntry { of, ..ProbeEntry::default() } }

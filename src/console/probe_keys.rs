@@ -1,4 +1,4 @@
-//! The sheet of a freeze probe: the wizard pauses it, and enters the answers where the participant has no display.
+//! Keys during a freeze probe: the wizard pauses the probe, or enters the answers of a participant who has no display.
 
 use crossterm::event::KeyCode;
 
@@ -12,18 +12,18 @@ use crate::session::settings::ParticipantKind;
 use crate::session::wall_display::Answering;
 use crate::session::{Event, Phase, Session};
 
-/// Who answers the questions of a probe now.
+/// Who enters the answers to a freeze probe's questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProbeAnswerer {
-    /// The participant, on the display.
+    /// The participant enters the answers on the display.
     Display,
-    /// The wizard enters what the participant says.
+    /// The wizard enters at the console what the participant says.
     Console,
-    /// The simulated participant.
+    /// The simulated participant gives the answers.
     Simulated,
 }
 
-/// Who answers now: the wizard where no page is connected.
+/// Who enters the answers now; the wizard does if no page of the participant's display is connected.
 pub fn answerer(session: &Session, model: &ConsoleModel) -> ProbeAnswerer {
     match session.spec.participant.kind {
         ParticipantKind::Simulated => ProbeAnswerer::Simulated,
@@ -32,7 +32,7 @@ pub fn answerer(session: &Session, model: &ConsoleModel) -> ProbeAnswerer {
     }
 }
 
-/// "probe 2 of 4": the probe, and how many are expected in the trial.
+/// Number of a probe in words: "probe 2 of 4"; the second number is how many the trial is expected to have.
 pub fn numbered(session: &Session, number: u32) -> String {
     let book = &session.probes;
     let asked_for = book.over.iter().chain(&book.open).filter(|probe| probe.origin == ProbeOrigin::Wizard).count()
@@ -41,7 +41,7 @@ pub fn numbered(session: &Session, number: u32) -> String {
     format!("probe {number} of {all}")
 }
 
-/// What is to be said of the probes of the trial now: "probe 2 of 4 · question 1 of 3", or when the next is due.
+/// Status of the trial's freeze probes in words: "probe 2 of 4 · question 1 of 3", or when the next one is due.
 pub fn status(session: &Session, model: &ConsoleModel) -> Option<String> {
     let book = &session.probes;
     if let Some(open) = &book.open {
@@ -53,16 +53,16 @@ pub fn status(session: &Session, model: &ConsoleModel) -> Option<String> {
         });
     }
     if let Some(waiting) = &book.waiting {
-        return Some(format!("{} waits", numbered(session, waiting.number)));
+        return Some(format!("{} is delayed", numbered(session, waiting.number)));
     }
-    // The participant at the console must not foresee it.
+    // A participant who reads the console must not know when the next probe comes.
     let foresees = session.spec.participant.kind == ParticipantKind::Keyboard;
     let next = book.schedule.get(book.came_due).filter(|_| session.is_running() && !foresees)?;
     let in_s = next.at.as_secs_f64() - session.trial_clock(model.now).as_secs_f64();
     Some(format!("{} in {:.0} s", numbered(session, book.numbered + 1), in_s.max(0.0).ceil()))
 }
 
-/// Whether the key is a digit of the number of a choice.
+/// Whether the key is a digit that selects a choice by its number.
 pub(super) fn takes_digit(model: &ConsoleModel, session: &Session, code: KeyCode) -> bool {
     let is_digit = matches!(code, KeyCode::Char('0'..='9'));
     let is_free = model.dialog.is_none() && model.playback.is_none();
@@ -74,7 +74,7 @@ pub(super) fn takes_digit(model: &ConsoleModel, session: &Session, code: KeyCode
         && answerer(session, model) == ProbeAnswerer::Console
 }
 
-/// Carries out a key of the sheet.
+/// Carries out a key on the sheet of a freeze probe.
 pub(super) fn write(
     model: &mut ConsoleModel,
     session: &Session,
@@ -84,7 +84,7 @@ pub(super) fn write(
     if stroke == SheetKey::Leave {
         let (event, words) = match session.can_be_paused() {
             true => (Event::TrialPaused, "the probe is paused"),
-            false => (Event::TrialResumed, "the probe goes on"),
+            false => (Event::TrialResumed, "the probe continues"),
         };
         return send(model, session, event, NoticeLevel::Done, words);
     }
@@ -98,7 +98,7 @@ pub(super) fn write(
     let confidence = session.spec.probes.as_ref().is_some_and(|probes| probes.confidence);
     match stroke {
         SheetKey::Digit(digit @ 1..=3) if entry.asks_sure => entry.sure = Some(digit),
-        SheetKey::Digit(_) if entry.asks_sure => return refuse(model, "how sure: 1, 2 or 3"),
+        SheetKey::Digit(_) if entry.asks_sure => return refuse(model, "how sure is the participant? 1, 2 or 3"),
         SheetKey::Digit(digit) => {
             let begun = entry.choice.filter(|_| entry.is_typed).unwrap_or(0);
             let number = 10 * begun + usize::from(digit);
@@ -107,20 +107,24 @@ pub(super) fn write(
             }
             (entry.choice, entry.is_typed) = (Some(number), true);
         }
-        SheetKey::Forward | SheetKey::Back if entry.asks_sure => return refuse(model, "how sure: 1, 2 or 3"),
+        SheetKey::Forward | SheetKey::Back if entry.asks_sure => {
+            return refuse(model, "how sure is the participant? 1, 2 or 3");
+        }
         SheetKey::Forward | SheetKey::Back => {
             let by = if stroke == SheetKey::Forward { 1 } else { -1 };
             let to = entry.choice.map_or(0, |choice| choice.saturating_add_signed(by)).min(choices);
-            // The first arrow goes to the first choice.
+            // If no choice is selected yet, the down arrow selects the first choice.
             let to = if entry.choice.is_none() && by > 0 { 1 } else { to };
             (entry.choice, entry.is_typed) = (Some(to), false);
         }
         SheetKey::Undo if entry.asks_sure => (entry.asks_sure, entry.sure) = (false, None),
         SheetKey::Undo => entry.choice = entry.choice.filter(|&choice| choice > 9).map(|choice| choice / 10),
         SheetKey::Confirm => match entry.choice {
-            None => return refuse(model, "first the number of the choice; 0: the participant does not know"),
+            None => return refuse(model, "enter the number of the choice first; 0: the participant does not know"),
             Some(1..) if confidence && !entry.asks_sure => entry.asks_sure = true,
-            Some(1..) if confidence && entry.sure.is_none() => return refuse(model, "how sure: 1, 2 or 3"),
+            Some(1..) if confidence && entry.sure.is_none() => {
+                return refuse(model, "how sure is the participant? 1, 2 or 3");
+            }
             Some(number) => {
                 let answer = number.checked_sub(1).and_then(|index| question.choices.get(index)).cloned();
                 let (probe, question, on) = (open.number, index as u32 + 1, Answering::Console);

@@ -1,29 +1,29 @@
-//! A question before a recording begins, while there is no session to draw.
+//! A question to the user before a recording begins, when there is no session to draw.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-/// A question with numbered answers.
+/// A question to the user with numbered answers, shown before a recording begins.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct QuestionPage {
-    /// The heading.
+    /// Heading of the question to the user.
     pub title: String,
-    /// Paragraphs.
+    /// Text of the question, as paragraphs.
     pub text: Vec<String>,
-    /// Answers; key 1 selects the first.
+    /// Texts of the answers; key 1 selects the first.
     pub answers: Vec<String>,
 }
 
-/// Reply to a question.
+/// Reply of the user to a question before a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QuestionReply {
-    /// Index of the chosen answer.
+    /// Index of the answer that the user selected.
     Answer(usize),
-    /// Quit the program.
+    /// The user quits the program.
     Leave,
 }
 
 impl QuestionPage {
-    /// The reply of a key; `None` for other keys and for key repeat.
+    /// The reply that a key gives; `None` for other keys and for key repeat.
     pub fn reply(&self, key: &KeyEvent) -> Option<QuestionReply> {
         if key.kind != KeyEventKind::Press {
             return None;

@@ -1,25 +1,25 @@
-//! The codes of one rater, or of two who settle their differences, while a recording is open.
+//! State of coding a recording: the codes of one rater, or of two raters who settle their differences.
 
 use crate::analysis::error_list::ListedError;
 use crate::history::wording;
 use crate::measures::cause_codes::{Code, Codes};
 use crate::measures::consensus::Consensus;
 
-/// Who gives the codes.
+/// Who codes the errors of a recording: one rater, or two raters together.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CodingParty {
-    /// One rater, with this code.
+    /// One rater, who has this name ("R1").
     Rater(String),
-    /// Two raters who settle together what they coded differently.
+    /// Two raters who settle together the errors that they coded differently.
     Pair {
-        /// What they agree on, and what they settled earlier.
+        /// Codes on which the two raters agree, and those that they settled earlier.
         consensus: Consensus,
-        /// The raters' own codes, in the order of the consensus.
+        /// Codes that each rater gave alone, in the order of the consensus.
         own: [Codes; 2],
     },
 }
 
-/// A step that can be undone: the code of an error before and after it.
+/// A change of an error's code, which can be undone.
 #[derive(Clone, Debug, PartialEq)]
 struct CodeChange {
     press: u64,
@@ -27,54 +27,54 @@ struct CodeChange {
     after: Option<Code>,
 }
 
-/// The codes of a recording so far.
+/// State of coding the errors of a recording: the codes so far, and the steps to undo.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaterSession {
-    /// Who gives the codes.
+    /// Whether one rater codes, or two raters settle their differences.
     pub party: CodingParty,
-    /// The errors to be coded, in order; of a pair only those that it has to settle.
+    /// Errors to be coded, in order of time; for two raters, only those that they have to settle.
     pub errors: Vec<ListedError>,
-    /// The causes given so far, by press.
+    /// Codes so far: the causes of errors, by the sequence number of the press.
     pub codes: Codes,
-    /// Other raters who have coded every error of the recording.
+    /// Names of other raters who have coded every error of the recording.
     pub finished: Vec<String>,
-    /// Row of the list that was chosen with the arrows and not opened yet.
+    /// Row of the error list that the arrow keys have selected, while the replay does not stand at that error.
     pub chosen: Option<usize>,
-    /// The codes when the recording was opened.
+    /// Codes of the errors at the time when the recording was opened.
     opened: Codes,
     done: Vec<CodeChange>,
     undone: Vec<CodeChange>,
 }
 
 impl RaterSession {
-    /// A session at its opening.
+    /// State of coding when a recording is opened.
     pub fn new(party: CodingParty, errors: Vec<ListedError>, codes: Codes) -> RaterSession {
         let opened = codes.clone();
         let (done, undone) = (Vec::new(), Vec::new());
         RaterSession { party, errors, codes, finished: Vec::new(), chosen: None, opened, done, undone }
     }
 
-    /// Index of the last error among the first `events` events, where the replay stands.
+    /// Index of the last error among the first `events` events of the recording, where the replay stands.
     pub fn at(&self, events: usize) -> Option<usize> {
         self.errors.partition_point(|error| error.press < events as u64).checked_sub(1)
     }
 
-    /// The last error among the first `events` events.
+    /// The last error among the first `events` events of the recording, where the replay stands.
     pub fn present(&self, events: usize) -> Option<&ListedError> {
         self.errors.get(self.at(events)?)
     }
 
-    /// Index of the first error without a code.
+    /// Index of the first error that has no code yet.
     pub fn first_open(&self) -> Option<usize> {
         self.errors.iter().position(|error| self.code(error).is_none())
     }
 
-    /// The code of an error.
+    /// The rater's code of an error, if there is one.
     pub fn code(&self, error: &ListedError) -> Option<&Code> {
         self.codes.0.get(&error.press)
     }
 
-    /// Number of errors with a code.
+    /// Number of errors that have a rater's code.
     pub fn coded(&self) -> usize {
         self.errors.iter().filter(|error| self.code(error).is_some()).count()
     }
@@ -88,7 +88,7 @@ impl RaterSession {
         self.errors.iter().filter(is_new).count()
     }
 
-    /// Gives an error a code, or takes it away.
+    /// Gives an error a rater's code, or removes the code.
     pub fn give(&mut self, press: u64, code: Option<Code>) {
         let before = self.codes.0.get(&press).cloned();
         if before != code {
@@ -98,7 +98,7 @@ impl RaterSession {
         }
     }
 
-    /// Takes the last step back; returns the press that it concerned.
+    /// Undoes the last change of a code; returns the sequence number of the press whose code changed.
     pub fn undo(&mut self) -> Option<u64> {
         let change = self.done.pop()?;
         self.set(change.press, change.before.clone());
@@ -107,17 +107,17 @@ impl RaterSession {
         Some(press)
     }
 
-    /// Whether there is a step to undo.
+    /// Whether there is a change of a code to undo.
     pub fn can_undo(&self) -> bool {
         !self.done.is_empty()
     }
 
-    /// Whether there is an undone step to do again.
+    /// Whether there is an undone change of a code to redo.
     pub fn can_redo(&self) -> bool {
         !self.undone.is_empty()
     }
 
-    /// Does the last undone step again; returns the press that it concerned.
+    /// Redoes the change that was undone last; returns the sequence number of the press whose code changed.
     pub fn redo(&mut self) -> Option<u64> {
         let change = self.undone.pop()?;
         self.set(change.press, change.after.clone());
@@ -133,7 +133,7 @@ impl RaterSession {
         };
     }
 
-    /// Who codes: "R1", "R1 and R2".
+    /// Names of the raters: "R1", "R1 and R2".
     pub fn name(&self) -> String {
         match &self.party {
             CodingParty::Rater(rater) => rater.clone(),
@@ -141,7 +141,7 @@ impl RaterSession {
         }
     }
 
-    /// Number of coded errors in words: "12 of 31 coded, 3 since opening".
+    /// Coding progress in words: "12 of 31 coded, 3 since opening".
     pub fn progress(&self) -> String {
         let (what, all, coded) = (self.verb(), self.errors.len(), self.coded());
         let now = match self.coded_now() {
@@ -151,12 +151,12 @@ impl RaterSession {
         format!("{coded} of {all} {what}{now}")
     }
 
-    /// The code of an error in words, "-" without one.
+    /// The rater's code of an error in words; "-" if there is none.
     pub fn words(code: Option<&Code>) -> String {
         code.map_or("-".to_string(), wording::code)
     }
 
-    /// The raters' own codes of an error: "R1: slip"; empty for a single rater.
+    /// The code that each of two raters gave an error alone: "R1: slip"; empty for a single rater.
     pub fn own(&self, error: &ListedError) -> Vec<String> {
         let CodingParty::Pair { consensus, own } = &self.party else { return Vec::new() };
         let of =
@@ -164,7 +164,7 @@ impl RaterSession {
         consensus.raters.iter().zip(own).map(of).collect()
     }
 
-    /// What comes next once every error has a code.
+    /// What the rater can do next, once every error has a code.
     pub fn next_step(&self) -> Option<String> {
         if self.first_open().is_some() {
             return None;
@@ -178,7 +178,7 @@ impl RaterSession {
             CodingParty::Rater(_) if number == 0 => "no error in this recording: nothing to code".to_string(),
             CodingParty::Rater(rater) => {
                 let next = match self.finished.first() {
-                    None => "another rater codes alone, with --rater".to_string(),
+                    None => "a second rater codes independently, with --rater".to_string(),
                     Some(other) => format!("tomcom codes compares, --settle {other} {rater} settles"),
                 };
                 format!("all {number} coded; next: {next}")
@@ -186,7 +186,7 @@ impl RaterSession {
         })
     }
 
-    /// What an error is after it got its code.
+    /// Verb for the progress: errors are "coded" by one rater, "settled" by two.
     fn verb(&self) -> &'static str {
         match self.party {
             CodingParty::Rater(_) => "coded",

@@ -1,4 +1,4 @@
-//! The visible content of the wizard's screen, for the log.
+//! What the wizard's screen shows, as recorded in the log.
 
 use super::beliefs::visibility;
 use super::console_model::{ConsoleModel, Dialog};
@@ -8,7 +8,7 @@ use super::view::regions::{LEAST, Regions, ScreenSize};
 use crate::session::Session;
 use crate::session::wizard_screen::VisibleScreen;
 
-/// The visible content of the screen.
+/// What the wizard's screen shows now: its panels and the open dialog or sheet.
 pub fn screen(session: &Session, model: &ConsoleModel) -> VisibleScreen {
     let visibility = visibility(session, model);
     let fits = model.size.0 >= LEAST.0 && model.size.1 >= LEAST.1;

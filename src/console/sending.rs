@@ -1,4 +1,4 @@
-//! Sends inputs to the session, or says to the wizard why it takes none.
+//! Sends events to the session, or tells the wizard why the session rejects them.
 
 use super::console_message::ConsoleCommand;
 use super::console_model::ConsoleModel;
@@ -7,12 +7,12 @@ use crate::base::time::SessionTime;
 use crate::session::admit::{admit, hygiene};
 use crate::session::{Event, Session};
 
-/// Why the session does not take an input now, if so.
+/// Why the session would reject an event now; `None` if it would accept it.
 pub(super) fn refusal(session: &Session, now: SessionTime, event: &Event) -> Option<String> {
     admit(session, event).map_err(str::to_string).and_then(|()| hygiene(session, now, event)).err()
 }
 
-/// Sends an input if the session takes it now; else says why not.
+/// Sends an event if the session accepts it now; else a notice tells the wizard why not.
 pub(super) fn send(
     model: &mut ConsoleModel,
     session: &Session,
@@ -31,7 +31,7 @@ pub(super) fn send(
     Some(ConsoleCommand::Input(event))
 }
 
-/// Lets a stopped robot go on.
+/// Releases the robot after a stop.
 pub(super) fn resume_robot(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     let words = if session.robot.held { "no longer stopped, still held" } else { "the robot goes on" };
     send(model, session, Event::RobotResumed, NoticeLevel::Done, words)

@@ -1,22 +1,22 @@
-//! The keys of a sheet, by what they mean there.
+//! Meanings of keys on a sheet (a form at full size).
 
-/// A key of the sheet.
+/// Meaning of a key on a sheet (a form at full size).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SheetKey {
-    /// Tick the step, go on from the item, or confirm.
+    /// Tick the present step, go on from the present item, or confirm the sheet.
     Confirm,
-    /// Go on to the next phase, if nothing is missing.
+    /// Go on to the session's next phase, if the sheet is complete.
     Leave,
-    /// Show the next item.
+    /// Show the next item of the sheet.
     Forward,
-    /// Show the item before.
+    /// Show the previous item.
     Back,
-    /// Take back the last tick, or show the item before.
+    /// Take back the last tick, or show the previous item.
     Undo,
-    /// Leave the item out.
+    /// Leave the item unanswered.
     Skip,
-    /// A digit: it answers or chooses.
+    /// A digit, which answers an item or selects a choice.
     Digit(u8),
-    /// Another letter, or a minus sign: it begins an answer that is typed.
+    /// A letter or a minus sign, which begins a typed answer.
     Letter(char),
 }

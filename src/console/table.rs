@@ -1,4 +1,4 @@
-//! The lines of the table of keys, as they are before a key file changes them.
+//! The default key table: all actions with their keys and texts, before a key file changes them.
 
 use crossterm::event::KeyCode::{
     self, BackTab, Backspace, Delete, Down, End, Enter, Esc, Home, Left, PageDown, PageUp, Right, Tab, Up,
@@ -25,21 +25,21 @@ const ROBOT: &str = "Robot";
 const BUTTONS: &str = "The participant's buttons";
 const CONSOLE: &str = "Console";
 const COMPARISON: &str = "Wizard and assistant";
-const CODING: &str = "Why it was an error";
+const CODING: &str = "Causes of errors";
 
-/// What the key does that looks at one aspect of the belief.
-const BELIEF: &str = "one belief over time; again: the next";
+/// Help text of the key that shows one state aspect of the belief over time.
+const BELIEF: &str = "one belief over time; again: the next one";
 
-/// What the palette does.
-const PALETTE: &str = "all actions, found by typing";
+/// Help text of the palette, the list of all actions.
+const PALETTE: &str = "list of all actions, with search";
 
-/// The palette, from which every other action can be found.
+/// Key binding of the palette, from which every other action can be found.
 fn palette() -> KeyBinding {
     let keys = [KeyChord::ctrl('k'), KeyChord::char(':')];
     line("palette", &keys, KeyAction::Palette, CONSOLE, PALETTE, Some("find"))
 }
 
-/// A line of the console: name in key files, keys, what it does, heading, help, and what the footer says.
+/// An entry of the key table: name in key files, keys, action, heading in the help, help text, label in the hint line.
 fn line(
     name: &str,
     keys: &[KeyChord],
@@ -52,7 +52,8 @@ fn line(
     KeyBinding { section: KeySection::Console, name, chords: keys.to_vec(), action, group, help, footer, layer: None }
 }
 
-/// A line of the experimenter's hands; the footer shows it when it matters.
+/// An entry of the key table for a manual intervention. The hint line shows such an entry only where it is the next
+/// step.
 fn hand(name: &str, key: char, hand: ManualAction, group: &'static str, help: &str) -> KeyBinding {
     line(name, &[KeyChord::ctrl(key)], KeyAction::Hand(hand), group, help, None)
 }
@@ -61,7 +62,8 @@ fn plain(code: KeyCode) -> [KeyChord; 1] {
     [KeyChord::plain(code)]
 }
 
-/// Everything that a live session can bind, in the order of help and footer; the letters are the layout's.
+/// Default key table of a live session, in the order of help and hint line; the kitchen's layout file assigns the
+/// letters.
 pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
     let wizards = |line: KeyBinding| KeyBinding { layer: Some(KeyLayer::Wizard), ..line };
     let mut lines = vec![
@@ -78,12 +80,12 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
             &[KeyChord::ctrl('r')],
             KeyAction::ResumeRobot,
             ROBOT,
-            "resume it after a stop",
+            "resume the robot after a stop",
             Some("resume robot"),
         ),
-        hand("hold_robot", 'p', ManualAction::HoldRobot, ROBOT, "hold it, release it"),
-        hand("skip_press", 's', ManualAction::SkipPress, ROBOT, "skip its press"),
-        hand("drive_robot", 'd', ManualAction::DriveRobot, ROBOT, "choose its next press"),
+        hand("hold_robot", 'p', ManualAction::HoldRobot, ROBOT, "hold the robot, release it"),
+        hand("skip_press", 's', ManualAction::SkipPress, ROBOT, "skip the robot's present press"),
+        hand("drive_robot", 'd', ManualAction::DriveRobot, ROBOT, "choose the robot's next press"),
         line(
             "start_pause",
             &[KeyChord::char('.')],
@@ -100,34 +102,34 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
             "end the trial (asks first)",
             Some("end"),
         ),
-        hand("preflight", 'f', ManualAction::Preflight, TRIAL, "what is ready for it"),
-        hand("check_gaze", 'v', ManualAction::Calibrate, TRIAL, "check the gaze by targets"),
-        hand("correct", 'u', ManualAction::Correct, TRIAL, "correct what lies where"),
-        hand("abort_trial", 'x', ManualAction::Abort, TRIAL, "abort it (asks why)"),
-        hand("ask_probe", 'a', ManualAction::AskProbe, TRIAL, "ask for a probe"),
+        hand("preflight", 'f', ManualAction::Preflight, TRIAL, "show the preflight checks"),
+        hand("check_gaze", 'v', ManualAction::Calibrate, TRIAL, "check gaze accuracy with targets"),
+        hand("correct", 'u', ManualAction::Correct, TRIAL, "correct a content of the kitchen"),
+        hand("abort_trial", 'x', ManualAction::Abort, TRIAL, "abort the trial (asks why)"),
+        hand("ask_probe", 'a', ManualAction::AskProbe, TRIAL, "ask for a freeze probe"),
         line(
             "skip_probe",
             &plain(Delete),
             KeyAction::Hand(ManualAction::SkipProbe),
             TRIAL,
-            "skip the rest of a probe (asks why)",
+            "skip the rest of a freeze probe (asks why)",
             None,
         ),
-        hand("redo_trial", 'n', ManualAction::Redo, TRIAL, "do an aborted one again"),
-        hand("exclude_trial", 'l', ManualAction::Exclude, TRIAL, "exclude it, include it"),
+        hand("redo_trial", 'n', ManualAction::Redo, TRIAL, "repeat an aborted or excluded trial"),
+        hand("exclude_trial", 'l', ManualAction::Exclude, TRIAL, "exclude the trial, include it again"),
         line(
             "switch_keys",
             &plain(Tab),
             KeyAction::SwitchLayer,
             CONSOLE,
-            "switch between wizard and participant",
+            "switch keys: wizard or participant",
             Some("switch"),
         ),
     ];
     lines.extend(signals(kitchen));
     let accept = "send the open offer";
     lines.push(wizards(line("accept", &plain(Enter), KeyAction::Accept, SIGNALS, accept, Some("send offer"))));
-    let take_back = "take the shown signal back";
+    let take_back = "take back the signal on the display";
     lines.push(wizards(line(
         "take_back",
         &plain(Backspace),
@@ -140,10 +142,10 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
         let digit = char::from(b'1' + index as u8);
         let footer = (index == 0).then_some("note");
         let name = format!("note_{digit}");
-        let help = format!("note {digit} of the session");
+        let help = format!("note {digit} of the session file");
         lines.push(wizards(line(&name, &[KeyChord::char(digit)], KeyAction::Note(index), MARKERS, &help, footer)));
     }
-    let help = "a note in words, when paused";
+    let help = "type a note (while paused)";
     lines.push(wizards(line(
         "note_in_words",
         &[KeyChord::char('0')],
@@ -159,23 +161,35 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
     lines.extend([
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
         palette(),
-        line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "this help", Some("help")),
+        line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "show this help", Some("help")),
         line("quit", &[KeyChord::ctrl('c')], KeyAction::Quit, CONSOLE, "quit (asks first)", Some("quit")),
     ]);
     lines
 }
 
-/// Everything that the console over a recording can bind.
+/// Default key table of a replay.
 pub fn replay() -> Vec<KeyBinding> {
     let moves = [
         ("step_forward", plain(Right), ReplayKey::StepForward, "to the next event", Some("step")),
-        ("step_back", plain(Left), ReplayKey::StepBack, "to the last event", None),
+        ("step_back", plain(Left), ReplayKey::StepBack, "to the previous event", None),
         ("next_error", [KeyChord::char('e')], ReplayKey::On(ReplayLandmark::Error), "to the next error", Some("error")),
-        ("last_error", [KeyChord::char('w')], ReplayKey::BackTo(ReplayLandmark::Error), "to the error before", None),
+        ("last_error", [KeyChord::char('w')], ReplayKey::BackTo(ReplayLandmark::Error), "to the previous error", None),
         ("next_signal", [KeyChord::char('s')], ReplayKey::On(ReplayLandmark::Signal), "to the next signal", None),
-        ("last_signal", [KeyChord::char('a')], ReplayKey::BackTo(ReplayLandmark::Signal), "to the signal before", None),
+        (
+            "last_signal",
+            [KeyChord::char('a')],
+            ReplayKey::BackTo(ReplayLandmark::Signal),
+            "to the previous signal",
+            None,
+        ),
         ("next_marker", [KeyChord::char('m')], ReplayKey::On(ReplayLandmark::Marker), "to the next marker", None),
-        ("last_marker", [KeyChord::char('n')], ReplayKey::BackTo(ReplayLandmark::Marker), "to the marker before", None),
+        (
+            "last_marker",
+            [KeyChord::char('n')],
+            ReplayKey::BackTo(ReplayLandmark::Marker),
+            "to the previous marker",
+            None,
+        ),
         (
             "next_false_belief",
             [KeyChord::char('b')],
@@ -187,15 +201,15 @@ pub fn replay() -> Vec<KeyBinding> {
             "last_false_belief",
             [KeyChord::char('v')],
             ReplayKey::BackTo(ReplayLandmark::FalseBelief),
-            "to the false belief before",
+            "to the previous false belief",
             None,
         ),
-        ("seek_forward", plain(PageDown), ReplayKey::SeekForward, "ten seconds on", Some("10 s")),
+        ("seek_forward", plain(PageDown), ReplayKey::SeekForward, "ten seconds forward", Some("10 s")),
         ("seek_back", plain(PageUp), ReplayKey::SeekBack, "ten seconds back", None),
-        ("faster", [KeyChord::char('+')], ReplayKey::Faster, "faster", Some("speed")),
-        ("slower", [KeyChord::char('-')], ReplayKey::Slower, "slower", None),
+        ("faster", [KeyChord::char('+')], ReplayKey::Faster, "play faster", Some("speed")),
+        ("slower", [KeyChord::char('-')], ReplayKey::Slower, "play slower", None),
         ("to_start", plain(Home), ReplayKey::ToStart, "to the beginning", None),
-        ("to_end", plain(End), ReplayKey::ToEnd, "to the end; stays there if the recording grows", Some("ends")),
+        ("to_end", plain(End), ReplayKey::ToEnd, "to the end; follows a growing recording", Some("start/end")),
     ];
     let of_move =
         |name, keys: &[KeyChord], to, help, footer| line(name, keys, KeyAction::Move(to), REPLAY, help, footer);
@@ -205,7 +219,7 @@ pub fn replay() -> Vec<KeyBinding> {
         line("quit", &quit, KeyAction::Quit, CONSOLE, "quit", Some("quit")),
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
         palette(),
-        line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "this help", Some("help")),
+        line("help", &[KeyChord::char('?')], KeyAction::Help, CONSOLE, "show this help", Some("help")),
     ];
     lines.extend(looks(&[KeyChord::plain(Tab), KeyChord::ctrl('w')]));
     lines.extend(differences());
@@ -214,7 +228,7 @@ pub fn replay() -> Vec<KeyBinding> {
     lines.into_iter().map(|line| KeyBinding { section: KeySection::Replay, ..line }).collect()
 }
 
-/// What a rater says about errors; only where they are coded.
+/// Key bindings of a rater's codes, active only while errors are coded.
 fn codes() -> [KeyBinding; 9] {
     let code =
         |name, keys: &[KeyChord], rate, help, footer| line(name, keys, KeyAction::Rate(rate), CODING, help, footer);
@@ -223,28 +237,40 @@ fn codes() -> [KeyBinding; 9] {
         line(name, &[KeyChord::char(key)], KeyAction::Rate(RaterKey::Cause(kind)), CODING, &help, None)
     };
     [
-        code("code_next", &plain(Enter), RaterKey::Next, "to the next error, or the chosen one", Some("next error")),
-        code("code_last", &plain(Backspace), RaterKey::Last, "to the error before", None),
+        code(
+            "code_next",
+            &plain(Enter),
+            RaterKey::Next,
+            "to the next error, or to the selected one",
+            Some("next error"),
+        ),
+        code("code_last", &plain(Backspace), RaterKey::Last, "to the previous error", None),
         cause("slip", '1', CauseKind::Slip),
         cause("race", '2', CauseKind::Race),
         cause("other_cause", '3', CauseKind::Other),
         cause("mixed_up_buttons", '4', CauseKind::Buttons),
-        code("clear_code", &plain(Delete), RaterKey::Clear, "not coded after all", Some("no code")),
-        code("undo_code", &[KeyChord::char('u'), KeyChord::ctrl('z')], RaterKey::Undo, "undo a code", Some("undo")),
-        code("redo_code", &[KeyChord::ctrl('y')], RaterKey::Redo, "redo it", Some("redo")),
+        code("clear_code", &plain(Delete), RaterKey::Clear, "remove the code of the error", Some("remove code")),
+        code(
+            "undo_code",
+            &[KeyChord::char('u'), KeyChord::ctrl('z')],
+            RaterKey::Undo,
+            "undo the last change of a code",
+            Some("undo"),
+        ),
+        code("redo_code", &[KeyChord::ctrl('y')], RaterKey::Redo, "redo the undone change", Some("redo")),
     ]
 }
 
-/// The arrows of a rater: they choose an error of the list.
+/// What an arrow key does while a rater codes: it selects an error of the list.
 pub fn choosing(action: &KeyAction) -> Option<(RaterKey, &'static str)> {
     match action {
-        KeyAction::Look(PanelKey::Back) => Some((RaterKey::ChooseEarlier, "choose the error above; enter goes there")),
-        KeyAction::Look(PanelKey::Forward) => Some((RaterKey::ChooseLater, "choose the error below; enter goes there")),
+        KeyAction::Look(PanelKey::Back) => Some((RaterKey::ChooseEarlier, "select the error above; enter goes there")),
+        KeyAction::Look(PanelKey::Forward) => Some((RaterKey::ChooseLater, "select the error below; enter goes there")),
         _ => None,
     }
 }
 
-/// What was believed wrong, by the letters of the signals.
+/// Key bindings with which a rater codes false beliefs, one for each location, on the letters of the signals.
 pub fn causes(kitchen: &Kitchen, marks: &[Option<KeyChord>]) -> Vec<KeyBinding> {
     let cause = |(index, mark): (usize, &Option<KeyChord>)| {
         let (id, chord) = (LocationId(index as u8), (*mark)?);
@@ -254,37 +280,44 @@ pub fn causes(kitchen: &Kitchen, marks: &[Option<KeyChord>]) -> Vec<KeyBinding> 
     marks.iter().enumerate().filter_map(cause).collect()
 }
 
-/// Where wizard and assistant differ; only where they are compared.
+/// Key bindings of the differences between wizard and assistant, active only in a comparison.
 fn differences() -> [KeyBinding; 3] {
     let differ = |name, key, step, help, footer| {
         line(name, &[KeyChord::ctrl(key)], KeyAction::Differ(step), COMPARISON, help, footer)
     };
     [
-        differ("open_difference", 'o', ComparisonKey::Open, "what each knew where they differ", Some("difference")),
+        differ(
+            "open_difference",
+            'o',
+            ComparisonKey::Open,
+            "show what each knew at the difference",
+            Some("difference"),
+        ),
         differ("next_difference", 'g', ComparisonKey::Next, "the next difference", Some("next")),
-        differ("last_difference", 't', ComparisonKey::Last, "the difference before", Some("before")),
+        differ("last_difference", 't', ComparisonKey::Last, "the previous difference", Some("previous")),
     ]
 }
 
-/// What is on the screen.
+/// Key bindings that change which panels the screen shows.
 fn looks(next: &[KeyChord]) -> [KeyBinding; 5] {
     let look = |name, code, look, help, footer| line(name, &plain(code), KeyAction::Look(look), CONSOLE, help, footer);
-    let panels = "the next panel alone";
+    let panels = "next panel at full size";
     [
         line("next_panel", next, KeyAction::Look(PanelKey::Next), CONSOLE, panels, Some("panels")),
-        look("last_panel", BackTab, PanelKey::Last, "the panel before, alone", None),
-        look("all_panels", Esc, PanelKey::All, "all panels, and now again", Some("all panels")),
-        look("back", Up, PanelKey::Back, "further back in events or timeline", None),
-        look("forward", Down, PanelKey::Forward, "forward again", None),
+        look("last_panel", BackTab, PanelKey::Last, "previous panel at full size", None),
+        look("all_panels", Esc, PanelKey::All, "show all panels, at the present time", Some("all panels")),
+        look("back", Up, PanelKey::Back, "scroll back in events or timeline", None),
+        look("forward", Down, PanelKey::Forward, "scroll forward again", None),
     ]
 }
 
-/// Left and right go through time: here on the timeline, in a recording from event to event.
+/// Left and right arrow keys in a live session: they scroll the timeline. In a replay, they go from event to event
+/// instead.
 fn times() -> [KeyBinding; 2] {
     let time = |name, code, look, help| line(name, &plain(code), KeyAction::Look(look), CONSOLE, help, None);
     [
-        time("earlier", Left, PanelKey::Earlier, "the timeline five seconds earlier"),
-        time("later", Right, PanelKey::Later, "the timeline later, up to now"),
+        time("earlier", Left, PanelKey::Earlier, "scroll the timeline 5 s back"),
+        time("later", Right, PanelKey::Later, "scroll the timeline 5 s forward"),
     ]
 }
 

@@ -1,4 +1,5 @@
-//! `update`: a message comes in, the model changes, and what concerns the session leaves as a command.
+//! The `update` function of the Elm architecture: takes a message, changes the console's model, and returns a command
+//! if the session is concerned.
 
 use super::click_question;
 use super::console_message::{ConsoleCommand, ConsoleMessage};
@@ -8,7 +9,7 @@ use super::key_press;
 use super::mouse;
 use crate::session::{Event, Phase, Session};
 
-/// Takes a message at the time `model.now`.
+/// Handles a message to the console at the time `model.now`.
 pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessage) -> Option<ConsoleCommand> {
     click_question::expire(model, session);
     hands::expire(model, session);

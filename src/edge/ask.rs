@@ -1,16 +1,18 @@
-//! Questions to the terminal, and its answers. They are asked before anything else reads the keyboard, and read to their
-//! end, so that no part of an answer is taken for a key.
+//! Queries to the terminal about its abilities, and the terminal's answers (escape sequences). They are exchanged
+//! before anything else reads the keyboard, and answers are read to their end, so that no part of an answer is taken
+//! for a key.
 
 use std::time::{Duration, Instant};
 
 use crate::console::view::theme::TerminalBackground;
 
-/// A terminal answers within milliseconds, over a network within a second.
+/// Longest wait for the terminal's answer: terminals answer within milliseconds, over a network within a second.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// What every terminal answers (primary device attributes): asked last, it ends the waiting for all that came before.
+/// Query that every terminal answers (primary device attributes). It is sent last, so that its answer shows that no
+/// answer to an earlier query is still to come.
 const LAST: &str = "\x1b[c";
 
-/// Writes a question to the terminal, which is in raw mode, and reads what it answers.
+/// Writes a query to the terminal, which must be in raw mode, and reads the terminal's answer.
 #[cfg(unix)]
 pub fn ask(question: &str) -> Option<String> {
     use std::io::{Read, Write};
@@ -19,7 +21,7 @@ pub fn ask(question: &str) -> Option<String> {
 
     let mut terminal = std::fs::OpenOptions::new().read(true).write(true).open("/dev/tty").ok()?;
     let until = Instant::now() + PATIENCE;
-    // A terminal that nobody reads is full some day: writing to it would wait for ever.
+    // A terminal that nobody reads has a full buffer some day: without a time limit, writing to it would block forever.
     let is_in_time = |terminal: &std::fs::File, what: PollFlags| {
         let left = Timespec::try_from(until.saturating_duration_since(Instant::now())).ok()?;
         poll(&mut [PollFd::new(terminal, what)], Some(&left)).ok().filter(|&ready| ready > 0)
@@ -38,19 +40,19 @@ pub fn ask(question: &str) -> Option<String> {
     Some(String::from_utf8_lossy(&answer).into_owned())
 }
 
-/// Terminals of other systems are not asked.
+/// On other operating systems, terminals are not queried.
 #[cfg(not(unix))]
 pub fn ask(_: &str) -> Option<String> {
     None
 }
 
-/// Whether the answer to [`LAST`] is there: `ESC [ ? … c`.
+/// Whether the answer to the query [`LAST`] has arrived: `ESC [ ? … c`.
 fn is_whole(answer: &[u8]) -> bool {
     let start = answer.windows(3).rposition(|bytes| bytes == b"\x1b[?");
     start.is_some_and(|start| answer[start..].iter().all(|byte| byte.is_ascii()) && answer.last() == Some(&b'c'))
 }
 
-/// The terminal's background, if it tells (OSC 11).
+/// The terminal's background, if the terminal tells its colour (OSC 11).
 pub fn ground() -> Option<TerminalBackground> {
     let answer = ask("\x1b]11;?\x1b\\")?;
     let colour = answer.split("]11;rgb:").nth(1)?;
@@ -60,7 +62,7 @@ pub fn ground() -> Option<TerminalBackground> {
         Some(f64::from(value) / f64::from(16_u32.pow(digits.len() as u32) - 1))
     });
     let [red, green, blue] = [parts.next()??, parts.next()??, parts.next()??];
-    // Perceived brightness (ITU-R BT.601) of the values as they are.
+    // Perceived brightness (ITU-R BT.601) of the colour values, without gamma correction.
     let brightness = 0.299 * red + 0.587 * green + 0.114 * blue;
     Some(if brightness > 0.5 { TerminalBackground::Light } else { TerminalBackground::Dark })
 }

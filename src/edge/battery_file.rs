@@ -1,4 +1,4 @@
-//! Reads the file of a battery of cohorts, with the session file that it names.
+//! Reads the file of a battery (several cohorts of simulated participants), with the session file that it names.
 
 use std::ops::Range;
 use std::path::Path;
@@ -10,19 +10,19 @@ use super::place::place_of;
 use crate::session::battery::{BatterySpec, CohortSpec};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
-/// A battery of cohorts with the files of its session.
+/// A battery of cohorts of simulated participants, with the session that they share.
 #[derive(Clone, Debug)]
 pub struct BatteryFiles {
-    /// The session of all cohorts.
+    /// Session settings that all cohorts share, with their files.
     pub session: SessionFiles,
-    /// The cohorts, in the order of the table.
+    /// Cohorts of simulated participants, in the order of the battery file.
     pub cohorts: Vec<CohortSpec>,
 }
 
-/// Reads a battery and its session.
+/// Reads a battery file and the session file that it names.
 ///
 /// # Errors
-/// A file cannot be read, the session's participant or gaze is not simulated, or a cohort has a setting that cannot be.
+/// A file cannot be read, the session's participant or gaze is not simulated, or a cohort has an invalid setting.
 pub fn read_battery(path: &Path) -> FileResult<BatteryFiles> {
     let text = read_text(path)?;
     let spec: BatterySpec = parse(path, &text)?;
@@ -66,7 +66,7 @@ fn is_simulated(gaze: GazeSource) -> bool {
     matches!(gaze, GazeSource::Simulated | GazeSource::None)
 }
 
-/// The place of a cohort's wrong setting: the first one of that name below the cohort's name.
+/// Position of a cohort's invalid setting in the battery file: the first setting of that name after the cohort's name.
 fn place_in_cohort(text: &str, cohort: &CohortSpec, error: &SettingError) -> Range<usize> {
     let name = cohort.name.span();
     let path = error.path.strip_prefix("participant.").unwrap_or(&error.path);

@@ -1,4 +1,4 @@
-//! Writes the tree of a BIDS data set.
+//! Writes the folder tree of a BIDS data set (Brain Imaging Data Structure).
 
 use std::fs;
 use std::io::{self, ErrorKind, Write};
@@ -9,20 +9,21 @@ use flate2::{Compression, GzBuilder};
 use super::file_error::{FileError, FileResult, read_regular};
 use crate::analysis::bids::{BidsFile, CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS_NAME, PROGRAM_NAME};
 
-/// What would be right where the tree cannot be written.
+/// Advice in error messages when the data set cannot be written.
 const REMEDY: &str = "a new folder on a disk with free space";
 
-/// A folder in which a tree is made.
+/// Root folder of a BIDS data set that is being written.
 #[derive(Debug)]
 pub struct BidsTree {
     root: PathBuf,
 }
 
 impl BidsTree {
-    /// Makes the folder. One that is there has to be empty, so that nothing of an earlier export, or of somebody else, is in the tree.
+    /// Creates the root folder of a data set. An existing folder has to be empty, so that the data set contains nothing
+    /// of an earlier export or of another program.
     ///
     /// # Errors
-    /// There is something in the folder, or it cannot be made.
+    /// The folder is not empty, or cannot be created.
     pub fn create(root: &Path) -> FileResult<BidsTree> {
         match fs::read_dir(root) {
             Ok(mut entries) => {
@@ -39,10 +40,11 @@ impl BidsTree {
         Ok(BidsTree { root: root.to_path_buf() })
     }
 
-    /// Writes a file; its name is its path below the tree. What ends with `.gz` is compressed.
+    /// Writes a file of the data set; the file's name is its path below the root folder. Files that end with `.gz` are
+    /// compressed.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn write(&self, file: &BidsFile) -> FileResult<()> {
         let path = self.root.join(&file.name);
         let write = || {
@@ -56,7 +58,7 @@ impl BidsTree {
     }
 }
 
-/// The codes of the participants in a tree that this program wrote; nothing for every other folder.
+/// Codes of the participants in a BIDS data set that this program wrote; `None` for every other folder.
 pub(super) fn codes(root: &Path) -> Option<Vec<String>> {
     let description = read_regular(&root.join(DESCRIPTION_NAME)).ok()?;
     let description: serde_json::Value = serde_json::from_str(&description).ok()?;
@@ -67,7 +69,7 @@ pub(super) fn codes(root: &Path) -> Option<Vec<String>> {
     Some(rows.filter_map(|mut cells| cells.nth(column).map(str::to_string)).collect())
 }
 
-/// As gzip writes it, without time and name, so that the same text gives the same bytes.
+/// The text compressed with gzip, without time and name, so that the same text gives the same bytes.
 fn compressed(text: &str) -> io::Result<Vec<u8>> {
     let mut out = GzBuilder::new().write(Vec::new(), Compression::default());
     out.write_all(text.as_bytes())?;

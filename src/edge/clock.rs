@@ -1,31 +1,31 @@
-//! Clocks. Session time comes from the monotonic clock. The wall clock can be set and can jump; it is used only for names and headers
-//! of recordings, and its jumps are recorded in the log.
+//! Clocks of the program. Session time comes from the monotonic clock. The wall clock can be set and can jump; it is
+//! used only for names and headers of recordings, and its jumps are recorded in the log.
 
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use crate::base::time::SessionTime;
 
-/// Gap between readings after which the program counts as having been suspended.
+/// Gap between two clock readings after which the program counts as having been suspended.
 const STANDSTILL: Duration = Duration::from_secs(1);
-/// Least difference between the clocks that counts as a jump, in milliseconds.
+/// Least change of wall clock minus session time that counts as a jump of the wall clock, in milliseconds.
 const JUMP_MS: i64 = 500;
 
-/// The clock of a live session. It stops while the program is suspended or blocked for more than a second, so that pending actions
-/// of robot and participant do not all happen at once afterwards.
+/// Clock of a live session (session time). It stops while the program is suspended or blocked for more than a second,
+/// so that pending actions of robot and participant do not all happen at once afterwards.
 #[derive(Clone, Debug)]
 pub struct SessionClock {
-    /// The session time at `began`.
+    /// Session time at the instant `began`.
     offset: SessionTime,
     began: Instant,
     looked: Instant,
-    /// Total time of suspensions since `began`.
+    /// Total time since `began` for which the program was suspended.
     stood: Duration,
-    /// Wall clock minus session time at the last comparison, in milliseconds.
+    /// Wall clock minus session time at the last comparison of the two, in milliseconds.
     ahead_ms: i64,
 }
 
 impl SessionClock {
-    /// Starts a clock that shows `offset` now.
+    /// Starts a session clock that shows `offset` now.
     pub fn start(offset: SessionTime) -> SessionClock {
         let now = Instant::now();
         let ahead_ms = WallTime::now().unix_ms as i64 - millis(offset);
@@ -74,10 +74,10 @@ fn millis(time: SessionTime) -> i64 {
     (time.0 / 1_000_000) as i64
 }
 
-/// A time of the wall clock, in UTC.
+/// A date and time of the wall clock, in UTC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WallTime {
-    /// Milliseconds since 1970-01-01.
+    /// Milliseconds since 1970-01-01 (UTC).
     unix_ms: u64,
 }
 
@@ -88,13 +88,13 @@ impl WallTime {
         WallTime { unix_ms: since_1970.as_millis() as u64 }
     }
 
-    /// "2026-03-14".
+    /// Date of the wall clock time, as in "2026-03-14".
     pub fn date(self) -> String {
         let (year, month, day) = civil(self.unix_ms / 86_400_000);
         format!("{year:04}-{month:02}-{day:02}")
     }
 
-    /// "2026-03-14T09:26:53.589Z" (RFC 3339).
+    /// Date and time in UTC, as in "2026-03-14T09:26:53.589Z" (RFC 3339).
     pub fn rfc3339(self) -> String {
         let ms = self.unix_ms % 86_400_000;
         let (hours, minutes, seconds) = (ms / 3_600_000, ms / 60_000 % 60, ms / 1000 % 60);
@@ -131,12 +131,13 @@ mod tests {
         let wall_after = |ms: i64| WallTime { unix_ms: (wall.unix_ms as i64 + ms) as u64 };
         assert_eq!(clock.at(after(400)), shows(400));
         assert_eq!(clock.jump_at(shows(400), wall_after(410)), None);
-        // Set forward by an hour, then back again: told once each, and no session time passes.
+        // The wall clock is set forward by an hour, then back again: each jump is reported once, and no session time
+        // passes.
         let told = clock.jump_at(shows(400), wall_after(3_600_400)).expect("a jump");
         assert!((told - 3_600_000).abs() < 100, "{told}");
         assert_eq!(clock.jump_at(shows(400), wall_after(3_600_400)), None);
         assert!(clock.jump_at(shows(400), wall_after(400)).is_some_and(|by_ms| by_ms < -3_599_000));
-        // The computer sleeps for a minute.
+        // In this test, the computer is suspended for a minute.
         assert_eq!(clock.at(after(60_400)), shows(400));
         assert!(clock.jump_at(shows(400), wall_after(60_400)).is_some_and(|by_ms| (59_900..60_100).contains(&by_ms)));
         assert_eq!(clock.at(after(60_500)), shows(500));

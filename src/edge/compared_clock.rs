@@ -1,47 +1,51 @@
-//! Offset of another clock, from its answers to time requests: Pupil Capture's, or that of the Lab Streaming Layer.
+//! Offset between this computer's clock and another one, estimated from replies to time requests: the clock of Pupil
+//! Capture, or that of the Lab Streaming Layer.
 
 use std::time::{Duration, Instant};
 
-/// Number of clock replies averaged for the offset (as Pupil Labs does).
+/// Number of clock replies averaged for the offset between two clocks (as Pupil Labs does).
 pub(super) const ANSWERS: usize = 10;
-/// Replies are too far apart for one offset if they differ by more than this beyond what their delays explain, in seconds: the clock
-/// was slewed in between. Capture's Time Sync slews by 0.5 ms every 0.1 s, up to 10 ms in a row; clocks drift by far less.
+/// Largest difference between two replies' offsets that their delays do not explain, in seconds; beyond it, the other
+/// clock was slewed between them, and they are not averaged. Capture's Time Sync slews by 0.5 ms every 0.1 s, up to 10
+/// ms in a row; clocks drift by far less.
 const SLEWED_S: f64 = 0.0005;
-/// A change of the offset by more than this, beyond what slow replies explain, means that the clock was set, in seconds.
+/// Least change of the offset, beyond what slow replies explain, that means that the other clock was set, in seconds.
 const SET_S: f64 = 0.01;
 
-/// The other clock was set.
+/// A step of the other clock: somebody or something set it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DeviceClockStep {
-    /// By how much it went ahead, in seconds; negative: back.
+    /// Size of the step in seconds; negative if the clock was set back.
     pub by_s: f64,
-    /// When the clock was last found as it was before.
+    /// Instant at which the clock's offset was last found unchanged before the step.
     pub known_at: Instant,
 }
 
-/// The offset of the other clock: mean over the latest replies without slow ones, and without those from before the clock was slewed. A
-/// delay in one direction shifts a reply's offset by half of the delay.
+/// Estimator of the other clock's offset: mean over the latest replies, without slow replies and without those from
+/// before the clock was slewed. A delay in one direction shifts a reply's offset by half of the delay.
 #[derive(Debug)]
 pub(super) struct ComparedClock {
     anchor: Instant,
-    /// The other clock's time minus seconds since the anchor, and round trip time in seconds, the newest last.
+    /// For each reply, the other clock's time minus seconds since the anchor, and the round-trip time in seconds;
+    /// newest last.
     answers: Vec<(f64, f64)>,
-    /// When the latest reply arrived.
+    /// Instant at which the latest reply of the other clock arrived.
     known_at: Instant,
 }
 
 impl ComparedClock {
-    /// A clock that was not compared yet.
+    /// An estimator without any reply yet.
     pub fn new() -> ComparedClock {
         let now = Instant::now();
         ComparedClock { anchor: now, answers: Vec::new(), known_at: now }
     }
 
-    /// Adds a reply to a time request; the step, if it shows that the clock was set.
+    /// Adds a reply to a time request; returns the step of the other clock, if the reply shows one.
     pub fn take(&mut self, asked: Instant, answered: Instant, device_s: f64) -> Option<DeviceClockStep> {
         let since = |at: Instant| at.saturating_duration_since(self.anchor).as_secs_f64();
         let (offset, took_s) = (device_s - (since(asked) + since(answered)) / 2.0, since(answered) - since(asked));
-        // The true offset is off by up to half of the delay; the mean before by no more than the least delay.
+        // A reply's offset is uncertain by half of the round-trip time; the mean of earlier replies, by no more than
+        // the shortest round trip.
         let unsure_s = took_s / 2.0 + self.least_s().unwrap_or(0.0);
         let before = self.offset().filter(|before| (before - offset).abs() > SET_S + unsure_s);
         let step = before.map(|before| DeviceClockStep { by_s: offset - before, known_at: self.known_at });
@@ -59,7 +63,7 @@ impl ComparedClock {
         step
     }
 
-    /// The shortest round trip, in seconds.
+    /// Shortest round trip of a request for the other clock's time, in seconds.
     fn least_s(&self) -> Option<f64> {
         self.answers.iter().map(|(_, took_s)| *took_s).min_by(f64::total_cmp)
     }
@@ -71,7 +75,7 @@ impl ComparedClock {
         (count > 0).then(|| sum / f64::from(count))
     }
 
-    /// Instant of a time of the other clock.
+    /// Instant on this computer that corresponds to a time of the other clock.
     pub fn instant(&self, device_s: f64) -> Option<Instant> {
         let since_s = device_s - self.offset()?;
         match Duration::try_from_secs_f64(since_s.abs()) {
@@ -81,7 +85,7 @@ impl ComparedClock {
         }
     }
 
-    /// Time of the other clock at an instant.
+    /// Time of the other clock at an instant of this computer.
     pub fn device_s(&self, at: Instant) -> Option<f64> {
         let since_s = match at.checked_duration_since(self.anchor) {
             Some(after) => after.as_secs_f64(),
@@ -102,7 +106,7 @@ mod tests {
         let [anchor, later] = [at(0), at(5000)];
         let after = |ms: u64| anchor + Duration::from_millis(ms);
         assert_eq!(clock.instant(7.0), None);
-        // The other clock is 100 s ahead; every third answer is late by 40 ms.
+        // The other clock is 100 s ahead; every third reply is late by 40 ms.
         for second in 0..30u64 {
             let asked = 1000 * second;
             let late = if second % 3 == 1 { 40 } else { 0 };
@@ -115,7 +119,7 @@ mod tests {
         assert!((clock.device_s(later).expect("a time") - 105.0).abs() < 1e-5);
         assert!((clock.device_s(anchor).expect("a time") - 100.0).abs() < 1e-5);
         assert_eq!(clock.take(after(29_500), after(29_502), 129.501), None);
-        // It is set by 0.2 s, and by 20 ms; a slow reply of 60 ms is no step.
+        // The other clock is set by 0.2 s, then by 20 ms; a slow reply of 60 ms does not count as a step.
         let step = clock.take(after(30_000), after(30_002), 130.201).expect("a step");
         assert!((step.by_s - 0.2).abs() < 0.002 && step.known_at == after(29_502), "{step:?}");
         assert!((clock.device_s(after(30_001)).expect("a time") - 130.201).abs() < 1e-9);
@@ -127,8 +131,8 @@ mod tests {
         assert_eq!(clock.instant(1e300), None);
     }
 
-    /// What Capture's Time Sync did with its clock (`tests/pupil/time_sync.csv`): seconds at which it was asked and answered, and Pupil
-    /// time; and by how much Pupil time was behind the true one then.
+    /// Recorded behaviour of Capture's Time Sync (`tests/pupil/time_sync.csv`): seconds at which Capture's clock was
+    /// asked and answered, Pupil time, and how far Pupil time was behind the true time.
     fn time_sync() -> Vec<[f64; 4]> {
         let numbers = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect::<Vec<f64>>();
         let table = include_str!("../../tests/pupil/time_sync.csv");
@@ -146,11 +150,11 @@ mod tests {
             let at = |seconds: f64| clock.anchor + Duration::from_secs_f64(seconds);
             let (asked, answered) = (at(*asked), at(*answered));
             steps.extend(clock.take(asked, answered, *pupil_s));
-            // A stamp made at the next reply is told by what is known until then.
+            // A time stamp made at the next reply is converted with what is known up to this reply.
             let Some([_, next_s, _, behind_s]) = answers.get(index + 1) else { continue };
             let told = clock.instant(next_s - behind_s).expect("a clock that was compared");
             let off_s = told.saturating_duration_since(clock.anchor).as_secs_f64() - next_s;
-            // A step is known from the next reply on.
+            // A step of the clock is known from the next reply on.
             if (behind_s - bases[index]).abs() < SET_S {
                 wrong_s = wrong_s.max(off_s.abs());
             }

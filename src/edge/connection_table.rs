@@ -1,5 +1,5 @@
-//! Table of a listener's open connections. It limits their number, in total and per address. A new connection beyond a limit
-//! replaces the one that was silent longest, so that silent connections cannot keep others out.
+//! Table of a server's open network connections. It limits their number, in total and per address. A new connection
+//! beyond a limit replaces the one that was silent longest, so that silent connections cannot keep others out.
 
 use std::collections::BTreeMap;
 use std::net::IpAddr;
@@ -8,29 +8,31 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
 
-/// Limits of a listener.
+/// Limits for the open connections of a server.
 #[derive(Clone, Copy, Debug)]
 pub struct ConnectionLimits {
-    /// Open connections in total. The sum over all listeners stays well below 1024, a usual limit of open files.
+    /// Largest number of open connections. The sum over all servers of this program stays well below 1024, a usual
+    /// limit of open files.
     pub most: usize,
-    /// Open connections per address.
+    /// Largest number of open network connections per address.
     pub per_address: usize,
-    /// Admitted connections in total.
+    /// Largest number of admitted network connections.
     pub admitted: usize,
-    /// Admitted connections per address. Fewer than [`Self::per_address`] leave room for new connections.
+    /// Largest number of admitted connections per address. Fewer than [`Self::per_address`] leave room for new
+    /// connections.
     pub admitted_per_address: usize,
-    /// Silence after which an admitted connection may be replaced, if no waiting one can be.
+    /// Silence after which an admitted connection may be replaced, if no connection is waiting for admission.
     pub silence: Duration,
 }
 
-/// How a connection is treated when there are too many.
+/// How a connection is treated when there are too many connections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ConnectionStanding {
-    /// Not identified yet: new connections may replace it.
+    /// Sender not identified yet: new connections may replace this one.
     Waiting,
-    /// Identified as a page or a tracker: replaced only after a silence.
+    /// Sender identified as a page or a tracker: the connection is replaced only after a silence.
     Admitted,
-    /// Never replaced, and not counted by the limits of admitted connections.
+    /// Reserved connection: never replaced, and not counted by the limits of admitted connections.
     Reserved,
 }
 
@@ -49,7 +51,7 @@ struct ConnectionEntries {
     next: u64,
 }
 
-/// Open connections of one listener.
+/// Open network connections of one server.
 #[derive(Debug)]
 pub struct ConnectionTable {
     limits: ConnectionLimits,
@@ -59,31 +61,31 @@ pub struct ConnectionTable {
 /// An open connection's entry in the table; dropping it removes the entry.
 #[derive(Debug)]
 pub struct ConnectionPlace {
-    /// Serial number of the connection.
+    /// Serial number of the network connection.
     pub number: u64,
     address: IpAddr,
     table: Arc<ConnectionTable>,
     closing: watch::Receiver<bool>,
 }
 
-/// A new connection, and whether it replaces another.
+/// A new connection, and whether another connection is closed to make room for it.
 #[derive(Debug)]
 pub struct Arrival {
-    /// Entry of the new connection.
+    /// Table entry of the new network connection.
     pub place: ConnectionPlace,
-    /// Whether another connection is closed for it.
+    /// Whether another connection is closed to make room.
     pub made_room: bool,
 }
 
 impl ConnectionTable {
-    /// An empty table.
+    /// A table without connections.
     pub fn new(limits: ConnectionLimits) -> Arc<ConnectionTable> {
         Arc::new(ConnectionTable { limits, inner: Mutex::default() })
     }
 
-    /// Adds a connection from this address. Beyond a limit it replaces the connection that was silent longest: one of the same
-    /// address if that address has too many, else one of the address with the most waiting connections. `None`: no connection
-    /// can be replaced, and the new one has to be refused.
+    /// Adds a connection from this address. Beyond a limit it replaces the connection that was silent longest: one of
+    /// the same address if that address has too many, else one of the address with the most waiting connections. `None`
+    /// if no connection can be replaced, so that the new one has to be refused.
     pub fn arrive(self: &Arc<Self>, address: IpAddr, now: Instant) -> Option<Arrival> {
         let address = network_of(address);
         let mut inner = self.lock();
@@ -103,7 +105,7 @@ impl ConnectionTable {
         Some(Arrival { place, made_room: is_full })
     }
 
-    /// Index of the connection to be replaced, among those of this address or among all.
+    /// Index of the connection that a new one may replace, among those of this address or among all.
     fn replaceable(&self, entries: &[ConnectionEntry], only: Option<IpAddr>, now: Instant) -> Option<usize> {
         let is_waiting = |entry: &ConnectionEntry| entry.standing == ConnectionStanding::Waiting;
         let mut waiting = BTreeMap::<IpAddr, usize>::new();
@@ -124,7 +126,7 @@ impl ConnectionTable {
         candidates.min_by_key(|(_, entry)| (!is_waiting(entry), entry.heard)).map(|(index, _)| index)
     }
 
-    /// Number of open connections.
+    /// Number of open network connections.
     pub fn count(&self) -> usize {
         self.lock().entries.len()
     }
@@ -135,12 +137,12 @@ impl ConnectionTable {
 }
 
 impl ConnectionPlace {
-    /// Address of the other end, as the limits count it; see [`network_of`].
+    /// Address of the connection's other end, as the limits count it; see [`network_of`].
     pub fn address(&self) -> IpAddr {
         self.address
     }
 
-    /// Notes that data arrived.
+    /// Records that data arrived on the network connection.
     pub fn heard(&self, now: Instant) {
         self.change(|entry| entry.heard = now);
     }
@@ -170,9 +172,9 @@ impl ConnectionPlace {
         });
     }
 
-    /// Completes when the connection is replaced and has to be closed.
+    /// Completes when another connection replaces this one, which then has to be closed.
     pub async fn closed(&self) {
-        // An error means that the entry is gone, which is the same.
+        // An error means that the table entry no longer exists, which has the same consequence.
         let _ = self.closing.clone().wait_for(|closing| *closing).await;
     }
 
@@ -190,8 +192,8 @@ impl Drop for ConnectionPlace {
     }
 }
 
-/// The network that limits count as one address: an IPv4 address, or the /64 prefix of an IPv6 address, which one site can
-/// use completely.
+/// The network that limits count as one address: an IPv4 address, or the /64 prefix of an IPv6 address, all of which
+/// one site can use.
 pub fn network_of(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V4(address) => address.into(),

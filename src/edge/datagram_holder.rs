@@ -1,29 +1,29 @@
-//! Filter of gaze datagrams by sender. A datagram identifies its sender by nothing but the address: the address that sends the
-//! first sample holds the input until it has been silent for a while.
+//! Filter of gaze datagrams by sender. A datagram identifies its sender by nothing but the address: the address that
+//! sends the first sample keeps the gaze input to itself until it has been silent for a while.
 
 use std::net::IpAddr;
 use std::time::{Duration, Instant};
 
 use crate::session::settings::GazeSenders;
 
-/// Silence after which the holder loses the input.
+/// Silence after which the present sender's address loses its exclusive use of the gaze input.
 pub const RELEASE: Duration = Duration::from_secs(5);
 
-/// The address that holds the datagram input.
+/// Which address may send gaze datagrams: the first sender has exclusive use until it falls silent.
 #[derive(Clone, Copy, Debug)]
 pub struct DatagramHolder {
     senders: GazeSenders,
-    /// The holder and the arrival of its last sample.
+    /// Address with exclusive use of the gaze input, and the arrival of its last sample.
     holder: Option<(IpAddr, Instant)>,
 }
 
 impl DatagramHolder {
-    /// An input without a holder.
+    /// A filter that no address uses exclusively yet.
     pub fn new(senders: GazeSenders) -> DatagramHolder {
         DatagramHolder { senders, holder: None }
     }
 
-    /// Whether a datagram from this address is read.
+    /// Whether a gaze datagram from this address is read.
     pub fn admits(&self, from: IpAddr, now: Instant) -> bool {
         match (self.senders, self.holder) {
             (GazeSenders::Any, _) | (_, None) => true,
@@ -33,7 +33,7 @@ impl DatagramHolder {
         }
     }
 
-    /// Notes that a datagram from this address contained a sample.
+    /// Records that a datagram from this address contained a gaze sample.
     pub fn heard(&mut self, from: IpAddr, now: Instant) {
         self.holder = Some((from, now));
     }

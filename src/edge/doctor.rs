@@ -1,5 +1,5 @@
-//! What the program, and a session, need of the machine: terminal, a place for recordings, clocks, ports, trackers. Every
-//! finding says how to mend it.
+//! The command `tomcom doctor`: checks what the program, and a session, need of the computer: terminal, a folder for
+//! recordings, clocks, ports, trackers. Every finding names a remedy.
 
 mod devices;
 
@@ -22,27 +22,27 @@ use crate::session::SessionSpec;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict, space};
 use crate::session::settings::ConsoleSpec;
 
-/// The console breathes from here on, in columns and rows.
+/// Terminal size at which the console shows all panels, in columns and rows.
 const ROOMY: (u16, u16) = (120, 40);
-/// It works from here on.
+/// Smallest terminal in which the console is usable, in columns and rows; in between, `tomcom doctor` warns.
 const WORKABLE: (u16, u16) = (80, 24);
-/// The program is written after this date; a clock that shows an earlier one is not set.
+/// Date before which this program did not exist; a clock that shows an earlier date is not set.
 const WRITTEN: &str = "2025-01-01";
 
-/// What `tomcom doctor` found.
+/// Findings of the command `tomcom doctor`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DoctorReport {
-    /// Nothing is broken.
+    /// Whether no check of `tomcom doctor` failed.
     pub healthy: bool,
-    /// What was looked at, and how it was found.
+    /// Checks of the computer with their findings.
     pub checks: Vec<PreflightCheck>,
 }
 
-/// Looks at everything that a session with these settings needs; `out` is where its recordings would go.
+/// Checks everything that a session with these settings needs; `out` is the folder for its recordings.
 pub fn examine(spec: &SessionSpec, out: &Path) -> DoctorReport {
     let mut checks = terminal(&spec.console);
     let place = folder(out);
-    // Where nothing can be written, it does not matter how much there is.
+    // The free disk space matters only if the folder can be written to.
     let room = (place.verdict == PreflightVerdict::Ok).then(|| space(free_bytes(&existing(out)).ok()));
     checks.push(place);
     checks.extend(room);
@@ -55,7 +55,7 @@ pub fn examine(spec: &SessionSpec, out: &Path) -> DoctorReport {
     DoctorReport { healthy, checks }
 }
 
-/// The findings for people.
+/// The findings of `tomcom doctor` as text.
 pub fn describe(findings: &DoctorReport) -> String {
     let line = |check: &PreflightCheck| {
         let mark = match check.verdict {
@@ -133,7 +133,7 @@ fn colours(spec: &ConsoleSpec) -> PreflightCheck {
     PreflightCheck::new("colours", verdict, found, remedy)
 }
 
-/// Whether the terminal knows mouse reports (DECRQM), if it answers that.
+/// Whether the terminal knows mouse reports (DECRQM); `None` if it does not answer.
 fn mouse_mode() -> Option<bool> {
     enable_raw_mode().ok()?;
     let answer = ask("\x1b[?1006$p");
@@ -143,13 +143,13 @@ fn mouse_mode() -> Option<bool> {
     Some(state != '0')
 }
 
-/// The nearest folder above that is there.
+/// The nearest existing parent folder.
 fn existing(out: &Path) -> PathBuf {
     let there = out.ancestors().find(|folder| folder.is_dir());
     there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()
 }
 
-/// Writes where recordings would be written, and takes it away again.
+/// Checks the folder for recordings by writing a file and deleting it again.
 fn folder(out: &Path) -> PreflightCheck {
     let there = existing(out);
     let place = match out.is_dir() {
@@ -182,17 +182,17 @@ fn folder(out: &Path) -> PreflightCheck {
     }
 }
 
-/// Bytes that a folder's disk has left.
+/// Free bytes on the disk of a folder.
 ///
 /// # Errors
-/// The system does not say.
+/// The operating system does not tell.
 #[cfg(unix)]
 pub fn free_bytes(folder: &Path) -> io::Result<u64> {
     let found = rustix::fs::statvfs(folder)?;
     Ok(found.f_bavail.saturating_mul(found.f_frsize))
 }
 
-/// The system does not say.
+/// Free disk space cannot be determined on this operating system.
 #[cfg(not(unix))]
 pub fn free_bytes(_: &Path) -> io::Result<u64> {
     Err(io::ErrorKind::Unsupported.into())
@@ -205,8 +205,7 @@ fn wall_clock() -> PreflightCheck {
     PreflightCheck::new("wall clock", verdict, now.rfc3339(), remedy)
 }
 
-/// Whether recordings can be looked at in a window; without it, in a browser.
-/// What this build leaves out.
+/// Warnings about optional parts of the program that this build leaves out.
 fn left_out() -> impl Iterator<Item = PreflightCheck> {
     Feature::ALL.into_iter().filter_map(|feature| {
         let missing = feature.require().err()?;
@@ -214,7 +213,8 @@ fn left_out() -> impl Iterator<Item = PreflightCheck> {
     })
 }
 
-/// The viewer of Rerun on this machine.
+/// Checks whether Rerun's viewer is installed, which shows recordings in a window; without it, they are shown in a
+/// browser.
 #[cfg(feature = "rerun")]
 fn viewer() -> PreflightCheck {
     use super::viewer::{REMEDY, Viewer};
@@ -231,7 +231,8 @@ fn viewer() -> PreflightCheck {
     PreflightCheck::new("viewer", verdict, found, remedy)
 }
 
-/// Whether the machine wakes a program in time: presses and gaze are stamped when it is awake.
+/// Checks whether the computer wakes sleeping programs in time: a late wake-up delays the time stamps of presses and
+/// gaze.
 fn timer() -> PreflightCheck {
     let late = (0..20).map(|_| {
         let began = Instant::now();
@@ -244,6 +245,6 @@ fn timer() -> PreflightCheck {
         "timer",
         verdict,
         format!("wakes at most {late_ms:.1} ms late"),
-        "end what else keeps the processor busy",
+        "close other programs that use the processor",
     )
 }

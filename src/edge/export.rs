@@ -1,5 +1,6 @@
-//! Output of an analysis: tables as CSV (RFC 4180, UTF-8), and the report. Rows of events are kept in temporary files until all
-//! recordings are read, so that memory does not grow with their number and tables have the order of the recordings.
+//! Output files of an analysis: tables as CSV (RFC 4180, UTF-8), and the report. Event rows are kept in temporary files
+//! until all recordings are read, so that memory does not grow with the number of recordings and tables have the order
+//! of the recordings.
 
 use std::borrow::{Borrow, Cow};
 use std::fs::{self, File};
@@ -12,23 +13,23 @@ use crate::study::column::{Table, TableRow};
 use crate::study::dictionary::columns;
 use crate::study::report::page_head;
 
-/// Name of the report.
+/// File name of the analysis report.
 pub const REPORT_NAME: &str = "report.html";
-/// Folder of the temporary files.
+/// Name of the folder for temporary files of an analysis.
 const PARTS_NAME: &str = ".rows";
 
-/// An output file that cannot be written.
+/// An output file of an analysis that cannot be written.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 #[error("{}: cannot be written: {reason}", path.display())]
 #[diagnostic(help("another folder with --out, on a disk with free space"))]
 pub struct ExportError {
-    /// The file or folder.
+    /// File or folder that cannot be written.
     pub path: PathBuf,
-    /// Why not.
+    /// Why the output file cannot be written.
     pub reason: io::Error,
 }
 
-/// Rows of one table, without the header line.
+/// Rows of one CSV table, without the header line.
 #[derive(Debug)]
 pub struct TableRows {
     rows: csv::Writer<Vec<u8>>,
@@ -41,7 +42,7 @@ impl Default for TableRows {
 }
 
 impl TableRows {
-    /// Adds a row.
+    /// Adds a row to the CSV table.
     pub fn add(&mut self, row: &impl TableRow) {
         self.rows.serialize(row.cells()).expect("rows are flat, and written to memory");
     }
@@ -52,28 +53,29 @@ impl TableRows {
     }
 }
 
-/// Output folder.
+/// Output folder of an analysis.
 #[derive(Debug)]
 pub struct ExportFolder {
     folder: PathBuf,
 }
 
 impl ExportFolder {
-    /// Creates the folder if it does not exist.
+    /// Creates the output folder if it does not exist.
     ///
     /// # Errors
-    /// It cannot be made, or written to, or it has files of others with the names of tables and report.
+    /// The folder cannot be created or written to, or it contains files that this program did not write and that have
+    /// the names of tables or report.
     pub fn create(folder: &Path) -> Result<ExportFolder, ExportError> {
         let export = ExportFolder { folder: folder.to_path_buf() };
         export.check_replaced()?;
         let parts = export.parts();
-        // Leftovers of an interrupted run.
+        // Temporary files of an interrupted run are removed.
         remove_parts(&parts).map_err(|reason| ExportError { path: parts.clone(), reason })?;
         fs::create_dir_all(&parts).map_err(|reason| ExportError { path: parts, reason })?;
         Ok(export)
     }
 
-    /// Whether all that is replaced is of an analysis before this one.
+    /// Checks that all files to be replaced come from an earlier analysis.
     fn check_replaced(&self) -> Result<(), ExportError> {
         let written =
             WrittenTables::read(&self.folder).map_err(|reason| ExportError { path: self.folder.clone(), reason })?;
@@ -87,7 +89,7 @@ impl ExportFolder {
             overwrite::check(&path, &what, is_own).map_err(|reason| ExportError { path, reason })?;
         }
         let path = self.folder.join(REPORT_NAME);
-        // Reports of earlier versions do not say what they are, and have a dictionary beside them.
+        // Reports of earlier versions do not name their program, but have a data dictionary beside them.
         let is_own =
             |head: &[u8]| written.is_listed() || page_head::participants(&String::from_utf8_lossy(head)).is_some();
         overwrite::check(&path, "a report", is_own).map_err(|reason| ExportError { path, reason })
@@ -101,7 +103,7 @@ impl ExportFolder {
         self.parts().join(format!("{index}-{}", table.name()))
     }
 
-    /// Stores the event rows of one recording, in the order of [`Table::OF_EVENTS`].
+    /// Stores the event rows of one recording in temporary files, in the order of [`Table::OF_EVENTS`].
     ///
     /// # Errors
     /// The files cannot be written.
@@ -116,7 +118,7 @@ impl ExportFolder {
     /// Writes a table; returns it if it has rows.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The table cannot be written.
     pub fn table<Row: TableRow>(
         &self,
         rows: impl IntoIterator<Item: Borrow<Row>>,
@@ -127,8 +129,8 @@ impl ExportFolder {
         self.write_table(Row::TABLE, |out| out.write_all(&rows).map(|()| !rows.is_empty()))
     }
 
-    /// Writes the event tables from the stored rows of these recordings, in this order, and removes the temporary files. Returns the
-    /// tables that have rows.
+    /// Writes the event tables from the stored rows of these recordings, in this order, and removes the temporary
+    /// files. Returns the tables that have rows.
     ///
     /// # Errors
     /// The files cannot be written.
@@ -150,7 +152,7 @@ impl ExportFolder {
     /// Writes the report and returns its path.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The report cannot be written.
     pub fn report(&self, page: &str) -> Result<PathBuf, ExportError> {
         let path = self.folder.join(REPORT_NAME);
         match fs::write(&path, page) {
@@ -176,7 +178,8 @@ impl ExportFolder {
     }
 }
 
-/// Removes the folder of rows that an analysis has left. Files of others in it stay, and so does the folder then.
+/// Removes the folder of temporary files that an analysis has left. Files that this program did not write stay, and
+/// then so does the folder.
 fn remove_parts(folder: &Path) -> io::Result<()> {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,

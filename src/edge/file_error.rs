@@ -1,4 +1,4 @@
-//! What is wrong with a file: which file, the line, what was found and what would be right.
+//! Errors in files: which file, which line, what was found and what would be valid.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -12,57 +12,57 @@ use super::place::place_of;
 use crate::base::features::{Feature, NotBuilt};
 use crate::base::printable::{printable, printable_lines};
 
-/// What reading a file gives.
+/// Result of reading a file, with an error that explains what is wrong with the file.
 pub type FileResult<T> = Result<T, FileError>;
 
-/// Something is wrong with a file.
+/// An error of a file that the program reads or writes: unreadable, unsuitable as a whole, or invalid in one place.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum FileError {
-    /// The file cannot be read.
+    /// The file cannot be read or written.
     #[error("{}: cannot be read: {reason}", path.display())]
     Unreadable {
-        /// The file.
+        /// Path of the file that cannot be read or written.
         path: PathBuf,
-        /// Why not.
+        /// Why the file cannot be read or written.
         reason: io::Error,
-        /// What would be right.
+        /// What a valid file, or a suitable name for the file, would be.
         #[help]
         remedy: String,
     },
-    /// A folder or an option of the command line, or a file as a whole.
+    /// A folder, a command-line option, or a file as a whole is unsuitable.
     #[error("{name}: found {found}")]
     Unfit {
-        /// The folder, option or file.
+        /// Name of the folder, option or file.
         name: String,
-        /// What is wrong.
+        /// What is wrong with the folder, option or file.
         found: String,
-        /// What would be right.
+        /// What folder, option or file would be valid.
         #[help]
         remedy: String,
     },
-    /// Something in a text file is wrong.
+    /// A text file is invalid in one place.
     #[error("{name}:{line}: found {found}")]
     Wrong {
-        /// The file, as messages name it.
+        /// Name of the invalid file, as messages show it.
         name: String,
-        /// The line, counted from 1.
+        /// Line of the error in the file, counted from 1.
         line: usize,
-        /// What is wrong.
+        /// What is wrong in that line of the file.
         found: String,
-        /// The file's text, to show the place.
+        /// Text of the file, for the excerpt in the message.
         #[source_code]
         text: Arc<NamedSource<String>>,
-        /// The place in the text, in bytes.
+        /// Place of the error in the file's text, in bytes.
         #[label("here")]
         span: Option<SourceSpan>,
-        /// What would be right.
+        /// What would be valid at this place of the file.
         #[help]
         remedy: String,
     },
 }
 
 impl FileError {
-    /// An error at a place of a file's text. Control characters are escaped.
+    /// An error at one place of a file's text. Control characters are escaped.
     pub fn at(path: &Path, text: &str, span: Option<Range<usize>>, found: String, remedy: String) -> FileError {
         let name = name_of(path);
         let boundary = |at: usize| (0..=at.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0);
@@ -76,31 +76,31 @@ impl FileError {
         FileError::Wrong { name, line, found: one_line(found), text: Arc::new(source), span, remedy }
     }
 
-    /// An error that has no place in a text: of a folder, an option, a file as a whole.
+    /// An error of a folder, an option, or a file as a whole, which has no place in a text.
     pub fn from_finding(what: &Path, found: String, remedy: String) -> FileError {
         FileError::Unfit { name: name_of(what), found: one_line(found), remedy }
     }
 
-    /// The error about a session or a recording that takes a part of the program which this build does not have.
+    /// The error about a session or a recording that needs an optional part of the program which this build lacks.
     pub fn not_built(what: &Path, missing: NotBuilt) -> FileError {
         let instead = if missing.0 == Feature::Physics { "; or, for a new session, --arm timed" } else { "" };
         let remedy = format!("{}{instead}", missing.remedy());
         FileError::from_finding(what, format!("a session for another build; this one is {missing}"), remedy)
     }
 
-    /// An error of a file that cannot be read or written.
+    /// The error about a file that cannot be read or written.
     pub fn unreadable(path: &Path, reason: io::Error, remedy: &str) -> FileError {
         FileError::Unreadable { path: path.to_path_buf(), reason, remedy: remedy.to_string() }
     }
 
-    /// An error of a file that was to be written under a name that the user chose.
+    /// The error about an output file, whose name the user chose, that cannot be written.
     pub fn unwritable(path: &Path, reason: io::Error) -> FileError {
         FileError::unreadable(path, reason, "another name for the file, in a folder that can be written to")
     }
 }
 
-/// The error about a file that a session file names and that cannot be read: the path of the setting, which of them it is (0
-/// the first), and the name of the file.
+/// The error about a file that a session file names and that cannot be read. Arguments are the setting's path, the
+/// index among settings with this path (0 is the first), and the file's name.
 pub(super) fn missing(
     session: &Path,
     text: &str,
@@ -134,16 +134,16 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
     }
 }
 
-/// Text of a file in the folder of a recording.
+/// Reads the text of a file in the folder of a recording.
 ///
 /// # Errors
-/// Errors of [`open_regular`], or the file is no UTF-8.
+/// Errors of [`open_regular`], or the file is not UTF-8.
 pub fn read_regular(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     open_regular(path)?.read_to_string(&mut text).map(|_| text)
 }
 
-/// The text of a file.
+/// Reads the text of a file.
 pub fn read_text(path: &Path) -> FileResult<String> {
     std::fs::read_to_string(path)
         .map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))

@@ -1,4 +1,5 @@
-//! Reads session, layout and recipe files. Every error names the file, the line, what was found and what would be right.
+//! Reads session, layout and recipe files. Every error names the file, the line, what was found and what would be
+//! valid.
 
 use std::path::{Path, PathBuf};
 
@@ -24,23 +25,23 @@ use crate::session::settings::{SettingError, is_code};
 use crate::session::wall_display::DisplayedArm;
 use crate::wizard::settings::WizardKind;
 
-/// A session file with its kitchen and its key file.
+/// A session's settings with the kitchen and all other files that they name.
 #[derive(Clone, Debug)]
 pub struct SessionFiles {
-    /// The settings.
+    /// Settings of the session.
     pub spec: SessionSpec,
-    /// The kitchen with its two files.
+    /// Kitchen of the session, with its layout and recipe files.
     pub kitchen: KitchenFiles,
-    /// The key file, if the settings name one.
+    /// Key file, if the settings name one.
     pub keys: Option<FileText>,
-    /// The questionnaires that the plan names, in its order.
+    /// Questionnaires that the study plan names, in the plan's order.
     pub questionnaires: Vec<Questionnaire>,
-    /// The tutorial that the plan names, if it names one.
+    /// Tutorial that the study plan names, if any.
     pub tutorial: Option<Tutorial>,
 }
 
 impl SessionFiles {
-    /// The study that it plans.
+    /// The study that these settings plan, if they contain a study plan.
     pub fn study(&self) -> Option<Study> {
         let kitchen = [&*self.kitchen.layout.text, &*self.kitchen.recipes.text];
         Study::new(&self.spec, self.questionnaires.clone(), self.tutorial.clone(), kitchen)
@@ -52,7 +53,7 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     read_session_in(path, None)
 }
 
-/// Reads a session file as [`read_session`] does, with the display in this language instead of the file's.
+/// Reads a session file as [`read_session`] does, but with the display's texts in this language.
 pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<SessionFiles> {
     let text = read_text(path)?;
     let mut spec: SessionSpec = parse(path, &text)?;
@@ -83,7 +84,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     read_words(path, &text, &mut spec)?;
     spec.display.reasons.get_or_insert(true);
     spec.display.arm.get_or_insert(DisplayedArm::Hand);
-    // In a plan the condition says whether the wizard sees advice.
+    // In a study plan, the condition decides whether the wizard sees offers.
     if spec.plan.is_none() && spec.wizard.kind == WizardKind::Scripted {
         spec.wizard.offers.get_or_insert_default();
     }
@@ -117,7 +118,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     Ok(SessionFiles { spec, kitchen, keys, questionnaires, tutorial })
 }
 
-/// Reads the session's file of keys, if it names one.
+/// Reads the key file that the session file names, if any.
 fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Option<FileText>> {
     let Some(name) = &spec.console.keys else { return Ok(None) };
     let path = session.parent().unwrap_or(Path::new(".")).join(name);
@@ -128,7 +129,7 @@ fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Optio
     Ok(Some(FileText { path: path.display().to_string(), text: keys }))
 }
 
-/// Reads the questionnaires of a plan, in its order and in the session's language.
+/// Reads the questionnaires of a study plan, in the plan's order and in the session's language.
 fn read_questionnaires(
     session: &Path,
     text: &str,
@@ -150,7 +151,7 @@ fn read_questionnaires(
     plan.questionnaire.iter().enumerate().map(read).collect()
 }
 
-/// Reads the tutorial of a plan, in the session's language, and checks that it fits the kitchen.
+/// Reads the tutorial of a study plan, in the session's language, and checks that it fits the kitchen.
 fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitchen) -> FileResult<Option<Tutorial>> {
     let Some(file) = spec.plan.as_ref().and_then(|plan| plan.tutorial.as_ref()) else { return Ok(None) };
     let path = in_language(session.parent().unwrap_or(Path::new(".")).join(file), spec.display.code());
@@ -165,21 +166,21 @@ fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitch
     Ok(Some(tutorial))
 }
 
-/// A file of texts in this language, where it stands beside the one that was named: `acceptance.de.toml` beside
+/// Path of a file's translation into this language, if that exists beside it: `acceptance.de.toml` beside
 /// `acceptance.toml`.
 fn in_language(path: PathBuf, code: &str) -> PathBuf {
-    // A file with words that names no language stands here with its path.
+    // A setting that names a file of texts instead of a language has a path here, not a language code.
     let is_code = code.chars().all(|sign| sign.is_ascii_alphanumeric() || sign == '-');
     let own = is_code.then(|| path.with_extension(format!("{code}.toml")));
     own.filter(|own| own.is_file()).unwrap_or(path)
 }
 
-/// The error of a setting in a file's text.
+/// The error about an invalid setting at its place in a file's text.
 fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
     FileError::at(path, text, place_of(text, &error.path, error.nth), error.found, error.remedy.into_owned())
 }
 
-/// Reads a file with parameters of the human model; those that it does not name have their defaults.
+/// Reads a file with parameters of the human model; parameters that the file does not name have their defaults.
 ///
 /// # Errors
 /// It cannot be read, or a parameter of the population or of a person cannot be.
@@ -217,19 +218,19 @@ fn check_people(path: &Path, text: &str, population: &HumanModel, people: Option
     Ok(())
 }
 
-/// Whether a file of fitted parameters can be written there.
+/// Checks that a file of fitted parameters can be written to this path.
 ///
 /// # Errors
-/// A file is there that this program did not write.
+/// The path has a file that this program did not write.
 pub fn check_fitted(path: &Path) -> std::io::Result<()> {
     let begins = format!("# {FITTED}");
     overwrite::check(path, "a file of fitted parameters", |head| head.starts_with(begins.as_bytes()))
 }
 
-/// Writes a file with all parameters of the human model, and those of persons if it has any, below a comment of whole lines.
+/// Writes a file with all parameters of the human model, after a comment.
 ///
 /// # Errors
-/// It cannot be written, or a file is there that this program did not write.
+/// The file cannot be written, or the path has a file that this program did not write.
 pub fn write_human_model(path: &Path, file: &HumanModelFile, comment: &str) -> std::io::Result<()> {
     check_fitted(path)?;
     let comment: String = comment.lines().map(|line| format!("# {line}\n")).collect();
@@ -237,10 +238,10 @@ pub fn write_human_model(path: &Path, file: &HumanModelFile, comment: &str) -> s
     std::fs::write(path, format!("{comment}\n{text}"))
 }
 
-/// The default session with its kitchen, which the program carries with it, so that it runs without any file.
+/// The default session with its kitchen, which are part of the program, so that it runs without any file.
 ///
 /// # Errors
-/// None, unless the program was built from files that are wrong.
+/// Only if the program was built from invalid files.
 pub fn built_in_session() -> FileResult<SessionFiles> {
     let spec: SessionSpec = parse(Path::new("sessions/default.toml"), include_str!("../../sessions/default.toml"))?;
     let layout = (Path::new(&spec.layout), include_str!("../../layouts/sushi.toml").to_string());
@@ -249,18 +250,18 @@ pub fn built_in_session() -> FileResult<SessionFiles> {
     Ok(SessionFiles { spec, kitchen, keys: None, questionnaires: Vec::new(), tutorial: None })
 }
 
-/// A kitchen with the texts it was made from, which go into the header of every recording.
+/// A compiled kitchen with its source texts, which go into the header of every recording.
 #[derive(Clone, Debug)]
 pub struct KitchenFiles {
-    /// The compiled kitchen.
+    /// Kitchen, compiled from its layout and recipe files.
     pub kitchen: Kitchen,
-    /// The layout file.
+    /// Layout file of the kitchen.
     pub layout: FileText,
-    /// Its path is as the layout names it.
+    /// Recipe file of the kitchen; its path is as the layout file names it.
     pub recipes: FileText,
 }
 
-/// Reads a layout and the recipe file that it names, for the keys that the console has without a key file.
+/// Reads a layout file and the recipe file that it names, and checks them with the console's default keys.
 pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenFiles> {
     read_kitchen_with(layout_path, None)
 }
@@ -283,13 +284,13 @@ fn read_kitchen_with(layout_path: &Path, keys: Option<&FileText>) -> FileResult<
     Ok(files)
 }
 
-/// The error of a layout that has a number outside of its range.
+/// The error about a layout that has a number outside of its range.
 fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
     FileError::at(path, text, error.place, error.found, error.remedy)
 }
 
-/// Compiles a kitchen from texts, whatever its numbers and whether the arm reaches its buttons: it may be that of an old recording, whose arm
-/// gives up what it cannot reach. The paths only serve error messages.
+/// Compiles a kitchen from texts without checking the ranges of its numbers, since it may be the kitchen of an old
+/// recording. The paths only serve error messages.
 pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenFiles> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
@@ -309,7 +310,7 @@ pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Fil
     }
 }
 
-/// Whether the robot's arm can press all its buttons.
+/// Checks that the robot's arm can reach all its buttons.
 #[cfg(feature = "physics")]
 fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) -> FileResult<()> {
     let Some((button, why)) = crate::arm::reach::out_of_reach(kitchen) else { return Ok(()) };

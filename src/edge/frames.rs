@@ -1,5 +1,5 @@
-//! Writes frames to the terminal from a separate thread, so that a terminal that is slow, or is not read at all, blocks neither
-//! the session nor its end.
+//! Writes frames to the terminal from a separate thread, so that a slow or unread terminal blocks neither the session
+//! nor its end.
 
 use std::io::{self, Write};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
@@ -7,32 +7,32 @@ use std::time::Duration;
 
 use crossterm::terminal::disable_raw_mode;
 
-/// Time limit of the last bytes, after a frame that is still being written.
+/// Time limit for writing the last bytes to the terminal, after a frame that is still being written.
 const PATIENCE: Duration = Duration::from_millis(600);
-/// Time limit of the last bytes after unread output was discarded.
+/// Time limit for writing the last bytes to the terminal after unread output was discarded.
 const LAST_PATIENCE: Duration = Duration::from_millis(300);
-/// Size of a write, in bytes. It is less than a pseudoterminal's buffer, so that a write ends after unread output was
-/// discarded.
+/// Size of one write to the terminal, in bytes: less than a pseudoterminal's buffer, so that a blocked write ends after
+/// unread output was discarded.
 const PIECE: usize = 2048;
 
-/// State shared with the thread.
+/// State that the writing thread shares with the rest of the program.
 #[derive(Debug, Default)]
 struct Pending {
-    /// The frame that is written next.
+    /// Next frame to be written to the terminal.
     frame: Option<Vec<u8>>,
-    /// The last bytes.
+    /// Last bytes for the terminal, which restore its modes.
     last: Option<Vec<u8>>,
-    /// Whether the thread is writing.
+    /// Whether the thread is writing to the terminal.
     writing: bool,
-    /// Whether the rest of the frame is skipped.
+    /// Whether the rest of the present frame is skipped, to end sooner.
     hurries: bool,
-    /// Whether a write failed: the terminal was closed.
+    /// Whether a write failed, since the terminal was closed.
     lost: bool,
-    /// Whether the thread has ended.
+    /// Whether the writing thread has ended.
     done: bool,
 }
 
-/// The writer of frames. It holds at most one frame that is not yet being written.
+/// Writer of frames to the terminal. It holds at most one frame that is not yet being written.
 #[derive(Debug)]
 pub(super) struct FrameWriter {
     pending: Mutex<Pending>,
@@ -40,7 +40,7 @@ pub(super) struct FrameWriter {
 }
 
 impl FrameWriter {
-    /// Starts the thread.
+    /// Starts the writing thread.
     ///
     /// # Errors
     /// The thread cannot be started.
@@ -55,26 +55,26 @@ impl FrameWriter {
         self.pending.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Whether the terminal has taken the last frame.
+    /// Whether the terminal has accepted the last frame.
     pub(super) fn is_ready(&self) -> bool {
         let pending = self.pending();
         pending.frame.is_none() && !pending.writing
     }
 
-    /// Whether the terminal was closed or given back.
+    /// Whether the terminal was closed, or its modes were restored.
     pub(super) fn is_lost(&self) -> bool {
         let pending = self.pending();
         pending.lost || pending.done
     }
 
-    /// Passes a frame to the thread, which must be ready.
+    /// Passes a frame to the writing thread, which must be ready.
     pub(super) fn show(&self, frame: Vec<u8>) {
         self.pending().frame = Some(frame);
         self.changed.notify_all();
     }
 
-    /// Writes the last bytes after the present frame, and ends the thread; returns whether the terminal took them. Waits for
-    /// less than a second. If the terminal's buffer is full, its unread content is discarded to make room.
+    /// Writes the last bytes after the present frame, and ends the thread; returns whether the terminal accepted them.
+    /// Waits for less than a second. If the terminal's buffer is full, its unread content is discarded to make room.
     pub(super) fn end(&self, last: Vec<u8>) -> bool {
         let mut pending = self.pending();
         pending.last = Some(last);
@@ -83,7 +83,7 @@ impl FrameWriter {
         if !pending.done {
             pending.hurries = true;
             discard_unread();
-            // A change of the modes wakes up a write that waits for room.
+            // Changing the terminal's modes wakes a blocked write.
             let _ = disable_raw_mode();
             pending = self.wait(pending, LAST_PATIENCE);
         }
@@ -95,7 +95,7 @@ impl FrameWriter {
         waited.unwrap_or_else(|poisoned| poisoned.into_inner()).0
     }
 
-    /// Writes the next bytes; returns whether the thread goes on.
+    /// Writes the next bytes to the terminal; returns whether the thread continues.
     fn write_next(&self) -> bool {
         let waited = self.changed.wait_while(self.pending(), |it| it.frame.is_none() && it.last.is_none());
         let mut pending = waited.unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -129,7 +129,7 @@ impl FrameWriter {
 /// Runs a write on a separate thread, and waits for it until the time limit; a write that takes longer counts as done.
 ///
 /// # Errors
-/// Errors of the write within the time limit, or the thread cannot be started.
+/// The write fails within the time limit, or the thread cannot be started.
 pub(super) fn write_within(
     longest: Duration,
     write: impl FnOnce() -> io::Result<()> + Send + 'static,
@@ -139,14 +139,14 @@ pub(super) fn write_within(
     written.recv_timeout(longest).unwrap_or(Ok(()))
 }
 
-/// Discards the output that the terminal has not read.
+/// Discards output that the terminal has not read.
 #[cfg(unix)]
 fn discard_unread() {
     use rustix::termios::{QueueSelector, tcflush};
-    // A terminal that was closed has no output to discard.
+    // A closed terminal has no output to discard.
     let _ = tcflush(io::stdout(), QueueSelector::OFlush);
 }
 
-/// Not available on this system.
+/// Discarding unread terminal output is not available on this operating system.
 #[cfg(not(unix))]
 fn discard_unread() {}

@@ -1,5 +1,5 @@
-//! The file of a frozen plan: a line with the digest, and what is frozen as JSON. The digest is SHA-256 of every byte after the first line,
-//! so that it can be checked without this program (`tail -n +2 FILE | sha256sum`).
+//! File of a frozen study plan: one line with the digest, then the frozen content as JSON. The digest is SHA-256 of
+//! every byte after the first line, so that it can be checked without this program (`tail -n +2 FILE | sha256sum`).
 
 use std::fs::OpenOptions;
 use std::io::{self, ErrorKind, Write};
@@ -10,16 +10,16 @@ use sha2::{Digest, Sha256};
 use super::file_error::{FileError, FileResult, read_text};
 use crate::study::frozen_plan::{FROZEN_FORMAT, FrozenPlan};
 
-/// What the first line says before the digest.
+/// Text of a frozen plan's first line before the digest.
 const HEAD: &str = "tomcom frozen plan, SHA-256 of all that follows this line: ";
 const REMEDY: &str = "a file that tomcom plan PLAN --freeze FILE wrote, unchanged";
 
 /// Writes a frozen plan and returns its digest.
 ///
 /// # Errors
-/// A file of that name is there, whatever is in it, or the folder cannot be written to.
+/// A file of that name exists already, or the folder cannot be written to.
 pub fn freeze(path: &Path, frozen: &FrozenPlan) -> FileResult<String> {
-    // A plan has string keys and finite numbers.
+    // A plan contains only string keys and finite numbers, so serialisation cannot fail.
     let body = serde_json::to_string_pretty(frozen).unwrap_or_default() + "\n";
     let digest = sha256(body.as_bytes());
     let write = || -> io::Result<()> {
@@ -40,7 +40,7 @@ pub fn freeze(path: &Path, frozen: &FrozenPlan) -> FileResult<String> {
 /// Reads a frozen plan with its digest.
 ///
 /// # Errors
-/// The file cannot be read, is no frozen plan, or was changed after it was frozen.
+/// The file cannot be read, is not a frozen plan, or was changed after it was frozen.
 pub fn read_frozen(path: &Path) -> FileResult<(String, FrozenPlan)> {
     let text = read_text(path)?;
     let wrong = |place, found: String, remedy: &str| FileError::at(path, &text, Some(place), found, remedy.to_string());

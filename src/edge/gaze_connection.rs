@@ -1,6 +1,7 @@
-//! A connection that sends lines of gaze. One that does not begin with a JSON object is rejected and counted, and none of its lines is
-//! read: websites can make a browser send requests to this port. The first line of one from another computer is the pairing code, if
-//! its address is not listed; it is answered, so that the sender can tell whether the code was right.
+//! One network connection that sends lines of gaze. A connection that does not begin with a JSON object is rejected and
+//! counted, and none of its lines is read: websites can make a browser send requests to this port. From another
+//! computer whose address is not listed, the first line must be the pairing code; the program replies, so that the
+//! sender can tell whether the code was right.
 
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,31 +17,31 @@ use super::gaze_gate::{Admission, GazeGate};
 use super::gaze_input::{GazeNews, SenderRefusal};
 use super::gaze_line::{begins_object, code_in, parse};
 
-/// Longest line, in bytes.
+/// Longest line of a gaze connection, in bytes.
 const MAX_LINE: usize = 4096;
-/// Time limit for the first line of a connection.
+/// Time limit for the first line of a gaze connection.
 const FIRST_LINE: Duration = Duration::from_secs(10);
-/// Time limit for taking an answer.
+/// Time limit for sending the reply to a pairing code.
 const ANSWER: Duration = Duration::from_secs(1);
 
-/// The gate that all connections pass.
+/// The access check that all gaze connections share.
 pub(super) type SharedGate = Arc<Mutex<GazeGate>>;
 
-/// A connection and what is known of its sender.
+/// A gaze connection and what is known of its sender.
 pub(super) struct GazeConnection {
-    /// Its bytes.
+    /// TCP stream of the connection.
     pub stream: TcpStream,
-    /// Address of the sender.
+    /// Network address of the gaze sender.
     pub from: IpAddr,
-    /// Its entry in the table of connections.
+    /// Entry of the connection in the table of connections.
     pub place: ConnectionPlace,
-    /// What lets it in.
+    /// Access check for senders of gaze.
     pub gate: SharedGate,
-    /// Where to what it sends goes.
+    /// Channel to which the connection's messages go.
     pub news: Sender<GazeNews>,
 }
 
-/// Reads a connection until it ends, is rejected, or is replaced by another.
+/// Reads a gaze connection until it ends, is rejected, or is replaced by another.
 pub(super) async fn attend(connection: GazeConnection) {
     let GazeConnection { stream, from, place, gate, news } = connection;
     let is_paired = lock(&gate).admission(from) == Admission::Open;
@@ -56,40 +57,40 @@ pub(super) async fn attend(connection: GazeConnection) {
     }
 }
 
-/// Counts a rejected sender.
+/// Counts a rejected sender of gaze.
 pub(super) fn reject(news: &Sender<GazeNews>) {
-    // A closed or full channel has more serious consequences than a wrong count.
+    // A queue that is closed or full has worse consequences than a wrong count of rejected senders.
     let _ = news.try_send(GazeNews::Rejected(1));
 }
 
-/// The gate; a panic elsewhere leaves it usable.
+/// Locks the shared access check; it stays usable after a panic in another thread.
 pub(super) fn lock(gate: &SharedGate) -> std::sync::MutexGuard<'_, GazeGate> {
     gate.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Content of a line.
+/// Content of a line of a gaze connection.
 enum LineContent {
-    /// The first line, with a pairing code.
+    /// The first line of the connection, with a pairing code.
     Pairing(String),
     News(GazeNews),
 }
 
-/// Splits a connection's bytes into lines.
+/// Splits the bytes of a gaze connection into lines.
 #[derive(Default)]
 struct LineReader {
     line: Vec<u8>,
     is_too_long: bool,
-    /// Whether the first line is complete.
+    /// Whether the first line of the connection is complete.
     has_line: bool,
-    /// Whether a sample arrived.
+    /// Whether a gaze sample has arrived on the connection.
     has_begun: bool,
 }
 
 impl LineReader {
-    /// Adds a byte; returns the content of the line that it ends, if any.
+    /// Adds a byte to the present line; returns the content of the line that the byte ends, if any.
     fn take(&mut self, byte: u8) -> Option<LineContent> {
         if byte != b'\n' {
-            // The bound protects the memory against a sender that never ends its line.
+            // The limit protects the memory against a sender that never ends its line.
             match self.line.len() < MAX_LINE {
                 true => self.line.push(byte),
                 false => self.is_too_long = true,
@@ -99,7 +100,7 @@ impl LineReader {
         self.end()
     }
 
-    /// Ends the line and returns its content, if any.
+    /// Ends the present line and returns its content, if any.
     fn end(&mut self) -> Option<LineContent> {
         let code = if self.has_line || self.is_too_long { None } else { code_in(&self.line) };
         let found = match (code, self.is_too_long) {
@@ -113,13 +114,13 @@ impl LineReader {
         found
     }
 
-    /// Whether the beginning of the first line shows that the sender is no tracker.
+    /// Whether the beginning of the first line shows that the sender is not an eye tracker's program.
     fn is_foreign(&self) -> bool {
         !self.has_line && begins_object(&self.line) == Some(false)
     }
 }
 
-/// Reads the lines of a connection.
+/// Reads the lines of a gaze connection.
 struct SampleReader<'a> {
     stream: TcpStream,
     from: IpAddr,
@@ -127,13 +128,13 @@ struct SampleReader<'a> {
     gate: &'a SharedGate,
     news: &'a Sender<GazeNews>,
     lines: LineReader,
-    /// Whether its lines are read.
+    /// Whether the sender is admitted, so that its lines are read.
     is_paired: bool,
 }
 
 impl SampleReader<'_> {
-    /// Reads lines until the connection ends; a sender that is too fast is slowed down by TCP. Returns false if the sender has to
-    /// be counted as rejected.
+    /// Reads lines until the gaze connection ends; a sender that is too fast is slowed down by TCP. Returns false if
+    /// the sender has to be counted as rejected.
     async fn read(&mut self) -> bool {
         let mut buffer = vec![0; MAX_LINE];
         let first_by = tokio::time::Instant::now() + FIRST_LINE;
@@ -155,7 +156,7 @@ impl SampleReader<'_> {
                 }
             }
         }
-        // The last line may lack its newline.
+        // The last line of a connection may lack its newline.
         if !self.lines.is_too_long
             && let Some(found) = self.lines.end()
         {
@@ -184,16 +185,17 @@ impl SampleReader<'_> {
                 wait.as_secs_f64().ceil()
             ),
         };
-        // Whoever does not take the answer is told by the end of the connection.
+        // A sender that does not read the reply notices the result when the connection is closed.
         let _ = timeout(ANSWER, self.stream.write_all(answer.as_bytes())).await;
         self.is_paired
     }
 
-    /// Passes on the content of a line, with `Began` before the first sample; returns false if the receiver is gone.
+    /// Passes on the content of a line, preceded by `Began` before the first sample; returns false if the receiver is
+    /// gone.
     async fn tell(&mut self, found: GazeNews) -> bool {
         if matches!(found, GazeNews::Sample(..)) && !self.lines.has_begun {
             self.lines.has_begun = true;
-            // All connections together are not more than may be admitted.
+            // The limits never reject an admitted sender: no more connections can be open than may be admitted.
             let _ = self.place.admit();
             if self.news.send(GazeNews::Began).await.is_err() {
                 return false;
@@ -223,7 +225,7 @@ mod tests {
 
     #[tokio::test]
     async fn samples_arrive_and_what_is_none_is_counted() {
-        // Port 0: the system chooses; so the test listens itself.
+        // The test opens the listener itself, at port 0, so that the system chooses a free port.
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
         let address = listener.local_addr().expect("an address");
         let (sender, mut lines) = channel(64);

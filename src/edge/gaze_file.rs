@@ -1,4 +1,4 @@
-//! Recorded gaze: tables of gaze on a surface, and recordings of this program.
+//! Recorded gaze as the gaze source of a session: tables of gaze on a surface, and recordings of this program.
 
 use std::path::Path;
 
@@ -11,20 +11,21 @@ use crate::gaze::surface::SurfaceMap;
 use crate::session::Event;
 use crate::session::apply::apply;
 
-/// Largest number of samples in a file (a day at 60 Hz).
+/// Largest number of samples in a gaze file (a day at 60 Hz).
 const MAX_SAMPLES: usize = 5_184_000;
 
-/// The samples of a gaze file.
+/// Samples of a gaze file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GazeFile {
-    /// Time on the trial's clock in seconds, and sample, in the file's order.
+    /// Samples in the file's order, each with its time on the trial's clock in seconds.
     pub samples: Vec<(f64, GazeSample)>,
-    /// Number of malformed lines.
+    /// Number of malformed lines in the gaze file.
     pub malformed: u64,
 }
 
-/// Reads gaze from a folder or a log of this program, or from a table of gaze on a surface, which `map` maps to the display. The trial
-/// starts `start_s` after the first sample, or after the start of the recorded trial; what is before it is left out.
+/// Reads gaze from a recording of this program (folder or log), or from a table of gaze on a surface, which `map` maps
+/// to the display. The trial starts `start_s` seconds after the first sample, or after the start of the recorded trial;
+/// earlier samples are left out.
 ///
 /// # Errors
 /// The file cannot be read, has another format, or ends before `start_s`.

@@ -1,5 +1,5 @@
-//! Who may send gaze: every program of this computer; of other computers those that the session lists, or, if it lists none, those that
-//! know the pairing code.
+//! Access check for senders of gaze. Every program of this computer may send; of other computers, those that the
+//! session lists or, if it lists none, those that know the pairing code.
 
 use std::collections::VecDeque;
 use std::net::{IpAddr, SocketAddr};
@@ -11,48 +11,48 @@ use super::gaze_input::{GazeNews, SenderRefusal};
 use super::gaze_line::code_in;
 use super::pairing::{PairingDesk, PairingVerdict};
 
-/// Least time between two notices about senders that are not let in: they can come in thousands.
+/// Least time between two notices about rejected senders, of which there can be thousands.
 const NOTICE: Duration = Duration::from_millis(100);
 /// Number of paired senders of datagrams that are remembered.
 const MAX_PAIRED: usize = 64;
 
-/// What an address has to do before anything of it is read.
+/// Condition under which gaze from an address is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Admission {
-    /// Nothing.
+    /// Gaze from the address is read without a condition.
     Open,
-    /// Send the pairing code.
+    /// Gaze from the address is read once it has sent the pairing code.
     ByCode,
-    /// It is not let in.
+    /// Gaze from the address is never read.
     Never,
 }
 
-/// Lets senders in, and tells of those that it does not let in. Connections and datagrams have a gate each, so that wrong codes in
-/// datagrams, whose senders can be made up, lock no connection out.
+/// Access check for senders of gaze, which also reports rejected senders. Connections and datagrams have separate
+/// instances, so that wrong codes in datagrams, whose sender addresses can be forged, lock no connection out.
 #[derive(Debug)]
 pub(super) struct GazeGate {
     listed: Vec<IpAddr>,
-    /// `None` if no code is asked for.
+    /// Check of pairing codes; `None` if no code is accepted.
     desk: Option<PairingDesk>,
-    /// Senders of datagrams with the right code, the oldest first.
+    /// Senders of datagrams that have sent the right code, oldest first.
     paired: VecDeque<SocketAddr>,
     news: Sender<GazeNews>,
-    /// When a rejected sender was told of last, and how many were not told of since.
+    /// Time of the last report about rejected senders, and number of senders rejected since.
     told: Option<Instant>,
     untold: u64,
 }
 
 impl GazeGate {
-    /// A gate for listed addresses, and for senders with this code.
+    /// An access check for listed addresses, and for senders that know this code.
     pub fn new(listed: &[IpAddr], code: Option<&String>, news: Sender<GazeNews>) -> GazeGate {
         let desk = code.map(|code| PairingDesk::new(code.clone()));
         let listed = listed.iter().map(IpAddr::to_canonical).collect();
         GazeGate { listed, desk, paired: VecDeque::new(), news, told: None, untold: 0 }
     }
 
-    /// What an address has to do.
+    /// Condition under which gaze from this address is read.
     pub fn admission(&self, from: IpAddr) -> Admission {
-        // Where both kinds of addresses are listened on, those of version 4 come in the clothes of version 6.
+        // A socket for both IP versions reports IPv4 addresses as IPv6 addresses, which are converted back.
         let from = from.to_canonical();
         match from.is_loopback() || self.listed.contains(&from) {
             true => Admission::Open,
@@ -61,10 +61,10 @@ impl GazeGate {
         }
     }
 
-    /// Checks the code of a sender that has to send one; tells of the sender if it is not let in.
+    /// Checks the pairing code of a sender that needs one, and reports the sender if it is rejected.
     ///
     /// # Errors
-    /// It is not let in, for this reason; the code of its address is not checked again for so long.
+    /// Why the sender is rejected, and for how long codes of its address are not checked.
     pub fn pair(&mut self, from: IpAddr, code: Option<&str>, now: Instant) -> Result<(), (SenderRefusal, Duration)> {
         let verdict = match (&mut self.desk, code) {
             (Some(desk), Some(code)) => Some(desk.attempt(from, None, code, now)),
@@ -80,8 +80,8 @@ impl GazeGate {
         Err((why, wait))
     }
 
-    /// The lines of a datagram that are read; `None` if its sender is not let in. A datagram with the code as its first line pairs its
-    /// address and port; later ones of them need none.
+    /// The lines of a datagram that are to be read; `None` if its sender is rejected. A datagram with the right code as
+    /// its first line pairs its address and port; later datagrams from there need no code.
     pub fn lines<'a>(&mut self, from: SocketAddr, datagram: &'a [u8], now: Instant) -> Option<&'a [u8]> {
         let first = datagram.iter().position(|&byte| byte == b'\n').unwrap_or(datagram.len());
         let code = code_in(&datagram[..first]);
@@ -104,14 +104,14 @@ impl GazeGate {
         }
     }
 
-    /// Tells of a sender that is not let in.
+    /// Reports a rejected sender of gaze to the session.
     pub fn refuse(&mut self, from: IpAddr, why: SenderRefusal, now: Instant) {
         self.untold += 1;
         if self.told.is_some_and(|told| now.saturating_duration_since(told) < NOTICE) {
             return;
         }
         let refused = GazeNews::Refused { from: from.to_canonical(), why, senders: self.untold };
-        // A closed or full channel has more serious consequences than a missing notice.
+        // A queue that is closed or full has worse consequences than a missing notice.
         if self.news.try_send(refused).is_ok() {
             (self.told, self.untold) = (Some(now), 0);
         }
@@ -144,7 +144,7 @@ mod tests {
         assert_eq!(gate.lines(sender(1), &paired, now).map(<[u8]>::trim_ascii), Some(SAMPLE.trim_ascii()));
         assert_eq!(gate.lines(sender(1), SAMPLE, now), Some(SAMPLE), "paired");
         assert_eq!(gate.lines(sender(2), SAMPLE, now), None, "another program there is not");
-        // A code of a paired sender is not looked at, so it can repeat it, and nobody can guess behind it.
+        // A code from a paired sender is not checked, so it may be repeated, and nobody can guess codes in its name.
         assert_eq!(gate.lines(sender(1), b"{\"pair\": \"WRONG2\"}", now), Some(&b""[..]));
         now += NOTICE;
         assert_eq!(gate.lines(sender(2), b"{\"pair\": \"WRONG2\"}", now), None);
@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(gate.lines(SocketAddr::new(other, 1), SAMPLE, now), None);
         let refused = GazeNews::Refused { from: other, why: SenderRefusal::Unlisted, senders: 1 };
         assert_eq!(told.try_recv(), Ok(refused));
-        // Whoever needs no code may send one all the same.
+        // A sender that needs no code may send one.
         assert_eq!(gate.lines(sender(1), b"{\"pair\": \"anything\"}\n{}", now), Some(&b"\n{}"[..]));
     }
 }

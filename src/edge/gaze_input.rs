@@ -1,4 +1,4 @@
-//! Messages of eye trackers of all kinds on their way into the session.
+//! Messages from all kinds of eye trackers to the session.
 
 use std::net::IpAddr;
 use std::time::Instant;
@@ -6,78 +6,78 @@ use std::time::Instant;
 use crate::gaze::GazeSample;
 use crate::session::tracker::TrackerRecording;
 
-/// Capacity of the queue of tracker messages.
+/// Largest number of tracker messages that wait for the session.
 pub const WAITING: usize = 4096;
 
-/// A message of a tracker. Points are in fractions of the wall display, origin at the top left.
+/// A message from an eye tracker to the session. Points are in fractions of the wall display, origin at the top left.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GazeNews {
-    /// A sample, with the time at which it was taken if the clocks have been compared.
+    /// Gaze sample, with the time at which it was taken if the tracker's clock has been compared with this computer's.
     Sample(GazeSample, Option<Instant>),
-    /// Number of malformed messages, lines or samples.
+    /// Number of malformed messages, lines or gaze samples.
     Malformed(u64),
-    /// A sample with this in place of a time.
+    /// A gaze sample whose time stamp is invalid: this number.
     WrongTime(f64),
-    /// Number of rejected senders: connections and datagrams that are not a tracker's.
+    /// Number of rejected senders: connections and datagrams that do not come from an eye tracker.
     Rejected(u64),
-    /// Senders were rejected that nobody let in.
+    /// Senders at other computers were rejected because they are not admitted.
     Refused {
-        /// Address of the last one.
+        /// Network address of the last rejected gaze sender.
         from: IpAddr,
-        /// Why that one was rejected.
+        /// Why the last gaze sender was rejected.
         why: SenderRefusal,
-        /// How many since the last such message.
+        /// Number of senders rejected since the last such message.
         senders: u64,
     },
-    /// Number of messages dropped because the queue was full.
+    /// Number of tracker messages dropped because the queue to the session was full.
     Overrun(u64),
     /// A tracker's program started to send; its clock may differ from before.
     Began,
-    /// A tracker's program responds, with its name.
+    /// The program of an eye tracker responds; its name and version.
     Connected(String),
-    /// A tracker's program no longer responds.
+    /// The program of an eye tracker no longer responds, for this reason.
     Lost(String),
-    /// The tracker sees the display by its tags, or not any more.
+    /// Whether the tracker detects the display's markers now.
     SeesDisplay(bool),
-    /// The tracker sees surfaces with these names, and not the display's.
+    /// The tracker detects surfaces with these names, but not that of the display.
     OtherSurfaces(Vec<String>),
-    /// The tracker's clock was set.
+    /// Somebody or something set the tracker's clock.
     ClockSet {
-        /// By how much it went ahead, in seconds; negative: back.
+        /// Step of the clock in seconds; negative if it was set back.
         by_s: f64,
-        /// When it was last found as it was before.
+        /// Instant at which the clock's offset was last found unchanged before the step.
         known_at: Instant,
     },
-    /// What became of the recording that the tracker's program makes of the trial.
+    /// State of the recording that the tracker's program makes of the trial.
     Recording(TrackerRecording),
-    /// A finished fixation.
+    /// A finished fixation of the participant's gaze.
     Fixation(TrackerFixation),
-    /// Onset or offset of a blink.
+    /// Onset or offset of the participant's blink.
     Blink {
-        /// Closed; false: opened.
+        /// Whether the eyes closed (onset); false if they opened (offset).
         is_onset: bool,
-        /// The tracker's confidence, 0 to 1.
+        /// Confidence of the tracker in the blink, 0 to 1.
         confidence: f64,
-        /// When.
+        /// Time of the blink's onset or offset.
         taken: SampleTime,
     },
 }
 
-/// Why a sender of gaze at another computer is not let in.
+/// Why a gaze sender at another computer is not admitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SenderRefusal {
-    /// The session lists addresses, and not this one.
+    /// The session lists addresses, and the sender's is not among them.
     Unlisted,
-    /// It sent something else than the pairing code.
+    /// The sender has sent something else than the pairing code.
     Unpaired,
-    /// The pairing code was wrong.
+    /// The sender sent a wrong pairing code.
     WrongCode,
-    /// The pairing code was not checked: too many wrong ones came before.
+    /// The pairing code was not checked, because too many wrong ones came before.
     Locked,
 }
 
 impl SenderRefusal {
-    /// The reason in words: "gaze from ADDRESS is rejected: …".
+    /// The reason in words, to complete "gaze from ADDRESS is rejected: …".
     pub fn words(self) -> &'static str {
         match self {
             SenderRefusal::Unlisted => "gaze_from does not list it",
@@ -88,26 +88,26 @@ impl SenderRefusal {
     }
 }
 
-/// A time on the tracker's clock and on ours.
+/// Time of a tracker's event, on the tracker's clock and on this computer's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleTime {
-    /// On the tracker's clock, in nanoseconds.
+    /// Time on the tracker's clock, in nanoseconds.
     pub device_ns: u64,
-    /// On this computer's clock, if the clocks were compared.
+    /// Time on this computer's clock, if the two clocks were compared.
     pub at: Option<Instant>,
 }
 
 /// A fixation detected by a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerFixation {
-    /// Position on the display, if it was there.
+    /// Position in fractions of the display, if the fixation was on it.
     pub at: Option<[f64; 2]>,
-    /// How long it was, in milliseconds.
+    /// Duration of the fixation, in milliseconds.
     pub duration_ms: f64,
-    /// How far its samples are spread, in degrees.
+    /// Spatial dispersion of the fixation's samples, in degrees.
     pub dispersion_deg: f64,
-    /// The tracker's confidence, 0 to 1.
+    /// Confidence of the tracker in the fixation, 0 to 1.
     pub confidence: f64,
-    /// When it began.
+    /// Beginning of the fixation.
     pub began: SampleTime,
 }

@@ -1,6 +1,6 @@
-//! Gaze from any other program: lines of JSON over TCP and UDP (`gaze_line.rs`). Lines that are no samples are counted. A connection or
-//! datagram that does not begin with a JSON object is rejected and counted. From other computers only listed addresses are read, or
-//! senders that know the pairing code.
+//! Gaze input from any other program: lines of JSON over TCP and UDP (`gaze_line.rs`). Lines that are not samples are
+//! counted. A connection or datagram that does not begin with a JSON object is rejected and counted. Gaze from other
+//! computers is read only from listed addresses, or from senders that know the pairing code.
 
 use std::io;
 use std::net::{IpAddr, SocketAddr};
@@ -23,7 +23,8 @@ use crate::session::settings::GazeSenders;
 
 /// Longest datagram, in bytes; it can contain several lines.
 const MAX_DATAGRAM: usize = 1 << 16;
-/// Limits of connections. A tracker that has sent a sample may be silent as long as there is room; whoever is not let in is replaced first.
+/// Limits for gaze connections. A sender that has sent a sample may be silent as long as there is room; senders that
+/// are not admitted are replaced first.
 const LIMITS: ConnectionLimits = ConnectionLimits {
     most: 32,
     per_address: 32,
@@ -32,29 +33,30 @@ const LIMITS: ConnectionLimits = ConnectionLimits {
     silence: Duration::from_secs(5),
 };
 
-/// The open gaze input.
+/// The open gaze input for connections (TCP) and datagrams (UDP).
 #[derive(Debug)]
 pub struct GazeListener {
-    /// Address for connections and datagrams.
+    /// Address at which connections and datagrams are received.
     pub address: SocketAddr,
-    /// Pairing code for senders at other computers, if there can be any and the session lists none.
+    /// Pairing code for senders at other computers; `None` if no other computer can reach the input, or if the session
+    /// lists addresses.
     pub code: Option<String>,
-    /// What trackers send.
+    /// Messages from the senders of gaze.
     pub news: Receiver<GazeNews>,
 }
 
 impl GazeListener {
-    /// Address to which other computers send.
+    /// Address to which gaze senders at other computers send.
     pub fn reachable(&self) -> SocketAddr {
         reachable(self.address)
     }
 }
 
-/// Listens at this address for connections and datagrams of this computer, and of others: of the listed addresses, or, if none is
-/// listed, of senders that know the pairing code. Trackers may come and go. Port 0 stands for a free port.
+/// Listens at this address for connections and datagrams of this computer and of others: from listed addresses, or, if
+/// none is listed, from senders that know the pairing code. Senders may come and go. Port 0 stands for a free port.
 ///
 /// # Errors
-/// The address cannot be listened on.
+/// The program cannot listen at the address.
 pub async fn listen(at: SocketAddr, senders: GazeSenders, listed: &[IpAddr]) -> io::Result<GazeListener> {
     let listener = TcpListener::bind(at).await?;
     let address = listener.local_addr()?;
@@ -67,12 +69,12 @@ pub async fn listen(at: SocketAddr, senders: GazeSenders, listed: &[IpAddr]) -> 
     Ok(GazeListener { address, code, news })
 }
 
-/// Accepts connections without end.
+/// Accepts gaze connections until the program ends.
 async fn take_connections(listener: TcpListener, gate: SharedGate, news: Sender<GazeNews>) {
     let table = ConnectionTable::new(LIMITS);
     while !news.is_closed() {
         let Ok((stream, from)) = listener.accept().await else {
-            // The process may be out of descriptors: the pause prevents a busy loop.
+            // The process may have run out of file descriptors: the pause prevents a busy loop.
             sleep(Duration::from_millis(100)).await;
             continue;
         };
@@ -91,13 +93,13 @@ async fn take_connections(listener: TcpListener, gate: SharedGate, news: Sender<
     }
 }
 
-/// Reads datagrams without end; samples that are not processed in time are counted.
+/// Reads gaze datagrams until the program ends; samples that cannot be queued are counted as dropped.
 async fn take_datagrams(socket: UdpSocket, mut holder: DatagramHolder, mut gate: GazeGate, news: Sender<GazeNews>) {
     let mut buffer = vec![0; MAX_DATAGRAM];
     let (mut lost, mut tracker) = (0, None);
     while !news.is_closed() {
         let Ok((count, from)) = socket.recv_from(&mut buffer).await else {
-            // Somebody who sent has gone: that is told here, and nothing else.
+            // The error only says that an earlier sender is gone.
             sleep(Duration::from_millis(1)).await;
             continue;
         };

@@ -1,6 +1,7 @@
-//! Lines of the gaze input: samples {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1, "age": seconds}, and the line with which a
-//! sender at another computer pairs, {"pair": "CODE"}. Coordinates are fractions of the wall display, the origin at the top left; t is
-//! the tracker's own clock, age the time since the sample was taken.
+//! Format of the lines of the gaze input: samples {"t": seconds, "x": 0..1, "y": 0..1, "confidence": 0..1, "age":
+//! seconds}, and the line with which a sender at another computer pairs, {"pair": "CODE"}. Coordinates are fractions of
+//! the wall display, with the origin at the top left; t is the time on the tracker's own clock, age the time since the
+//! sample was taken.
 
 use std::time::{Duration, Instant};
 
@@ -9,7 +10,7 @@ use serde::Deserialize;
 use super::gaze_input::GazeNews;
 use crate::gaze::GazeSample;
 
-/// Largest age of a sample, in seconds. A sender that knows an age knows it of samples that it just got.
+/// Largest age of a sample, in seconds; a larger age is an error of the sender.
 const MAX_AGE_S: f64 = 60.0;
 
 #[derive(Deserialize)]
@@ -29,7 +30,7 @@ struct PairingLine {
     pair: String,
 }
 
-/// Whether bytes begin like a JSON object; `None` if there are too few to decide.
+/// Whether bytes begin a JSON object; `None` if there are too few to decide.
 pub(super) fn begins_object(bytes: &[u8]) -> Option<bool> {
     let mut signs = bytes.iter().filter(|byte| !byte.is_ascii_whitespace());
     match (signs.next(), signs.next()) {
@@ -39,19 +40,19 @@ pub(super) fn begins_object(bytes: &[u8]) -> Option<bool> {
     }
 }
 
-/// The code of a pairing line; `None` if the line is none.
+/// The pairing code in a line; `None` if the line is not a pairing line.
 pub fn code_in(line: &[u8]) -> Option<String> {
     serde_json::from_slice::<PairingLine>(line).ok().map(|line| line.pair)
 }
 
-/// Parses a line that arrived at this instant; `None` for an empty line.
+/// Parses a line of the gaze input that arrived at this instant; `None` for an empty line.
 pub fn parse(line: &[u8], arrived: Instant) -> Option<GazeNews> {
     if line.trim_ascii().is_empty() {
         return None;
     }
     let Ok(found) = serde_json::from_slice::<SampleLine>(line) else { return Some(GazeNews::Malformed(1)) };
     let has_age = found.age.is_none_or(|age_s| (0.0..=MAX_AGE_S).contains(&age_s));
-    // Beside the display is a place, too; a confidence beyond its scale is a tracker that speaks another language.
+    // Points outside the display are valid; a confidence outside 0 to 1 shows that the sender uses another format.
     if !(found.x.is_finite() && found.y.is_finite() && (0.0..=1.0).contains(&found.confidence) && has_age) {
         return Some(GazeNews::Malformed(1));
     }
@@ -64,8 +65,8 @@ pub fn parse(line: &[u8], arrived: Instant) -> Option<GazeNews> {
     Some(GazeNews::Sample(sample, taken))
 }
 
-/// Converts a time stamp to nanoseconds; `None` if it is none. Up to ten digits are seconds of any clock. More are milliseconds,
-/// microseconds or nanoseconds since 1970, which differ by three digits each.
+/// Converts a time stamp to nanoseconds; `None` if it is invalid. Stamps of up to ten digits are seconds of any clock.
+/// Longer ones are milliseconds, microseconds or nanoseconds since 1970, which differ by three digits each.
 fn device_ns(t: f64) -> Option<u64> {
     let ns_per_unit = match t {
         0.0..1e10 => 1e9,
@@ -118,7 +119,7 @@ mod tests {
         {
             assert_eq!(code_in(other.as_bytes()), None, "{other}");
         }
-        // To who needs no code it is no sample.
+        // For a parser of samples, a pairing line is malformed.
         assert_eq!(parse(b"{\"pair\": \"ABC234\"}", Instant::now()), Some(GazeNews::Malformed(1)));
     }
 }

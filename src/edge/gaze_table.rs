@@ -1,5 +1,5 @@
-//! Tables of gaze on a surface, as Pupil Player exports them (of Pupil Core), and Neon Player and Pupil Cloud's Marker Mapper (of Neon and
-//! Invisible).
+//! CSV tables of gaze on a surface, as exported by Pupil Player (for Pupil Core), and by Neon Player and Pupil Cloud's
+//! Marker Mapper (for Neon and Invisible).
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -9,49 +9,49 @@ use super::file_error::{FileError, FileResult};
 use crate::gaze::GazeSample;
 use crate::gaze::surface::SurfaceMap;
 
-/// What a gaze file may be, for messages.
+/// Description of valid gaze files, for error messages.
 const REMEDY: &str = "gaze on the display: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of \
                                  Pupil Cloud's Marker Mapper, or a recording's folder";
-/// Longest line of a table, in bytes.
+/// Longest line of a gaze table, in bytes.
 const MAX_LINE: u64 = 1 << 16;
-/// Columns that tell gaze in the scene camera's picture, which says nothing about the display.
+/// Columns that contain gaze in the scene camera's image, from which the gaze on the display cannot be computed.
 const SCENE_COLUMNS: [&str; 3] = ["gaze x [px]", "gaze position in reference image x [px]", "norm_pos_x"];
 
-/// Whose table it is.
+/// Program that exported the table of gaze.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum GazeExporter {
     PupilPlayer,
-    /// Marker Mapper and Neon Player, whose columns have the same names.
+    /// Pupil Cloud's Marker Mapper and Neon Player, whose columns have the same names.
     MarkerMapper,
 }
 
-/// The columns that are used, by their place in a line.
+/// Indices of those columns of a gaze table that are used.
 #[derive(Clone, Copy, Debug)]
 struct GazeColumns {
     exporter: GazeExporter,
     time: usize,
     x: usize,
     y: usize,
-    /// Pupil Player only.
+    /// Index of the confidence column; only in tables of Pupil Player.
     confidence: Option<usize>,
-    /// Marker Mapper only: the blink that the sample belongs to, and the recording.
+    /// Columns of the blink id and of the recording; only in tables of Marker Mapper.
     blink: Option<usize>,
     recording: Option<usize>,
 }
 
-/// What a line says.
+/// Content of a row of the gaze table.
 enum GazeRow {
     Sample(i64, GazeSample),
-    /// The surface was not found in the scene, so nothing is known.
+    /// The surface was not found in the scene, so the gaze on it is unknown.
     Unlocated,
     Malformed,
 }
 
-/// Reads at most `most` samples of a table whose surface is mapped by `map`: nanoseconds since the first sample, and the sample; and the
-/// number of malformed lines.
+/// Reads at most `most` samples of a table whose surface is mapped by `map`. Returns each sample with the nanoseconds
+/// since the first one, and the number of malformed lines.
 ///
 /// # Errors
-/// The file cannot be read, is no such table, or has the gaze of several recordings.
+/// The file cannot be read, is not such a table, or contains gaze of several recordings.
 pub(super) fn read(path: &Path, map: &SurfaceMap, most: usize) -> FileResult<(Vec<(i64, GazeSample)>, u64)> {
     let unreadable = |reason| FileError::unreadable(path, reason, REMEDY);
     let mut input = BufReader::new(File::open(path).map_err(unreadable)?);
@@ -89,19 +89,19 @@ pub(super) fn read(path: &Path, map: &SurfaceMap, most: usize) -> FileResult<(Ve
     Ok((samples, malformed))
 }
 
-/// Whether a file is a table of gaze on a surface, by its first line.
+/// Whether a file is a table of gaze on a surface, judged by its first line.
 pub(super) fn is_on_surface(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|file| BufReader::new(file).take(MAX_LINE).read_until(b'\n', &mut head));
     read.is_ok() && columns(path, &head_of(&head)).is_ok()
 }
 
-/// The first line as text, without the mark that some programs put before it.
+/// The header line of a gaze table as text, without a byte order mark.
 fn head_of(line: &[u8]) -> String {
     String::from_utf8_lossy(line).trim_start_matches('\u{feff}').trim().to_string()
 }
 
-/// Finds the columns in the first line.
+/// Finds the used columns in the header line of a gaze table.
 fn columns(path: &Path, head: &str) -> FileResult<GazeColumns> {
     let names: Vec<&str> = head.split(',').map(str::trim).collect();
     let place = |name: &str| names.iter().position(|found| *found == name);
@@ -142,7 +142,8 @@ impl GazeColumns {
                 return GazeRow::Unlocated;
             }
             GazeExporter::MarkerMapper => {
-                // In a blink the direction of the gaze is made up. The origin is the top left corner; the map takes the bottom left.
+                // During a blink the table's gaze direction is invented, so its confidence is 0. The table's origin is
+                // the top left corner, that of the map the bottom left.
                 let is_blink = self.blink.is_some_and(|column| !cell(column).is_empty());
                 let confidence = if is_blink { 0.0 } else { 1.0 };
                 let place = number(self.x).zip(number(self.y)).and_then(|(x, y)| map.to_display([x, 1.0 - y]));

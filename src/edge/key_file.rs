@@ -1,4 +1,4 @@
-//! Reads key files, which change keys of the console.
+//! Reads key files, which change the keys of the console.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ impl ParsedFile for KeyMap {
     const KIND: FileKind = FileKind::Keys;
 }
 
-/// Checks the keys of a layout together with a key file.
+/// Checks the keys of a kitchen's layout file together with a key file.
 ///
 /// # Errors
 /// A key is used twice, or the key file is invalid.

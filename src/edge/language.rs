@@ -1,4 +1,4 @@
-//! Files with the words of the participant's display, for languages that are not built in.
+//! Files with the texts of the participant's display, for languages that are not built in.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use super::parse::{FileKind, ParsedFile, parse};
 use crate::session::SessionSpec;
 use crate::session::wall_display::DisplaySpec;
 
-/// A file with words, by their English originals.
+/// Translations of the display's texts, by their English originals.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(transparent)]
 pub struct LanguageFile(pub BTreeMap<String, String>);
@@ -19,10 +19,10 @@ impl ParsedFile for LanguageFile {
     const KIND: FileKind = FileKind::Language;
 }
 
-/// Reads the words of a session's display from a file; words in the session file take precedence.
+/// Reads the texts of a session's display from a file; texts in the session file take precedence.
 ///
 /// # Errors
-/// The file is not there, or has no words.
+/// The file does not exist, or contains no texts.
 pub(super) fn read_words(session: &Path, text: &str, spec: &mut SessionSpec) -> FileResult<()> {
     let language = &spec.display.language;
     if DisplaySpec::LANGUAGES.contains(&language.as_str()) {

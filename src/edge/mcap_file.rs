@@ -1,4 +1,4 @@
-//! Writes a recording as MCAP, the container format of robotics tools.
+//! Writes a recording as an MCAP file, the container format of robotics tools.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -12,30 +12,30 @@ use super::log::MCAP_NAME;
 use super::overwrite;
 use crate::analysis::foxglove::{ChannelMessage, MessageChannel};
 
-/// What every MCAP begins with.
+/// First bytes of every MCAP file.
 const BEGINS: &[u8] = b"\x89MCAP0\r\n";
-/// What the file's header says wrote it.
+/// Name of this program in the header of the MCAP file.
 const LIBRARY: &str = "tomcom";
-/// Ending of the name of a file that is being written.
+/// Suffix of the name of an MCAP file that is still being written.
 const BEGUN: &str = ".new";
-/// How the messages and their schemas are encoded.
+/// Encodings of an MCAP file's messages and of their schemas.
 const ENCODING: &str = "json";
 const SCHEMA_ENCODING: &str = "jsonschema";
 
-/// A file that is being written. It gets its name when it is whole.
+/// An MCAP file that is being written. It gets its final name when it is complete.
 pub struct McapFile {
     writer: Writer<BufWriter<File>>,
-    /// Numbers of the channels in the file, and of their messages so far.
+    /// For each channel, its number in the file and its number of messages so far.
     channels: BTreeMap<MessageChannel, (u16, u32)>,
     begun: PathBuf,
     path: PathBuf,
 }
 
 impl McapFile {
-    /// Begins the file of the recording in this folder. One that this program wrote is replaced.
+    /// Creates the MCAP file of the recording in this folder. An earlier file of this program is replaced.
     ///
     /// # Errors
-    /// A file of somebody else has its name, or it cannot be written.
+    /// The name is taken by a file of another program, or the file cannot be written.
     pub fn create(folder: &Path) -> io::Result<McapFile> {
         let path = folder.join(MCAP_NAME);
         let is_own = |head: &[u8]| {
@@ -57,10 +57,10 @@ impl McapFile {
         Ok(McapFile { writer, channels, begun, path })
     }
 
-    /// Writes a message.
+    /// Writes a message to its channel.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn write(&mut self, message: &ChannelMessage) -> io::Result<()> {
         let Some((channel, sequence)) = self.channels.get_mut(&message.channel) else { return Ok(()) };
         let header = MessageHeader {
@@ -73,10 +73,11 @@ impl McapFile {
         self.writer.write_to_known_channel(&header, message.content.to_string().as_bytes()).map_err(reason)
     }
 
-    /// Ends the file with these words about the recording, and gives it its name; its path, and the numbers of messages by channel.
+    /// Completes the file with these metadata about the recording, and gives it its final name; returns the path, and
+    /// the number of messages by channel.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn finish(mut self, about: BTreeMap<String, String>) -> io::Result<(PathBuf, BTreeMap<&'static str, u32>)> {
         self.writer.write_metadata(&Metadata { name: LIBRARY.to_string(), metadata: about }).map_err(reason)?;
         self.writer.finish().map_err(reason)?;

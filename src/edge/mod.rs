@@ -1,4 +1,4 @@
-//! Everything that touches the outside: files, terminal, network, clock.
+//! Everything that touches the outside of the program: files, terminal, network, clocks.
 
 pub mod ask;
 pub mod battery_file;

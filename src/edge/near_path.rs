@@ -1,13 +1,13 @@
-//! Paths that are nearly right.
+//! Suggestions for mistyped paths.
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// Largest number of letters that may be wrong in a name.
+/// Largest number of wrong letters in a mistyped name.
 const MOST_EDITS: usize = 2;
 
-/// The existing path that is nearest to one that does not exist: each of its names that is not there is replaced by the nearest name that
-/// is. `None` if there is none so near, or the path exists.
+/// The existing path that is nearest to a path that does not exist: each missing name is replaced by the most similar
+/// existing one. `None` if there is no similar path, or the path exists.
 pub fn nearest(path: &Path) -> Option<PathBuf> {
     let mut found = PathBuf::new();
     for part in path.components() {
@@ -21,7 +21,7 @@ pub fn nearest(path: &Path) -> Option<PathBuf> {
         }
         let folder = if found.as_os_str().is_empty() { Path::new(".") } else { found.as_path() };
         let wanted = name.to_string_lossy();
-        // At least half of a name is right.
+        // At least half of the letters of a name must be right.
         let most = MOST_EDITS.min(wanted.chars().count() / 2);
         let names = fs::read_dir(folder).ok()?.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
         let near = names.map(|name| (edits(&wanted, &name), name)).filter(|(edits, _)| *edits <= most).min()?;
@@ -30,8 +30,8 @@ pub fn nearest(path: &Path) -> Option<PathBuf> {
     (found != path).then_some(found)
 }
 
-/// The number of letters to insert, delete, exchange or swap with their neighbour to make one name of the other (optimal string alignment
-/// distance).
+/// Number of letters to insert, delete, replace or swap with their neighbour to turn one name into the other (optimal
+/// string alignment distance).
 fn edits(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let mut rows: Vec<Vec<usize>> = vec![(0..=b.len()).collect()];

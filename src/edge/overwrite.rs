@@ -1,17 +1,18 @@
-//! Files that the program is told to write: one that is there already is replaced only if this program wrote it.
+//! Check before the program overwrites a file: an existing file is replaced only if this program wrote it.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// What kind of file it is stands within so many bytes of its beginning.
+/// Number of bytes from the beginning of a file in which the file's kind is looked for.
 const HEAD: u64 = 1 << 16;
 
-/// Whether a file can be written to this path. `is_own` is given the beginning of the file that is there, and says whether
-/// this program wrote it; `what` names such files, for the message. Empty files, pipes and devices hold nothing to be lost.
+/// Checks that a file can be written to this path. `is_own` receives the beginning of an existing file, and returns
+/// whether this program wrote it; `what` names such files in the error message. Empty files, pipes and devices contain
+/// nothing that could be lost.
 ///
 /// # Errors
-/// There is a file of somebody else, or one that cannot be read.
+/// The path has a file that this program did not write, or one that cannot be read.
 pub fn check(path: &Path, what: &str, is_own: impl FnOnce(&[u8]) -> bool) -> io::Result<()> {
     match fs::metadata(path) {
         Ok(data) if data.is_file() => {}
@@ -28,7 +29,7 @@ pub fn check(path: &Path, what: &str, is_own: impl FnOnce(&[u8]) -> bool) -> io:
     Err(io::Error::new(ErrorKind::AlreadyExists, found))
 }
 
-/// The first line of a text, without its end and without a byte order mark.
+/// The first line of a text, without its line end and without a byte order mark.
 pub fn first_line(head: &[u8]) -> &[u8] {
     let line = head.split(|byte| matches!(byte, b'\r' | b'\n')).next().unwrap_or_default();
     line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line)

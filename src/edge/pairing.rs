@@ -1,6 +1,7 @@
-//! Attempts at the pairing code, of pages of the display and of senders of gaze. Each wrong code locks its address for a while, and
-//! longer with every further one. Locks hold for all connections of an address together. Of all addresses together only a few wrong
-//! codes a second are checked: the address of a datagram can be made up.
+//! Check of pairing codes, sent by pages of the display and by gaze senders. Each wrong code locks its network address
+//! for a while, and longer with every further one. A lock holds for all connections of an address together. Of all
+//! addresses together, only a few wrong codes per second are checked, since the sender address of a datagram can be
+//! forged.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::net::IpAddr;
@@ -9,57 +10,58 @@ use std::time::{Duration, Instant};
 use super::connection_table::network_of;
 use super::pairing_code::is_code;
 
-/// Lock after a wrong code.
+/// Time for which an address is locked after a wrong pairing code.
 const WAIT: Duration = Duration::from_secs(1);
-/// Number of wrong codes that count as typing errors; each further one doubles the lock.
+/// Number of wrong codes that count as typing errors; each further one doubles the lock time.
 const SLIPS: u32 = 4;
-/// Longest lock.
+/// Longest time for which an address is locked.
 const LONGEST: Duration = Duration::from_secs(300);
-/// Time after the end of its lock at which an address starts anew.
+/// Time after the end of its lock at which an address's wrong codes are forgotten.
 const FORGOTTEN: Duration = Duration::from_secs(3600);
-/// Number of wrong codes of all addresses together that are checked in [`WAIT`].
+/// Largest number of wrong codes of all addresses together that are checked within [`WAIT`].
 const MOST_WRONG: u32 = 10;
 /// Number of addresses whose wrong codes are remembered; beyond it, the address whose lock ends first is forgotten.
 const MAX_ADDRESSES: usize = 1024;
 /// Number of paired pages that are remembered.
 const MAX_PAGES: usize = 64;
 
-/// Result of an attempt.
+/// Result of an attempt to pair with a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PairingVerdict {
     Right,
     /// The code was wrong, and the address is locked for this time.
     Wrong(Duration),
-    /// The code was not checked: the address is locked for this time.
+    /// The code was not checked: the address is still locked for this time.
     Locked(Duration),
 }
 
-/// Wrong codes of an address.
+/// Wrong codes that an address has sent.
 #[derive(Clone, Copy, Debug)]
 struct WrongCodes {
     count: u32,
     locked_until: Instant,
 }
 
-/// The pairing code and the history of attempts.
+/// The pairing code and the history of attempts to pair.
 #[derive(Debug)]
 pub(super) struct PairingDesk {
     code: String,
     wrong: BTreeMap<IpAddr, WrongCodes>,
-    /// When wrong codes of all addresses were counted from, and their number since.
+    /// Start of the present counting interval for wrong codes of all addresses, and their number since.
     recent: Option<(Instant, u32)>,
-    /// Names of paired pages, the oldest first. A name is a random number that only its page knows.
+    /// Names of paired pages, oldest first. A name is a random number that only its page knows.
     known: VecDeque<String>,
 }
 
 impl PairingDesk {
-    /// A desk that asks for this code and has seen nobody yet.
+    /// A check of this code without any attempt so far.
     pub fn new(code: String) -> PairingDesk {
         PairingDesk { code, wrong: BTreeMap::new(), recent: None, known: VecDeque::new() }
     }
 
-    /// Checks a code of this address, or of the page with this name. A page that has paired before is let in with the right code even
-    /// while its address is locked, so that nobody can lock out the participant's page.
+    /// Checks a code that came from this address or from the page with this name. A page that has paired before is
+    /// admitted with the right code even while its address is locked, so that nobody can lock out the participant's
+    /// page.
     pub fn attempt(&mut self, address: IpAddr, page: Option<&str>, typed: &str, now: Instant) -> PairingVerdict {
         let (address, is_right) = (network_of(address), is_code(typed, &self.code));
         if is_right && page.is_some_and(|page| self.known.iter().any(|known| known == page)) {
@@ -91,14 +93,14 @@ impl PairingDesk {
         PairingVerdict::Wrong(wait)
     }
 
-    /// How long no code is checked, whoever sends it; `None` if codes are checked.
+    /// Time for which no code of any sender is checked; `None` if codes are checked.
     fn crowd_lock(&mut self, now: Instant) -> Option<Duration> {
         self.recent = self.recent.filter(|(since, _)| now < *since + WAIT);
         self.recent.filter(|(_, count)| *count >= MOST_WRONG).map(|(since, _)| since + WAIT - now)
     }
 }
 
-/// Lock after this number of wrong codes.
+/// Time for which an address is locked after this number of wrong codes.
 fn wait_after(count: u32) -> Duration {
     let doublings = count.saturating_sub(SLIPS).min(16);
     (WAIT * 2_u32.pow(doublings)).min(LONGEST)
@@ -119,7 +121,7 @@ mod tests {
     fn who_guesses_tries_some_dozen_codes_an_hour_however_often_it_asks() {
         let (mut desk, start) = (desk(), Instant::now());
         let tried = |verdict| matches!(verdict, PairingVerdict::Wrong(_));
-        // 400 times a second, as from 400 connections.
+        // Codes are tried 400 times per second, as if from 400 connections.
         let times = (0..3600 * 400).map(|step| start + Duration::from_micros(2500 * step));
         let looked_at = times.filter(|now| tried(desk.attempt(HERE, Some("guesser"), "AAAAAA", *now))).count();
         assert!((10..30).contains(&looked_at), "{looked_at} codes in an hour");
@@ -150,7 +152,7 @@ mod tests {
         assert_eq!(desk.attempt(HERE, Some("guesser"), "AAAAAA", now), PairingVerdict::Wrong(WAIT));
         assert_eq!(desk.attempt(HERE, Some("participant"), "ABC234", now), PairingVerdict::Right);
         assert_eq!(desk.attempt(HERE, Some("guesser"), "ABC234", now), PairingVerdict::Locked(WAIT));
-        // Its name alone is no code.
+        // The name of a paired page does not replace the code.
         assert_eq!(desk.attempt(HERE, Some("participant"), "AAAAAA", now), PairingVerdict::Locked(WAIT));
     }
 
@@ -177,7 +179,7 @@ mod tests {
         assert!((590..=600).contains(&checked), "{checked} codes in a minute");
         let later = start + Duration::from_secs(62);
         assert_eq!(desk.attempt(THERE, None, "ABC234", later), PairingVerdict::Right);
-        // Who has no name is known to nobody the next time.
+        // A sender without a name is not recognised the next time.
         assert_eq!(desk.attempt(THERE, None, "WRONG2", later), PairingVerdict::Wrong(WAIT));
         assert_eq!(desk.attempt(THERE, None, "ABC234", later), PairingVerdict::Locked(WAIT));
     }

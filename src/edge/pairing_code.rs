@@ -1,19 +1,19 @@
-//! The pairing code, which the console shows and whoever connects from another computer has to know.
+//! The pairing code: the console shows it, and pages and gaze senders at other computers have to send it.
 
 use std::collections::hash_map::RandomState;
 use std::hash::BuildHasher;
 
-/// Letters and digits that are not easily confused.
+/// Letters and digits of pairing codes; those that are easily confused are left out.
 const SIGNS: &[u8; 32] = b"ABCDEFGHJKLMNPQRSTUVWXYZ23456789";
 
-/// An unpredictable code of six signs, from the system's random source (by the seeds of the standard library's hash maps) rather than
-/// from the session's seed, which is recorded.
+/// An unpredictable pairing code of six characters. It comes from the operating system's random source (through the
+/// seeds of the standard library's hash maps), not from the session's seed, which is recorded.
 pub(super) fn pairing_code() -> String {
     let bits = RandomState::new().hash_one("pairing code");
     (0..6).map(|place| char::from(SIGNS[(bits >> (5 * place)) as usize % SIGNS.len()])).collect()
 }
 
-/// Whether a typed text is the code, ignoring case and spaces, in constant time.
+/// Whether a typed text is the pairing code, ignoring case and spaces; compared in constant time.
 pub(super) fn is_code(typed: &str, code: &str) -> bool {
     let typed: Vec<u8> =
         typed.bytes().filter(u8::is_ascii_alphanumeric).map(|byte| byte.to_ascii_uppercase()).collect();

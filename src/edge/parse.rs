@@ -1,4 +1,4 @@
-//! Parses the files that people write. Every error names the file, the line, what was found and what would be right.
+//! Parses files that people write (TOML). Every error names the file, the line, what was found and what would be valid.
 
 use std::path::Path;
 
@@ -13,31 +13,31 @@ use crate::session::SessionSpec;
 use crate::session::battery::BatterySpec;
 use crate::session::plan::{Questionnaire, Tutorial};
 
-/// The kinds of files that people write.
+/// Kind of a file that people write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
-    /// A session file.
+    /// A session file: the settings of a session.
     Session,
-    /// A layout file of a kitchen.
+    /// A layout file of a kitchen: places, buttons and the display.
     Layout,
-    /// A recipe file of a kitchen.
+    /// A recipe file of a kitchen: items, dishes and their recipes.
     Recipes,
-    /// A parameter file of the human model.
+    /// A parameter file of the human model (beliefs and choices of simulated people).
     HumanModel,
-    /// A key file of the console.
+    /// A key file, which changes keys of the console.
     Keys,
-    /// A questionnaire.
+    /// A questionnaire for participants.
     Questionnaire,
-    /// A tutorial.
+    /// A tutorial for participants.
     Tutorial,
-    /// Words of the participant's display in a language.
+    /// Texts of the participant's display in a language.
     Language,
-    /// A battery of cohorts.
+    /// A battery of cohorts of simulated participants.
     Battery,
 }
 
 impl FileKind {
-    /// What a text is by the tables in it, if it is any of them.
+    /// The kind of file that a text is, judged by its tables; `None` if unknown.
     fn from_text(text: &str) -> Option<FileKind> {
         let table: toml::Table = text.parse().ok()?;
         let has = |keys: &[&str]| keys.iter().any(|key| table.contains_key(*key));
@@ -84,9 +84,9 @@ impl FileKind {
     }
 }
 
-/// What a file of one kind is parsed into.
+/// A type into which files of one kind are parsed.
 pub trait ParsedFile: DeserializeOwned {
-    /// The kind.
+    /// The kind of file that this type is parsed from.
     const KIND: FileKind;
 }
 
@@ -118,7 +118,7 @@ impl ParsedFile for HumanModelFile {
     const KIND: FileKind = FileKind::HumanModel;
 }
 
-/// Parses TOML into `T`.
+/// Parses TOML into `T`; if the text is a file of another kind, the error says so.
 pub fn parse<T: ParsedFile>(path: &Path, text: &str) -> FileResult<T> {
     toml::from_str(text).map_err(|error| match FileKind::from_text(text).filter(|kind| *kind != T::KIND) {
         Some(other) => FileError::at(path, text, None, other.name().to_string(), T::KIND.remedy().to_string()),

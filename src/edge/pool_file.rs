@@ -1,4 +1,5 @@
-//! Files of pools of simulated participants: JSON Lines ([`crate::study::simulation_pool`]).
+//! Files of pools (simulated participants for power analyses) in the format JSON Lines
+//! ([`crate::study::simulation_pool`]).
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -12,10 +13,10 @@ use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, SimulationPool};
 
 const REMEDY: &str = "a pool that tomcom power or tomcom arms wrote with --out";
 
-/// Reads the parts of a pool and joins them.
+/// Reads the parts of a pool of simulated participants and joins them.
 ///
 /// # Errors
-/// A file cannot be read, is no pool of this format, or the parts do not make one pool.
+/// A file cannot be read, is not a pool of this format, or the parts do not belong to one pool.
 pub fn read_pool(paths: &[PathBuf]) -> FileResult<SimulationPool> {
     let parts = paths.iter().map(|path| read_part(path)).collect::<FileResult<Vec<_>>>()?;
     SimulationPool::joined(parts).map_err(|wrong| {
@@ -55,20 +56,21 @@ fn parsed<T: DeserializeOwned>(line: &str) -> Result<T, String> {
     serde_json::from_str(line).map_err(|error| format!("a line that is none of a pool: {error}"))
 }
 
-/// Checks that a pool with this header can be written to this path. Pools are dear: none is replaced by another one.
+/// Checks that a pool with this header can be written to this path. A pool takes long to simulate, so no other pool is
+/// overwritten.
 ///
 /// # Errors
-/// There is a file that is not this pool.
+/// The path has a file that is not this pool.
 pub fn check_pool(path: &Path, header: &PoolHeader) -> FileResult<()> {
     let own = line(header);
     let is_own = |head: &[u8]| overwrite::first_line(head) == own.trim_end().as_bytes();
     overwrite::check(path, "the same pool", is_own).map_err(|reason| FileError::unwritable(path, reason))
 }
 
-/// Writes a pool, as a whole or not at all.
+/// Writes a pool of simulated participants, completely or not at all.
 ///
 /// # Errors
-/// There is a file that is not this pool, or the folder cannot be written to.
+/// The path has a file that is not this pool, or the folder cannot be written to.
 pub fn write_pool(path: &Path, pool: &SimulationPool) -> FileResult<()> {
     check_pool(path, &pool.header)?;
     let mut text = line(&pool.header);
@@ -79,6 +81,6 @@ pub fn write_pool(path: &Path, pool: &SimulationPool) -> FileResult<()> {
 }
 
 fn line(value: &impl Serialize) -> String {
-    // Headers and trials have string keys and finite numbers.
+    // Headers and trials contain only string keys and finite numbers, so serialisation cannot fail.
     serde_json::to_string(value).unwrap_or_default() + "\n"
 }

@@ -1,4 +1,4 @@
-//! Table and picture of `tomcom power`.
+//! Output files of the command `tomcom power`: a table and a plot of statistical power.
 
 use std::io;
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::study::drawn_study::TestMethod;
 use crate::study::power_answer::{PowerSummary, SizePower, TestPower};
 use crate::study::power_chart;
 
-/// A column of the table: its name, and its value in a row.
+/// A column of the table of statistical power: its name, and the function for its value in a row.
 type PowerColumn = (&'static str, fn(&SizePower, &TestPower) -> String);
 
 const COLUMNS: [PowerColumn; 12] = [
@@ -34,10 +34,10 @@ fn method(method: TestMethod) -> &'static str {
     }
 }
 
-/// Checks that table and picture can be written to these paths.
+/// Checks that table and plot of statistical power can be written to these paths.
 ///
 /// # Errors
-/// There is a file that is none of this program's.
+/// A path has a file that this program did not write.
 pub fn check_power(table: Option<&Path>, picture: Option<&Path>) -> FileResult<()> {
     let names = COLUMNS.map(|(name, _)| name).join(",");
     let check = |path: Option<&Path>, what: &str, is_own: &dyn Fn(&[u8]) -> bool| match path {
@@ -48,7 +48,7 @@ pub fn check_power(table: Option<&Path>, picture: Option<&Path>) -> FileResult<(
     check(picture, "a picture of power", &|head| head.starts_with(b"<svg "))
 }
 
-/// Writes the table: a row for each number of participants and test (CSV).
+/// Writes the table of statistical power (CSV): a row for each number of participants and each test.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -67,7 +67,7 @@ pub fn write_table(path: &Path, found: &PowerSummary) -> FileResult<()> {
     write().map_err(|reason| FileError::unwritable(path, reason))
 }
 
-/// Writes the picture (SVG).
+/// Writes the plot of statistical power (SVG).
 ///
 /// # Errors
 /// The file cannot be written.

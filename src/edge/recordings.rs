@@ -1,4 +1,4 @@
-//! What recordings say of themselves: a look over a folder of them, without running any of them again.
+//! Overview of a folder of recordings, from their logs alone, without replaying them.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -14,8 +14,8 @@ use crate::session::plan::{PlanRecording, RecordingOutcome, StepSpec};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
 use crate::session::{Event, Header, Stamped};
 
-/// The live recordings of the plan with this name in a folder, those with several parts as one, by the names of their
-/// folders. Simulated ones do not count, nor what is no recording.
+/// Live recordings of the study plan with this name in a folder, by folder name; the parts of a continued recording
+/// count as one. Simulated recordings and other files do not count.
 ///
 /// # Errors
 /// The folder or a recording in it cannot be read.
@@ -31,7 +31,7 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
         let path = entry.map_err(unreadable)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if let Some(mut part) = Part::read(&path.join(LOG_NAME), plan)? {
-            // What was said later, beside the log, holds before what is in it.
+            // A later decision in the file beside the log takes precedence over the log.
             if let Some(ruling) = ruling(&path)? {
                 part.excluded = Some(ruling.excluded.then_some(ruling.reason));
             }
@@ -43,11 +43,11 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
     Ok(last.map(|(name, part)| part.made(name, &found)).collect())
 }
 
-/// The recordings that are meant by a path: the recording itself, or those in the folder, in the order of their names. Of a
-/// recording with several parts, only the last part is listed.
+/// Recordings that a path means: the recording itself, or all in the folder, sorted by name. Of a recording with
+/// several parts, only the last part is listed.
 ///
 /// # Errors
-/// The folder cannot be read, or there is no recording.
+/// The folder cannot be read, or contains no recording.
 pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     let remedy = "the folder of a recording, or one with recordings in it";
     let unreadable = |reason: io::Error| {
@@ -78,7 +78,7 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
         let log = path.join(LOG_NAME);
         let file = open_regular(&log).map_err(|reason| FileError::unreadable(&log, reason, remedy))?;
         let mut line = String::new();
-        // What is wrong with a header is told where the recording is read.
+        // An invalid header is reported later, where the recording is read.
         let read = BufReader::new(file).read_line(&mut line).ok();
         let header = read.and_then(|_| serde_json::from_str::<PartHeaderGlance>(&line).ok());
         continued.extend(header.and_then(|header| header.continues).map(|before| folder.join(before.recording)));
@@ -94,7 +94,7 @@ struct PartHeaderGlance {
     continues: Option<Continues>,
 }
 
-/// What the log of one part says.
+/// Content of the log of one part of a recording.
 #[derive(Debug)]
 struct Part {
     code: String,
@@ -102,20 +102,20 @@ struct Part {
     continues: Option<String>,
     consent: bool,
     instructed: bool,
-    /// The number of the phase that was begun last.
+    /// Index of the study phase that began last in the recording.
     phase: usize,
     presses: u32,
     trial_over: bool,
     criterion_failed: bool,
     criterion_waived: bool,
     aborted: Option<String>,
-    /// Whether something was said about the analysis, and why it is left out.
+    /// Whether an event excludes the recording from the analysis or includes it again, and the reason of an exclusion.
     excluded: Option<Option<String>>,
     ended: bool,
 }
 
 impl Part {
-    /// Reads a log; nothing if it is none of this plan.
+    /// Reads the log of one part; `None` if it does not belong to this study plan.
     fn read(path: &Path, plan: &str) -> FileResult<Option<Part>> {
         let Ok(file) = open_regular(path) else { return Ok(None) };
         let mut lines = BufReader::with_capacity(1 << 16, file);
@@ -124,7 +124,7 @@ impl Part {
             line.clear();
             let read = lines.read_until(b'\n', line);
             let read = read.map_err(|reason| FileError::unreadable(path, reason, "a readable recording"))?;
-            // A last line without its end was cut, or is being written.
+            // A last line without a line end was cut off, or is still being written.
             Ok::<bool, FileError>(read > 0 && line.last() == Some(&b'\n'))
         };
         if !next(&mut line)? {
@@ -181,7 +181,7 @@ impl Part {
     /// The whole recording of which this is the last part.
     fn made(&self, name: &str, parts: &BTreeMap<String, Part>) -> PlanRecording {
         let mut all = vec![self];
-        // A part that is named twice would lead in a circle.
+        // Parts that refer to each other must not lead to an endless loop.
         while let Some(before) = all.last().and_then(|part| parts.get(part.continues.as_ref()?)) {
             if all.len() > parts.len() {
                 break;
@@ -190,7 +190,7 @@ impl Part {
         }
         let any = |is: fn(&Part) -> bool| all.iter().any(|part| is(part));
         let phase = all.iter().map(|part| part.phase).max().unwrap_or(0);
-        // The last part that says something about it is right.
+        // The last part that contains a decision about exclusion counts.
         let excluded = all.iter().find_map(|part| part.excluded.clone()).flatten();
         let aborted = all.iter().find_map(|part| part.aborted.as_ref());
         let void = |reason: &str| RecordingOutcome::Void { reason: reason.to_string() };
@@ -217,7 +217,7 @@ impl Part {
     }
 }
 
-/// Most lines are samples of gaze and arm, and say nothing here.
+/// Whether a line of a log is a gaze or arm sample, as most are; such lines are skipped here.
 fn is_sample(line: &[u8]) -> bool {
     let head = &line[..line.len().min(80)];
     let is = |kind: &[u8]| head.windows(kind.len()).any(|part| part == kind);

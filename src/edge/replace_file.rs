@@ -1,10 +1,11 @@
-//! Replaces a file as a whole: whoever reads it meanwhile, or after a crash, finds the old content or the new one.
+//! Replaces a small file as a whole: a program that reads it meanwhile, or after a crash, finds the old content or the
+//! new one.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Suffix of the file that is written before it takes the name.
+/// Suffix of the name of the new file before it is renamed.
 const NEW: &str = ".new";
 
 /// A file that is being written, and takes its name when it is whole.
@@ -46,7 +47,7 @@ impl Replacement {
     }
 }
 
-/// Writes a file beside `path` to the disk and gives it that name.
+/// Writes the content to a new file beside `path`, and renames it to `path`.
 ///
 /// # Errors
 /// The folder cannot be written to.

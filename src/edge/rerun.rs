@@ -1,8 +1,8 @@
-//! Rerun: this file and `rerun/layout.rs` alone know it. Moments of a scene become rows of a stream, which goes to a file, to viewers that
-//! connect to a server of the program, or both.
+//! Output for the viewer program Rerun; only this module and its submodules use Rerun's SDK. Updates of a scene become
+//! rows of a stream, which goes to a file, to viewers that connect to a server of this program, or both.
 //!
-//! The program never connects to a viewer: one that is slow or stopped would hold up the stream, and the file with it.
-//! Viewers connect to the program (`rerun/viewer_server.rs`), and take what is kept for them.
+//! This program never connects to a viewer: a slow or stopped viewer would delay the stream, and the file with it.
+//! Viewers connect to the program instead (`rerun/viewer_server.rs`), and read the messages that are kept for them.
 
 mod blueprint;
 mod kept_messages;
@@ -31,72 +31,73 @@ use crate::base::time::SessionTime;
 use crate::scene::entity_content::{LogLevel, MarkShape, SceneArea, SceneDisc, ScenePoint, SceneSeries};
 use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
 
-/// The version of Rerun that streams are written with; viewers of the same version read them.
+/// Version of Rerun that streams are written with; viewers of the same version can read them.
 pub const VERSION: &str = "0.36.3";
-/// In nanoseconds.
+/// A millisecond in nanoseconds.
 const MS: u64 = 1_000_000;
-/// What viewers see is so old at most.
+/// Largest delay of the data that connected viewers see.
 const PIECE: Duration = Duration::from_millis(300);
-/// Pieces of a file are so long, in session time. Every piece of every entity costs some 2 kB in the file beside its rows, and
-/// some 6 kB of memory until the file's index is written at its end.
+/// Duration of a piece (chunk) of a stream file, in session time. Every piece of every entity costs some 2 kB in the
+/// file besides its rows, and some 6 kB of memory until the file's index is written at its end.
 const PIECE_OF_FILE: SessionTime = SessionTime(60_000_000_000);
-/// Rows that wait for the end of their piece, in bytes of one entity and of all.
+/// Largest size of rows that wait for the end of their piece, in bytes: of one entity, and of all.
 const WAITING_BYTES: u64 = 1 << 20;
 const WAITING_IN_ALL: u64 = 16 << 20;
-/// For viewers that connect later so much is kept, in bytes.
+/// Size of the past data that is kept for viewers that connect later, in bytes.
 const KEPT_BYTES: usize = 64 << 20;
-/// Nothing of it is forgotten where a recording is only looked at.
+/// Limit of kept data while a recording is viewed: all data are kept.
 const ALL_BYTES: usize = usize::MAX;
-/// Of the gaze, viewers of a running session get at most one sample in this time: eyes cannot follow more.
+/// Least time between the gaze samples that viewers of a running session get, since people cannot see more.
 const GAZE_EVERY: SessionTime = SessionTime(33_000_000);
 
-/// Radius of the mark where somebody looks, and half the width of the circle around it, in millimetres.
+/// Radius of the mark where somebody looks, and half the line width of the circle around it, in millimetres.
 const SIGHT_MM: f32 = 9.0;
 const LINE_MM: f32 = 2.0;
 
-/// What a stream is of.
+/// Identity of a Rerun stream: id and name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StreamIdentity {
-    /// Tells it from all other streams.
+    /// Unique id of the stream.
     pub id: String,
-    /// What the viewer calls it.
+    /// Name of the stream in the viewer.
     pub name: String,
 }
 
-/// Where a stream goes.
+/// Outputs of a Rerun stream: file and server.
 #[derive(Clone, Debug, Default)]
 pub struct StreamOutlets {
-    /// The file that is written, if one is.
+    /// File that the stream is written to, if any.
     pub file: Option<PathBuf>,
-    /// Where viewers connect; `true`: they are given all of it, however much that is.
+    /// Address of the server for viewers; `true` if viewers get the whole stream, whatever its size.
     pub server: Option<(SocketAddr, bool)>,
-    /// Viewers that connect play from this moment of the trial's clock on; else they wait at the beginning, or follow.
+    /// Time on the trial's clock from which connected viewers play; without it they wait at the beginning, or follow
+    /// the newest data.
     pub at: Option<SessionTime>,
 }
 
-/// A stream that is being written: to each of its outlets by itself, so that none holds up another.
+/// Writer of a Rerun stream. It writes to each output independently, so that none delays another.
 pub struct RerunWriter {
     streams: Vec<OpenStream>,
 }
 
-/// One of the streams.
+/// Rerun stream to one of the outputs, file or server.
 struct OpenStream {
     stream: RecordingStream,
-    /// Its pieces end at multiples of this; none: it hands rows on by the clock.
+    /// Duration of the stream's pieces in session time; `None` if rows are passed on by the wall clock instead.
     piece: Option<SessionTime>,
-    /// The number of the present piece.
+    /// Index of the present piece (chunk) of the stream.
     nth: u64,
-    /// Gaze is thinned to one sample in this time.
+    /// Least time between two gaze samples that the stream contains.
     gaze_every: SessionTime,
-    /// When gaze was shown last.
+    /// Time of the last gaze sample in the stream.
     gaze_at: Option<SessionTime>,
 }
 
 impl RerunWriter {
-    /// Opens a stream that goes to these outlets, and lays it out: opened in a viewer, it shows these lanes side by side.
+    /// Opens a stream to these outputs, and sends its layout, in which a viewer shows these recordings side by side.
     ///
     /// # Errors
-    /// The file cannot be made, or the address is none of this machine.
+    /// The file cannot be created, or the address does not belong to this machine.
     pub fn open(identity: &StreamIdentity, outlets: &StreamOutlets, lanes: &[StreamLane]) -> io::Result<RerunWriter> {
         let mut streams = Vec::new();
         if let Some(path) = &outlets.file {
@@ -120,7 +121,7 @@ impl RerunWriter {
         Ok(RerunWriter { streams })
     }
 
-    /// Writes what stays as it is.
+    /// Writes rows that are valid for the whole stream (without a time).
     pub fn fixed(&self, lane: &StreamLane, rows: &[EntityUpdate]) {
         for row in rows {
             let (entity, components) = written(lane, row);
@@ -128,7 +129,7 @@ impl RerunWriter {
         }
     }
 
-    /// Writes a moment; the number of its rows.
+    /// Writes the rows of a scene update; returns their number.
     pub fn moment(&mut self, lane: &StreamLane, moment: &SceneUpdate) -> u64 {
         self.streams.iter_mut().for_each(|one| one.go_to(moment));
         for row in &moment.rows {
@@ -143,7 +144,7 @@ impl RerunWriter {
         moment.rows.len() as u64
     }
 
-    /// Ends the file, if there is one; viewers that are connected keep what they have.
+    /// Completes the file, if there is one; connected viewers keep the data that they have.
     pub fn finish(&self) {
         self.streams.iter().for_each(|one| one.stream.finalize_deferred_sinks());
     }
@@ -154,22 +155,22 @@ impl OpenStream {
         OpenStream { stream, piece, nth: 0, gaze_every, gaze_at: None }
     }
 
-    /// What is written from now on is of this moment.
+    /// Sets the time of the rows that are written to the stream next.
     fn go_to(&mut self, moment: &SceneUpdate) {
         let nth = self.piece.map_or(0, |piece| moment.time.0 / piece.0);
         if nth != self.nth {
             self.nth = nth;
-            // It fails where the file cannot be written, which its end tells.
+            // Errors of the file are reported when it is completed.
             let _ = self.stream.flush_async();
         }
         let nanoseconds = |time: u64| re_sdk::TimeCell::from_duration_nanos(i64::try_from(time).unwrap_or(i64::MAX));
-        // Whole milliseconds are read more easily, and nothing is shown that is closer together.
+        // The timeline shows whole milliseconds, which are easier to read; no two updates are closer together.
         self.stream.set_time(TRIAL_TIME, nanoseconds(moment.trial.0 / MS * MS));
         self.stream.set_time("session_time", nanoseconds(moment.time.0));
         self.stream.set_time_sequence("step", i64::try_from(moment.step).unwrap_or(i64::MAX));
     }
 
-    /// Whether a sample of gaze at this time is shown.
+    /// Whether a gaze sample at this time is written to the stream.
     fn shows_gaze(&mut self, time: SessionTime) -> bool {
         let shows = self.gaze_at.is_none_or(|last| time - last >= self.gaze_every);
         if shows {
@@ -179,12 +180,12 @@ impl OpenStream {
     }
 
     fn log(&self, entity: &str, is_fixed: bool, components: &[SerializedComponentBatch]) {
-        // It fails where components cannot be written down, and these can.
+        // Logging fails only if components cannot be serialised, and these can.
         let _ = self.stream.log_serialized_batches(entity, is_fixed, components.iter().cloned());
     }
 }
 
-/// A row as Rerun writes it: its entity, and what that shows.
+/// Name and components of a row's entity, as Rerun writes them.
 fn written(lane: &StreamLane, row: &EntityUpdate) -> (String, Vec<SerializedComponentBatch>) {
     let entity = match lane.root.as_str() {
         "" => row.entity.clone(),
@@ -194,7 +195,7 @@ fn written(lane: &StreamLane, row: &EntityUpdate) -> (String, Vec<SerializedComp
     (entity, parts.iter().flat_map(|part| part.as_serialized_batches()).collect())
 }
 
-/// A stream that goes nowhere yet. Its rows are handed on in pieces of this length, by the clock.
+/// A Rerun stream without an output yet. It passes rows on in pieces of this duration of the wall clock.
 fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStream> {
     let config = ChunkBatcherConfig {
         flush_tick: piece,
@@ -202,7 +203,7 @@ fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStr
         max_bytes_in_flight: WAITING_IN_ALL,
         ..ChunkBatcherConfig::DEFAULT
     };
-    // The environment variable of Rerun's tools does not switch it off.
+    // The stream is enabled even if the environment variable of Rerun's SDK turns streams off.
     let stream = RecordingStreamBuilder::new(APPLICATION)
         .recording_id(identity.id.as_str())
         .recording_name(identity.name.as_str())
@@ -210,27 +211,27 @@ fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStr
         .batcher_config(config)
         .buffered()
         .map_err(io::Error::other)?;
-    // Times are those of the session alone.
+    // The stream contains only times of the session, not those of Rerun's SDK.
     stream.set_log_time_enabled(false);
     stream.set_log_tick_enabled(false);
     Ok(stream)
 }
 
-/// Where viewers connect to a server.
+/// Address of a server in the form that Rerun's viewers expect.
 pub fn uri(address: SocketAddr) -> String {
     format!("rerun+http://{address}/proxy")
 }
 
-/// A server of the viewer for browsers, until it is dropped.
+/// Web server that provides Rerun's viewer to browsers, until this value is dropped.
 pub struct WebViewer {
     _server: Box<dyn std::any::Any>,
 }
 
 impl WebViewer {
-    /// Serves the viewer on this port of this machine.
+    /// Provides Rerun's viewer to browsers on this port of this machine.
     ///
     /// # Errors
-    /// The port is taken.
+    /// The port is in use.
     pub fn serve(port: u16) -> io::Result<WebViewer> {
         let config = WebViewerConfig {
             bind_ip: "127.0.0.1".to_string(),
@@ -245,7 +246,7 @@ impl WebViewer {
 
 type Part = Box<dyn AsComponents>;
 
-/// What Rerun calls it.
+/// Rerun's archetypes that show this entity data.
 fn parts(shown: &EntityData) -> Vec<Part> {
     match shown {
         EntityData::Areas(areas) => vec![Box::new(areas_in_2d(areas))],
@@ -305,7 +306,7 @@ fn discs_in_2d(discs: &[SceneDisc]) -> archetypes::Points2D {
         .with_show_labels(true)
 }
 
-/// One row of two archetypes: a point, and the circle around it.
+/// A row for the point of regard in two archetypes: a point, and the circle around it.
 fn sight_in_2d(at: [f64; 2], around: f64, colour: Color) -> Vec<Part> {
     let at = at.map(|length| length as f32);
     let circle = archetypes::Ellipses2D::from_half_sizes([[around as f32; 2]]).with_centers([at]).with_colors([colour]);
@@ -332,7 +333,7 @@ fn transform(place: &Isometry3<f64>) -> archetypes::Transform3D {
     archetypes::Transform3D::from_translation_rotation(metres(place), turn(place))
 }
 
-/// Shapes of one kind are one archetype.
+/// Archetypes for collision solids: all solids of one shape are in one archetype.
 fn solids_in_3d(solids: &[CollisionSolid], colour: Color) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     let (mut cylinders, mut boxes, mut balls) = (Vec::new(), Vec::new(), Vec::new());

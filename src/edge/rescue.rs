@@ -1,4 +1,5 @@
-//! Rescue of recordings whose folder vanished while they were written: the rescue folder, and the note with their original place.
+//! Rescue of recordings whose folder vanished while they were written: the rescue folder, and a note with the original
+//! folder.
 
 use std::fs::OpenOptions;
 use std::io::{self, Write};
@@ -9,20 +10,20 @@ use serde::{Deserialize, Serialize};
 use super::file_error::read_regular;
 use super::temporary::new_folder;
 
-/// Prefix of rescue folders in the system's temporary folder.
+/// Prefix of the folders for rescued recordings in the system's folder for temporary files.
 pub const RESCUED: &str = "tomcom-rescued-";
-/// The name of the note in the folder of a recording that was saved there.
+/// File name of the note in the folder of a rescued recording.
 pub const RESCUE_NOTE_NAME: &str = "rescued.toml";
 
-/// Makes a folder for a recording in the system's folder for temporary files.
+/// Creates a folder for a rescued recording in the system's folder for temporary files.
 ///
 /// # Errors
-/// It cannot be made.
+/// The folder cannot be created.
 pub fn new_rescue_folder() -> io::Result<PathBuf> {
     new_folder(&std::env::temp_dir(), &format!("{RESCUED}{}", std::process::id()))
 }
 
-/// The note beside a rescued log.
+/// Note beside a rescued log that tells the recording's original folder.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RescueNote {
@@ -31,7 +32,7 @@ pub struct RescueNote {
 }
 
 impl RescueNote {
-    /// Writes the note into the folder of a recording.
+    /// Writes the note into the folder of a rescued recording.
     ///
     /// # Errors
     /// The note cannot be written or exists already.
@@ -41,7 +42,7 @@ impl RescueNote {
         file.write_all(text.as_bytes())
     }
 
-    /// The note in the folder of a recording; `None` if it is missing or unreadable.
+    /// Reads the note in the folder of a recording; `None` if it is missing or unreadable.
     pub fn read(folder: &Path) -> Option<RescueNote> {
         toml::from_str(&read_regular(&folder.join(RESCUE_NOTE_NAME)).ok()?).ok()
     }

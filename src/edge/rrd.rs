@@ -1,5 +1,5 @@
-//! What a file of Rerun says of itself, and what is said of it beside it: whether it is whole, what wrote it, whether it is
-//! as it was written, and whether it shows the log as that is now.
+//! State of a Rerun file (`.rrd`), from the file itself and from the checksums in the seal file beside it: whether it
+//! is complete, which program version wrote it, whether it is unchanged, and whether it shows the present log.
 
 use std::fs;
 use std::io::{self, Read, Seek, SeekFrom};
@@ -13,42 +13,42 @@ use super::rerun::VERSION;
 use super::stream_head::{BEGINS, MARK, MARK_END};
 use crate::scene;
 
-/// What stands in its last bytes if it was written to its end.
+/// Marker in the last bytes of a completely written Rerun file.
 const ENDS: &[u8] = b"FOOT";
-/// Where these are looked for, in bytes.
+/// Lengths of the file's beginning and end in which the version and the end marker are looked for, in bytes.
 const HEAD: u64 = 4096;
 const TAIL: u64 = 64;
-/// What the name of a stream's seal ends with; before that it is the stream's.
+/// Suffix that is added to a Rerun file's name for the name of its seal file.
 const SEALED: &str = ".toml";
-/// A file is read in pieces of so many bytes.
+/// Number of bytes of a file that are read at a time.
 const PIECE: usize = 1 << 16;
 
-/// Stands in the name of every stream that holds a recording from its beginning, as this program would write it today.
+/// Text in the identity of every stream that this program version made of a recording from its beginning.
 pub fn mark() -> String {
     format!("{MARK}{}{MARK_END}", scene::VERSION)
 }
 
-/// How a file is.
+/// State of a Rerun file: missing, incomplete, outdated or complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RrdState {
-    /// There is no file.
+    /// The Rerun file does not exist.
     Missing,
-    /// It was not written to its end.
+    /// The Rerun file was not written to its end.
     Cut,
-    /// Another version wrote it, or it begins in the middle of the session.
+    /// The Rerun file was written by another version, or begins in the middle of the session.
     Other,
-    /// Nothing says which log it shows.
+    /// The Rerun file has no seal file, so it is unknown which log it shows.
     Unsealed,
-    /// Its bytes differ from those that were written.
+    /// The bytes of the Rerun file have changed since it was written.
     Damaged,
     /// The Rerun file was made from another log, or from this log before more was written to it.
     Stale,
-    /// It shows the whole log as it is now.
+    /// The Rerun file shows the whole log as it is now.
     Whole,
 }
 
 impl RrdState {
-    /// Why it has to be made anew, in words; nothing to tell where there was none.
+    /// Why the Rerun file has to be made anew, in words; `None` if it is complete, or did not exist.
     pub fn reason(self) -> Option<&'static str> {
         match self {
             RrdState::Missing | RrdState::Whole => None,
@@ -61,7 +61,7 @@ impl RrdState {
     }
 }
 
-/// Length and checksum of a file.
+/// Length and CRC-32 checksum of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Sum {
@@ -85,12 +85,12 @@ impl Sum {
     }
 }
 
-/// What stands beside a stream that was written to its end.
+/// Seal file of a Rerun file that was written to its end: checksums of the file and of the logs that it shows.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Seal {
     stream: Sum,
-    /// Of all parts, the first one first.
+    /// Checksums of the logs of all parts of the recording, first part first.
     logs: Vec<Sum>,
 }
 
@@ -101,26 +101,26 @@ impl Seal {
         PathBuf::from(name)
     }
 
-    /// None where there is none that can be read: then the stream is made anew.
+    /// Reads the seal file; `None` if it is missing or unreadable, so that the Rerun file is made anew.
     fn read(stream: &Path) -> Option<Seal> {
         toml::from_str(&read_regular(&Seal::path(stream)).ok()?).ok()
     }
 }
 
-/// Keeps beside a stream that was written to its end how it is, and how the logs are that it shows.
+/// Writes the seal file of a completely written Rerun file, with checksums of the file and of the logs that it shows.
 ///
 /// # Errors
-/// One of them cannot be read, or the folder cannot be written to.
+/// One of the files cannot be read, or the folder cannot be written to.
 pub fn seal(stream: &Path, logs: &[PathBuf]) -> io::Result<()> {
     let logs = logs.iter().map(|log| Sum::from_file(log)).collect::<io::Result<_>>()?;
     let seal = Seal { stream: Sum::from_file(stream)?, logs };
     fs::write(Seal::path(stream), toml::to_string(&seal).map_err(io::Error::other)?)
 }
 
-/// Looks at a stream, and holds it against the logs that it should show.
+/// Determines the state of a Rerun file, compared with the logs that it should show.
 ///
 /// # Errors
-/// It is there and cannot be read, or a log cannot.
+/// The file exists but cannot be read, or a log cannot be read.
 pub fn state(path: &Path, logs: &[PathBuf]) -> io::Result<RrdState> {
     let mut file = match open_regular(path) {
         Ok(file) => file,

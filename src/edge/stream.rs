@@ -1,5 +1,5 @@
-//! A live stream of moments to viewers and a file, from a thread of its own. Whoever tells it something never waits: where
-//! the thread does not keep up, moments are dropped and counted.
+//! Live Rerun stream of scene updates to viewers and a file, written by a separate thread. The session never waits: if
+//! the thread is too slow, updates are dropped and counted.
 
 use std::fs;
 use std::io;
@@ -13,33 +13,34 @@ use std::time::Duration;
 use super::rerun::{RerunWriter, StreamIdentity, StreamLane, StreamOutlets};
 use crate::scene::{EntityUpdate, SceneUpdate};
 
-/// So many pieces of news may wait; at 200 gaze samples a second they are those of 20 seconds.
+/// Number of packets of scene updates that may wait to be written; at 200 gaze samples per second, they are those of 20
+/// seconds.
 const WAITING: usize = 4096;
-/// So long the end of a session waits for its file to be written.
+/// Longest time for which the end of a session waits for the stream's file to be completed.
 const END: Duration = Duration::from_secs(5);
-/// So many ports are tried after the one that is asked for.
+/// Number of further ports that are tried if the wanted one is in use.
 pub const PORTS: u16 = 20;
 
-/// How the stream fares.
+/// Numbers of written and dropped rows of a Rerun stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StreamCounts {
-    /// Rows that were written.
+    /// Number of rows written to the Rerun stream.
     pub written: u64,
-    /// Rows that were dropped.
+    /// Number of rows that the Rerun stream dropped.
     pub dropped: u64,
 }
 
-/// The counters that both sides look at.
+/// Counters that session and writing thread share.
 #[derive(Debug, Default)]
 struct Counters {
     written: AtomicU64,
     dropped: AtomicU64,
 }
 
-/// A stream that is open.
+/// A live Rerun stream that is open.
 #[derive(Debug)]
 pub struct RerunStream {
-    /// Where viewers connect, if they can.
+    /// Address to which viewers connect, if there is a server.
     pub server: Option<SocketAddr>,
     file: Option<PathBuf>,
     news: SyncSender<Vec<SceneUpdate>>,
@@ -48,10 +49,10 @@ pub struct RerunStream {
 }
 
 impl RerunStream {
-    /// Opens a stream that begins with these rows. Where the port is taken, the server takes one of the next.
+    /// Opens a stream that begins with these rows. If the port is in use, the server takes one of the next ports.
     ///
     /// # Errors
-    /// The file cannot be made, or nothing can listen at the address.
+    /// The file cannot be created, or the program cannot listen at the address.
     pub fn open(
         identity: &StreamIdentity,
         file: Option<&Path>,
@@ -77,14 +78,14 @@ impl RerunStream {
             for moment in told.iter().flatten() {
                 counted.written.fetch_add(writer.moment(&lane, &moment), Relaxed);
             }
-            // The file first: a viewer that does not listen may hold up the rest.
+            // The file is completed first, since a viewer that does not read may delay the rest.
             writer.finish();
             let _ = end.send(());
         })?;
         Ok(RerunStream { server, file: outlets.file, news, counters, done })
     }
 
-    /// Tells what is to be shown.
+    /// Passes scene updates to the writing thread, or drops them if it is too slow.
     pub fn tell(&self, moments: Vec<SceneUpdate>) {
         if moments.is_empty() {
             return;
@@ -95,13 +96,13 @@ impl RerunStream {
         }
     }
 
-    /// How many rows were written and dropped so far.
+    /// Numbers of rows written to the stream and dropped so far.
     pub fn fares(&self) -> StreamCounts {
         StreamCounts { written: self.counters.written.load(Relaxed), dropped: self.counters.dropped.load(Relaxed) }
     }
 
-    /// Ends the stream, and waits a moment for its file, which is handed out. One that is not whole is taken away: it can
-    /// be made from the log.
+    /// Ends the stream, and waits for a limited time for its file, whose path is returned. An incomplete file is
+    /// deleted, since it can be made from the log.
     pub fn close(self) -> Option<PathBuf> {
         let RerunStream { file, news, counters, done, .. } = self;
         drop(news);
@@ -113,18 +114,18 @@ impl RerunStream {
     }
 }
 
-/// Whether something can listen at this address now.
+/// Checks that the program can listen at this address now.
 ///
 /// # Errors
-/// Nothing can.
+/// It cannot.
 pub fn is_free(address: SocketAddr) -> io::Result<()> {
     TcpListener::bind(address).map(drop)
 }
 
-/// This address, or that with the next free port.
+/// This address, or the one with the next free port.
 ///
 /// # Errors
-/// Nothing can listen there.
+/// None of the ports is free.
 pub fn free_port(wanted: SocketAddr) -> io::Result<SocketAddr> {
     let ports = wanted.port()..=wanted.port().saturating_add(PORTS);
     let mut tried = ports.map(|port| {

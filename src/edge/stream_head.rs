@@ -1,28 +1,29 @@
-//! How a file of Rerun begins: which program wrote it, and what it shows. The rest of such a file is read by `rrd`, where
-//! the program is built with Rerun.
+//! Beginning of a Rerun file: which program wrote the file, and which recordings it shows. The rest of such a file is
+//! read by `rrd`, if the program is built with Rerun.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// The first bytes of a file of Rerun, before the version that wrote it.
+/// First bytes of a Rerun file, before the version that wrote it.
 pub const BEGINS: &[u8] = b"RRF2";
-/// What the mark of every stream that this program makes of recordings begins with.
+/// Beginning of the mark by which Rerun files of this program are recognised.
 pub const MARK: &str = "tomcom-scene-";
-/// What the mark ends with.
+/// End of the mark by which Rerun files of this program are recognised.
 pub const MARK_END: &str = "-whole";
-/// Protocol Buffers' tag of the identity in Rerun's `StoreId`: field 2, with a length before its content.
+/// Protocol Buffers tag of the identity in Rerun's `StoreId`: field 2, with a length before its content.
 const IDENTITY_TAG: u8 = 0x12;
-/// The identity of a stream is within so many bytes; that of hundreds of recordings side by side is longer.
+/// Number of bytes from the file's beginning that contain the stream's identity; only for hundreds of recordings side
+/// by side it is longer.
 const HEAD: u64 = 1 << 16;
 
-/// The identity of a stream that this program made of whole recordings: the names of their folders, when they began, and the
-/// mark, with spaces between. `None` if there is no such file, or it is anything else.
+/// Identity of a Rerun file that this program made of whole recordings: the names of their folders, their begins, and
+/// the mark, separated by spaces. `None` if the file does not exist, or is anything else.
 ///
 /// # Errors
-/// The file is there and cannot be read.
+/// The file exists but cannot be read.
 pub fn identity(path: &Path) -> io::Result<Option<String>> {
-    // Opening a pipe would wait for its other end.
+    // Opening a named pipe would block.
     match fs::metadata(path) {
         Ok(data) if data.is_file() => {}
         Ok(_) => return Ok(None),
@@ -34,8 +35,9 @@ pub fn identity(path: &Path) -> io::Result<Option<String>> {
     Ok(head.starts_with(BEGINS).then(|| identity_in(&head)).flatten())
 }
 
-/// The identity is a field of a Protocol Buffers message, with the field's tag and its length before it. Its end is known
-/// by the mark. The tag is a control character, which the identity has none of: a length alone may look like a digit of it.
+/// Finds the identity in the file's first bytes. The identity is a field of a Protocol Buffers message, with the
+/// field's tag and its length before it, and ends with the mark. The search includes the tag, a control character,
+/// which cannot occur in an identity: a length alone may look like one of its digits.
 fn identity_in(head: &[u8]) -> Option<String> {
     let find = |from: usize, what: &str| head[from..].windows(what.len()).position(|bytes| bytes == what.as_bytes());
     let mark = find(0, MARK)?;
@@ -47,7 +49,7 @@ fn identity_in(head: &[u8]) -> Option<String> {
     String::from_utf8(head[start..end].to_vec()).ok()
 }
 
-/// A length as Protocol Buffers write it: seven bits a byte, the low ones first.
+/// A length in the encoding of Protocol Buffers: seven bits per byte, lowest bits first.
 fn length_prefix(mut length: usize) -> Vec<u8> {
     let mut bytes = Vec::new();
     while length > 0x7f {

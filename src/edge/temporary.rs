@@ -1,25 +1,26 @@
-//! Files and folders in the system's folder for temporary files, where other users can put files and links of any name. What is
-//! made here is new: nothing that exists is used, and no link is followed. Only the user of the program can read it.
+//! Creates files and folders in the system's folder for temporary files, where other users can put files and links of
+//! any name. Everything is newly created: nothing that exists is used, and no link is followed. Only the user of the
+//! program can read it.
 
 use std::fs::{DirBuilder, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// Number of names that are tried before giving up.
+/// Number of file names that are tried before giving up.
 const NAMES: u32 = 1000;
 
-/// Makes the folder `NAME`, or else the first of `NAME-2`, `NAME-3`, … that does not exist.
+/// Creates the folder `NAME`, or else the first of `NAME-2`, `NAME-3`, … that does not exist.
 ///
 /// # Errors
-/// It cannot be made.
+/// The folder cannot be created.
 pub fn new_folder(below: &Path, name: &str) -> io::Result<PathBuf> {
     first_free(below, name, "", make_folder).map(|(path, ())| path)
 }
 
-/// Makes the empty file `STEM` with this ending, or else the first of `STEM-2`, `STEM-3`, … that does not exist.
+/// Creates the empty file `STEM` with this ending, or else the first of `STEM-2`, `STEM-3`, … that does not exist.
 ///
 /// # Errors
-/// It cannot be made.
+/// The file cannot be created.
 pub fn new_file(below: &Path, stem: &str, ending: &str) -> io::Result<(PathBuf, File)> {
     first_free(below, stem, ending, make_file)
 }

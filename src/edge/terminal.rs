@@ -1,5 +1,5 @@
-//! The terminal: taken over for the console, given back on every way out, with keys and mouse as messages. Frames are written
-//! without blocking.
+//! The terminal: set up for the console (raw mode), restored on every way out, with keys and mouse as messages. Frames
+//! are written without blocking.
 
 use std::io::{self, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,29 +31,29 @@ use crate::console::{ConsoleMessage, ConsoleModel, view};
 use crate::session::Session;
 use crate::session::settings::{ConsoleSpec, ThemeChoice};
 
-/// The writer of frames while the terminal is taken.
+/// Writer of frames while the terminal is set up for the console.
 static TAKEN: Mutex<Option<Arc<FrameWriter>>> = Mutex::new(None);
-/// Whether the terminal did not accept the bytes that give it back.
+/// Whether the terminal did not accept the bytes that restore it.
 static OUT_OF_REACH: AtomicBool = AtomicBool::new(false);
-/// Completed when the terminal is first taken; from then on a panic gives it back.
+/// Completed when the terminal is first set up; from then on a panic restores the terminal.
 static HOOK: Once = Once::new();
-/// Time limit of output after a session.
+/// Time limit for output to the terminal after a session.
 const LAST_WORDS: Duration = Duration::from_millis(300);
-/// Time limit of the program's end after a signal. Readers of its terminal or streams may be stuck; a recording is closed within
-/// milliseconds.
+/// Time limit for the program's end after a signal, since a reader of its output may be stuck; closing a recording
+/// takes milliseconds.
 const ENDING: Duration = Duration::from_millis(1800);
 
-/// The console's terminal. It is given back when this is dropped, and when anything panics.
+/// The terminal in the modes of the console. It is restored when this value is dropped, and when any thread panics.
 #[derive(Debug)]
 pub struct TerminalScreen {
     terminal: Terminal<CrosstermBackend<ComposedFrame>>,
-    /// The terminal's background; dark, if it does not say.
+    /// The terminal's background; dark if the terminal does not tell.
     pub ground: TerminalBackground,
     composed: ComposedFrame,
     frames: Arc<FrameWriter>,
 }
 
-/// The bytes of the frame that is being composed.
+/// Bytes of the terminal frame that is being composed.
 #[derive(Clone, Debug, Default)]
 struct ComposedFrame(Arc<Mutex<Vec<u8>>>);
 
@@ -75,10 +75,11 @@ impl Write for ComposedFrame {
 }
 
 impl TerminalScreen {
-    /// Takes the terminal over: raw mode, alternate screen, key releases where the terminal knows them, and the mouse.
+    /// Sets the terminal up for the console: raw mode, alternate screen, key releases if the terminal supports them,
+    /// and the mouse.
     ///
     /// # Errors
-    /// Standard input or output is no terminal, or it cannot be controlled.
+    /// Standard input or output is not a terminal, or the terminal cannot be controlled.
     pub fn take() -> io::Result<TerminalScreen> {
         if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
             return Err(io::Error::other("the console needs a terminal for its input and output"));
@@ -86,7 +87,7 @@ impl TerminalScreen {
         HOOK.call_once(|| {
             let then = std::panic::take_hook();
             std::panic::set_hook(Box::new(move |panic| {
-                // A message to a terminal that is not read could block.
+                // Writing a message to an unread terminal could block.
                 if give_back() || !io::stderr().is_terminal() {
                     then(panic);
                 }
@@ -105,41 +106,42 @@ impl TerminalScreen {
     /// Columns and rows of the terminal.
     ///
     /// # Errors
-    /// The terminal is gone.
+    /// The terminal is closed.
     pub fn size() -> io::Result<(u16, u16)> {
         size()
     }
 
-    /// Whether the terminal has taken the last frame.
+    /// Whether the terminal has accepted the last frame.
     pub fn is_ready(&self) -> bool {
         self.frames.is_ready()
     }
 
-    /// Whether the terminal was closed, or given back because of a panic.
+    /// Whether the terminal was closed, or restored because of a panic.
     pub fn is_lost(&self) -> bool {
         self.frames.is_lost()
     }
 
-    /// Composes a frame and leaves the writing to the thread. Nothing is drawn while the last frame is on its way.
+    /// Composes a frame of the console, which the writing thread then writes. While the last frame is being written,
+    /// nothing is drawn.
     ///
     /// # Errors
-    /// The terminal's size cannot be found out.
+    /// The terminal's size is unknown.
     pub fn draw(&mut self, session: &Session, model: &ConsoleModel) -> io::Result<()> {
         self.compose(|frame| view(session, model, frame))
     }
 
-    /// Composes a question that stands alone.
+    /// Composes a frame with a question on an otherwise empty screen.
     ///
     /// # Errors
-    /// The terminal's size cannot be found out.
+    /// The terminal's size is unknown.
     pub fn ask(&mut self, question: &QuestionPage, theme: Theme) -> io::Result<()> {
         self.compose(|frame| draw_question(question, theme, frame))
     }
 
-    /// Composes a list of recordings that stands alone.
+    /// Composes a frame with a list of recordings on an otherwise empty screen.
     ///
     /// # Errors
-    /// The terminal's size cannot be found out.
+    /// The terminal's size is unknown.
     pub fn list(&mut self, picker: &RecordingPicker, theme: Theme) -> io::Result<()> {
         self.compose(|frame| draw_recordings(picker, theme, frame))
     }
@@ -162,21 +164,21 @@ impl Drop for TerminalScreen {
     }
 }
 
-/// Gives the terminal back, once; returns whether it accepted the bytes for that. Waits for less than a second, since a terminal
-/// that is not read must not keep the program from ending.
+/// Restores the terminal, once; returns whether it accepted the bytes for that. Waits for less than a second, since an
+/// unread terminal must not keep the program from ending.
 fn give_back() -> bool {
     let taken = TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();
     let Some(frames) = taken else { return !OUT_OF_REACH.load(Ordering::Acquire) };
     let took = frames.end(way_out());
     OUT_OF_REACH.store(!took, Ordering::Release);
-    // The modes can be set even if the terminal accepts no bytes.
+    // The terminal's modes can be restored even if it accepts no bytes.
     let _ = disable_raw_mode();
     took
 }
 
-/// Writes to standard output or standard error. After a session at the console the write has a time limit, since a terminal that
-/// is not read must not keep the program from ending. Nothing is written to a terminal that did not accept the bytes that give
-/// it back.
+/// Writes to standard output or standard error. After a session at the console the write has a time limit, since an
+/// unread terminal must not keep the program from ending. Nothing is written to a terminal that did not accept the
+/// bytes that restore it.
 ///
 /// # Errors
 /// The write fails.
@@ -198,7 +200,7 @@ pub fn print(to_errors: bool, bytes: Vec<u8>) -> io::Result<()> {
 }
 
 fn way_in() -> io::Result<Vec<u8>> {
-    // All keys as escape codes: only then terminals report repeats and releases of letters, too.
+    // All keys are requested as escape codes: only then terminals report repeats and releases of letters, too.
     let keys = KeyboardEnhancementFlags::DISAMBIGUATE_ESCAPE_CODES
         | KeyboardEnhancementFlags::REPORT_EVENT_TYPES
         | KeyboardEnhancementFlags::REPORT_ALTERNATE_KEYS
@@ -224,14 +226,14 @@ fn way_out() -> Vec<u8> {
     bytes
 }
 
-/// What somebody does at the terminal.
+/// Input from the terminal: keys, mouse, and changes of its size or focus.
 #[derive(Debug, Default)]
 pub struct TerminalInput {
     events: EventStream,
 }
 
 impl TerminalInput {
-    /// The next message; `None` when the terminal is gone.
+    /// The next message; `None` when the terminal is closed.
     pub async fn next(&mut self) -> Option<ConsoleMessage> {
         loop {
             let message = match self.events.next().await?.ok()? {
@@ -252,8 +254,8 @@ impl TerminalInput {
     }
 }
 
-/// Colours unless `NO_COLOR` is set (no-color.org), for this background unless the settings say another; Unicode unless
-/// the settings ask for ASCII signs or the locale is one of another character set.
+/// Theme of the console: colours unless `NO_COLOR` is set (no-color.org), for this background unless the settings name
+/// another; Unicode unless the settings ask for ASCII or the locale has another character set.
 pub fn theme(console: &ConsoleSpec, ground: TerminalBackground) -> Theme {
     let value = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
     let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(value).map(|locale| locale.to_lowercase());
@@ -266,8 +268,8 @@ pub fn theme(console: &ConsoleSpec, ground: TerminalBackground) -> Theme {
     Theme { colour: value("NO_COLOR").is_none(), unicode: is_utf8 && !console.ascii, ground }
 }
 
-/// A file that grows beyond the limit for files (`ulimit -f`) kills the program by a signal, unless somebody receives it:
-/// then the write fails, as on a full disk.
+/// Keeps the program alive if a file grows beyond the size limit (`ulimit -f`): without a handler, the signal SIGXFSZ
+/// would kill it; with one, the write fails as on a full disk.
 ///
 /// # Errors
 /// Signals cannot be received.
@@ -275,29 +277,29 @@ pub fn theme(console: &ConsoleSpec, ground: TerminalBackground) -> Theme {
 pub fn outlive_file_limits() -> io::Result<()> {
     use tokio::signal::unix::{SignalKind, signal};
     const SIGXFSZ: i32 = 25;
-    // The handler stays after what receives from it is gone.
+    // The handler stays installed after its receiver is dropped.
     signal(SignalKind::from_raw(SIGXFSZ)).map(drop)
 }
 
-/// No such signal, or another number.
+/// On this operating system the signal does not exist, or has another number.
 #[cfg(not(target_os = "linux"))]
 pub fn outlive_file_limits() -> io::Result<()> {
     Ok(())
 }
 
-/// Waits for a signal that asks the program to end (terminate, interrupt, hang up). From then on the program has a time limit,
-/// after which it is ended with exit code 1: something waits for a reader of its output.
+/// Waits for a signal that asks the program to end (terminate, interrupt, hang up). From then on the program has a time
+/// limit, after which it is ended with exit code 1, since something waits for a reader of its output.
 ///
 /// # Errors
 /// Signals cannot be received.
 pub async fn asked_to_end() -> io::Result<()> {
     let (sender, asked) = tokio::sync::oneshot::channel();
-    // A separate thread receives the signal whatever the other threads wait for.
+    // A separate thread receives the signal even if all other threads are blocked.
     std::thread::Builder::new().name("signals".to_string()).spawn(move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let signal = runtime.and_then(|runtime| runtime.block_on(next_signal()));
         let is_asked = signal.is_ok();
-        // Without a receiver the program is about to end.
+        // If the receiver no longer exists, the program is about to end.
         let _ = sender.send(signal);
         if is_asked {
             std::thread::sleep(ENDING);

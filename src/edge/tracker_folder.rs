@@ -1,6 +1,6 @@
-//! What the eye trackers' own programs write, told from recordings of this program and from tables of gaze on the display: recordings
-//! and downloads have their gaze in the scene camera's picture, which says nothing about the display. For each there is a program that
-//! maps it.
+//! Recognition of the files of eye trackers' own programs, to explain why they cannot be used: their recordings and
+//! downloads contain gaze in the scene camera's image, from which the gaze on the display cannot be computed. For each
+//! there is a program that maps it to the display.
 
 use std::ffi::OsStr;
 use std::fs::read_dir;
@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 
 use super::gaze_table::is_on_surface;
 
-/// Names of files that only such recordings have beside their gaze.
+/// Names and endings of files that only recordings of eye trackers contain besides gaze.
 const RECORDED: [&str; 7] = ["raw", "time", "pldata", "npy", "mp4", "bin", "json"];
-/// Number of entries of a folder that are looked at.
+/// Largest number of folder entries that are examined.
 const MAX_ENTRIES: usize = 10_000;
 
-/// What was found in place of gaze on the display, and what makes it.
+/// What was found instead of gaze on the display, and how gaze on the display can be made from it.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct TrackerFinding {
     pub found: String,
@@ -26,7 +26,7 @@ const NEON: &str = "open it in Neon Player with the plugin Surface Tracking and 
 const CLOUD: &str = "Pupil Cloud's Marker Mapper: gaze.csv of its download; or the native recording data, exported by Neon Player with the \
                      plugin Surface Tracking";
 
-/// What a path is, if it belongs to an eye tracker's program and is no gaze on the display.
+/// What a path contains, if it belongs to an eye tracker's program and is not gaze on the display.
 pub(super) fn tracker_data(path: &Path) -> Option<TrackerFinding> {
     let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
     if path.is_dir() {
@@ -40,7 +40,7 @@ pub(super) fn tracker_data(path: &Path) -> Option<TrackerFinding> {
     path.parent().filter(|_| RECORDED.contains(&extension)).and_then(folder)
 }
 
-/// What a folder is, by the files in it.
+/// What a folder contains, judged by the names of its files.
 fn folder(folder: &Path) -> Option<TrackerFinding> {
     let names = names(folder);
     let has = |name: &str| names.iter().any(|found| found == name);
@@ -69,7 +69,7 @@ fn folder(folder: &Path) -> Option<TrackerFinding> {
     None
 }
 
-/// A table of gaze on the display in a folder of exports.
+/// The table of gaze on the display in a folder of exports.
 fn table_in(folder: &Path, names: &[String]) -> Option<PathBuf> {
     let is_table = |name: &&String| name.starts_with("gaze_positions_on_surface_") && name.ends_with(".csv");
     let surfaces = folder.join("surfaces");
@@ -78,7 +78,7 @@ fn table_in(folder: &Path, names: &[String]) -> Option<PathBuf> {
     found.or_else(|| Some(folder.join("gaze.csv")).filter(|table| is_on_surface(table)))
 }
 
-/// Names of what is in a folder, in order; none if it cannot be read.
+/// Sorted names of a folder's entries; empty if the folder cannot be read.
 fn names(folder: &Path) -> Vec<String> {
     let entries = read_dir(folder).into_iter().flatten().flatten().take(MAX_ENTRIES);
     let mut names: Vec<String> = entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();

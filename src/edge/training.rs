@@ -1,4 +1,4 @@
-//! Records of wizard training: one JSON file per training in a folder, by the wizard's code.
+//! Records of wizard training: one JSON file per training in a folder, named by the wizard's code.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use super::file_error::{FileError, FileResult};
 use crate::analysis::training_record::TrainingRecord;
 
-/// Writes a record to a new file in the folder and returns its path.
+/// Writes a training record to a new file in the folder and returns its path.
 ///
 /// # Errors
-/// It cannot be written.
+/// The file cannot be written.
 pub fn write(folder: &Path, record: &TrainingRecord) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     let text = serde_json::to_string_pretty(record).map_err(io::Error::other)? + "\n";
@@ -29,10 +29,10 @@ pub fn write(folder: &Path, record: &TrainingRecord) -> io::Result<PathBuf> {
     Err(io::Error::other("too many files"))
 }
 
-/// The records of a wizard in the folder, in order of time; empty if the folder does not exist.
+/// The training records of a wizard in the folder, in order of time; empty if the folder does not exist.
 ///
 /// # Errors
-/// A file cannot be read or is not a record.
+/// A file cannot be read or is not a training record.
 pub fn read(folder: &Path, wizard: &str) -> FileResult<Vec<TrainingRecord>> {
     let remedy = "a training record of tomcom, or another folder";
     let mut records = Vec::new();

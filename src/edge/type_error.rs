@@ -1,9 +1,10 @@
-//! Translation of serde's messages about wrong types into words for people who write settings files.
+//! Translation of error messages about wrong types (by the parser library serde) into words for people who write
+//! settings files.
 
 use serde::de::DeserializeOwned;
 
-/// What the parser says. Of a value that is no text at all it does not say which words could stand there; of a wrong word
-/// there it does.
+/// Message of the parser. For a value that is not a text, the parser does not list the valid words, but for a wrong
+/// text it does; so the value is replaced by a text to get the list.
 pub(super) fn message<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> String {
     let no_word = error.span().filter(|_| error.message() == "wanted string or table");
     let said = no_word.and_then(|span| {
@@ -15,7 +16,7 @@ pub(super) fn message<T: DeserializeOwned>(text: &str, error: &toml::de::Error) 
     said.unwrap_or_else(|| error.message().to_string())
 }
 
-/// The value found, and a description of a valid one if the message contains it.
+/// The value that was found, in words, and a description of valid ones if serde's message contains it.
 pub(super) fn in_words(message: &str) -> (String, Option<String>) {
     let (found, expected) = match message.split_once(", expected ") {
         Some((found, expected)) => (found, Some(expected)),
@@ -44,7 +45,7 @@ pub(super) fn in_words(message: &str) -> (String, Option<String>) {
     (said, right)
 }
 
-/// A value, from serde's "string "fast"", "integer `5`", "sequence".
+/// A value in words, from serde's notation: "string "fast"", "integer `5`", "sequence".
 fn value(what: &str) -> String {
     let number = |name: &str| what.strip_prefix(name).map(|number| number.trim_matches('`').to_string());
     match what {
@@ -58,13 +59,13 @@ fn value(what: &str) -> String {
     }
 }
 
-/// Description of a valid value.
+/// Description of a setting's valid values.
 fn values(expected: &str) -> String {
     let whole = |most: u64| format!("a whole number from 0 to {most}");
     match expected {
         "u8" => whole(u8::MAX.into()),
         "u16" => whole(u16::MAX.into()),
-        // Most have narrower bounds of their own, which are told where they are broken.
+        // Most settings have narrower bounds, which are checked and reported elsewhere.
         "u32" | "u64" | "usize" => "a whole number, not below 0".to_string(),
         "i64" => "a whole number".to_string(),
         "f64" | "f32" => "a number".to_string(),
@@ -77,7 +78,7 @@ fn values(expected: &str) -> String {
     }
 }
 
-/// List of the known settings.
+/// The known settings as a list in words, from serde's notation.
 fn settings(expected: &str) -> String {
     expected.replace('`', "")
 }

@@ -1,4 +1,4 @@
-//! The viewer: the program `rerun`, if it is installed and there is a screen.
+//! The Rerun viewer: finds the installed program `rerun`, and opens it if there is a screen.
 
 use std::env;
 use std::io::{self, Read, Write};
@@ -10,33 +10,33 @@ use std::time::{Duration, Instant};
 use super::rerun::{TRIAL_TIME, VERSION};
 use super::stream::free_port;
 
-/// A viewer that is opened listens on this port, or one of the next.
+/// First port at which an opened viewer may listen; if it is in use, one of the next is taken.
 const PORT: u16 = 9900;
-/// So long it is waited for, and asked so often.
+/// Time limit for the viewer to become ready, and period of asking it.
 const READY: Duration = Duration::from_secs(30);
 const RETRY: Duration = Duration::from_millis(500);
-/// So long, and so many bytes, its answer may take.
+/// Time limit and size limit of the viewer program's answer about its version.
 const ANSWER: Duration = Duration::from_secs(5);
 const ANSWER_BYTES: u64 = 1 << 16;
 
-/// What can be found of a viewer on this machine.
+/// Viewer program that was found on this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Viewer {
-    /// Of the version that reads our streams.
+    /// A viewer whose version can read this program's streams is installed; its path.
     Ready(PathBuf),
-    /// Of another version, which is told.
+    /// A viewer of another version is installed; its version.
     Other(String),
-    /// There is no screen that it could open a window on.
+    /// There is no screen on which the viewer could open a window.
     NoScreen,
-    /// There is none.
+    /// No viewer program is installed.
     None,
 }
 
-/// How to get the viewer.
+/// How to install the Rerun viewer.
 pub const REMEDY: &str = "pip install rerun-sdk==0.36.3, or cargo install rerun-cli --locked --version 0.36.3";
 
 impl Viewer {
-    /// Looks for it in the folders of `PATH`.
+    /// Looks for the viewer program in the folders of `PATH`.
     pub fn find() -> Viewer {
         let name = format!("rerun{}", env::consts::EXE_SUFFIX);
         let folders = env::var_os("PATH").unwrap_or_default();
@@ -51,7 +51,7 @@ impl Viewer {
     }
 }
 
-/// The version that the program at this path says it has: "rerun-cli 0.36.3 …".
+/// The version that the viewer program at this path reports: "rerun-cli 0.36.3 …".
 fn version_of(path: &Path) -> Option<String> {
     let said = Command::new(path).arg("--version").stdin(Stdio::null()).output().ok()?;
     let text = String::from_utf8_lossy(&said.stdout).into_owned();
@@ -59,21 +59,21 @@ fn version_of(path: &Path) -> Option<String> {
     line.split_whitespace().next().map(str::to_string)
 }
 
-/// Whether windows can be opened.
+/// Whether there is a screen on which windows can be opened.
 pub fn has_screen() -> bool {
     let is_set = |name| env::var_os(name).is_some_and(|value| !value.is_empty());
     !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
 }
 
-/// Opens the viewer on a file; it stays when this program ends, and writes nothing into its terminal. With a time in
-/// nanoseconds on the trial's clock, it is shown that moment as soon as it is ready.
+/// Opens the viewer on a file; the viewer stays when this program ends, and writes nothing into its terminal. With a
+/// time in nanoseconds on the trial's clock, the viewer goes to that time as soon as it is ready.
 ///
 /// # Errors
-/// It cannot be started, or it cannot be shown the moment.
+/// The viewer cannot be started, or cannot be told the time.
 pub fn open(viewer: &Path, file: &Path, at_ns: Option<u64>) -> io::Result<()> {
     let port = free_port(SocketAddr::from((Ipv4Addr::LOCALHOST, PORT)))?.port();
     let mut command = Command::new(viewer);
-    // Its own default is every address of this computer.
+    // By default the viewer would listen at all addresses of this computer.
     command.arg(file).args(["--bind", "127.0.0.1", "--port", &port.to_string()]);
     command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn()?;
     let Some(at_ns) = at_ns else { return Ok(()) };
@@ -87,11 +87,12 @@ pub fn open(viewer: &Path, file: &Path, at_ns: Option<u64>) -> io::Result<()> {
     }
 }
 
-/// Asks the viewer that listens on this port to show a moment: its service `ViewerControlService`, by gRPC-Web.
+/// Asks the viewer at this port to go to a time, through its gRPC-Web service `ViewerControlService`.
 fn go_to(port: u16, at_ns: u64) -> io::Result<()> {
     let mut viewer = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
     viewer.set_read_timeout(Some(ANSWER))?;
-    // SetTimeCursorRequest { timeline (2): Timeline { name (1) }, time (3): TimelineTime { time (1) } }
+    // Protocol Buffers message: SetTimeCursorRequest { timeline (2): Timeline { name (1) }, time (3): TimelineTime {
+    // time (1) } }
     let mut request = field(2, &field(1, TRIAL_TIME.as_bytes()));
     request.extend(field(3, &[&[0x08], &varint(at_ns)[..]].concat()));
     let length = (request.len() as u32).to_be_bytes();
@@ -107,12 +108,12 @@ fn go_to(port: u16, at_ns: u64) -> io::Result<()> {
     if answer.contains("grpc-status:0") { Ok(()) } else { Err(io::Error::other("the viewer does not go there")) }
 }
 
-/// A field of a message of Protocol Buffers with a length.
+/// A field of a Protocol Buffers message whose content has a length.
 fn field(number: u8, body: &[u8]) -> Vec<u8> {
     [&[number << 3 | 2], &varint(body.len() as u64)[..], body].concat()
 }
 
-/// A number as Protocol Buffers write it: seven bits a byte, the lowest first.
+/// A number in the encoding of Protocol Buffers: seven bits per byte, lowest bits first.
 fn varint(mut number: u64) -> Vec<u8> {
     let mut bytes = Vec::new();
     while number > 0x7f {
@@ -123,7 +124,7 @@ fn varint(mut number: u64) -> Vec<u8> {
     bytes
 }
 
-/// Opens the browser on a page, where there is a screen and a way to do that.
+/// Opens a web page in the browser, if there is a screen and a command for that.
 pub fn browse(url: &str) {
     let opener = match env::consts::OS {
         "macos" => "open",
@@ -131,7 +132,7 @@ pub fn browse(url: &str) {
         _ => "xdg-open",
     };
     if has_screen() {
-        // Without one the address, which is printed, has to do.
+        // If there is no such command, the user can open the printed address.
         let _ = Command::new(opener).arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
     }
 }

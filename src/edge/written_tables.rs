@@ -1,4 +1,5 @@
-//! Recognition of tables that this program wrote: by the columns of this version, or by the dictionary beside the table.
+//! Recognition of tables that this program wrote: by the columns of this version, or by the data dictionary beside the
+//! table.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -10,14 +11,14 @@ use csv::{ByteRecord, ReaderBuilder};
 use crate::study::column::Table;
 use crate::study::dictionary::columns;
 
-/// The tables that the dictionary in a folder lists.
+/// Tables that the data dictionary in a folder lists, with their columns.
 #[derive(Debug, Default)]
 pub struct WrittenTables {
     columns: BTreeMap<Vec<u8>, Vec<Vec<u8>>>,
 }
 
 impl WrittenTables {
-    /// Reads the dictionary in a folder, if there is one.
+    /// Reads the data dictionary in a folder, if there is one.
     ///
     /// # Errors
     /// The file exists but cannot be read.
@@ -36,12 +37,12 @@ impl WrittenTables {
         Ok(tables)
     }
 
-    /// Whether the dictionary was written by this program.
+    /// Whether the folder has a data dictionary that this program wrote.
     pub fn is_listed(&self) -> bool {
         !self.columns.is_empty()
     }
 
-    /// Whether this program wrote the table of this name with this header.
+    /// Whether this program wrote the table with this name and header.
     pub fn has(&self, name: &str, header: &ByteRecord) -> bool {
         let listed = self.columns.get(name.as_bytes());
         listed.is_some_and(|columns| header.iter().eq(columns.iter().map(Vec::as_slice)))
@@ -57,7 +58,7 @@ impl WrittenTables {
     }
 }
 
-/// The table of a study with this name.
+/// The kind of a study's table that has this name.
 pub fn table_named(name: &str) -> Option<Table> {
     Table::ALL.into_iter().find(|table| table.name() == name)
 }
@@ -66,12 +67,12 @@ fn has_columns_of(header: &ByteRecord, table: Table) -> bool {
     header.iter().eq(columns(table).iter().map(|row| row.column.as_bytes()))
 }
 
-/// A CSV reader of all records including the header, with any number of cells and any bytes.
+/// A CSV reader of all records including the header, which accepts any number of cells and any bytes.
 pub fn reader<R: io::Read>(table: R) -> csv::Reader<R> {
     ReaderBuilder::new().has_headers(false).flexible(true).from_reader(table)
 }
 
-/// All records of a small table; empty if the file does not exist.
+/// All records of a CSV table; empty if the file does not exist.
 ///
 /// # Errors
 /// The file exists but cannot be read.

@@ -21,13 +21,13 @@ pub fn subject(about: &ProbeSubject) -> String {
 /// An event of a freeze probe in words.
 pub fn event(event: &ProbeEvent) -> String {
     match event {
-        ProbeEvent::Requested => "the wizard asks for a probe".to_string(),
-        ProbeEvent::Delayed { probe, reason } => format!("probe {probe} waits: {}", reason.words()),
+        ProbeEvent::Requested => "the wizard requests a freeze probe".to_string(),
+        ProbeEvent::Delayed { probe, reason } => format!("probe {probe} is delayed: {}", reason.words()),
         ProbeEvent::Dropped { probe, reason } => format!("probe {probe} is dropped: {}", reason.words()),
         ProbeEvent::Begun { probe, origin, questions, .. } => {
             let by = match origin {
                 ProbeOrigin::Schedule => "",
-                ProbeOrigin::Wizard => ", for the wizard",
+                ProbeOrigin::Wizard => ", at the wizard's request",
             };
             let about: Vec<String> = questions.iter().map(|question| subject(&question.about)).collect();
             let questions = count(questions.len() as u64, "question", "questions");
@@ -41,6 +41,6 @@ pub fn event(event: &ProbeEvent) -> String {
         ProbeEvent::Answered { question, answer: None, .. } => format!("answer to question {question}: I don't know"),
         ProbeEvent::Skipped { probe, reason } => format!("the wizard skips the rest of probe {probe}: {reason}"),
         ProbeEvent::Closed { probe, reason } => format!("probe {probe} closes: {}", reason.words()),
-        ProbeEvent::Ended { probe } => format!("the task goes on after probe {probe}"),
+        ProbeEvent::Ended { probe } => format!("the task continues after probe {probe}"),
     }
 }

@@ -55,14 +55,14 @@ fn because(kitchen: &Kitchen, why: NoEffect, about: LocationId, content: &str) -
     match why {
         NoEffect::HandFull => "the hand is full".to_string(),
         NoEffect::HandEmpty => "the hand is empty".to_string(),
-        NoEffect::BothEmpty => "hand and place are empty".to_string(),
+        NoEffect::BothEmpty => "the hand and the place are empty".to_string(),
         NoEffect::PlaceEmpty => format!("the {name} is empty"),
         NoEffect::PlaceFull => format!("the {name} is full"),
-        NoEffect::NotAccepted => "it does not go there".to_string(),
-        NoEffect::NotStacked => "they do not go together".to_string(),
-        NoEffect::NotProcessed => format!("not with {content}"),
+        NoEffect::NotAccepted => "it is not accepted there".to_string(),
+        NoEffect::NotStacked => "the items cannot be stacked".to_string(),
+        NoEffect::NotProcessed => format!("cannot process {content}"),
         NoEffect::NoOrder => format!("{name} wants nothing"),
-        NoEffect::NotServed => "it is not served there".to_string(),
+        NoEffect::NotServed => "it cannot be served there".to_string(),
     }
 }
 
@@ -156,7 +156,7 @@ pub fn protocol(event: &ProtocolEvent) -> String {
         ProtocolEvent::ConsentGiven { .. } => "the participant agrees to be recorded".to_string(),
         ProtocolEvent::PhaseStarted { phase, .. } => format!("phase: {}", phase.name()),
         ProtocolEvent::Ticked { step, done: true } => format!("step {step} is done"),
-        ProtocolEvent::Ticked { step, done: false } => format!("step {step} is not done after all"),
+        ProtocolEvent::Ticked { step, done: false } => format!("step {step} is unticked"),
         ProtocolEvent::Tutorial(event) => tutorial(event),
         ProtocolEvent::ItemShown { item } => format!("item {item} is shown"),
         ProtocolEvent::AnswersShown => "all answers are shown".to_string(),
@@ -201,13 +201,13 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
         TimelineEvent::Marker(note) => ("note", note.clone()),
         TimelineEvent::RobotStopped => ("wizard", "stopped the robot".to_string()),
         TimelineEvent::ArmStopped { mode, force_n, joint } => ("robot", arm_stopped(*mode, *force_n, *joint)),
-        TimelineEvent::ArmTouched { force_n } => ("robot", format!("was touched, with {force_n:.0} N")),
-        TimelineEvent::RobotResumed => ("wizard", "let the robot go on".to_string()),
+        TimelineEvent::ArmTouched { force_n } => ("robot", format!("contact with a person, {force_n:.0} N")),
+        TimelineEvent::RobotResumed => ("wizard", "resumed the robot".to_string()),
         TimelineEvent::RobotHeld => ("wizard", "held the robot".to_string()),
         TimelineEvent::RobotReleased => ("wizard", "released the robot".to_string()),
         TimelineEvent::RobotSkipped(id) => ("wizard", format!("skipped {}", button(kitchen, Agent::Robot, *id))),
         TimelineEvent::RobotDriven(id) => {
-            ("wizard", format!("drives the robot to {}", button(kitchen, Agent::Robot, *id)))
+            ("wizard", format!("chose the robot's press: {}", button(kitchen, Agent::Robot, *id)))
         }
         TimelineEvent::Corrected { location } => {
             ("wizard", format!("corrected {}", kitchen.location(*location).label()))
@@ -215,8 +215,8 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
         TimelineEvent::Probe(event) => ("", probe_wording::event(event)),
         TimelineEvent::Excluded(reason) => ("trial", format!("excluded: {reason}")),
         TimelineEvent::Included => ("trial", "no longer excluded".to_string()),
-        TimelineEvent::Focus(false) => ("console", "lost the keyboard".to_string()),
-        TimelineEvent::Focus(true) => ("console", "has the keyboard again".to_string()),
+        TimelineEvent::Focus(false) => ("console", "lost the keyboard focus".to_string()),
+        TimelineEvent::Focus(true) => ("console", "has the keyboard focus again".to_string()),
         TimelineEvent::Trial(phase) => ("trial", trial(*phase).to_string()),
     }
 }
@@ -225,8 +225,8 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
 pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) -> String {
     let mode = mode.name().to_lowercase();
     match (force_n, joint) {
-        (Some(force_n), _) => format!("{mode}: felt somebody, with {force_n:.0} N"),
-        (None, Some(joint)) => format!("{mode}: joint {joint} does not follow"),
+        (Some(force_n), _) => format!("{mode}: contact with a person, {force_n:.0} N"),
+        (None, Some(joint)) => format!("{mode}: joint {joint} does not follow its command"),
         (None, None) => mode,
     }
 }
@@ -235,10 +235,10 @@ pub fn arm_stopped(mode: SafetyMode, force_n: Option<f64>, joint: Option<u8>) ->
 pub fn arm_phase(phase: ArmPhase) -> &'static str {
     match phase {
         ArmPhase::Rests => "at rest",
-        ArmPhase::Retracts => "goes up",
-        ArmPhase::Travels => "on its way",
-        ArmPhase::Hovers => "above",
-        ArmPhase::Presses => "presses",
+        ArmPhase::Retracts => "moving up",
+        ArmPhase::Travels => "moving",
+        ArmPhase::Hovers => "hovering",
+        ArmPhase::Presses => "pressing",
     }
 }
 
@@ -262,15 +262,15 @@ pub fn tracker(event: &TrackerEvent) -> Option<String> {
     Some(match event {
         TrackerEvent::Connected { device } => format!("eye tracker connected: {device}"),
         TrackerEvent::Lost { reason } => format!("eye tracker lost: {reason}"),
-        TrackerEvent::DisplayFound => "eye tracker sees the display".to_string(),
-        TrackerEvent::DisplayLost => "eye tracker does not see the display".to_string(),
-        TrackerEvent::OtherSurfaces { names } => format!("eye tracker sees other surfaces: {}", quoted(names)),
+        TrackerEvent::DisplayFound => "eye tracker detects the display tags".to_string(),
+        TrackerEvent::DisplayLost => "eye tracker does not detect the display tags".to_string(),
+        TrackerEvent::OtherSurfaces { names } => format!("eye tracker detects other surfaces: {}", quoted(names)),
         TrackerEvent::Recording { state } => match state {
             TrackerRecording::Begun => "Pupil Capture records the trial",
-            TrackerRecording::NotBegun => "Pupil Capture began no recording: it records already, or cannot",
+            TrackerRecording::NotBegun => "Pupil Capture started no recording: it is already recording, or cannot",
             TrackerRecording::Ended => "Pupil Capture's recording ended before the trial",
             TrackerRecording::NotAnnotated => {
-                "Pupil Capture takes no annotations: its Annotation plugin does not start"
+                "Pupil Capture accepts no annotations: its Annotation plugin does not start"
             }
         }
         .to_string(),
@@ -300,23 +300,23 @@ pub fn drops(counts: &DropCounts) -> String {
 /// An event of the gaze accuracy check in words.
 pub fn calibration(event: &CalibrationEvent) -> String {
     match event {
-        CalibrationEvent::Begun { targets } => format!("check of the gaze begins: {} targets", targets.len()),
+        CalibrationEvent::Begun { targets } => format!("gaze accuracy check begins: {} targets", targets.len()),
         CalibrationEvent::TargetShown { target } => format!("target {} is shown", target + 1),
-        CalibrationEvent::TargetsHidden => "no target is shown any more".to_string(),
+        CalibrationEvent::TargetsHidden => "the targets are hidden".to_string(),
         CalibrationEvent::Measured { found: None } => "gaze not measured: too few usable samples".to_string(),
         CalibrationEvent::Measured { found: Some(found) } => format!(
             "gaze measured: accuracy {:.2} deg, {:.2} deg without its offset, precision {:.2} deg",
             found.accuracy_deg, found.corrected_deg, found.precision_deg
         ),
-        CalibrationEvent::Accepted { corrected: true } => "gaze accepted, its offset is taken off".to_string(),
-        CalibrationEvent::Accepted { corrected: false } => "gaze accepted as it is".to_string(),
+        CalibrationEvent::Accepted { corrected: true } => "gaze accepted, its offset is subtracted".to_string(),
+        CalibrationEvent::Accepted { corrected: false } => "gaze accepted without correction".to_string(),
         CalibrationEvent::Carried { corrected: true, .. } => {
-            "gaze as it was accepted in the recording before: its offset is taken off".to_string()
+            "gaze correction taken over from the previous recording: its offset is subtracted".to_string()
         }
         CalibrationEvent::Carried { corrected: false, .. } => {
-            "gaze as it was accepted in the recording before".to_string()
+            "gaze taken over from the previous recording, without correction".to_string()
         }
-        CalibrationEvent::Dismissed => "check of the gaze given up".to_string(),
+        CalibrationEvent::Dismissed => "gaze accuracy check cancelled".to_string(),
     }
 }
 
@@ -324,11 +324,13 @@ pub fn calibration(event: &CalibrationEvent) -> String {
 pub fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
     let because = match press.cause {
         None => String::new(),
-        Some(Cause::Slip) => "; a slip".to_string(),
-        Some(Cause::Planning) => "; an error of planning".to_string(),
-        Some(Cause::Belief { target, with: None, .. }) => format!("; wrong about {}", target.label(kitchen)),
+        Some(Cause::Slip) => "; cause: slip".to_string(),
+        Some(Cause::Planning) => "; cause: planning error".to_string(),
+        Some(Cause::Belief { target, with: None, .. }) => {
+            format!("; cause: false belief about {}", target.label(kitchen))
+        }
         Some(Cause::Belief { target, with: Some(other), .. }) => {
-            format!("; wrong about {} and {}", target.label(kitchen), other.label(kitchen))
+            format!("; cause: false belief about {} and {}", target.label(kitchen), other.label(kitchen))
         }
     };
     format!("error, costs {}{because}", count(press.verdict.excess.unsigned_abs(), "press", "presses"))

@@ -25,8 +25,8 @@ pub(super) fn admit(session: &Session, event: &Event) -> Result<(), &'static str
         }
         Event::RobotDriven { by, .. } => {
             by_the_wizard(*by)?;
-            refuse_if(phase != Phase::Running, "the robot is driven while the trial runs")?;
-            refuse_if(robot.stopped, "the robot is stopped: let it go on first")
+            refuse_if(phase != Phase::Running, "the robot's press can be chosen only while the trial runs")?;
+            refuse_if(robot.stopped, "the robot is stopped: resume it first")
         }
         Event::TrialAborted { .. } => {
             refuse_if(!matches!(phase, Phase::Running | Phase::Paused), "there is no trial to abort")
@@ -46,7 +46,7 @@ fn by_the_wizard(by: Sender) -> Result<(), &'static str> {
 
 fn admit_correction(session: &Session, location: &str, content: &str) -> Result<(), &'static str> {
     if !matches!(session.phase, Phase::Running | Phase::Paused) {
-        return Err("the kitchen is corrected during a trial");
+        return Err("the kitchen can be corrected only during a trial");
     }
     if session.is_frozen() {
         // The probe's questions are about the kitchen as it was when the task was frozen.

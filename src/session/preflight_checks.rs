@@ -222,6 +222,6 @@ fn calibration(session: &Session, check_gaze: &str) -> Option<PreflightCheck> {
 }
 
 fn unchecked(check_gaze: &str) -> PreflightCheck {
-    let remedy = format!("{check_gaze} checks the gaze by targets (check_gaze in the key file)");
+    let remedy = format!("{check_gaze} checks gaze accuracy with targets (check_gaze in the key file)");
     PreflightCheck::new("calibration", PreflightVerdict::Warning, "not checked", remedy)
 }

@@ -95,7 +95,7 @@ class Console:
         self.wait_for("RUNNING|Before the trial")
         if "RUNNING" not in self.text():
             # Gaze that has only just begun to arrive is slow for a second.
-            self.wait_for("starts the trial +esc leaves")
+            self.wait_for("start the trial +esc close")
             # Where nothing was wrong any more when the list came up, that was only just now.
             time.sleep(OWN_KEY_S)
             self.key(".")

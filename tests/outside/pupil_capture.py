@@ -146,7 +146,7 @@ def check_lab(tomcom, folder, pupil):
             console.wait_for(r"gaze +\d\d+ Hz")
             start_trial(console)
             if "true" in more:
-                console.wait_for("began no recording", 10)
+                console.wait_for("started no recording", 10)
             time.sleep(0.5)
             end_trial(console)
             console.quit()
@@ -278,7 +278,7 @@ def check_surface(tomcom, folder, pupil):
     """Another surface than the session's is seen: its name is told."""
     capture = Modules(pupil, folder / "capture", PORT + 5)
     with Console(tomcom, [session(folder, PORT + 5, surface="wall"), "--out", folder / "recordings"]) as console:
-        console.wait_for("TAGS NOT SEEN")
+        console.wait_for("NO DISPLAY TAGS")
         console.wait_for('other surfaces: "Surface 1"')
         console.key(".")
         console.wait_for('sees "Surface 1", not "wall"')

@@ -80,7 +80,7 @@ def plays(tomcom, chromium, folder, language, way, size):
             go_on(page, way, name)
         page.stage("ready")
         page.close()
-        console.wait_for("leaves the tutorial")
+        console.wait_for("leave the tutorial")
         console.quit()
     (recording,) = (folder / "recordings").iterdir()
     events = [json.loads(line) for line in (recording / "events.jsonl").read_text().splitlines()[1:]]

@@ -168,13 +168,13 @@ fn check_goes_on_after_a_kill(other: &Terminal, session: &Path, out: &Path) {
             other.key(".");
             std::thread::sleep(std::time::Duration::from_millis(800));
         }
-        other.screen().contains(". on to the questionnaire")
+        other.screen().contains(". next: questionnaire")
     });
     other.key(".");
     answer(other, "4");
     other.key(".");
     other.see("A1 trial 2/2");
-    trial(other, ". on to the questionnaire");
+    trial(other, ". next: questionnaire");
     other.key(".");
     answer(other, "7");
     on_until(other, "Debriefing of the wizard");
@@ -204,11 +204,11 @@ fn a_participant_goes_through_a_plan_at_the_console_and_over_a_kill() {
     terminal.key("1");
     terminal.see("Instruction of the participant");
     on_until(&terminal, "READY");
-    trial(&terminal, "The criterion is not met");
+    trial(&terminal, "The practice criterion is not met");
     terminal.key("2");
-    terminal.see("go on for this reason");
+    terminal.see("waive for this reason");
     terminal.key("Enter");
-    terminal.see("done: next");
+    terminal.see(". next recording");
     std::thread::sleep(std::time::Duration::from_millis(800));
     terminal.key(".");
     terminal.see("A1 trial 1/2");

@@ -313,11 +313,11 @@ fn onward(screen: &str, turn: u64) -> Option<&'static str> {
     let shows = |text: &str| screen.contains(text);
     let on = if turn.is_multiple_of(2) { "Enter" } else { "." };
     match () {
-        () if shows("enter go on for this reason") => Some("Enter"),
+        () if shows("enter waive for this reason") => Some("Enter"),
         () if shows("and agrees to") || shows("is not done") || shows("is not met") => Some("1"),
         () if shows("0 no answer") => Some(if turn.is_multiple_of(2) { "3" } else { "5" }),
         () if shows("RUNNING") => None,
-        () if shows("READY") || shows("PAUSED") || shows("done: next") || shows(". on to the questionnaire") => {
+        () if shows("READY") || shows("PAUSED") || shows(". next recording") || shows(". next: questionnaire") => {
             Some(".")
         }
         () if shows("enter ") => Some(on),

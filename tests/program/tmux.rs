@@ -115,7 +115,7 @@ impl Terminal {
         self.key(".");
         let mut overridden = false;
         self.wait("the trial", || {
-            if !overridden && self.screen().contains("starts all the same") {
+            if !overridden && self.screen().contains("start the trial anyway") {
                 self.key("o");
                 overridden = true;
             }

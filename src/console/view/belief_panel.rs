@@ -1,4 +1,5 @@
-//! The belief panel: false beliefs first, by what they cost, with certainty, truth and age; or one belief over time.
+//! The belief panel: the participant's estimated beliefs with certainty, truth and age, false ones first, ordered by
+//! the presses that they cost; or one belief over time.
 
 use ratatui::layout::Rect;
 
@@ -20,24 +21,24 @@ use crate::measures::sequences::FALSE_BELOW;
 use crate::session::Session;
 use crate::session::settings::Visibility;
 
-/// Number of columns from which a belief fits into one line.
+/// Least width, in columns, of a panel that shows each belief in one line.
 const ONE_LINE: u16 = 66;
-/// Number of rows below which the panel has no frame.
+/// Least height of a belief panel with a frame, in rows.
 const FRAMED: u16 = 5;
-/// Rows of a chart below the list, with its title.
+/// Height of a chart of a belief over time, with its title.
 const CHART_ROWS: u16 = 5;
-/// Columns of a bar with a gap.
+/// Columns of the bar for a belief's probability and of the gap before it.
 const BAR: u16 = 7;
-/// Columns left of a chart for the scale.
+/// Columns of the probability scale at the left of a chart.
 const SCALE: u16 = 6;
 
-/// Text of the panel while no belief is false.
+/// Text of the belief panel while no belief is false.
 pub(super) const QUIET: &str = "No false beliefs";
 
-/// Text of the panel before the first estimate.
-const BEFORE: &str = "estimated from the trial's start on";
+/// Text of the belief panel before the trial's first estimate.
+const BEFORE: &str = "estimated after the trial's start";
 
-/// Drawing context of the belief panel.
+/// Drawing context of the belief panel: session, present time, and estimates.
 struct Panel<'a> {
     session: &'a Session,
     now: SessionTime,
@@ -77,14 +78,14 @@ impl Panel<'_> {
     }
 
     fn remark(&self) -> String {
-        let order = if are_by_cost(self.session) { "by presses lost" } else { "oldest first" };
+        let order = if are_by_cost(self.session) { "most costly first" } else { "oldest first" };
         match self.of_standing(BeliefStanding::False).count() {
             0 => "estimated".to_string(),
             number => format!("{number} false, {order}"),
         }
     }
 
-    /// Draws the list, and the first beliefs over time in the room that is left.
+    /// Draws the list of beliefs, and below it, as far as there is room, charts of the first beliefs over time.
     fn list(&self, brush: &mut Painter, area: Rect) {
         let mut y = area.y;
         let is_false = |belief: &EstimatedBelief| belief.standing == BeliefStanding::False;
@@ -100,13 +101,13 @@ impl Panel<'_> {
         for (index, belief) in told.iter().enumerate() {
             let lines = if is_wide { Vec::new() } else { self.told(belief, area.width - 2) };
             let rows = 1 + lines.len() as u16;
-            // The last line is for those without room.
+            // The panel's last line counts the beliefs that have no room.
             if y + rows >= area.bottom() {
                 let left = told.len() - index;
                 let is_any_false = told[index..].iter().any(|belief| is_false(belief));
                 let role = if is_any_false { TextRole::FalseBelief } else { TextRole::Quiet };
                 let style = brush.style(role);
-                let words = format!("{} {left} more false or unsure", brush.theme.signs().ellipsis);
+                let words = format!("{} {left} more false or unsure beliefs", brush.theme.signs().ellipsis);
                 brush.text(area.x, y, area.width, &words, style);
                 return;
             }
@@ -125,7 +126,7 @@ impl Panel<'_> {
             brush.text(area.x, y, area.width, &words, quiet);
             y += 2;
         }
-        // Beside the kitchen only what is not right; where there is much room, the others too.
+        // Charts beside the kitchen show only false and unsure beliefs; a wide panel also shows right ones.
         for belief in self.beliefs.iter().filter(|belief| is_wide || belief.standing != BeliefStanding::Right) {
             if y + CHART_ROWS > area.bottom() {
                 return;
@@ -137,7 +138,7 @@ impl Panel<'_> {
         }
     }
 
-    /// What is thought and what is true, in as few lines as the columns allow.
+    /// What the participant believes and what is true, in as few lines as the columns allow.
     fn told(&self, belief: &EstimatedBelief, columns: u16) -> Vec<String> {
         let (thinks, truth) = self.values(belief);
         if belief.standing == BeliefStanding::Unsure {
@@ -158,13 +159,13 @@ impl Panel<'_> {
         (value(belief.thinks), value(belief.truth))
     }
 
-    /// The certainty of what is thought, and for how long the truth has been improbable: "83 %  0:22".
+    /// Probability of what the participant believes, and the time for which the truth has been improbable: "83 % 0:22".
     fn certainty(&self, belief: &EstimatedBelief) -> String {
         let age = belief.since.map(|since| self.session.age(since, self.now).to_string()).unwrap_or_default();
         format!("{:>5} {age:>5}", percent(f64::from(belief.p)))
     }
 
-    /// The name of a belief; of an unsure one with what is thought most.
+    /// Name of a belief's state aspect; for an unsure belief with its most probable value.
     fn title(&self, belief: &EstimatedBelief) -> String {
         let name = name(self.session, belief.aspect);
         match belief.standing {
@@ -173,7 +174,8 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws a belief in a narrow panel: name and certainty, and below them what is thought and, if that is false, what is true.
+    /// Draws a belief in a narrow panel: its name and certainty, and below them what the participant believes and, if
+    /// that is false, what is true.
     fn head(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16, lines: &[String]) {
         let style = brush.style(role(belief));
         let end = self.certainty(belief);
@@ -186,7 +188,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws a belief in one line.
+    /// Draws an estimated belief in one line of a wide panel.
     fn row(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect, y: u16) {
         let style = brush.style(role(belief));
         let mut end = self.certainty(belief);
@@ -200,7 +202,7 @@ impl Panel<'_> {
             BeliefStanding::Unsure => (self.title(belief), String::new()),
             _ => (format!("{}: thinks {thinks}, ", self.title(belief)), format!("is {truth}")),
         };
-        // Names have priority over the bar, since the number shows the same.
+        // Words have priority over the probability bar, since the number shows the same.
         let mut room = area.width.saturating_sub(width(&end) + 1);
         if width(&head) + width(&is) + BAR < room {
             room -= BAR;
@@ -211,7 +213,7 @@ impl Panel<'_> {
         brush.text(x, y, (area.x + room).saturating_sub(x), &is, text);
     }
 
-    /// The few lines of a small screen.
+    /// Draws the beliefs as the few lines of a small screen.
     fn lines(&self, brush: &mut Painter, area: Rect) {
         let quiet = brush.style(TextRole::Quiet);
         let x = brush.text(area.x, area.y, area.width, " beliefs  ", quiet);
@@ -235,7 +237,7 @@ impl Panel<'_> {
                 BeliefStanding::Unsure => self.title(belief),
                 _ => format!("{}: thinks {thinks}, is {truth}", self.title(belief)),
             };
-            // What is thought and what is true have priority over the name, which the kitchen shows at its place.
+            // What is believed and what is true have priority over the words between them.
             let line = match width(&line) > columns && belief.standing != BeliefStanding::Unsure {
                 true => format!("{}: {thinks}, is {truth}", self.title(belief)),
                 false => line,
@@ -245,7 +247,7 @@ impl Panel<'_> {
         }
     }
 
-    /// Draws the expected probability of the truth over the last minute, with axes.
+    /// Draws the estimated probability of the truth over the last minute, with axes.
     fn chart(&self, brush: &mut Painter, belief: &EstimatedBelief, area: Rect) {
         let (thinks, truth) = self.values(belief);
         let style = brush.style(role(belief));
@@ -255,7 +257,8 @@ impl Panel<'_> {
             BeliefStanding::Right => format!("{name}: {truth}"),
             _ => format!("{name}: thinks {thinks} {}, is {truth}", percent(belief.p.into())),
         };
-        // The curve is that of the truth: the title says so, if need be instead of what is thought.
+        // The curve is the probability of the truth; if there is no room for both, the title says this instead of what
+        // is believed.
         let curve = "probability of the truth";
         match width(&thought) + width(curve) + 2 <= area.width {
             true => {
@@ -289,7 +292,7 @@ impl Panel<'_> {
         ticks(brush, axis, end, SHOWN_S / f64::from(plot.width.max(1)));
     }
 
-    /// A curve of P(truth), its false stretches in the colour of false beliefs.
+    /// Draws the curve of the truth's probability, in the colour of false beliefs where that probability is low.
     fn curve(&self, brush: &mut Painter, aspect: AspectId, area: Rect) {
         let Rect { x, y, width: columns, height: rows } = area;
         let levels = brush.theme.signs().levels;
@@ -297,7 +300,7 @@ impl Panel<'_> {
         for (column, p) in course.iter().enumerate() {
             let Some(p) = p else { continue };
             let style = brush.style(if *p < FALSE_BELOW { TextRole::FalseBelief } else { TextRole::Quiet });
-            // The lowest level is drawn, too: something is known there.
+            // Even a probability near zero is drawn, to be told from times without an estimate.
             let height = (p * f64::from(rows) * levels.len() as f64).ceil().max(1.0) as usize;
             for row in 0..rows {
                 let below = usize::from(rows - 1 - row) * levels.len();
@@ -310,7 +313,7 @@ impl Panel<'_> {
     }
 }
 
-/// Yellow is only for what is believed wrong.
+/// Style of a belief: yellow is reserved for false beliefs.
 fn role(belief: &EstimatedBelief) -> TextRole {
     match belief.standing {
         BeliefStanding::False => TextRole::FalseBelief,

@@ -1,4 +1,5 @@
-//! Cards before and after a trial: what is ready and how to start; what came of it and what comes next.
+//! Summary cards before and after a trial: whether everything is ready and how to start; the trial's results and the
+//! next step.
 
 use ratatui::layout::Rect;
 
@@ -22,27 +23,27 @@ use crate::kitchen::{Agent, Dish};
 use crate::session::settings::{ParticipantKind, Visibility};
 use crate::session::{Phase, Session};
 
-/// Columns of a card, and at least of the names of its facts.
+/// Width of a card, and least width of the names in its left column.
 const COLUMNS: u16 = 62;
 const NAMES: u16 = 15;
 
-/// The name of a fact, the fact, and its role.
+/// A line of a summary card: name, text, and the text's style.
 type Fact = (String, String, TextRole);
 
 fn fact(name: &str, text: String, role: TextRole) -> Fact {
     (name.to_string(), text, role)
 }
 
-/// A card: facts with their names, and the keys that go on.
+/// A summary card: named facts, and the keys for the next step.
 struct Card {
     title: String,
     facts: Vec<Fact>,
     keys: Vec<(KeyChord, String)>,
 }
 
-/// Draws the card of the trial's start or end, if nothing else lies in front of the console.
+/// Draws the card of the trial's start or end, unless a dialog or sheet covers the console.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
-    // What came of a trial is seen from every view.
+    // The results of a trial are shown even while a single panel is at full size.
     let is_alone = model.alone.is_some() && !matches!(session.phase, Phase::Over(_));
     let is_covered = model.dialog.is_some() || is_alone || sheet(session).is_some();
     let has_trial = session.study_phase().is_none_or(|phase| phase.phase().has_trial());
@@ -58,7 +59,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     card.draw(brush, regions.middle());
 }
 
-/// The trial's place in the study, and who takes part: "P07, trial 2/2, wizard".
+/// The trial's position in the study, and its condition: "P07, trial 2/2, wizard".
 fn place(session: &Session) -> String {
     let step = session.step().map_or(String::new(), |(step, _)| format!(", {}", step.label()));
     format!("{}{step}, {}", session.spec.participant.code, head::condition(session))
@@ -84,8 +85,8 @@ fn before(session: &Session, model: &ConsoleModel) -> Card {
     Card { title: "Ready to start".to_string(), facts, keys }
 }
 
-/// All dishes with their recipes, for the person who plays the participant at this keyboard. As in a study, they have to be
-/// remembered while the trial runs.
+/// Card with the recipes of all dishes during a pause, for the person who plays the participant at this keyboard. As in
+/// a study, the recipes have to be remembered while the trial runs.
 fn recipes(session: &Session, model: &ConsoleModel) -> Card {
     let kitchen = &session.kitchen;
     let recipe = |dish: &Dish| (dish.name.clone(), wording::dish(kitchen, dish), TextRole::Text);
@@ -104,7 +105,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     let errors = format!("{errors} in {} of the human ({share:.0} %)", count(u64::from(human), "press", "presses"));
     let clock = session.trial_clock(model.now);
     let paused = if session.paused_total > SessionTime::ZERO {
-        format!(", and {} of pauses", session.paused_total)
+        format!(", plus {} of pauses", session.paused_total)
     } else {
         String::new()
     };
@@ -117,7 +118,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     facts.extend(signals(session, model));
     facts.push(fact("time", format!("{clock}{paused}"), TextRole::Text));
     if let Some(practice) = session.protocol.as_ref().and_then(|protocol| protocol.practice.as_ref()) {
-        let met = if practice.met { "met: the practice is complete" } else { "not met, and waived" };
+        let met = if practice.met { "met" } else { "not met, waived" };
         facts.push(fact("criterion", met.to_string(), TextRole::Strong));
     }
     let mut keys = Vec::new();
@@ -125,14 +126,15 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
     keys.extend(on.and_then(|on| Some((model.keys.chord_for(&KeyAction::Advance)?, on))));
     if can_redo(session) {
         keys.extend(
-            model.keys.chord_for(&KeyAction::Hand(ManualAction::Redo)).map(|key| (key, "do it again".to_string())),
+            model.keys.chord_for(&KeyAction::Hand(ManualAction::Redo)).map(|key| (key, "repeat the trial".to_string())),
         );
     }
     keys.extend(model.keys.chord_for(&KeyAction::Quit).map(|key| (key, "close the session".to_string())));
     Card { title: format!("Trial {}", wording::trial(session.phase)), facts, keys }
 }
 
-/// The signals of each sender, and what they were about. A wizard who may not see the estimate is not told what follows from it.
+/// Lines of the card about signals: how many each sender sent, and how many of these were about a false belief, late,
+/// or needless. The latter line is left out where the wizard may not see the belief estimate.
 fn signals(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
     let is_simulated = session.spec.participant.kind == ParticipantKind::Simulated;
     let may_tell = is_simulated || session.spec.console.visibility >= Visibility::Belief;

@@ -1,4 +1,4 @@
-//! A rater's panels: the codebook, which is always in view, and the errors with their codes.
+//! A rater's panels: the codebook, which is always visible, and the list of errors with their codes.
 
 use ratatui::layout::Rect;
 
@@ -15,18 +15,18 @@ use crate::history::wording;
 use crate::measures::cause_codes::Code;
 use crate::session::Session;
 
-/// Columns of an error's number, and of its time.
+/// Columns of the number of an error in a rater's list, and of the error's time.
 const NUMBER: u16 = 4;
 const CLOCK: u16 = 6;
-/// Number of columns from which a row has room for whole codes.
+/// Least width, in columns, of an error list that shows codes in full.
 const WIDE: u16 = 62;
-/// Columns of a code in words ("wrong about assembly board"), and in short ("assembly board").
+/// Columns of a code in full ("wrong about assembly board"), and in short ("assembly board").
 const WHOLE_CODE: u16 = 27;
 const SHORT_CODE: u16 = 14;
-/// Columns of the bar in a line.
+/// Columns of the bar for the coding progress.
 const BAR: u16 = 16;
 
-/// Draws codebook and errors, while errors are coded.
+/// Draws the codebook and the list of errors, while a rater codes errors.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let Some(coding) = &model.coding else { return };
     let events = model.playback.as_ref().map_or(0, |playback| playback.event);
@@ -35,13 +35,13 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     draw_errors(brush, regions, coding, events);
 }
 
-/// Draws the codebook as lines, or as a panel where it stands in a column beside the kitchen.
+/// Draws the codebook as lines across the screen, or as a panel in a column beside the kitchen.
 fn draw_codebook(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel, is_panel: bool) {
     if area.area() == 0 {
         return;
     }
     let inside = match is_panel {
-        true => brush.panel(area, "Codebook", "why was it an error?"),
+        true => brush.panel(area, "Codebook", "why did the error happen?"),
         false => area,
     };
     let (left, columns) = (inside.x + 1, inside.width.saturating_sub(2));
@@ -91,12 +91,12 @@ fn draw_errors(brush: &mut Painter, regions: &Regions, coding: &RaterSession, ev
     }
 }
 
-/// The part of the errors that have a code.
+/// Share of errors that have a rater's code, from 0 to 1.
 fn share(coding: &RaterSession) -> f64 {
     coding.coded() as f64 / coding.errors.len().max(1) as f64
 }
 
-/// Draws progress or what comes next in a line, and the codes of a pair in the last one.
+/// Draws one line with the coding progress or the next step, and in the last line the codes that two raters gave alone.
 fn draw_lines(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usize) {
     let words = coding.next_step().unwrap_or_else(|| coding.progress());
     let (x, columns) = (head.x + 1, head.width.saturating_sub(1));
@@ -113,7 +113,7 @@ fn draw_lines(brush: &mut Painter, head: Rect, coding: &RaterSession, events: us
     }
 }
 
-/// Draws the bar of progress, and below it the present error in words, or what comes next.
+/// Draws the progress bar, and below it the present error in words, or the next step.
 fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usize) {
     let (x, columns) = (head.x + 1, head.width.saturating_sub(2));
     brush.bar(x, head.y, columns, share(coding), TextRole::Strong);
@@ -133,7 +133,7 @@ fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usi
             }
         }
     } else {
-        lines.push(("before the first error: enter goes there".to_string(), TextRole::Quiet));
+        lines.push(("no error reached yet: enter goes to the first one".to_string(), TextRole::Quiet));
     }
     for (row, (line, role)) in lines.iter().enumerate().take(usize::from(head.height.saturating_sub(1))) {
         let style = brush.style(*role);
@@ -141,7 +141,7 @@ fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usi
     }
 }
 
-/// Whether the replay stands at an error of the list, or the arrows are on it.
+/// How a row of the error list is marked: the replay stands at its error, or the arrow keys have selected it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum RowMark {
     None,
@@ -149,7 +149,7 @@ enum RowMark {
     Chosen,
 }
 
-/// Draws number, time, press and codes of an error.
+/// Draws a row of the error list: number, time, press and codes.
 fn draw_row(brush: &mut Painter, line: Rect, coding: &RaterSession, error: &ListedError, mark: RowMark) {
     let signs = brush.theme.signs();
     let role = if mark == RowMark::None { TextRole::Text } else { TextRole::Strong };
@@ -185,7 +185,7 @@ fn draw_row(brush: &mut Painter, line: Rect, coding: &RaterSession, error: &List
     brush.parts(x, line.y, right.saturating_sub(x), &[(&words, role)]);
 }
 
-/// A code in few columns: of a false belief only the place.
+/// An error's code in few columns: for a false belief, only the place.
 fn short(code: Option<&Code>) -> String {
     match code.and_then(Code::aspect) {
         Some(place) => wording::location(place),

@@ -1,4 +1,5 @@
-//! The comparison of wizard and assistants: lanes on one time axis, joined matches, statistics, and differences.
+//! The comparison of wizard and assistants: one lane of communications each on a common time axis, lines between
+//! matches, similarity statistics, and differences.
 
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
@@ -14,13 +15,13 @@ use crate::console::key_action::KeyAction;
 use crate::history::comparison::{Communication, CommunicationContent, LaneComparison, UnmatchedCommunication};
 use crate::session::Session;
 
-/// Duration of a column, in seconds.
+/// Time that one terminal column of the comparison stands for, in seconds.
 const COLUMN_S: f64 = 1.0;
 const LABELS: u16 = 10;
 
 const TITLE: &str = "Wizard and assistant";
 
-/// Draws the comparison.
+/// Draws the comparison of wizard and assistants.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.comparison;
     let Some(compared) = model.comparison.as_ref().filter(|_| area.area() > 0) else { return };
@@ -32,14 +33,14 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     };
     let Some(seen) = &compared.seen else {
         let quiet = brush.style(TextRole::Quiet);
-        brush.text(inside.x + 1, inside.y, inside.width, "compared from the first order or press on", quiet);
+        brush.text(inside.x + 1, inside.y, inside.width, "the comparison starts with the first order or press", quiet);
         return;
     };
     let plot = Rect { x: inside.x + LABELS, width: inside.width.saturating_sub(LABELS + 1), ..inside };
     axis(brush, plot, session, model, COLUMN_S);
     let chosen = compared.chosen().map(|(at, seen)| (at, seen.differences[at]));
     let assistants = seen.pairs.len() as u16;
-    // Matches are drawn only if there are rows for them.
+    // Lines between matching communications are drawn only if there are rows for them.
     let joined = inside.height >= 4 + 2 * assistants;
     let view = View { session, model, plot, seen, chosen: chosen.map(|(_, chosen)| chosen) };
     let mut y = inside.y + 1;
@@ -71,7 +72,7 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// Column of a time, if it is visible.
+    /// Terminal column of a session time, if that time is visible.
     fn column(&self, time: SessionTime) -> Option<u16> {
         let back = (f64::from(self.model.timeline_back_s) / COLUMN_S) as i64;
         let age = columns_ago(self.session, self.model, time, COLUMN_S) - back;
@@ -95,14 +96,14 @@ impl View<'_> {
         }
     }
 
-    /// The key of a signal; a proposal has none.
+    /// Sign of a communication in its lane: the key of a signal, or a common sign for a proposal of presses.
     fn sign(&self, brush: &Painter, spoken: &Communication) -> String {
         let CommunicationContent::Signal(signal) = &spoken.what else { return brush.theme.signs().by_hand.to_string() };
         let location = signal.location(&self.session.kitchen);
         location.and_then(|id| self.model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())
     }
 
-    /// Draws lines from communications of the first lane to their matches in this lane.
+    /// Draws lines from the communications of the first lane to their matches in this lane.
     fn matches(&self, brush: &mut Painter, lane: usize, y: u16) {
         if y >= self.plot.bottom() {
             return;
@@ -126,7 +127,7 @@ impl View<'_> {
     }
 }
 
-/// Draws the similarity of the first lane and this lane.
+/// Draws how similar the communications of this lane are to those of the first lane.
 fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &LaneComparison, lane: usize) {
     let name = format!("{:<9}", seen.lanes[lane].name);
     if seen.lanes[0].spoken.is_empty() {
@@ -150,7 +151,7 @@ fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &LaneComparison
     brush.parts(inside.x + 1, y, inside.width - 1, &[(&name, TextRole::Strong), (&text, TextRole::Text)]);
 }
 
-/// Draws the list of differences around the chosen one.
+/// Draws the list of differences between wizard and assistant around the selected one.
 fn differences(
     brush: &mut Painter,
     area: Rect,
@@ -166,7 +167,7 @@ fn differences(
         return;
     };
     let rows = usize::from(area.height);
-    // The chosen difference is in the middle, except at the ends of the list.
+    // The selected difference is in the middle of the list, except near the list's ends.
     let from = at.saturating_sub(rows / 2).min(seen.differences.len().saturating_sub(rows));
     for (row, (index, difference)) in seen.differences.iter().enumerate().skip(from).take(rows).enumerate() {
         let y = area.y + row as u16;
@@ -174,7 +175,7 @@ fn differences(
         let number = format!("{:>3}/{}  ", index + 1, seen.differences.len());
         let role = if is_chosen { TextRole::Strong } else { TextRole::Quiet };
         let open = model.keys.chord_for(&KeyAction::Differ(ComparisonKey::Open)).filter(|_| is_chosen);
-        let open = open.map_or(String::new(), |key| format!("  {key} opens it"));
+        let open = open.map_or(String::new(), |key| format!("  {key} details"));
         let headline = seen.headline(difference);
         let room = area.width.saturating_sub(width(&open) + 1);
         let x = brush.parts(area.x + 1, y, room, &[(&number, TextRole::Quiet), (&headline, role)]);

@@ -1,4 +1,4 @@
-//! Dialogs above the panels: the help, generated from the key table, and confirmations.
+//! Dialogs above the panels: the help, which is generated from the key table, and questions to confirm.
 
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
@@ -18,7 +18,7 @@ use crate::session::{Phase, Session};
 /// Draws the open dialog, if there is one.
 pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Session, model: &ConsoleModel) {
     match &model.dialog {
-        // The question whether to send stands in the line of messages.
+        // The question whether to send a clicked signal stands in the line of messages.
         None | Some(Dialog::Send(_)) => {}
         Some(Dialog::Pick(list)) => picker::draw(brush, regions.middle(), session, list),
         Some(Dialog::Palette(cursor)) => picker::draw_palette(brush, regions.middle(), session, model, cursor),
@@ -32,12 +32,12 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Sess
         Some(Dialog::EndTrial) => ask(brush, screen, "End the trial?", &["It cannot be resumed after that."], "y"),
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
-                _ if model.lesson.is_some() => &["The training ends here, without a result."],
+                _ if model.lesson.is_some() => &["The training ends without a saved result."],
                 Phase::Running | Phase::Paused => {
                     &["The trial is not over. Only y ends it.", "The session ends, the recording is kept."]
                 }
                 _ if !session.is_step_done() => {
-                    &["Not everything of this step is done.", "It can be continued, or done again."]
+                    &["This step of the study is not complete.", "It can be continued or repeated."]
                 }
                 _ => &["The session ends, the recording is kept."],
             };
@@ -49,7 +49,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Sess
     }
 }
 
-/// Draws a question with the keys that confirm it.
+/// Draws a yes-or-no question with the keys that answer it.
 fn ask(brush: &mut Painter, screen: Rect, title: &str, lines: &[&str], yes: &str) {
     let inside = open(brush, screen, (46, lines.len() as u16 + 5), title, "");
     for (row, line) in lines.iter().enumerate() {
@@ -68,14 +68,15 @@ fn difference(brush: &mut Painter, screen: Rect, lines: &[String]) {
         .flat_map(|(index, line)| wrap(line, columns - 4).into_iter().map(move |line| (index == 0, line)))
         .collect();
     let rows = wrapped.len() as u16 + 2;
-    let inside = open(brush, screen, (columns, rows), "What each knew", "any key closes");
+    let inside = open(brush, screen, (columns, rows), "What wizard and assistant knew", "any key closes");
     for (row, (is_head, line)) in wrapped.iter().enumerate().take(usize::from(inside.height)) {
         let style = brush.style(if *is_head { TextRole::Strong } else { TextRole::Text });
         brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
     }
 }
 
-/// Width, wrapped lines, and number of visible lines of a report on a screen of this size.
+/// Width, wrapped lines, and number of visible lines of a training report on a terminal of this size (columns and
+/// rows).
 fn report_lines(lines: &[String], size: (u16, u16)) -> (u16, Vec<String>, usize) {
     let columns = size.0.saturating_sub(4).min(110);
     let broken = lines.iter().flat_map(|line| {
@@ -87,14 +88,14 @@ fn report_lines(lines: &[String], size: (u16, u16)) -> (u16, Vec<String>, usize)
     (columns, broken.collect(), usize::from(size.1.saturating_sub(6)))
 }
 
-/// Number of lines of the open report below the visible ones.
+/// Number of lines of the open training report that are below the visible part.
 pub fn report_rest(model: &ConsoleModel) -> usize {
     let Some(Dialog::Report(lines)) = &model.dialog else { return 0 };
     let (_, lines, rows) = report_lines(lines, model.size);
     lines.len().saturating_sub(rows)
 }
 
-/// Draws the report of a training.
+/// Draws the report of a wizard training.
 fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleModel) {
     let (columns, lines, rows) = report_lines(lines, (screen.width, screen.height));
     let rest = lines.len().saturating_sub(rows);
@@ -106,13 +107,13 @@ fn report(brush: &mut Painter, screen: Rect, lines: &[String], model: &ConsoleMo
         let style = brush.style(if from + row == 0 { TextRole::Strong } else { TextRole::Text });
         brush.text(inside.x + 1, inside.y + row as u16, inside.width - 2, line, style);
     }
-    let hints = [("enter", "goes on; it is recorded, too", Some(KeyChord::plain(KeyCode::Enter)))];
+    let hints = [("enter", "continue; this report is saved", Some(KeyChord::plain(KeyCode::Enter)))];
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width - 2, &hints);
 }
 
-/// Least width of a help column.
+/// Least width of a column of the help, in characters.
 const HELP_COLUMNS: u16 = 39;
-/// Indent of the description in a help line.
+/// Indent of the description in a help line, in characters.
 const HELP_INDENT: u16 = 7;
 
 /// A line of the help: a heading, a key with its action, or a sign with its meaning.
@@ -120,13 +121,13 @@ const HELP_INDENT: u16 = 7;
 enum Line<'a> {
     Heading(&'a str),
     Key(&'a KeyBinding),
-    /// A sign of the panels with its meaning.
+    /// A sign that panels draw, with its meaning.
     Sign(&'static str, &'static str),
     Space,
 }
 
 impl Line<'_> {
-    /// Width of the line.
+    /// Width of a line of the help, in characters.
     fn columns(&self) -> u16 {
         match self {
             Line::Heading(text) => width(text),
@@ -137,36 +138,36 @@ impl Line<'_> {
     }
 }
 
-/// Legend of the signs.
+/// Legend of the signs that the console's panels use.
 fn legend(signs: &Glyphs) -> Vec<Line<'static>> {
     let meanings = [
-        (signs.gaze, "the gaze; in the belief: it was just there"),
-        (signs.trail, "where the gaze was before"),
-        (signs.rules[1], "changed just now, by whom: the colour"),
-        (signs.changed, "changed so long ago"),
-        (signs.rules[2], "shown to the participant"),
-        (signs.to, "the robot goes there; trial or robot goes on"),
-        (signs.bar_full, "how sure a belief is; what a signal saves"),
-        (signs.bar_empty, "what it may save more, by its error"),
-        (signs.frame[5], "between those: what a signal costs"),
+        (signs.gaze, "where the participant looks or just looked"),
+        (signs.trail, "where the participant looked before"),
+        (signs.rules[1], "content just changed; colour: by whom"),
+        (signs.changed, "time since the content changed"),
+        (signs.rules[2], "highlighted on the participant's display"),
+        (signs.to, "robot's next press; trial or robot resumed"),
+        (signs.bar_full, "probability of a belief; presses saved"),
+        (signs.bar_empty, "presses saved, up to one standard error more"),
+        (signs.frame[5], "line between those: cost of a signal"),
         (signs.press, "press"),
         (signs.no_effect, "ineffective press"),
         (signs.error, "error; trial excluded"),
         (signs.served, "order served"),
-        ("+", "new order; more than there is room for"),
-        (signs.taken_back, "taken back; robot's press skipped"),
-        (signs.by_hand, "by the experimenter's hand"),
+        ("+", "new order; further entries without room"),
+        (signs.taken_back, "signal taken back; robot's press skipped"),
+        (signs.by_hand, "manual intervention of the experimenter"),
         (signs.stopped, "robot stopped"),
         (signs.touched, "a person touched the arm"),
-        (signs.levels[3], "angle of a joint of the arm, the base first"),
+        (signs.levels[3], "joint angles of the arm, from the base on"),
         (signs.pause, "trial paused; robot held"),
-        ("*", "note in words"),
-        ("!", "the keyboard was elsewhere"),
+        ("*", "typed note"),
+        ("!", "keyboard focus was lost"),
     ];
     meanings.map(|(sign, meaning)| Line::Sign(sign, meaning)).to_vec()
 }
 
-/// Columns of the help, and number of columns that fit side by side.
+/// Columns of the help, and the number of them that fit side by side on the screen.
 fn help_columns<'a>(keys: &'a KeyBindings, theme: &Theme, size: (u16, u16)) -> (Vec<Vec<Line<'a>>>, usize) {
     let mut groups: Vec<(&str, Vec<Line>)> = Vec::new();
     for binding in &keys.bindings {
@@ -181,7 +182,7 @@ fn help_columns<'a>(keys: &'a KeyBindings, theme: &Theme, size: (u16, u16)) -> (
     (columns, fits)
 }
 
-/// Number of pages of the help after the first.
+/// Number of further pages of the help after the first.
 pub fn help_pages(model: &ConsoleModel) -> usize {
     let (columns, fits) = help_columns(&model.keys, &model.theme, model.size);
     columns.len() - fits
@@ -196,7 +197,7 @@ fn help(brush: &mut Painter, screen: Rect, model: &ConsoleModel) {
         0 => "any key closes".to_string(),
         more => format!("arrows: page {} of {}, other keys close", from + 1, more + 1),
     };
-    // As wide as the longest line, if it fits.
+    // Help columns are as wide as the longest line, if that fits.
     let longest = columns.iter().flatten().map(Line::columns).max().unwrap_or(0).max(HELP_COLUMNS);
     let column_width = (screen.width.saturating_sub(4) / fits as u16).min(longest + 2);
     let inside = open(brush, screen, (column_width * fits as u16 + 4, tallest + 2), "Keys", &remark);
@@ -234,13 +235,13 @@ fn help_line(brush: &mut Painter, x: u16, y: u16, columns: u16, line: &Line) {
     }
 }
 
-/// Distributes the groups over as few columns as possible: each goes into the first column with room, and continues in the next
-/// column if it is too long.
+/// Distributes the key groups of the help over as few columns as possible: each group goes into the first column with
+/// room, and continues in the next column if it is too long.
 fn columns<'a>(groups: &[(&'a str, Vec<Line<'a>>)], rows: usize) -> Vec<Vec<Line<'a>>> {
     let rows = rows.max(4);
     let mut columns: Vec<Vec<Line>> = vec![Vec::new()];
     for (group, members) in groups {
-        // A heading with an empty line above.
+        // A group needs two additional rows, for its heading and an empty line above it.
         let fits = |column: &Vec<Line>| column.is_empty() || column.len() + members.len() + 2 <= rows;
         let mut index = columns.iter().position(fits).unwrap_or(columns.len());
         if index == columns.len() {

@@ -1,4 +1,4 @@
-//! The list of events in words with their times on the trial's clock, the newest on top, on large terminals.
+//! List of events in words with their times on the trial's clock, newest first, shown on large terminals.
 
 use super::paint::Painter;
 use super::regions::Regions;
@@ -8,7 +8,7 @@ use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::session::{Session, TimelineEvent};
 
-/// Width of the agent column; the longest name is "assistant".
+/// Columns for the name of the agent; the longest is "assistant".
 const WHO: u16 = 10;
 
 /// Draws the list of events.

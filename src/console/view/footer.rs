@@ -1,4 +1,5 @@
-//! The two lowest lines: messages at full width, and below them the active key layer with the keys that are possible now.
+//! The two lowest lines of the console: messages at full width, and below them hints with the keys that have an effect
+//! now.
 
 use std::borrow::Cow;
 
@@ -18,19 +19,19 @@ use crate::history::wording;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Phase, Session};
 
-/// A hint: its keys with what a click on them does, and what they do.
+/// A key hint in the console's lowest line: keys, the action of a click on each, and a label.
 struct Hint<'a> {
     keys: Vec<(String, Option<ClickAction>)>,
     label: Cow<'a, str>,
     role: TextRole,
 }
 
-/// Draws the line of keys.
+/// Draws the line of key hints.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
         let alarm = brush.theme.badge(TextRole::Alarm);
-        let words = " THE KEYBOARD IS ELSEWHERE, and the robot stop with it: click into this window ";
+        let words = " KEYBOARD FOCUS LOST: keys and robot stop do not work; click into this window ";
         brush.text(area.x, area.y, area.width, &format!("{words:<width$}", width = usize::from(area.width)), alarm);
         return;
     }
@@ -43,14 +44,16 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         let badge = brush.theme.badge(role);
         x = brush.text(x, area.y, area.width, label, badge);
     }
-    // Ending the trial is rare, so its hint is dropped first; after the trial only quitting remains.
+    // The hint for ending the trial is among the first to be left out if there is no room, since it is rarely needed;
+    // after the trial, the hints for the next step come first.
     let is_over = is_over(session, model);
     let is_late = |binding: &&KeyBinding| match is_over {
         true => !matches!(binding.action, KeyAction::Advance | KeyAction::Quit | KeyAction::Hand(ManualAction::Redo)),
         false => matches!(binding.action, KeyAction::EndTrial | KeyAction::Look(PanelKey::Next)),
     };
     let (late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
-    // The robot stop comes first, then the key back to all panels if one panel is at full size, and a rater's keys.
+    // The first hint is the robot stop, the second is the key back to all panels while one is at full size, then follow
+    // a rater's keys.
     first.sort_by_key(|binding| match binding.action {
         KeyAction::StopRobot => 0,
         KeyAction::Look(PanelKey::All) => 1,
@@ -67,7 +70,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
 }
 
 impl Hint<'_> {
-    /// Draws it; returns the column behind it. A click on the words does what the first key does.
+    /// Draws the key hint; returns the column after it. A click on the label does what the first key does.
     fn draw(&self, brush: &mut Painter, x: u16, y: u16) -> u16 {
         let mut at = x;
         for (key, click) in &self.keys {
@@ -88,7 +91,7 @@ impl Hint<'_> {
     }
 }
 
-/// The hint of an entry, if it can do something now.
+/// The key hint of a key binding, if its action has an effect now.
 fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel) -> Option<Hint<'a>> {
     let label = label(binding, session, model)?;
     let role = if binding.action == KeyAction::StopRobot { TextRole::Alarm } else { TextRole::Strong };
@@ -100,7 +103,7 @@ fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel)
         let chord = model.keys.chord_for(action).filter(|_| is_possible(session, model, action))?;
         Some((chord.to_string(), Some(ClickAction::Key(chord))))
     };
-    // Keys of both directions share a hint, and so do those of a kind.
+    // Keys for two opposite directions share a key hint, and so do keys of one kind.
     let pair = |[back, on]: [ReplayKey; 2]| {
         let parts = [back, on].map(KeyAction::Move).iter().filter_map(part).collect::<Vec<_>>();
         match parts.as_slice() {
@@ -123,8 +126,8 @@ fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel)
     (!keys.is_empty()).then_some(Hint { keys, label, role })
 }
 
-/// Draws the line of messages: the question whether to send what was clicked, or the last notice; without one, that the arm has
-/// stopped itself, for as long as it stands.
+/// Draws the line of messages: the question whether to send a clicked signal, or the latest notice, or else, as long as
+/// the robot arm stands after it stopped itself, the reason.
 pub fn message(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.message;
     if area.area() == 0 {
@@ -133,7 +136,7 @@ pub fn message(brush: &mut Painter, regions: &Regions, session: &Session, model:
     if let Some(Dialog::Send(question)) = &model.dialog {
         let words = wording::signal(&question.signal);
         let strong = brush.theme.badge(TextRole::Strong);
-        let text = format!(" Send {words}? enter or a second click sends it, esc leaves it ");
+        let text = format!(" Send {words}? enter or a second click sends it, esc cancels ");
         brush.text(area.x + 1, area.y, area.width - 1, &text, strong);
         return;
     }
@@ -146,7 +149,7 @@ pub fn message(brush: &mut Painter, regions: &Regions, session: &Session, model:
         let resume = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| model.playback.is_none());
         let resume = resume.map_or(String::new(), |key| format!("; {key} resumes it"));
         let alarm = brush.style(TextRole::Alarm);
-        brush.text(area.x + 2, area.y, area.width - 2, &format!("The arm stands: {why}{resume}"), alarm);
+        brush.text(area.x + 2, area.y, area.width - 2, &format!("Arm stopped: {why}{resume}"), alarm);
     }
 }
 
@@ -158,22 +161,23 @@ fn style_of(brush: &Painter, notice: &Notice) -> Style {
     }
 }
 
-/// Whether a live trial is over.
+/// Whether the trial of a live session is over.
 fn is_over(session: &Session, model: &ConsoleModel) -> bool {
     model.playback.is_none() && matches!(session.phase, Phase::Over(_) | Phase::Closed)
 }
 
-/// The next step after the trial, in a plan.
+/// The next step of the study plan after a trial, in words.
 pub(super) fn onward(session: &Session) -> Option<String> {
     session.protocol.as_ref().filter(|_| session.phase != Phase::Closed)?;
     Some(match session.next_phase() {
-        _ if session.aborted.is_some() => "do it again".to_string(),
-        Some(phase) => format!("on to the {}", phase.name()),
-        None => "done: next recording".to_string(),
+        _ if session.aborted.is_some() => "repeat the trial".to_string(),
+        Some(phase) => format!("next: {}", phase.name()),
+        None => "next recording".to_string(),
     })
 }
 
-/// Label of an entry in the hint line, if it has one there; what is possible decides elsewhere.
+/// Label of a key binding in the line of key hints, if it may stand there; whether its action has an effect now is not
+/// checked here.
 fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -> Option<Cow<'a, str>> {
     if binding.layer.is_some_and(|layer| layer != model.layer) {
         return None;
@@ -182,13 +186,13 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
     let plays = model.playback.as_ref().is_some_and(|playback| playback.playing);
     let is_over = is_over(session, model);
     let word = match binding.action {
-        KeyAction::Hand(ManualAction::Redo) => can_redo(session).then_some("do it again"),
+        KeyAction::Hand(ManualAction::Redo) => can_redo(session).then_some("repeat the trial"),
         KeyAction::Advance if model.lesson.is_some() => {
             let begun = model.lesson.as_ref().is_some_and(|lesson| lesson.begun);
             Some(if plays {
                 "pause"
             } else if begun {
-                "go on"
+                "resume"
             } else {
                 "start"
             })
@@ -200,8 +204,8 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
             _ => Some("start"),
         },
         KeyAction::Move(ReplayKey::PlayPause) => Some(if plays { "pause" } else { "play" }),
-        KeyAction::Quit if is_over && session.is_step_done() => Some("closes the session"),
-        // After the trial the robot rests, and the screen asks for what comes next.
+        KeyAction::Quit if is_over && session.is_step_done() => Some("close the session"),
+        // After the trial the robot rests, and the line of key hints offers only the next step.
         KeyAction::StopRobot
         | KeyAction::ResumeRobot
         | KeyAction::SwitchLayer

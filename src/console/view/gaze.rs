@@ -1,4 +1,4 @@
-//! The gaze panel (location, age, quality), and the gaze map.
+//! The gaze panel (place, age and quality of the gaze), and the gaze map.
 
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
@@ -16,10 +16,10 @@ use crate::session::gaze_samples::faults;
 
 /// Time for which the last gaze sample is drawn, in seconds.
 const GAZE_S: f64 = 3.0;
-/// Length of the trail on the gaze map, in seconds.
+/// Duration of the trail of gaze on the gaze map, in seconds.
 const TRAIL_S: f64 = 2.0;
 
-/// Draws the gaze panel.
+/// Draws the gaze panel: place, age and quality of the gaze.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.gaze;
     if area.area() == 0 {
@@ -32,7 +32,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         return;
     }
     let source = ConsoleModel::gaze_label(session.spec.participant.gaze);
-    // Only the most frequent fault is shown; the preflight list and the summaries show all.
+    // The gaze panel shows only the most frequent fault; the preflight checks and the summaries show all.
     let worst = faults(session).into_iter().max_by_key(|(count, _)| *count);
     let rejected = Some((model.rejected_senders, "rejected")).filter(|(count, _)| *count > 0);
     let told = worst.into_iter().chain(rejected).map(|(count, kind)| format!(", {count} {kind}"));
@@ -87,12 +87,13 @@ fn quality(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
     brush.parts(x, y, columns, &[(&text, TextRole::Quiet)]);
 }
 
-/// Draws the display to scale with the trail of the gaze and the age of the last look at each place.
+/// Draws the gaze map: the wall display to scale with the trail of recent gaze, and the time since the last look at
+/// each place.
 pub fn draw_map(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     if regions.gaze_map.area() == 0 {
         return;
     }
-    let inside = brush.panel(regions.gaze_map, "Gaze map", "seconds since it was looked at");
+    let inside = brush.panel(regions.gaze_map, "Gaze map", "seconds since the last look");
     let cell = |point: [f64; 2]| {
         let along = |value: f64, low: u16, length: u16| low + (value.clamp(0.0, 0.999) * f64::from(length)) as u16;
         (along(point[0], inside.x, inside.width), along(point[1], inside.y, inside.height))
@@ -131,7 +132,7 @@ pub fn draw_map(brush: &mut Painter, regions: &Regions, session: &Session, model
     if let Some((_, sample)) = session.gaze.last {
         let (x, y) = cell([sample.x, sample.y]);
         let style = brush.style(TextRole::Gaze);
-        // A label under the gaze stays readable.
+        // Text under the gaze stays readable: the cell is drawn inverse instead of with the gaze sign.
         match labels.iter().any(|label| label.contains((x, y).into())) && brush.is_written(x, y) {
             true => brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED)),
             false => {
@@ -141,14 +142,14 @@ pub fn draw_map(brush: &mut Painter, regions: &Regions, session: &Session, model
     }
 }
 
-/// Where a label of two rows stands without covering the others: centred at its place, or as few columns beside it as possible.
+/// A free position for a two-row label of the gaze map: centred at its place, or as few columns beside it as possible.
 fn free(inside: Rect, labels: &[Rect], (x, y): (u16, u16), columns: u16) -> Rect {
     let last = inside.right().saturating_sub(columns).max(inside.x);
     let at = |shift: i32| {
         let x = (i32::from(x) - i32::from(columns / 2) + shift).clamp(inside.x.into(), last.into()) as u16;
         Rect { x, y, width: columns, height: 2.min(inside.bottom().saturating_sub(y)) }
     };
-    // A column between two labels keeps them apart.
+    // Two labels of the gaze map are at least a column apart.
     let is_free = |place: &Rect| {
         labels.iter().all(|label| {
             !Rect { width: label.width + 1, ..*label }.intersects(*place)
@@ -159,7 +160,7 @@ fn free(inside: Rect, labels: &[Rect], (x, y): (u16, u16), columns: u16) -> Rect
     (0..reach).flat_map(|by| [at(by), at(-by)]).find(is_free).unwrap_or(at(0))
 }
 
-/// Marks in the kitchen where the participant looks.
+/// Marks in the kitchen panel where the participant looks.
 pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session, model: &ConsoleModel) {
     let Some((at, sample)) = session.gaze.last else { return };
     let age_s = model.now.secs_since(at);
@@ -172,13 +173,14 @@ pub(super) fn mark(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session:
     let sign = brush.theme.signs().gaze;
     let is_text = |symbol: &str| symbol.chars().any(|letter| letter.is_alphanumeric() || "[]".contains(letter));
     let has_text = |x: u16| brush.buffer.cell((x, y)).is_some_and(|cell| is_text(cell.symbol()));
-    // The space between two words belongs to their text.
+    // A space between two words counts as text that the gaze sign must not cover.
     let covers_text = has_text(x) || (has_text(x.saturating_sub(1)) && has_text(x + 1));
     if !covers_text {
         brush.text(x, y, 1, sign, style);
         return;
     }
-    // Text under the gaze stays readable: its letter is marked, and the gaze sign is drawn beside the card's name.
+    // Text under the gaze stays readable: its letter is drawn inverse, and the gaze sign stands beside the name of the
+    // place.
     brush.buffer.set_style(Rect::new(x, y, 1, 1), style.add_modifier(Modifier::REVERSED));
     if let Some(spot) = plan.spots.iter().find(|spot| spot.cells.contains((x, y).into())) {
         brush.text(spot.cells.right(), spot.cells.y, 1, sign, style);

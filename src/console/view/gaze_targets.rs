@@ -1,4 +1,4 @@
-//! The gaze accuracy check: the target in the kitchen panel, and the result.
+//! Gaze accuracy check on the console: the present target in the kitchen panel, and the result.
 
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
@@ -15,17 +15,17 @@ use crate::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use crate::session::Session;
 
 const COLUMNS: u16 = 76;
-/// Column of the values.
+/// Screen column at which the measured values begin.
 const VALUE: u16 = 15;
 
-/// Draws the target at its position on the display.
+/// Draws the present target of the gaze accuracy check in the kitchen panel.
 pub fn target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Session) {
     let Some(check) = &session.calibration else { return };
     let Some(((index, _), point)) = check.shown.zip(check.target()) else { return };
     let Some((x, y)) = plan.cell(point) else { return };
     let text = format!(" + look here: {} of {} ", index + 1, check.targets.len());
     let columns = super::paint::width(&text).min(panel.width);
-    // The cross is on the target; the words are after it, or before it without room.
+    // The cross is on the target; the instruction stands to its right, or to its left if there is no room.
     let before = if x + columns < panel.right() { 1 } else { columns.saturating_sub(2) };
     let text = if before == 1 { text } else { format!(" look here: {} of {} + ", index + 1, check.targets.len()) };
     let badge = brush.theme.badge(TextRole::Gaze);
@@ -33,10 +33,10 @@ pub fn target(brush: &mut Painter, plan: &KitchenMap, panel: Rect, session: &Ses
     brush.text(x, y, columns, &text, badge);
 }
 
-/// Draws the result of the check, once all targets have been shown.
+/// Draws the result of the gaze accuracy check, once all targets have been shown.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let Some(outcome) = session.calibration.as_ref().and_then(|check| check.result.as_ref()) else { return };
-    let inside = open(brush, screen, (COLUMNS, 13), "Calibration check", "space stops the robot");
+    let inside = open(brush, screen, (COLUMNS, 13), "Gaze accuracy check", "space stops the robot");
     let columns = inside.width.saturating_sub(2);
     let mut y = inside.y + 1;
     let mut line = |brush: &mut Painter, name: &str, text: &str, role: TextRole| {
@@ -47,9 +47,9 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     let esc = KeyChord::plain(KeyCode::Esc);
     let again = format!("enter or {REPEAT}");
     let Some(found) = &outcome.found else {
-        line(brush, "accuracy", "not known: too few usable samples at the targets", TextRole::Alarm);
-        line(brush, "fix", "look at every target; see that the tracker sends gaze", TextRole::Text);
-        let hints = [(again.as_str(), "repeats it", Some(KeyChord::char(REPEAT))), ("esc", "leaves", Some(esc))];
+        line(brush, "accuracy", "not measured: too few usable samples at the targets", TextRole::Alarm);
+        line(brush, "fix", "look at every target; check that the tracker sends gaze", TextRole::Text);
+        let hints = [(again.as_str(), "repeat", Some(KeyChord::char(REPEAT))), ("esc", "cancel", Some(esc))];
         brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), columns, &hints);
         return;
     };
@@ -64,17 +64,17 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     let (words, role) = verdict(found.corrected_deg);
     line(
         brush,
-        "offset off",
+        "corrected",
         &format!("{:.2} deg, {:.1} cm: {words}", found.corrected_deg, cm(found.corrected_deg)),
         role,
     );
-    line(brush, "precision", &format!("{:.2} deg from sample to sample", found.precision_deg), TextRole::Text);
+    line(brush, "precision", &format!("{:.2} deg (RMS between samples)", found.precision_deg), TextRole::Text);
     line(brush, "targets", &targets(found), TextRole::Text);
     let taken = chosen(model, Some(found));
     let rows = [
-        (CORRECTED, "takes it with the offset taken off", CalibrationAdvice::Corrected),
-        (AS_IT_IS, "takes it as it is", CalibrationAdvice::AsItIs),
-        (REPEAT, "repeats the check", CalibrationAdvice::Repeat),
+        (CORRECTED, "accept with the offset subtracted", CalibrationAdvice::Corrected),
+        (AS_IT_IS, "accept without correction", CalibrationAdvice::AsItIs),
+        (REPEAT, "repeat the check", CalibrationAdvice::Repeat),
     ];
     y += 1;
     for (key, does, is) in rows {
@@ -83,12 +83,12 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
         let words = format!("{key}  ");
         let parts = [(enter, TextRole::Strong), (words.as_str(), TextRole::Strong), (does, role)];
         let end = brush.parts(inside.x + 1, y, columns, &parts);
-        // The first click chooses, the next one takes.
+        // The first click on an action selects it, the next click carries it out.
         let chord = if is_taken { KeyChord::plain(KeyCode::Enter) } else { KeyChord::char(key) };
         brush.key_target(inside.x + 1, y, end, chord);
         y += 1;
     }
-    let parts = [("         esc  ", TextRole::Strong), ("leaves it as it was", TextRole::Quiet)];
+    let parts = [("         esc  ", TextRole::Strong), ("cancel: the gaze stays as before", TextRole::Quiet)];
     let end = brush.parts(inside.x + 1, y, columns, &parts);
     brush.key_target(inside.x + 1, y, end, esc);
 }
@@ -101,12 +101,12 @@ fn verdict(accuracy_deg: f64) -> (&'static str, TextRole) {
     }
 }
 
-/// Accuracy at every target, in degrees.
+/// Measured gaze accuracy at every target, in degrees.
 fn targets(found: &GazeAccuracy) -> String {
     let one = |target: &crate::gaze::calibration::TargetAccuracy| match target.accuracy_deg {
         Some(deg) => format!("{deg:.1}"),
-        None => "not seen".to_string(),
+        None => "no gaze".to_string(),
     };
     let each: Vec<String> = found.targets.iter().map(one).collect();
-    format!("{} deg, the centre first", each.join(", "))
+    format!("{} deg, centre first", each.join(", "))
 }

@@ -1,4 +1,4 @@
-//! The list of preflight checks, and the input line of a note.
+//! The list of preflight checks, and the text input of notes and answers.
 
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
@@ -15,16 +15,16 @@ use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::{Phase, Session};
 
 const COLUMNS: u16 = 76;
-/// Label before a remedy.
+/// Label before the remedy of a failed preflight check.
 const FIX: &str = "fix: ";
-/// Column of the finding.
+/// Column at which the findings of the preflight checks begin.
 const FOUND: u16 = 23;
 
-/// Draws the preflight checks.
+/// Draws the list of preflight checks.
 pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     let checks = checks(session, model);
     let columns = (COLUMNS + 24).min(screen.width);
-    // Inside the frame, after the names.
+    // Width left for a finding: inside the frame, after the names of the checks.
     let room = columns.saturating_sub(2 + FOUND + 1);
     let remedies: Vec<Vec<String>> = checks
         .iter()
@@ -46,10 +46,10 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
     }
     let start = model.keys.chord_for(&KeyAction::Advance);
     let (key, chord, does) = match all_ok(&checks) {
-        true => (start.map_or(String::new(), |key| key.to_string()), start, "starts the trial"),
-        false => (OVERRIDE.to_string(), Some(KeyChord::char(OVERRIDE)), "starts all the same"),
+        true => (start.map_or(String::new(), |key| key.to_string()), start, "start the trial"),
+        false => (OVERRIDE.to_string(), Some(KeyChord::char(OVERRIDE)), "start the trial anyway"),
     };
-    let esc = ("esc", "leaves", Some(KeyChord::plain(KeyCode::Esc)));
+    let esc = ("esc", "close", Some(KeyChord::plain(KeyCode::Esc)));
     let hints = [(key.as_str(), does, chord), esc];
     let hints = if session.phase == Phase::Ready { &hints[..] } else { &hints[1..] };
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), hints);
@@ -67,18 +67,18 @@ fn line(brush: &mut Painter, inside: Rect, y: u16, check: &PreflightCheck) {
     brush.parts(x, y, inside.right().saturating_sub(x + 1), &[(&check.found, role)]);
 }
 
-/// Draws the input line of a note.
+/// Draws the text input of the wizard's note.
 pub fn note(brush: &mut Painter, screen: Rect, text: &TextInput) {
-    let says = "The trial is paused and the robot stands: only here the space bar types a space.";
-    input_line(brush, screen, text, ("A note", "the trial is paused"), says);
+    let says = "The trial is paused and the robot stands, so the space bar types a space here.";
+    input_line(brush, screen, text, ("Note", "the trial is paused"), says);
 }
 
-/// Draws the input line of an answer below the item that it answers.
+/// Draws the text input of a questionnaire answer below its item.
 pub fn answer(brush: &mut Painter, screen: Rect, session: &Session, text: &TextInput) {
     let shown = session.protocol.as_ref().map_or(0, |protocol| protocol.item);
     let item = session.questionnaire().and_then(|asked| asked.items.get(shown));
     let says = item.map_or("", |item| item.text.as_str());
-    input_line(brush, screen, text, ("The answer", "no trial runs"), says);
+    input_line(brush, screen, text, ("Answer", "no trial is running"), says);
 }
 
 fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remark): (&str, &str), says: &str) {
@@ -97,6 +97,6 @@ fn input_line(brush: &mut Painter, screen: Rect, text: &TextInput, (title, remar
         brush.text(x, inside.y + 3 + row as u16, columns, line, quiet);
     }
     let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
-    let hints = [("enter", "keeps it", enter), ("esc", "leaves", esc)];
+    let hints = [("enter", "save", enter), ("esc", "cancel", esc)];
     brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
 }

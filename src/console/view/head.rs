@@ -1,4 +1,4 @@
-//! The head line: phase, clock, condition, and state of all devices.
+//! The head line of the console: phase, clock, condition, and states of all devices.
 
 use ratatui::style::Style;
 
@@ -14,18 +14,18 @@ use crate::session::settings::{Condition, GazeSource};
 use crate::session::tracker::TrackerConnection;
 use crate::session::{Phase, Session};
 
-/// Draws the head line.
+/// Draws the head line of the console: phase, clock, condition, devices.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.head;
-    // The head line has its full width even if one panel is at full size.
+    // The head line is as wide as the screen even if one panel is at full size.
     let room = if area.width < ROOMY_COLUMNS { ScreenSize::Small } else { ScreenSize::Medium };
     let gap = if room == ScreenSize::Small { 1 } else { 3 };
     let strong = brush.style(TextRole::Strong);
-    // Small replays, and recordings of a plan, omit the name.
+    // On small screens, replays and recordings of a study plan omit the program's name.
     let is_tight = (model.playback.is_some() || session.step().is_some()) && room == ScreenSize::Small;
     let name = if is_tight { "" } else { "tomcom" };
     let mut x = brush.text(area.x + 1, area.y, area.width, name, strong) + gap;
-    // Of a recording nothing runs: whether it plays is told beside its position.
+    // A replay does not name the phase; whether it plays is shown beside its position.
     let is_replayed = is_replayed(model);
     let stage = match (model.lesson.is_some(), session.phase) {
         (true, _) => "TRAINING".to_string(),
@@ -40,7 +40,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     };
     x = brush.text(x, area.y, 19, &format!("{mark}{stage} "), style) + gap;
     let whose = match (&model.coding, &model.playback) {
-        // A rater does not know who was assisted.
+        // A rater must not know in which condition the trial was.
         (Some(coding), _) => Some(format!("rater {}", coding.name())),
         (None, None) => series(session),
         (None, Some(_)) => None,
@@ -58,7 +58,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
     let mut healths = healths(session, model, room);
     let needed = |healths: &[(String, TextRole)]| healths.iter().map(|(text, _)| width(text) + gap).sum::<u16>();
-    // If not everything fits, normal states are dropped first, from the last to that of the recording.
+    // If not all device states fit, those that are in order are left out first, from the last one on.
     while needed(&healths) > area.right().saturating_sub(x)
         && let Some(fine) = healths.iter().rposition(|(_, role)| matches!(role, TextRole::Text | TextRole::Quiet))
     {
@@ -78,12 +78,12 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// Whether the console shows a recording that does not grow.
+/// Whether the console replays a recording that is no longer being made.
 fn is_replayed(model: &ConsoleModel) -> bool {
     model.playback.as_ref().is_some_and(|playback| !playback.follows)
 }
 
-/// Sign and style of the phase: a running trial is quiet, a pause is not.
+/// Sign and style of the trial's phase: inconspicuous while the trial runs, conspicuous in a pause.
 fn stage_mark(brush: &Painter, phase: Phase) -> (String, Style) {
     let signs = brush.theme.signs();
     match phase {
@@ -95,7 +95,7 @@ fn stage_mark(brush: &Painter, phase: Phase) -> (String, Style) {
 
 fn clock(brush: &mut Painter, x: u16, y: u16, session: &Session, model: &ConsoleModel) -> u16 {
     let clock = session.trial_clock(model.now).to_string();
-    // The line of a replay has the recording's length.
+    // A replay shows the length of the recording elsewhere.
     let limit = match is_replayed(model) && model.lesson.is_none() {
         true => String::new(),
         false => format!(" / {}", SessionTime::from_secs_f64(session.spec.trial.seconds)),
@@ -103,7 +103,7 @@ fn clock(brush: &mut Painter, x: u16, y: u16, session: &Session, model: &Console
     brush.parts(x, y, 16, &[(&format!("{clock:>5}"), TextRole::Strong), (&limit, TextRole::Quiet)])
 }
 
-/// Who sends signals, in a word.
+/// Sender of signals in this condition, in a word: "unassisted", "assistant", "wizard".
 pub(super) fn condition(session: &Session) -> &'static str {
     match session.spec.trial.condition {
         Condition::None => "unassisted",
@@ -112,13 +112,13 @@ pub(super) fn condition(session: &Session) -> &'static str {
     }
 }
 
-/// Position in the participant's series: "P07 trial 2/2 wizard".
+/// Position of the trial in the participant's series: "P07 trial 2/2 wizard".
 fn series(session: &Session) -> Option<String> {
     let (step, _) = session.step()?;
     Some(format!("{} {} {}", session.spec.participant.code, step.label(), condition(session)))
 }
 
-/// Facts that do not change during a trial, the most important first.
+/// Facts of the head line that do not change during a trial, the most important first.
 fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
     let condition = condition(session);
     let served = format!("{} served", session.served.len());
@@ -128,7 +128,7 @@ fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
     }
     let mut facts = match &model.playback {
         None => vec![code, condition.to_string(), served],
-        // A rater does not know who was assisted.
+        // A rater must not know in which condition the trial was.
         Some(playback) if model.coding.is_some() => vec![served, playback.name.clone()],
         Some(playback) => vec![served, code, condition.to_string(), playback.name.clone()],
     };
@@ -137,7 +137,7 @@ fn facts(session: &Session, model: &ConsoleModel) -> Vec<String> {
     facts
 }
 
-/// States of recording, gaze, stream and robot in words.
+/// States of recording, gaze, streams and robot in words, with their styles.
 pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize) -> Vec<(String, TextRole)> {
     let mut healths = Vec::new();
     if !model.focused && model.playback.is_none() {
@@ -156,7 +156,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
             let label = format!("{state} {speed}{follows} {what} {event}/{events}");
             healths.push((label, TextRole::Strong));
             match (playback.follows, playback.running) {
-                (false, true) => healths.push(("still running: --follow".to_string(), TextRole::Strong)),
+                (false, true) => healths.push(("still recording: --follow".to_string(), TextRole::Strong)),
                 (false, false) if playback.cut => healths.push(("cut".to_string(), TextRole::Alarm)),
                 _ => {}
             }
@@ -188,7 +188,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
     healths
 }
 
-/// Kind of the robot's stop: by the wizard, or by the arm itself.
+/// Kind of the robot's stop in words: by the wizard, or by the arm itself.
 fn stopped(session: &Session) -> &'static str {
     match session.robot.arm.mode {
         SafetyMode::ProtectiveStop => "PROTECTIVE STOP",
@@ -197,7 +197,7 @@ fn stopped(session: &Session) -> &'static str {
     }
 }
 
-/// Address for Rerun viewers, while nothing of the stream is lost.
+/// Address for Rerun viewers, while no row of the stream has been dropped.
 fn streamed(model: &ConsoleModel) -> Option<String> {
     let viewers = model.viewers.as_ref().filter(|viewers| viewers.dropped == 0)?;
     let port = viewers.address.as_ref().and_then(|address| address.rsplit(':').next());
@@ -217,7 +217,7 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
         {
             return ("NO TRACKER".to_string(), TextRole::Alarm);
         }
-        (TrackerConnection::Connected { .. }, Some(false)) => return ("TAGS NOT SEEN".to_string(), TextRole::Alarm),
+        (TrackerConnection::Connected { .. }, Some(false)) => return ("NO DISPLAY TAGS".to_string(), TextRole::Alarm),
         _ => {}
     }
     let usable = session.gaze.last.is_some_and(|(at, _)| model.now.secs_since(at) <= 1.0);
@@ -228,6 +228,6 @@ fn gaze(session: &Session, model: &ConsoleModel) -> (String, TextRole) {
             (format!("NO GAZE {:.0} s", model.now.secs_since(at)), TextRole::Alarm)
         }
         (None, None) if session.is_running() => ("NO GAZE".to_string(), TextRole::Alarm),
-        _ => ("gaze waits".to_string(), TextRole::Quiet),
+        _ => ("gaze idle".to_string(), TextRole::Quiet),
     }
 }

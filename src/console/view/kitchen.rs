@@ -1,5 +1,5 @@
-//! The kitchen panel, arranged like the wall display (robot left, shared places in the centre, human right): contents, recent
-//! changes, keys of signals and buttons, and the gaze.
+//! The kitchen panel, arranged like the wall display (robot left, shared places in the centre, human right): contents,
+//! recent changes, keys of signals and buttons, and the gaze.
 
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -21,11 +21,11 @@ use crate::kitchen::{Agent, ButtonAction, ButtonId, Kitchen, LocationId, Locatio
 use crate::session::Session;
 use crate::session::settings::Condition;
 
-/// Stands in for what is falsely believed where there is no room for it.
+/// Short text in place of the falsely believed value, where there is no room for that value.
 const FALSE_BELIEF: &str = "false belief";
-/// Time for which a change is marked, in seconds.
+/// Time for which a changed content is marked, in seconds.
 const FRESH_S: f64 = 5.0;
-/// Time for which a change is underlined, and time for which it is bold, in seconds.
+/// Times after a change, in seconds, for which the content is underlined, and for which it is bold.
 const LOUD_S: f64 = 1.2;
 const FADING_S: f64 = 3.0;
 
@@ -37,13 +37,13 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
     if regions.room > ScreenSize::Small {
         let remark = match model.layer {
-            KeyLayer::Wizard if model.coding.is_some() => "[key]: wrong about this",
+            KeyLayer::Wizard if model.coding.is_some() => "[key]: false belief about this place",
             KeyLayer::Wizard if model.playback.is_some() => "",
             KeyLayer::Wizard if session.spec.trial.condition == Condition::None => "unassisted: no signals",
             KeyLayer::Wizard if session.spec.trial.condition == Condition::Assistant => {
                 "the assistant sends the signals"
             }
-            KeyLayer::Wizard => "[key] tells the participant",
+            KeyLayer::Wizard => "[key] sends a signal about this place",
             KeyLayer::Participant => "[key] is the participant's button",
         };
         brush.panel(area, &session.kitchen.title, remark);
@@ -105,7 +105,7 @@ fn badge(brush: &mut Painter, x: u16, cells: Rect, key: KeyChord, role: TextRole
     brush.text(x, cells.y, cells.right().saturating_sub(x), &label, style)
 }
 
-/// The participant's key of the first button that satisfies `is_it`, in the participant's key layer.
+/// Key of the first button of an agent that satisfies `is_it`, while the participant's keys are active.
 fn participant_key(
     session: &Session,
     model: &ConsoleModel,
@@ -127,22 +127,22 @@ fn agent_role(agent: Option<Agent>) -> TextRole {
     }
 }
 
-/// The card of a location: a rule at its left that shows its state, key and name, and its content.
+/// Box of a kitchen location: a vertical rule that shows the location's state, then key, name and content.
 struct Place<'a> {
     session: &'a Session,
     model: &'a ConsoleModel,
     id: LocationId,
     kitchen: &'a Kitchen,
-    /// Content, and whether it is empty.
+    /// Content of the location in words, and whether the location is empty.
     content: String,
     is_empty: bool,
-    /// Seconds since a recent change, and its agent.
+    /// Seconds since a recent change of the location's content, and the agent that changed it.
     fresh: Option<(f64, Option<Agent>)>,
-    /// Whether a signal highlights this place.
+    /// Whether the present signal highlights this kitchen location.
     is_shown: bool,
-    /// Whether the open offer is about this place.
+    /// Whether the open offer is about this kitchen location.
     is_offered: bool,
-    /// What is falsely believed about it.
+    /// Value that the participant falsely believes about this location.
     thinks: Option<String>,
 }
 
@@ -194,7 +194,8 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Draws the rule: heavy while a signal highlights the place, in the colour of the agent of a recent change.
+    /// Draws the vertical rule of the location: heavy while a signal highlights the location, in the agent's colour
+    /// after a change.
     fn rule(&self, brush: &mut Painter, cells: Rect) {
         let signs = brush.theme.signs();
         let (sign, role) = match (self.is_shown, self.fresh) {
@@ -209,12 +210,12 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Draws key and name; returns the next column.
+    /// Draws key and name of the location; returns the next column.
     fn title(&self, brush: &mut Painter, cells: Rect) -> u16 {
         let label = self.kitchen.location(self.id).label();
         let mut x = cells.x + 1;
         if let Some((key, role)) = self.key() {
-            // A whole name is worth more than the brackets around its key.
+            // The full name is more useful than the brackets around the key.
             let (with_brackets, without) = (width(&label) + 3, width(&label) + 2);
             x = match cells.right().saturating_sub(x) {
                 room if room < with_brackets && room >= without => {
@@ -238,12 +239,13 @@ impl<'a> Place<'a> {
         end
     }
 
-    /// Whether the wizard is told that the participant has not seen the last change; the participant is not.
+    /// Whether to mark that the participant has not seen the last change; the mark is for the wizard, not for a
+    /// participant at this keyboard.
     fn is_unseen(&self) -> bool {
         self.model.layer == KeyLayer::Wizard && self.session.is_unseen(self.id)
     }
 
-    /// The key of this place in the active layer.
+    /// The key of this location in the active layer (wizard's or participant's keys).
     fn key(&self) -> Option<(KeyChord, TextRole)> {
         match self.model.layer {
             KeyLayer::Wizard => {
@@ -271,7 +273,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Draws the content; returns the number of lines.
+    /// Draws the content of the location; returns the number of lines.
     fn contents(&self, brush: &mut Painter, room: Rect) -> u16 {
         let style = self.content_style(brush);
         let mut lines = wrap(&self.content, room.width);
@@ -287,11 +289,11 @@ impl<'a> Place<'a> {
         lines.len() as u16
     }
 
-    /// Draws the recent change and the false belief below the content, which takes this number of lines. The change comes first, so
-    /// that its age is read as the age of the content, not of the belief.
+    /// Draws the recent change and the false belief below the content, which takes this number of lines. The change
+    /// stands first, so that its age is read as the content's, not as the belief's.
     fn news_and_belief(&self, brush: &mut Painter, room: Rect, lines: u16) {
         if lines >= room.height {
-            // Both share the end of the last line, and the belief is worth more.
+            // Change and false belief share the end of the last line; the belief has priority.
             self.belief(brush, room, lines);
             self.news(brush, room, lines);
             return;
@@ -302,7 +304,7 @@ impl<'a> Place<'a> {
         self.belief(brush, room, lines + if has_news { own_line } else { 0 });
     }
 
-    /// Draws the false belief about the place below the first lines of the room, or at the end of its last line if no line is free.
+    /// Draws the false belief about the location below the first lines, or at the end of the last line if none is free.
     fn belief(&self, brush: &mut Painter, room: Rect, lines: u16) {
         let Some(thinks) = &self.thinks else { return };
         let style = brush.style(TextRole::FalseBelief);
@@ -317,12 +319,13 @@ impl<'a> Place<'a> {
         let y = room.bottom() - 1;
         let written = (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 2);
         let left = room.width.saturating_sub(written);
-        // Without room for what is thought, a word says that something is: the list of beliefs has the rest.
+        // If the believed value does not fit, a short text says that there is a false belief; the belief panel has the
+        // details.
         let words = [words.as_str(), FALSE_BELIEF].into_iter().find(|words| width(words) <= left).unwrap_or("");
         brush.text(room.x + written, y, left, words, style);
     }
 
-    /// Draws an order: dish, age, what is falsely believed about it, and the recipe while it is shown.
+    /// Draws an order: its dish, its age, a false belief about it, and the recipe while a signal shows it.
     fn order(&self, brush: &mut Painter, room: Rect) {
         let style = self.content_style(brush);
         let is_wanted = matches!(self.session.state.order(self.id), OrderContent::Dish(_));
@@ -344,7 +347,7 @@ impl<'a> Place<'a> {
             let (style, left) = (brush.style(TextRole::FalseBelief), room.right().saturating_sub(x));
             let free = (room.height.saturating_sub(1)).max(1) - u16::from(recipe.is_some());
             let lines = match room.height {
-                // On one line, what is thought stands only in the belief's line.
+                // In a single line, the believed value stands only in the line of the belief.
                 1 if width(thinks) > left => vec![FALSE_BELIEF.to_string()],
                 _ => wrap_to(thinks, left, free, brush.theme.signs().ellipsis),
             };
@@ -367,7 +370,7 @@ impl<'a> Place<'a> {
         }
     }
 
-    /// Draws the robot's next action here and a recent change, below the content or at the end of its last line; returns
+    /// Draws the robot's next press here and a recent change, below the content or at the end of its last line; returns
     /// whether there is either.
     fn news(&self, brush: &mut Painter, room: Rect, lines: u16) -> bool {
         let signs = brush.theme.signs();
@@ -389,7 +392,7 @@ impl<'a> Place<'a> {
         let has_news = !news.is_empty();
         let y = room.y + lines.min(room.height - 1);
         let needed = news.iter().map(|(text, _)| width(text) + 1).sum::<u16>();
-        // Without a free line it uses the free end of the last line.
+        // Without a free line, the free end of the last line is used.
         let ends = match lines < room.height {
             true => 0,
             false => (0..room.width).filter(|x| brush.is_written(room.x + x, y)).max().map_or(0, |x| x + 1),

@@ -1,4 +1,4 @@
-//! The training panel: the task, then feedback on signals, the newest on top.
+//! The wizard training's panel: the task, then feedback on signals, newest first.
 
 use super::paint::{Painter, wrap};
 use super::regions::{Regions, ScreenSize};
@@ -7,10 +7,10 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::lesson::{TrainingFeedback, TrainingPanel};
 use crate::console::notice::NoticeLevel;
 
-/// Width of the clock column.
+/// Columns for the clock time of a line of feedback.
 const CLOCK: u16 = 6;
 
-/// Draws the training panel.
+/// Draws the panel of a wizard training.
 pub fn draw(brush: &mut Painter, regions: &Regions, model: &ConsoleModel) {
     let area = regions.lesson;
     let Some(lesson) = model.lesson.as_ref().filter(|_| area.area() > 0) else { return };
@@ -37,7 +37,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, model: &ConsoleModel) {
     }
 }
 
-/// Lines of text, each with or without a time on the trial's clock.
+/// Lines of the training panel, each with or without a time on the trial's clock.
 fn lines(lesson: &TrainingPanel) -> Vec<(String, String, TextRole)> {
     if lesson.feedback.is_empty() {
         return lesson.task.iter().map(|text| (String::new(), text.clone(), TextRole::Text)).collect();

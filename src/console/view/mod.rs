@@ -1,4 +1,4 @@
-//! `view(&Session, &Model, &mut Frame)`: reads, draws, and changes nothing.
+//! `view(&Session, &Model, &mut Frame)`: draws the console from session and model, and changes neither.
 
 pub mod belief_panel;
 mod cards;
@@ -44,7 +44,7 @@ pub fn view(session: &Session, model: &ConsoleModel, frame: &mut Frame) {
     draw(&mut Painter::new(frame.buffer_mut(), model.theme), session, model);
 }
 
-/// What can be clicked on the console as it is drawn now.
+/// Cells of the console, as it is drawn now, that can be clicked.
 pub fn click_targets(session: &Session, model: &ConsoleModel) -> Vec<ClickTarget> {
     paint::targets(model.theme, model.size, |brush| draw(brush, session, model))
 }
@@ -89,18 +89,18 @@ fn too_small(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
     let question = match &model.dialog {
         Some(Dialog::Quit) => "Quit tomcom? y yes, any other key no",
         Some(Dialog::EndTrial) => "End the trial? y yes, any other key no",
-        Some(Dialog::Help) => "The help needs more room; any key closes it",
-        Some(Dialog::Pick(_) | Dialog::Palette(_)) => "The list needs more room; esc leaves it",
-        Some(Dialog::Send(_)) => "Send the signal that was clicked? enter sends, esc leaves",
-        Some(Dialog::Preflight) => "Not all is ok for the trial; more room shows what; esc leaves",
-        Some(Dialog::Calibration) if session.is_calibrating() => "The gaze is being checked; esc ends the check",
+        Some(Dialog::Help) => "The terminal is too small for the help; any key closes it",
+        Some(Dialog::Pick(_) | Dialog::Palette(_)) => "The terminal is too small for the list; esc closes it",
+        Some(Dialog::Send(_)) => "Send the clicked signal? enter sends, esc cancels",
+        Some(Dialog::Preflight) => "The terminal is too small for the preflight checks; esc closes them",
+        Some(Dialog::Calibration) if session.is_calibrating() => "Gaze accuracy check is running; esc ends it",
         Some(Dialog::Calibration) => {
-            "The check of the gaze: o offset off, u as it is, enter takes what is chosen, r repeats, esc leaves"
+            "Gaze accuracy check: o offset subtracted, u without correction, enter accepts, r repeats, esc cancels"
         }
-        Some(Dialog::Note(_)) => "A note: enter keeps it, esc leaves",
-        Some(Dialog::Answer(_)) => "The answer is typed: enter keeps it, esc leaves",
-        Some(Dialog::Difference(_)) => "What each knew needs more room; any key closes it",
-        Some(Dialog::Report(_)) => "What came of the training needs more room; enter goes on",
+        Some(Dialog::Note(_)) => "Note: enter saves it, esc cancels",
+        Some(Dialog::Answer(_)) => "Answer: enter saves it, esc cancels",
+        Some(Dialog::Difference(_)) => "The terminal is too small for the details; any key closes them",
+        Some(Dialog::Report(_)) => "The terminal is too small for the training report; enter continues",
         None => return,
     };
     let strong = brush.style(TextRole::Strong);

@@ -1,5 +1,5 @@
-//! The offer's line: the one signal that is worth sending now, its key, what is believed, and what it saves. It is the only thing
-//! on the screen that is inverse in the colour of signals.
+//! The line of the offer: the one signal that is worth sending now, its key, the false belief behind it, and the
+//! presses that it saves. Nothing else on the screen is inverse in the colour of signals.
 
 use super::belief_panel::QUIET;
 use super::paint::{Painter, width, wrap};
@@ -21,14 +21,14 @@ use crate::session::offers;
 use crate::session::settings::{Condition, Visibility};
 use crate::session::{Phase, Session};
 
-/// An offer as it is drawn: what stands open, or in recordings without offers the best signal.
+/// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
 pub(super) struct ShownOffer<'a> {
     act: OfferedAct,
     benefit: Option<f64>,
     reason: Option<&'a Reason>,
 }
 
-/// The offer that the wizard sees now.
+/// The offer of a signal that is shown to the wizard now, if any.
 pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<ShownOffer<'a>> {
     if beliefs::visibility(session, model) < Visibility::Recommendation
         || session.spec.trial.condition == Condition::Assistant
@@ -52,7 +52,7 @@ pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<Sh
 }
 
 impl ShownOffer<'_> {
-    /// The place that the offered signal is about.
+    /// The kitchen location that the offered signal is about.
     pub(super) fn place(&self, session: &Session) -> Option<LocationId> {
         match &self.act {
             OfferedAct::Signal(signal) => signal.location(&session.kitchen),
@@ -60,7 +60,7 @@ impl ShownOffer<'_> {
         }
     }
 
-    /// The label with the keys: " enter  SHOW RECIPE OF ORDER 1 [q] ".
+    /// Label of the offer with its keys: " enter SHOW RECIPE OF ORDER 1 [q] ".
     fn label(&self, session: &Session, model: &ConsoleModel) -> String {
         let words = match &self.act {
             OfferedAct::Signal(signal @ Signal::ShowRecipe(_)) => format!("show {}", wording::signal(signal)),
@@ -69,14 +69,14 @@ impl ShownOffer<'_> {
         };
         let own = self.place(session).and_then(|place| model.keys.mark(place));
         let own = own.map_or(String::new(), |key| format!(" [{key}]"));
-        // Enter in dialogs never sends the offer, and in a pause nothing can be sent.
+        // The enter key is named only where it sends the offer: not in dialogs, replays and pauses.
         let is_free = model.playback.is_none() && model.dialog.is_none() && session.is_running();
         let enter = model.keys.chord_for(&KeyAction::Accept).filter(|_| is_free);
         let enter = enter.map_or(String::new(), |key| format!("{key}  "));
         format!(" {enter}{}{own} ", words.to_uppercase())
     }
 
-    /// What the signal saves: "saves ≈ 4 presses".
+    /// What the offered signal saves: "saves ≈ 4 presses".
     fn saves(&self, brush: &Painter, session: &Session) -> String {
         let Some(benefit) = self.benefit else { return String::new() };
         match session.spec.assistant.concept {
@@ -88,7 +88,8 @@ impl ShownOffer<'_> {
         }
     }
 
-    /// What is believed, what is true, how surely and for how long, and the press that would come: the more important first.
+    /// Reasons for the offer, most important first: what the participant believes and what is true, how certain that is
+    /// and for how long, and the wrong press that is expected.
     fn because(&self, session: &Session, model: &ConsoleModel) -> Vec<String> {
         let Some(reason) = self.reason.map(|reason| wording::reason(&session.kitchen, reason)) else {
             return Vec::new();
@@ -96,7 +97,7 @@ impl ShownOffer<'_> {
         let aspect = session.kitchen.aspect_named(&reason.aspect);
         let belief = beliefs(session, model).into_iter().find(|belief| Some(belief.aspect) == aspect);
         let since = belief.and_then(|belief| belief.since);
-        // The certainty is that of the belief panel, while the participant is thought to think the same.
+        // The certainty is taken from the belief panel if both name the same believed value.
         let is_same = |belief: &EstimatedBelief| {
             beliefs::value(&session.kitchen, belief.aspect, belief.thinks) == reason.believes
         };
@@ -105,18 +106,18 @@ impl ShownOffer<'_> {
         let thinks = if p < 0.5 { "may think" } else { "thinks" };
         let mut said =
             vec![format!("{thinks} {}, is {}", reason.believes, reason.truth), format!("{}{age}", percent(p))];
-        said.extend(reason.prevents.as_ref().map(|button| format!("next press: {}", wording::location(button))));
+        said.extend(reason.prevents.as_ref().map(|button| format!("next error: {}", wording::location(button))));
         said
     }
 }
 
-/// Draws the offer's line, or why there is none.
+/// Draws the line of the offer, or why there is no offer.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.offer;
     if area.area() == 0 {
         return;
     }
-    // A click asks also where the offer has just closed: then it says so.
+    // A click on the line right after the offer has closed gets a notice that it has.
     let takes = model.layer == KeyLayer::Wizard && model.playback.is_none() && offers::are_made(session);
     if let Some(chord) = model.keys.chord_for(&KeyAction::Accept).filter(|_| takes) {
         brush.target(area, ClickAction::Key(chord));
@@ -137,7 +138,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     if end + width(&saves) < right {
         brush.text_right(right, area.y, width(&saves), &saves, strong);
     }
-    // The reason stands in a line of its own, or between label and saving.
+    // The reason stands in a line of its own, or between the label and the saving.
     let (mut x, y, limit) = match area.height {
         1 => (end + 1, area.y, right.saturating_sub(width(&saves) + 2)),
         _ => (area.x + 1, area.y + 1, right),
@@ -153,10 +154,10 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// Why nothing is offered.
+/// Why no signal is offered to the wizard, in words.
 fn silence(session: &Session, model: &ConsoleModel) -> String {
     if session.spec.trial.condition == Condition::Assistant {
-        return "The assistant sends the signals by itself".to_string();
+        return "The assistant sends the signals, without the wizard".to_string();
     }
     if !session.spec.asks_assistant() {
         return "The assistant does not advise in this session (shadow = \"off\")".to_string();
@@ -173,7 +174,7 @@ fn silence(session: &Session, model: &ConsoleModel) -> String {
     }
 }
 
-/// What the best signal would save, where that is less than it costs to interrupt.
+/// Saving and cost of the best signal in words, where the signal costs more than it saves.
 fn too_little(session: &Session) -> String {
     let assistant = &session.spec.assistant;
     let options = session.advice.iter().flat_map(|advice| &advice.options);
@@ -181,14 +182,14 @@ fn too_little(session: &Session) -> String {
     match best.filter(|best| best.net <= 0.0 && assistant.concept == ConceptName::TomCom) {
         Some(best) if best.benefit >= NOTHING => {
             let (words, benefit, price) = (wording::signal(&best.signal), best.benefit, assistant.price());
-            format!("none worth a signal: {words} would save {benefit:.1} presses and costs {price:.1}")
+            format!("no signal is worth its cost: {words} saves {benefit:.1} presses, costs {price:.1}")
         }
-        Some(_) => "and no signal would save a press".to_string(),
+        Some(_) => "no signal would save a press".to_string(),
         None => "no signal is offered".to_string(),
     }
 }
 
-/// The value that the participant is thought to hold for a place, if it is wrong.
+/// The value that the participant falsely believes about a location, if any.
 pub(super) fn thinks(session: &Session, believed: &[EstimatedBelief], place: LocationId) -> Option<String> {
     let wrong = believed.iter().find(|belief| {
         belief.standing == BeliefStanding::False && beliefs::place(session, belief.aspect) == Some(place)

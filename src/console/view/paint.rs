@@ -1,4 +1,5 @@
-//! The brush: text that is cut to its room, frames with titles, bars, and what can be clicked.
+//! Drawing functions of the console: text that is cut to the available columns, frames with titles, bars, and click
+//! targets.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -11,23 +12,23 @@ use crate::base::printable::printable;
 use crate::console::chord::KeyChord;
 use crate::console::click::{ClickAction, ClickTarget};
 
-/// Paints on a buffer in a theme, and notes what can be clicked.
+/// Draws on a screen buffer in a theme, and collects click targets.
 pub struct Painter<'a> {
-    /// The cells that are painted.
+    /// Buffer of terminal cells that is drawn on.
     pub buffer: &'a mut Buffer,
-    /// Colours and signs.
+    /// Colours and signs of the console.
     pub theme: Theme,
-    /// What can be clicked, in the order in which it was drawn.
+    /// Click targets in the order in which they were drawn.
     pub targets: Vec<ClickTarget>,
 }
 
-/// A key hint: the key as it is written, what it does, and the key that a click stands for.
+/// A key hint: name of the key, label, and the key that a click on the hint stands for.
 pub type KeyHint<'a> = (&'a str, &'a str, Option<KeyChord>);
 
-/// Columns between two hints.
+/// Columns between two key hints.
 const HINT_GAP: u16 = 3;
 
-/// What can be clicked on a screen of `size` columns and rows, once this is drawn on it.
+/// Click targets of a screen of `size` columns and rows, after `draw` has drawn on it.
 pub(super) fn targets(theme: Theme, size: (u16, u16), draw: impl FnOnce(&mut Painter)) -> Vec<ClickTarget> {
     let mut buffer = Buffer::empty(Rect { x: 0, y: 0, width: size.0, height: size.1 });
     let mut brush = Painter::new(&mut buffer, theme);
@@ -35,12 +36,12 @@ pub(super) fn targets(theme: Theme, size: (u16, u16), draw: impl FnOnce(&mut Pai
     brush.targets
 }
 
-/// Columns that a text takes.
+/// Terminal columns that a text takes.
 pub fn width(text: &str) -> u16 {
     Span::raw(printable(text)).width() as u16
 }
 
-/// The text cut to `columns`, with an ellipsis if something is missing.
+/// The text cut to `columns`, with an ellipsis if something was cut off.
 pub fn fit(text: &str, columns: u16, ellipsis: &str) -> String {
     let text = printable(text);
     if width(&text) <= columns {
@@ -60,7 +61,7 @@ pub fn fit(text: &str, columns: u16, ellipsis: &str) -> String {
     cut
 }
 
-/// Shortens a name to a width: removes spaces first, then the ends of the longest words.
+/// Shortens a name to this number of columns: first removes spaces, then the ends of the longest words.
 pub fn squeeze(name: &str, columns: u16) -> String {
     let mut words: Vec<String> = name.replace(" + ", " +").split(' ').map(str::to_string).collect();
     if width(name) <= columns {
@@ -76,7 +77,7 @@ pub fn squeeze(name: &str, columns: u16) -> String {
     fit(&words.join(" "), columns, "")
 }
 
-/// The text in lines of at most `columns`, broken between words.
+/// Breaks a text between words into lines of at most `columns` characters.
 pub fn wrap(text: &str, columns: u16) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -91,7 +92,7 @@ pub fn wrap(text: &str, columns: u16) -> Vec<String> {
     lines
 }
 
-/// The same in at most `rows` lines, with an ellipsis if something is missing.
+/// Breaks a text into at most `rows` lines, with an ellipsis if something was cut off.
 pub fn wrap_to(text: &str, columns: u16, rows: u16, ellipsis: &str) -> Vec<String> {
     let mut lines = wrap(text, columns);
     let rows = usize::from(rows);
@@ -103,22 +104,22 @@ pub fn wrap_to(text: &str, columns: u16, rows: u16, ellipsis: &str) -> Vec<Strin
 }
 
 impl Painter<'_> {
-    /// Paints on this buffer.
+    /// A painter that draws on this buffer of terminal cells.
     pub fn new(buffer: &mut Buffer, theme: Theme) -> Painter<'_> {
         Painter { buffer, theme, targets: Vec::new() }
     }
 
-    /// Notes that these cells can be clicked.
+    /// Marks these terminal cells as clickable.
     pub fn target(&mut self, cells: Rect, action: ClickAction) {
         self.targets.push(ClickTarget { cells, action });
     }
 
-    /// Notes that the columns from `x` to `end` of a row do what a key does.
+    /// Marks the columns from `x` to `end` of a row as clickable; a click does what the key does.
     pub fn key_target(&mut self, x: u16, y: u16, end: u16, chord: KeyChord) {
         self.target(Rect { x, y, width: end.saturating_sub(x), height: 1 }, ClickAction::Key(chord));
     }
 
-    /// Writes hints one after another; each can be clicked if it is one key's.
+    /// Writes key hints one after another; each can be clicked if it names a single key.
     pub fn hints(&mut self, x: u16, y: u16, columns: u16, hints: &[KeyHint]) {
         let mut at = x;
         for (key, words, chord) in hints {
@@ -132,7 +133,7 @@ impl Painter<'_> {
         }
     }
 
-    /// The style of a role in this theme.
+    /// The style of a text role (such as a title or an alarm) in this theme.
     pub fn style(&self, role: TextRole) -> Style {
         self.theme.style(role)
     }
@@ -144,22 +145,22 @@ impl Painter<'_> {
             return x;
         }
         let text = fit(text, columns.min(area.right() - x), self.theme.signs().ellipsis);
-        // What was there before leaves no trace in the style.
+        // The style of a text drawn earlier in these cells is removed.
         self.buffer.set_stringn(x, y, &text, usize::from(columns), Style::reset().patch(style)).0
     }
 
-    /// Whether something stands in a cell.
+    /// Whether a terminal cell contains a visible character.
     pub fn is_written(&self, x: u16, y: u16) -> bool {
         self.buffer.cell((x, y)).is_some_and(|cell| cell.symbol() != " ")
     }
 
-    /// Writes a text that ends before column `right`.
+    /// Writes a text on the screen so that it ends before the column `right`.
     pub fn text_right(&mut self, right: u16, y: u16, columns: u16, text: &str, style: Style) {
         let text = fit(text, columns, self.theme.signs().ellipsis);
         self.text(right.saturating_sub(width(&text)), y, columns, &text, style);
     }
 
-    /// Writes parts one after another, and returns the column after the last.
+    /// Writes text parts in their styles one after another, and returns the column after the last.
     pub fn parts(&mut self, x: u16, y: u16, columns: u16, parts: &[(&str, TextRole)]) -> u16 {
         let end = x + columns;
         parts.iter().fold(x, |x, (text, role)| {
@@ -168,7 +169,7 @@ impl Painter<'_> {
         })
     }
 
-    /// Draws a frame of these signs.
+    /// Draws a frame with these six signs (four corners, horizontal line, vertical line).
     pub fn frame(&mut self, area: Rect, signs: &[&str; 6], style: Style) {
         if area.width < 2 || area.height < 2 {
             return;
@@ -187,12 +188,12 @@ impl Painter<'_> {
         }
     }
 
-    /// Draws the title line of a panel, with a remark at the right; returns what is below it.
+    /// Draws the title line of a panel, with a remark at the right; returns the area below it.
     pub fn panel(&mut self, area: Rect, title: &str, remark: &str) -> Rect {
         self.panel_with(area, title, &[(remark, TextRole::Quiet)])
     }
 
-    /// The same with a remark in parts.
+    /// Draws the title line of a panel, with a remark in several styles at the right; returns the area below it.
     pub fn panel_with(&mut self, area: Rect, title: &str, remark: &[(&str, TextRole)]) -> Rect {
         let (line, strong) = (self.style(TextRole::Frame), self.style(TextRole::Strong));
         let room = area.width.saturating_sub(2);
@@ -209,7 +210,7 @@ impl Painter<'_> {
         below_title(area)
     }
 
-    /// A bar of `columns`, filled by `share` of 0 to 1.
+    /// Draws a bar of `columns`, of which a `share` from 0 to 1 is filled.
     pub fn bar(&mut self, x: u16, y: u16, columns: u16, share: f64, role: TextRole) -> u16 {
         let signs = self.theme.signs();
         let filled = (share.clamp(0.0, 1.0) * f64::from(columns)).round() as u16;

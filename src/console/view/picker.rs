@@ -1,4 +1,4 @@
-//! List dialogs above the panels: a question with its answers, and the palette.
+//! Lists above the panels: a question with its answers, and the list of all actions (the palette).
 
 use ratatui::layout::Rect;
 
@@ -16,14 +16,14 @@ use crate::console::possible::is_possible_behind;
 use crate::session::Session;
 use crossterm::event::KeyCode;
 
-/// Largest size of the list: columns and rows.
+/// Largest size of a list: columns and rows.
 const MOST: (u16, u16) = (72, 26);
-/// Rows around the list: frame, search line, separator, key hints.
+/// Rows around a list: frame, search line, separator, key hints.
 const AROUND: u16 = 6;
-/// Says how a list is searched.
-pub(super) const TYPE: &str = "type to filter, without spaces: ";
+/// Text that says how the entries of a list are filtered.
+pub(super) const TYPE: &str = "type to filter (no spaces): ";
 
-/// A row: its text, its remark at the right, and whether it does something now.
+/// A row of a list: text, remark at the right, and whether choosing the row has an effect now.
 struct Row {
     label: String,
     remark: String,
@@ -35,27 +35,27 @@ struct ListPage<'a> {
     title: String,
     cursor: &'a ListCursor,
     rows: Vec<Row>,
-    /// Number of rows without a filter.
+    /// Number of rows of the list before filtering.
     all: usize,
-    /// What the space bar does.
+    /// What the space bar does in the list, as a hint.
     space: &'a str,
-    /// What enter does.
+    /// What the enter key does in the list, as a hint.
     takes: &'a str,
 }
 
-/// Draws an open list of answers.
+/// Draws the open list of answers to a question.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, picker: &Picker) {
     let rows = picker.choices(session).into_iter();
     let rows = rows.map(|choice| Row { label: choice.label, remark: choice.remark, counts: true }).collect();
     let all = Picker::new(picker.question).choices(session).len();
     let title = picker.title(session);
-    ListPage { title, cursor: &picker.cursor, rows, all, space: STOPS, takes: "takes it" }.draw(brush, screen);
+    ListPage { title, cursor: &picker.cursor, rows, all, space: STOPS, takes: "choose" }.draw(brush, screen);
 }
 
-/// What the space bar does in a list of a live session.
+/// Text for what the space bar does in a list of a live session.
 const STOPS: &str = "space stops the robot";
 
-/// Draws the palette: key, action, and group; what does nothing now is grey.
+/// Draws the palette (the list of all actions): key, action, and group; actions without an effect now are grey.
 pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel, cursor: &ListCursor) {
     let row = |line: &&KeyBinding| {
         let key = line.chords.first().map_or(String::new(), KeyChord::to_string);
@@ -68,7 +68,7 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
     let rows = palette::actions(&model.keys, model.layer, cursor).iter().map(row).collect();
     let all = palette::actions(&model.keys, model.layer, &ListCursor::default());
     let has_signals = all.iter().any(|line| matches!(line.action, KeyAction::Signal(..)));
-    let takes = if has_signals { "does it (signals: shows the key)" } else { "does it" };
+    let takes = if has_signals { "do it (signals: show the key)" } else { "do it" };
     let space = if model.playback.is_none() { STOPS } else { "" };
     let title = "All actions".to_string();
     ListPage { title, cursor, rows, all: all.len(), space, takes }.draw(brush, screen);
@@ -76,7 +76,7 @@ pub fn draw_palette(brush: &mut Painter, screen: Rect, session: &Session, model:
 
 impl ListPage<'_> {
     fn draw(&self, brush: &mut Painter, screen: Rect) {
-        // The height stays the same while the filter changes.
+        // The height of the list stays the same while the filter changes.
         let size = (MOST.0.min(screen.width), (self.all as u16 + AROUND).min(MOST.1).min(screen.height));
         let inside = open(brush, screen, size, &self.title, self.space);
         let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
@@ -94,10 +94,10 @@ impl ListPage<'_> {
             brush.target(cells, ClickAction::Row(first + line));
         }
         if self.rows.is_empty() {
-            brush.text(list.x, list.y, list.width, "nothing is called so: bksp deletes", quiet);
+            brush.text(list.x, list.y, list.width, "no entry matches; bksp deletes a letter", quiet);
         }
         let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
-        let hints = [("up/down", "choose", None), ("enter", self.takes, enter), ("esc", "back", esc)];
+        let hints = [("up/down", "select", None), ("enter", self.takes, enter), ("esc", "back", esc)];
         brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
     }
 }

@@ -1,4 +1,4 @@
-//! The participant's further buttons at a place of the kitchen panel: processes and trash.
+//! Further buttons of the participant at a place of the kitchen panel: processing steps and trash.
 
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
@@ -11,7 +11,7 @@ use crate::console::key_action::KeyLayer;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, LocationId};
 use crate::session::Session;
 
-/// Key and name of each; none while the keys are the wizard's.
+/// Key and name of each further button at a place; none while the wizard's keys are active.
 pub(super) fn further(session: &Session, model: &ConsoleModel, place: LocationId) -> Vec<(KeyChord, String)> {
     if model.layer != KeyLayer::Participant {
         return Vec::new();
@@ -31,7 +31,8 @@ pub(super) fn further(session: &Session, model: &ConsoleModel, place: LocationId
     with_key.collect()
 }
 
-/// Draws one button per line from the lower edge of the card upwards, or all in the last line if the card is too low.
+/// Draws the buttons one per line from the lower edge of the place's box upwards, or all in the last line if the box is
+/// too low.
 pub(super) fn draw(brush: &mut Painter, room: Rect, buttons: &[(KeyChord, String)]) {
     let style = brush.style(TextRole::Human).add_modifier(Modifier::BOLD);
     let count = buttons.len() as u16;

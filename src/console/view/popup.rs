@@ -1,4 +1,4 @@
-//! The frame of dialogs.
+//! The frame of dialogs, lists and cards.
 
 use ratatui::layout::Rect;
 
@@ -6,7 +6,7 @@ use super::paint::Painter;
 use super::regions::inside;
 use super::theme::TextRole;
 
-/// Clears an area.
+/// Clears an area of the screen.
 pub(super) fn blank(brush: &mut Painter, area: Rect) {
     for y in area.y..area.bottom() {
         for x in area.x..area.right() {
@@ -17,7 +17,7 @@ pub(super) fn blank(brush: &mut Painter, area: Rect) {
     }
 }
 
-/// Clears and frames an area in the middle of the screen; returns the area inside.
+/// Clears and frames an area in the middle of the screen; returns the area inside the frame.
 pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &str, remark: &str) -> Rect {
     let (columns, rows) = (size.0.min(screen.width), size.1.min(screen.height));
     let area = Rect {
@@ -26,7 +26,7 @@ pub(super) fn open(brush: &mut Painter, screen: Rect, size: (u16, u16), title: &
         width: columns,
         height: rows,
     };
-    // What lies below cannot be clicked; the hint line is drawn later.
+    // Click targets under the dialog are removed; those of the hint line are drawn later.
     brush.targets.clear();
     blank(brush, area);
     let style = brush.style(TextRole::Strong);

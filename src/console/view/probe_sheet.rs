@@ -1,5 +1,5 @@
-//! The sheet of a freeze probe: the question, its choices, the answers so far, and the time that is left. Whether an answer is right is
-//! not shown: the wizard may sit beside the participant.
+//! The sheet of a freeze probe: the question, its choices, the answers so far, and the time that is left. The sheet
+//! does not show whether an answer is right, because the wizard may sit beside the participant.
 
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
@@ -19,10 +19,11 @@ use crate::session::probes::{OpenProbe, ProbeAnswer, ProbeQuestion};
 use crate::session::settings::Visibility;
 use crate::session::{Phase, Session};
 
-/// How sure a participant is, in words.
+/// Confidence of the participant in an answer, in words.
 const SURE: [&str; 3] = ["a guess", "fairly sure", "certain"];
 
-/// Clears what lies below the sheet where the participant answers at the console: what is asked must not stand beside the question.
+/// Clears the area under a freeze probe's sheet where the participant answers at the console, so that the state that is
+/// asked about is not visible.
 pub(super) fn hide(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel) {
     let is_open = session.probes.open.is_some() && session.phase == Phase::Paused;
     if is_open && model.playback.is_none() && answerer(session, model) == ProbeAnswerer::Console {
@@ -30,22 +31,22 @@ pub(super) fn hide(brush: &mut Painter, area: Rect, session: &Session, model: &C
     }
 }
 
-/// Draws the sheet.
+/// Draws the sheet of a freeze probe.
 pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Session, model: &ConsoleModel) {
     let mut page = Page::new(screen);
     let who = answerer(session, model);
     if let Some(address) = model.display.as_ref().and_then(DisplayHealth::to_open).filter(|_| is_wanted(session)) {
-        page.text(0, &format!("no page is connected: {address}"), TextRole::Alarm);
+        page.text(0, &format!("the participant's page is not connected: {address}"), TextRole::Alarm);
     }
     let question =
         open.shown.filter(|_| open.closed.is_none()).and_then(|shown| Some((shown, open.questions.get(shown)?)));
     match question {
-        _ if open.is_paused() => page.text(0, "The probe is paused: its time stands still.", TextRole::Strong),
+        _ if open.is_paused() => page.text(0, "The probe is paused, and so is its time limit.", TextRole::Strong),
         Some((index, question)) => ask(&mut page, (open, index, question), (session, model), who),
         None if open.closed.is_some() => {
-            page.text(0, "No more questions: the trial goes on by itself after the count-down.", TextRole::Text);
+            page.text(0, "No more questions: the trial continues by itself after the count-down.", TextRole::Text);
         }
-        None => page.text(0, "The kitchen is off the display; the first question comes.", TextRole::Text),
+        None => page.text(0, "The kitchen is hidden on the display; the first question follows.", TextRole::Text),
     }
     answers(&mut page, open, session, model);
     let title = status(session, model).unwrap_or_default();
@@ -57,13 +58,13 @@ pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Sess
     let mut hints: Vec<KeyHint> = Vec::new();
     if question.is_some() && who == ProbeAnswerer::Console && !open.is_paused() {
         hints.push(("0-9", "number", None));
-        hints.push(("enter", "answers", plain(KeyCode::Enter)));
+        hints.push(("enter", "answer", plain(KeyCode::Enter)));
     }
     if open.closed.is_none() && skip.is_some() {
-        hints.push((&skip_key, "skips the rest", skip));
+        hints.push((&skip_key, "skip the rest", skip));
     }
     if pause.is_some() {
-        hints.push((&pause_key, if open.is_paused() { "goes on" } else { "pauses" }, pause));
+        hints.push((&pause_key, if open.is_paused() { "resume" } else { "pause" }, pause));
     }
     page.draw(pen, screen, &capital(&title), &left, &hints);
 }
@@ -73,7 +74,7 @@ fn capital(text: &str) -> String {
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The question with its choices by number, in as many columns as have room.
+/// Draws the question with its numbered choices, in as many columns as have room.
 fn ask(
     page: &mut Page,
     (open, index, question): (&OpenProbe, usize, &ProbeQuestion),
@@ -86,7 +87,7 @@ fn ask(
         0,
         match who {
             ProbeAnswerer::Display => "The participant answers on the display.",
-            ProbeAnswerer::Console => "Read it out, and enter the number of the answer.",
+            ProbeAnswerer::Console => "Read the question out, and enter the number of the answer.",
             ProbeAnswerer::Simulated => "The simulated participant answers.",
         },
         TextRole::Quiet,
@@ -131,7 +132,8 @@ fn sure(page: &mut Page, entry: ProbeEntry) {
     page.focus_here();
 }
 
-/// The answers so far; what was answered stands there only where the study shows beliefs to the wizard, and not for raters.
+/// Draws the progress of the answers. Their content is shown only where the study shows beliefs to the wizard, and
+/// never to raters.
 fn answers(page: &mut Page, open: &OpenProbe, session: &Session, model: &ConsoleModel) {
     let is_shown = visibility(session, model) >= Visibility::Belief && model.coding.is_none();
     let given =

@@ -1,4 +1,5 @@
-//! The list of signals: what each would save, ranked, and what a signal costs. The offer itself stands in its own line.
+//! The list of signals, ranked by what each would save, with the cost of a signal. The offer itself stands in a line of
+//! its own.
 
 use ratatui::layout::Rect;
 
@@ -16,30 +17,33 @@ use crate::session::Session;
 use crate::session::admit::may_send;
 use crate::session::settings::Condition;
 
-/// Width of a gauge in columns; a column is half a saved press, or for ToM a twelfth of the deviation.
+/// Width of a benefit bar in columns; a column stands for half a saved press, or for the concept ToM a twelfth of the
+/// belief deviation.
 const GAUGE: u16 = 12;
 const PRESSES_A_COLUMN: f64 = 0.5;
-/// Options with a smaller benefit and standard error are not listed, since they would be shown as 0.0.
+/// Signals whose benefit and standard error are both smaller than this (in presses) are not listed, since they would be
+/// shown as 0.0.
 pub(super) const NOTHING: f64 = 0.05;
-/// Width reserved for the signal ("[a] highlight assembly board"); a gauge is drawn only beside it.
+/// Columns reserved for the words of a signal ("[a] highlight assembly board"); a benefit bar is drawn only if these
+/// remain.
 const LONGEST_SIGNAL: u16 = 28;
-/// Tag of the signal that is on offer.
+/// Text that marks the signal on offer in the list of signals.
 const OFFERED: &str = "offered";
 
-/// Draws the list of signals.
+/// Draws the list of signals, ranked by benefit.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.recommendation;
     if area.area() == 0 {
         return;
     }
-    let inside = brush.panel(area, "What signals would save", remark(session));
+    let inside = brush.panel(area, "Signals by benefit", remark(session));
     let inside = Rect { x: inside.x + 1, width: inside.width.saturating_sub(2), ..inside };
     let Some(advice) = &session.advice else {
         return quietly(brush, inside, silence(session));
     };
     let (worth_it, not_worth_it): (Vec<&SignalOption>, Vec<&SignalOption>) =
         advice.options.iter().partition(|option| option.net > 0.0);
-    // The line of the cost is always visible; options above it are dropped if there is no room.
+    // The line with the cost of a signal is always visible; if there is no room, signals above it are left out.
     let above = inside.height.saturating_sub(1).min(worth_it.len() as u16);
     for (row, option) in worth_it.into_iter().take(usize::from(above)).enumerate() {
         option_line(brush, inside, inside.y + row as u16, option, session, model);
@@ -58,7 +62,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
     if !useless.is_empty() && y < inside.bottom() {
         let what = match session.spec.assistant.concept {
-            ConceptName::Tom => "would tell nothing new",
+            ConceptName::Tom => "would not change a belief",
             _ => "would save nothing",
         };
         let text = format!("{} {what}", count(useless.len() as u64, "signal", "signals"));
@@ -73,35 +77,35 @@ fn quietly(brush: &mut Painter, area: Rect, text: &str) {
     }
 }
 
-/// Remark in the title: the unit of the numbers.
+/// Unit of the listed numbers, as the remark in the panel's title.
 fn remark(session: &Session) -> &'static str {
     match session.spec.assistant.concept {
         ConceptName::TomCom => "presses",
         ConceptName::Tom => "belief deviation",
         ConceptName::Dev => "DEV",
-        ConceptName::None => "no concept",
+        ConceptName::None => "no communication concept",
     }
 }
 
-/// Reason why there is no list.
+/// Why there is no ranked list of signals, in words.
 fn silence(session: &Session) -> &'static str {
     match (session.spec.asks_assistant(), session.is_running()) {
-        (false, _) => "None: nobody asks the assistant in this session (shadow = \"off\"). The signals are yours.",
-        (true, true) => "None yet: it comes after the first order or press.",
-        (true, false) => "None: the assistant advises while the trial runs.",
+        (false, _) => "No advice in this session (shadow = \"off\"): choose the signals yourself.",
+        (true, true) => "No advice yet: it begins with the first order or press.",
+        (true, false) => "No advice: the assistant advises only while the trial runs.",
     }
 }
 
-/// What an option saves, in the concept's unit.
+/// The benefit of a signal in the unit of the communication concept: presses, or belief deviation.
 fn worth(option: &SignalOption, session: &Session) -> String {
     match session.spec.assistant.concept {
         ConceptName::Tom => format!("{:>4.2} ", option.benefit),
-        // Less than half a tenth is 0.0, never -0.0.
+        // A benefit that rounds to zero is shown as 0.0, never as -0.0.
         _ => format!("{:>4.1} ", if option.benefit.abs() < NOTHING { 0.0 } else { option.benefit }),
     }
 }
 
-/// The key of an option's signal, if it has one.
+/// The key of a listed signal, if the wizard may send it.
 fn key(option: &SignalOption, session: &Session, model: &ConsoleModel) -> Option<KeyChord> {
     let location = option.signal.location(&session.kitchen);
     location.and_then(|location| model.keys.mark(location)).filter(|_| may_send(session, Sender::Wizard).is_ok())
@@ -122,7 +126,7 @@ fn option_line(
     let mut x = brush.parts(inside.x, y, inside.width, &[(worth.as_str(), role)]);
     let (chord, words) = (key(option, session, model), wording::signal(&option.signal));
     let key = chord.map_or(String::new(), |chord| format!("[{}] ", chord.name()));
-    // The words of a signal have priority over its gauge.
+    // The words of a signal have priority over its benefit bar.
     if inside.right().saturating_sub(x) >= GAUGE + 1 + LONGEST_SIGNAL {
         x = gauge(brush, x, y, option, session, role);
     }
@@ -137,7 +141,8 @@ fn option_line(
     }
 }
 
-/// Draws the benefit as a bar: solid up to one standard error below, open up to one above, with a line at the cost.
+/// Draws a signal's benefit as a bar: filled up to one standard error below the benefit, open up to one above it, with
+/// a line at the cost.
 fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &Session, role: TextRole) -> u16 {
     let signs = brush.theme.signs();
     let (cost, of_tom) = (session.spec.assistant.price(), session.spec.assistant.concept == ConceptName::Tom);
@@ -159,7 +164,7 @@ fn gauge(brush: &mut Painter, x: u16, y: u16, option: &SignalOption, session: &S
     x + GAUGE + 1
 }
 
-/// Draws the cost of a signal, and the age of the numbers.
+/// Draws the cost of a signal, and the age of the listed numbers.
 fn cost_line(
     brush: &mut Painter,
     inside: Rect,
@@ -170,14 +175,14 @@ fn cost_line(
 ) {
     let price = session.spec.assistant.price();
     let left = match session.spec.assistant.concept {
-        ConceptName::Tom => format!("{price:>4.2} is the threshold"),
-        ConceptName::Dev => "DEV proposes presses after an error; they stand in the line of the offer".to_string(),
+        ConceptName::Tom => format!("{price:>4.2} threshold for a signal"),
+        ConceptName::Dev => "DEV proposes presses after an error, in the line of the offer".to_string(),
         ConceptName::None => String::new(),
-        ConceptName::TomCom => format!("{price:>4.1} is what a signal costs"),
+        ConceptName::TomCom => format!("{price:>4.1} cost of a signal"),
     };
     let quiet = brush.style(TextRole::Quiet);
     let end = brush.text(inside.x, y, inside.width, &left, quiet);
-    // An assistant that acts by itself has sent what it recommends.
+    // A recommendation that the assistant has already sent by itself is marked as sent.
     let is_sent = session.spec.trial.condition == Condition::Assistant
         && session.signalled_at.is_some_and(|sent| sent >= advice.for_ns);
     let state = if is_sent { "sent, " } else { "" };

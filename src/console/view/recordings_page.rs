@@ -1,4 +1,4 @@
-//! The list from which a recording is chosen, on an otherwise empty screen.
+//! The page that lists recordings to choose from, when no session is open.
 
 use crossterm::event::KeyCode;
 use ratatui::Frame;
@@ -12,15 +12,15 @@ use crate::console::chord::KeyChord;
 use crate::console::click::{ClickAction, ClickTarget};
 use crate::console::recording_picker::RecordingPicker;
 
-/// Rows around the list: frame, search line, headings, key hints.
+/// Rows around the list of recordings: frame, search line, headings, key hints.
 const AROUND: u16 = 7;
 
-/// Draws the list as large as the screen allows.
+/// Draws the list of recordings as large as the screen allows.
 pub fn draw_recordings(picker: &RecordingPicker, theme: Theme, frame: &mut Frame) {
     draw(&mut Painter::new(frame.buffer_mut(), theme), picker);
 }
 
-/// What can be clicked on a list that is drawn on a screen of `size` columns and rows.
+/// Click targets of the list of recordings on a screen of `size` columns and rows.
 pub fn recording_targets(picker: &RecordingPicker, theme: Theme, size: (u16, u16)) -> Vec<ClickTarget> {
     targets(theme, size, |brush| draw(brush, picker))
 }
@@ -58,10 +58,10 @@ fn draw(brush: &mut Painter, picker: &RecordingPicker) {
         brush.target(Rect { y, height: 1, ..list }, ClickAction::Row(first + line));
     }
     if left.is_empty() {
-        brush.text(list.x, list.y, list.width, "No recording has this; backspace deletes a letter", quiet);
+        brush.text(list.x, list.y, list.width, "no recording matches; bksp deletes a letter", quiet);
     }
     let [enter, esc] = [KeyCode::Enter, KeyCode::Esc].map(|code| Some(KeyChord::plain(code)));
-    let hints = [("up/down", "choose", None), ("enter", "opens it", enter), ("esc", "back", esc)];
+    let hints = [("up/down", "select", None), ("enter", "open", enter), ("esc", "back", esc)];
     brush.hints(x, inside.bottom().saturating_sub(1), columns, &hints);
 }
 

@@ -1,4 +1,4 @@
-//! The layout of panels for the size of the terminal.
+//! The arrangement of the console's panels for the size of the terminal.
 
 use ratatui::layout::Rect;
 
@@ -10,97 +10,98 @@ use crate::console::panel::Panel;
 use crate::session::Session;
 use crate::session::settings::Visibility;
 
-/// Smallest usable terminal: columns and rows.
+/// Smallest terminal that the console supports: columns and rows.
 pub const LEAST: (u16, u16) = (72, 22);
 
-/// Number of columns from which panels are placed side by side.
+/// Least number of columns at which panels are placed side by side.
 pub const ROOMY_COLUMNS: u16 = 112;
 
-/// Size class of the terminal.
+/// Size class of the terminal: small, medium or large.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ScreenSize {
-    /// Panels shrink to lines (80x24).
+    /// Small terminal (80x24): panels shrink to lines.
     Small,
-    /// All panels (120x40).
+    /// Medium terminal (120x40): all panels, without the list of events.
     Medium,
-    /// All panels plus the list of events (200x60).
+    /// Large terminal (200x60): all panels and the list of events.
     Large,
 }
 
-/// Areas of the panels; a panel with an empty area is not drawn.
+/// Screen areas of the console's panels; a panel with an empty area is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Regions {
-    /// How much the terminal has room for.
+    /// Size class of the terminal: small, medium or large.
     pub room: ScreenSize,
-    /// The head line.
+    /// Screen area of the head line.
     pub head: Rect,
-    /// The offer: one line, or two on narrow terminals.
+    /// Area of the offer: one line, or two on narrow terminals.
     pub offer: Rect,
-    /// The kitchen.
+    /// Screen area of the kitchen panel.
     pub kitchen: Rect,
-    /// The belief panel.
+    /// Screen area of the belief panel.
     pub belief: Rect,
-    /// The recommendation panel.
+    /// Screen area of the recommendation panel.
     pub recommendation: Rect,
-    /// Gaze map, which replaces belief and recommendations where the wizard may not see those.
+    /// Area of the gaze map, which replaces beliefs and recommendations where the wizard may not see those.
     pub gaze_map: Rect,
-    /// The participant's side: signal on the display, and gaze.
+    /// Area of the panel that tells which signal the participant sees.
     pub shown: Rect,
-    /// Where the participant looks, and how good the gaze is.
+    /// Area of the gaze panel: where the participant looks, and the gaze's quality.
     pub gaze: Rect,
-    /// What the robot does.
+    /// Screen area of the robot panel.
     pub robot: Rect,
-    /// The newest events.
+    /// Screen area of the list of newest events.
     pub events: Rect,
-    /// The timeline.
+    /// Screen area of the timeline.
     pub timeline: Rect,
-    /// Comparison of wizard and assistants, which replaces the timeline.
+    /// Area of the comparison of wizard and assistants, which replaces the timeline.
     pub comparison: Rect,
-    /// Training panel.
+    /// Screen area of the wizard training's panel.
     pub lesson: Rect,
-    /// The codes of a rater with their keys and definitions.
+    /// Screen area of a rater's codebook.
     pub codebook: Rect,
-    /// The errors that a rater codes.
+    /// Screen area of a rater's list of errors.
     pub errors: Rect,
-    /// Position in a recording.
+    /// Area of the bar that shows the position in a recording.
     pub scrub: Rect,
-    /// The line of messages.
+    /// Screen area of the line of messages.
     pub message: Rect,
-    /// The keys that matter now.
+    /// Screen area of the line of key hints.
     pub footer: Rect,
 }
 
-/// Number of columns from which the offer and its reason fit into one line.
+/// Least number of columns at which the offer and its reason fit into one line.
 const OFFER_COLUMNS: u16 = 140;
-/// Least width of the kitchen panel for unabbreviated names of usual length.
+/// Least width of the kitchen panel, in columns, at which names of usual length need no abbreviation.
 const KITCHEN_COLUMNS: u16 = 81;
-/// Height of the timeline with its title.
+/// Height of the timeline with its title, in rows.
 const TIMELINE_ROWS: u16 = 7;
-/// Height of the list of recommendations on large terminals.
+/// Height of the list of signals on large terminals, in rows.
 const RECOMMENDATION_ROWS: u16 = 9;
 
-/// Height of the list of errors where it has no panel of its own: progress, and three errors.
+/// Height in rows of a rater's error list without a panel of its own: progress, and three errors.
 const ERROR_LINES: u16 = 4;
-/// The same on terminals with fewer than this number of rows: progress, and the present error.
+/// Terminals with fewer rows than the first number give a rater's error list only the second number of rows: for
+/// progress, and the present error.
 const FEW_ERROR_LINES: (u16, u16) = (24, 2);
-/// Least columns of the codebook beside the kitchen.
+/// Least width of the codebook beside the kitchen, in columns.
 const CODEBOOK_COLUMNS: u16 = 35;
-/// Height of the list of errors that the codebook leaves below it, with its title.
+/// Rows that the codebook leaves for the error list below it, with the list's title.
 const ERRORS_ROWS: u16 = 6;
 
-/// Lines that only some consoles have.
+/// Numbers of rows that only some uses of the console need: coding, comparison, replay.
 #[derive(Clone, Copy, Debug, Default)]
 struct LineRows {
-    /// Number of lines of a rater's codebook across the screen, and in a column beside the kitchen, if errors are coded.
+    /// If a rater codes errors: rows of the codebook across the screen, and in a column beside the kitchen.
     codebook: Option<[u16; 2]>,
     /// Number of compared assistants, if a comparison is shown.
     comparison: Option<u16>,
-    /// Whether there is a position in a recording.
+    /// Whether there is a bar for the position in a recording.
     scrubs: bool,
 }
 
 impl Regions {
-    /// Computes the layout of a terminal with `size` columns and rows for this console.
+    /// Computes the arrangement of panels on a terminal with `size` columns and rows, for this session and console.
     pub fn showing(size: (u16, u16), session: &Session, model: &ConsoleModel) -> Regions {
         let assistants = |compared: &ComparisonView| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
         let compared = model.comparison.as_ref().map(assistants);
@@ -114,7 +115,7 @@ impl Regions {
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
 
-    /// Adds the training panel below the gaze map, or else above the timeline.
+    /// Adds the wizard training's panel: below the gaze map, or else above the timeline.
     fn teaching(self) -> Regions {
         match self.gaze_map.area() {
             0 if self.kitchen.area() == 0 => self,
@@ -129,12 +130,12 @@ impl Regions {
         }
     }
 
-    /// Computes the layout of all panels without the comparison, or of one panel at full size.
+    /// Computes the arrangement of all panels without the comparison, or of one panel at full size.
     pub fn new(size: (u16, u16), visibility: Visibility, alone: Option<Panel>) -> Regions {
         Regions::with(size, visibility, alone, LineRows::default())
     }
 
-    /// Computes the layout with these additional lines.
+    /// Computes the arrangement of panels with these additional rows.
     fn with(size: (u16, u16), visibility: Visibility, alone: Option<Panel>, lines: LineRows) -> Regions {
         let room = match size {
             (columns, rows) if columns >= 168 && rows >= 46 => ScreenSize::Large,
@@ -190,11 +191,11 @@ impl Regions {
         lines.codebook.map_or(regions, |[_, rows]| regions.coding(rows + 1))
     }
 
-    /// Gives codebook and errors the room of what a rater does not see: signals, estimates.
+    /// Gives the codebook and the error list the areas of panels that a rater must not see: signals and estimates.
     fn coding(self, codebook_rows: u16) -> Regions {
         let blank = Rect::default();
         match self.room {
-            // Robot and gaze share a line, and the timeline leaves out its last row.
+            // On small terminals the robot's state and the gaze share a line, and the timeline has one row less.
             ScreenSize::Small => {
                 let (_, timeline) = bottom(self.timeline, self.timeline.height.saturating_sub(1));
                 let robot = Rect { y: self.gaze.y + 1, ..self.robot };
@@ -232,7 +233,7 @@ impl Regions {
         regions
     }
 
-    /// Area of a panel.
+    /// Screen area of a panel of the console.
     pub fn panel_area(&self, panel: Panel) -> Rect {
         match panel {
             Panel::Kitchen => self.kitchen,
@@ -245,12 +246,12 @@ impl Regions {
         }
     }
 
-    /// Height of the timeline or of the comparison in its place.
+    /// Height of the timeline; 0 where the comparison replaces it.
     fn timeline_rows(&self, rows: u16) -> u16 {
         if self.comparison.area() > 0 { 0 } else { rows }
     }
 
-    /// Small layout: panels as lines below the kitchen, with the worst beliefs.
+    /// Arrangement for small terminals: panels as single lines below the kitchen, with only the worst beliefs.
     fn small(self, visibility: Visibility) -> Regions {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(4));
         let beliefs = if rest.height >= 15 { 2 } else { 1 };
@@ -261,7 +262,7 @@ impl Regions {
         Regions { kitchen, robot, shown, gaze, belief, timeline, ..self }
     }
 
-    /// Medium layout: the kitchen at the left; beliefs and agents at the right.
+    /// Arrangement for medium terminals: the kitchen at the left; beliefs, display, gaze and robot at the right.
     fn medium(self, visibility: Visibility) -> Regions {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
         let (kitchen, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
@@ -271,9 +272,9 @@ impl Regions {
         Regions { kitchen, shown, robot, gaze, timeline, ..self }.judge(side, visibility)
     }
 
-    /// Large layout in three columns: state with gaze map, beliefs over time with recommendations, events.
+    /// Arrangement for large terminals in three columns: kitchen and gaze map, beliefs and recommendations, events.
     fn large(self, visibility: Visibility) -> Regions {
-        // A row more for offers.
+        // The timeline has one more row where offers are shown.
         let rows = TIMELINE_ROWS + u16::from(visibility == Visibility::Recommendation);
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(rows));
         let (rest, events) = right(rest, 44);
@@ -293,7 +294,7 @@ impl Regions {
         }
     }
 
-    /// Gives an area to the panel that the visibility setting allows.
+    /// Gives the side area to the belief panel, or to the gaze map where the wizard may not see beliefs.
     fn judge(self, side: Rect, visibility: Visibility) -> Regions {
         match visibility {
             Visibility::State => Regions { gaze_map: side, ..self },
@@ -301,12 +302,12 @@ impl Regions {
         }
     }
 
-    /// Where the wizard reads what the assistant recommends.
+    /// Area in which the wizard reads what the assistant recommends: the list of signals, or else the offer.
     fn recommendations(&self) -> Rect {
         if self.recommendation.area() > 0 { self.recommendation } else { self.offer }
     }
 
-    /// Names of the visible panels.
+    /// Names of the console's visible panels, as recorded in the log.
     pub fn panels(&self) -> Vec<&'static str> {
         let panels = [
             ("kitchen", self.kitchen),
@@ -323,13 +324,13 @@ impl Regions {
         panels.into_iter().filter(|(_, area)| area.area() > 0).map(|(name, _)| name).collect()
     }
 
-    /// What lists and cards may cover: head line, messages and keys stay visible.
+    /// Area that lists and cards may cover: the head line, messages and key hints stay visible.
     pub fn middle(&self) -> Rect {
         let (top, bottom) = (self.head.bottom(), self.message.y);
         Rect { x: self.head.x, y: top, width: self.head.width, height: bottom.saturating_sub(top) }
     }
 
-    /// The kitchen panel without its title, which shows the area of the display.
+    /// Area of the kitchen panel without its title, which corresponds to the wall display.
     pub fn kitchen_inside(&self) -> Rect {
         match self.room {
             ScreenSize::Small => self.kitchen,
@@ -338,23 +339,23 @@ impl Regions {
     }
 }
 
-/// Divides a column between the codebook and the list of errors.
+/// Divides a column of the screen between the codebook and the list of errors.
 fn codes_and_errors(column: Rect, codebook_rows: u16) -> (Rect, Rect) {
     top(column, codebook_rows.min(column.height.saturating_sub(ERRORS_ROWS)))
 }
 
-/// Height of the comparison: axis, first lane, three rows for each assistant (lane, matches, statistics), differences, and a title
-/// if there is room.
+/// Height of the comparison: axis, first lane, three rows for each assistant (lane, lines between matches, statistics),
+/// differences, and a title if there is room.
 fn comparison_rows(room: ScreenSize, assistants: u16) -> u16 {
     match room {
-        // Only the first assistant has a row of statistics.
+        // On small terminals, only the first of the compared assistants has a row of statistics.
         ScreenSize::Small => 4 + if assistants == 1 { 2 } else { assistants },
         ScreenSize::Medium => 4 + 3 * assistants,
         ScreenSize::Large => 7 + 3 * assistants,
     }
 }
 
-/// Area inside a frame.
+/// Screen area inside the frame of a panel.
 pub fn inside(area: Rect) -> Rect {
     Rect { x: area.x + 1, y: area.y + 1, width: area.width.saturating_sub(2), height: area.height.saturating_sub(2) }
 }

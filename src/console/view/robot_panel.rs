@@ -1,4 +1,4 @@
-//! The robot panel: ongoing press, progress of the arm, reason for being idle, and pose of the arm.
+//! The robot panel: ongoing press, progress of the arm, reason for being idle, and joint angles of the arm.
 
 use std::f64::consts::TAU;
 
@@ -38,7 +38,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let remark = match (session.robot.stopped, session.robot.held, &model.playback) {
         (true, ..) => "STOPPED".to_string(),
         (false, true, _) => release(model),
-        (false, false, None) => "space stops it".to_string(),
+        (false, false, None) => "space stops the robot".to_string(),
         (false, false, Some(_)) => String::new(),
     };
     let mode = session.robot.arm.mode;
@@ -49,7 +49,8 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let inside = brush.panel_with(area, title, &parts);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
-    // On small screens the pose of the arm has priority over what the kitchen panel also shows.
+    // In a low panel the pose of the arm has priority over the content of the robot's hand, which the kitchen panel
+    // also shows.
     match session.robot.arm.last {
         Some((_, moment)) if inside.height < 4 => arm(brush, x, inside.y + 1, columns, session, &moment),
         Some((_, moment)) => {
@@ -70,13 +71,13 @@ fn holds(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session) {
     brush.text_right(x + columns, y, columns / 2, &presses, quiet);
 }
 
-/// Draws phase, joints, distance of the hand, and contact force of the arm.
+/// Draws the arm's motion phase, joint angles as bars, distance of the human's hand, and contact force.
 fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, moment: &ArmSample) {
     let signs = brush.theme.signs();
     let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
     let bars: String = moment.joints.iter().map(bar).collect();
     let is_over = matches!(session.phase, Phase::Over(_) | Phase::Closed);
-    let phase = if session.robot.stopped || is_over { "stands" } else { wording::arm_phase(moment.phase) };
+    let phase = if session.robot.stopped || is_over { "stopped" } else { wording::arm_phase(moment.phase) };
     let phase = format!("{phase:<10} ");
     let hand = match moment.hand_away_m {
         away_m if away_m < 0.005 => " hand at arm".to_string(),
@@ -92,7 +93,7 @@ fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mom
     brush.parts(x, y, columns, &parts);
 }
 
-/// The joint angles in degrees.
+/// Draws the arm's joint angles in degrees.
 fn joints(brush: &mut Painter, x: u16, y: u16, columns: u16, moment: &ArmSample) {
     let angles: String = moment.joints.iter().map(|angle| format!("{:>6.0}", angle.to_degrees())).collect();
     brush.parts(x, y, columns, &[("joints", TextRole::Quiet), (&angles, TextRole::Text), (" deg", TextRole::Quiet)]);
@@ -113,7 +114,7 @@ fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
     brush.parts(end, y, (x + columns).saturating_sub(end), &[(&force, TextRole::Alarm), (&resume, TextRole::Text)]);
 }
 
-/// Style of a safety mode.
+/// Style in which a safety mode of the robot is drawn.
 fn mode_role(mode: SafetyMode) -> TextRole {
     match mode {
         SafetyMode::Normal => TextRole::Quiet,
@@ -129,20 +130,20 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     }
     let (x, columns) = if session.robot.held { held(brush, x, y, columns, model) } else { (x, columns) };
     let (x, columns) = match session.robot.arm.mode {
-        SafetyMode::Safeguard => badge(brush, x, y, columns, " WAITS ", " for the hand "),
+        SafetyMode::Safeguard => badge(brush, x, y, columns, " WAITS ", " until the hand is farther away "),
         _ => (x, columns),
     };
     if matches!(session.phase, Phase::Over(_) | Phase::Closed) {
-        brush.parts(x, y, columns, &[("stands: the trial is over", TextRole::Quiet)]);
+        brush.parts(x, y, columns, &[("stopped: the trial is over", TextRole::Quiet)]);
         return;
     }
     let Some((button, since, until)) = session.robot.intention else {
         let why = match session.robot.idle {
             _ if session.robot.held => "",
             Some(IdleReason::NoOrder) => "waits: there is no order",
-            Some(IdleReason::HumanTurn) => "waits: only the human can go on",
-            Some(IdleReason::Skipped) => "waits: its only press was skipped",
-            None => "has nothing to press",
+            Some(IdleReason::HumanTurn) => "waits: only the human can act now",
+            Some(IdleReason::Skipped) => "waits: its only possible press was skipped",
+            None => "no press planned",
         };
         brush.parts(x, y, columns, &[(why, TextRole::Quiet)]);
         return;
@@ -152,27 +153,27 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     let left_s = until.secs_since(now);
     let label = format!("{} {}", brush.theme.signs().to, wording::button(&session.kitchen, Agent::Robot, button));
     let bar = 8.min(columns / 4);
-    let by = if session.robot.driven_to.is_some() { " driven" } else { "" };
+    let by = if session.robot.driven_to.is_some() { " by wizard" } else { "" };
     brush.parts(x, y, columns.saturating_sub(bar + 7), &[(&label, TextRole::Robot), (by, TextRole::Signal)]);
     let at = brush.bar(x + columns - bar - 6, y, bar, 1.0 - left_s / whole_s, TextRole::Robot);
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
 }
 
-/// The key that releases the robot.
+/// Name of the key that releases the held robot, with words.
 fn release(model: &ConsoleModel) -> String {
     model
         .keys
         .chord_for(&KeyAction::Hand(ManualAction::HoldRobot))
-        .map(|key| format!("{key} releases it"))
+        .map(|key| format!("{key} releases the robot"))
         .unwrap_or_default()
 }
 
-/// Draws that the robot is held; returns the next column and the remaining width.
+/// Draws that the wizard holds the robot before its next press; returns the next column and the remaining width.
 fn held(brush: &mut Painter, x: u16, y: u16, columns: u16, model: &ConsoleModel) -> (u16, u16) {
     badge(brush, x, y, columns, " HELD ", &format!(" {} ", release(model)))
 }
 
-/// Draws a badge, with more words if there is room; returns the next column and the remaining width.
+/// Draws a badge (inverse label), with more words if there is room; returns the next column and the remaining width.
 fn badge(brush: &mut Painter, x: u16, y: u16, columns: u16, label: &str, words: &str) -> (u16, u16) {
     let badge = brush.theme.badge(TextRole::Strong);
     let end = brush.text(x, y, columns, label, badge);

@@ -1,4 +1,4 @@
-//! The position in a recording: a bar over its whole length, with the time reached and the whole time.
+//! Position in a recording: a bar over the whole length, with the time reached and the total time.
 
 use ratatui::layout::Rect;
 
@@ -10,13 +10,13 @@ use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::session::Session;
 
-/// Draws the position in the recording.
+/// Draws the bar of the position in the recording.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let (area, Some(playback)) = (regions.scrub, &model.playback) else { return };
     if area.area() == 0 {
         return;
     }
-    // The recording's own time, which runs before the trial and in pauses, too.
+    // Times are those of the recording, which also run before the trial and in pauses.
     let end = format!(" {} of {} ", session.time, playback.length.max(session.time));
     let quiet = brush.style(TextRole::Quiet);
     brush.text(area.x, area.y, area.width, " recording ", quiet);

@@ -1,4 +1,5 @@
-//! Sheets around a trial: instruction, questionnaire, debriefing, and questions before a recording.
+//! Sheets (forms at full size) around a trial: instruction, questionnaire, debriefing, and questions before a
+//! recording.
 
 use crossterm::event::KeyCode;
 use ratatui::Frame;
@@ -18,9 +19,9 @@ use crate::session::answer_value::AnswerValue;
 use crate::session::plan::{ItemForm, Questionnaire, SLIDER_END, Scale, Tutorial, TutorialStepKind};
 use crate::session::protocol::{ItemAnswer, Protocol};
 
-/// Draws the sheet of the running phase, if it has one.
+/// Draws the sheet of the session's present phase, if that phase has one.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
-    // In a replay the keys have other meanings.
+    // In a replay, the sheet shows no keys, since keys have other meanings there.
     let pen = &mut Pen { brush, with_keys: model.playback.is_none() };
     let sheet = sheet(session);
     if let Some(SheetContent::Probe(open)) = sheet {
@@ -39,12 +40,12 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     }
 }
 
-/// Label of the advance key: the next phase.
+/// Label of the key that leaves the sheet: the name of the next phase.
 fn onward(session: &Session) -> String {
     match session.next_phase() {
-        Some(phase) => format!("on to the {}", phase.name()),
-        None if session.step().is_some_and(|(step, _)| step.is_tutorial_alone()) => "leaves the tutorial".to_string(),
-        None => "on to the next recording".to_string(),
+        Some(phase) => format!("next: {}", phase.name()),
+        None if session.step().is_some_and(|(step, _)| step.is_tutorial_alone()) => "leave the tutorial".to_string(),
+        None => "next recording".to_string(),
     }
 }
 
@@ -76,7 +77,7 @@ fn draw_steps(
         page.focus_here();
     }
     let on = if open.is_some() { "this step is done".to_string() } else { onward(session) };
-    let undo = ("bksp", "takes the last tick back", plain(KeyCode::Backspace));
+    let undo = ("bksp", "untick the last step", plain(KeyCode::Backspace));
     let hints = [("enter", on.as_str(), plain(KeyCode::Enter)), undo];
     let has_ticks = protocol.ticks.contains(&true);
     page.draw(pen, screen, heads.0, heads.1, if has_ticks { &hints } else { &hints[..1] });
@@ -92,7 +93,7 @@ fn draw_tutorial(
     let mut page = Page::new(screen);
     let Some((_, state)) = session.tutorial() else { return };
     if let Some(address) = model.display.as_ref().and_then(DisplayHealth::to_open) {
-        page.text(0, &format!("no page is connected: {address}"), TextRole::Alarm);
+        page.text(0, &format!("the participant's page is not connected: {address}"), TextRole::Alarm);
     }
     for (index, step) in tutorial.steps.iter().enumerate() {
         let is_shown = index == state.step && !state.is_over;
@@ -169,7 +170,7 @@ fn draw_questions(
             Some(ItemAnswer::Skipped) => "-".to_string(),
             None => "?".to_string(),
         };
-        // What is longer than a number stands below its item.
+        // Answers of more than three columns stand below their item.
         if width(&answer) <= 3 {
             page.marked(&format!("{answer:>3}"), &item.text, TextRole::Text);
         } else {
@@ -188,7 +189,8 @@ fn draw_questions(
     page.draw(pen, screen, &questionnaire.title, where_, hints);
 }
 
-/// Draws how an item is answered, with the given answer; returns the keys that answer it, and what they do.
+/// Draws how a questionnaire item is answered, with the answer so far; returns the keys that answer it, and what they
+/// do.
 fn item_form(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) -> (String, &'static str) {
     match form {
         ItemForm::Scale(of) => {
@@ -224,13 +226,13 @@ fn item_form(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) -> (
     }
 }
 
-/// Adds the answer that was typed, if one was.
+/// Adds the typed answer to the questionnaire page, if there is one.
 fn typed(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) {
     page.space();
     page.text(0, &given.map_or_else(|| "_".to_string(), |given| form.words(given)), TextRole::Strong);
 }
 
-/// Draws the scale with the given answer marked. Its anchors stand under the first and the last point.
+/// Draws a rating scale with the given answer marked. The scale's end labels stand under its first and last point.
 fn scale(page: &mut Page, of: &Scale, given: Option<&AnswerValue>) {
     let point = |point: u8| match given == Some(&AnswerValue::from(point)) {
         true => format!("[{point}]"),
@@ -249,13 +251,13 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
     let (Some(criterion), Some(practice)) = (step.criterion, &protocol.practice) else { return };
     let mut page = Page::new(screen);
     let rate = criterion.error_rate.map_or(String::new(), |rate| format!(", at most {:.0} % errors", 100.0 * rate));
-    page.text(0, &format!("Asked for: {} orders served{rate}.", criterion.orders), TextRole::Text);
+    page.text(0, &format!("Required: {} orders served{rate}.", criterion.orders), TextRole::Text);
     let share = 100.0 * f64::from(practice.errors) / f64::from(practice.presses.max(1));
     let (orders, presses, errors) = (practice.orders, practice.presses, practice.errors);
-    let found = format!("Found: {orders} served, {errors} errors in {presses} presses ({share:.0} %).");
+    let found = format!("Reached: {orders} served, {errors} errors in {presses} presses ({share:.0} %).");
     page.text(0, &found, TextRole::Strong);
     page.space();
-    page.text(0, "To go on to the first trial all the same, say why:", TextRole::Text);
+    page.text(0, "To waive the criterion and start the first trial, choose a reason:", TextRole::Text);
     for (index, reason) in WAIVERS.iter().enumerate() {
         let is_chosen = waiver == Some(index);
         let mark = if is_chosen { format!(" [{}]", index + 1) } else { format!("  {} ", index + 1) };
@@ -263,15 +265,15 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
     }
     let waivers = format!("1-{}", WAIVERS.len());
     let hints = [
-        ("enter", if waiver.is_some() { "go on for this reason" } else { "practise again" }, plain(KeyCode::Enter)),
+        ("enter", if waiver.is_some() { "waive for this reason" } else { "practise again" }, plain(KeyCode::Enter)),
         (waivers.as_str(), "choose a reason", None),
-        ("left", "choose none", plain(KeyCode::Left)),
+        ("left", "deselect", plain(KeyCode::Left)),
     ];
     let hints = if waiver.is_some() { &hints } else { &hints[..2] };
-    page.draw(pen, screen, "The criterion is not met", where_, hints);
+    page.draw(pen, screen, "The practice criterion is not met", where_, hints);
 }
 
-/// Draws a question before a recording, on an otherwise empty screen.
+/// Draws a question to the user before a recording, on an otherwise empty screen.
 pub fn draw_question(question: &QuestionPage, theme: Theme, frame: &mut Frame) {
     let screen = frame.area();
     let mut brush = Painter::new(frame.buffer_mut(), theme);
@@ -284,6 +286,6 @@ pub fn draw_question(question: &QuestionPage, theme: Theme, frame: &mut Frame) {
         page.marked(&format!("  {}", index + 1), answer, TextRole::Strong);
     }
     page.focus_here();
-    let keys = [("esc", "leave: nothing is recorded", plain(KeyCode::Esc))];
+    let keys = [("esc", "quit without recording", plain(KeyCode::Esc))];
     page.draw(&mut Pen { brush: &mut brush, with_keys: true }, screen, &question.title, "", &keys);
 }

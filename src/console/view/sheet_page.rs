@@ -1,4 +1,5 @@
-//! The page of a sheet: lines of text with indents and styles, of which the part around its focus is drawn.
+//! Text page of a sheet (a form at full size): lines with indents and styles; if they do not fit, the part around the
+//! present item is drawn.
 
 use crossterm::event::KeyCode;
 use ratatui::layout::Rect;
@@ -8,55 +9,55 @@ use super::popup::open;
 use super::theme::TextRole;
 use crate::console::chord::KeyChord;
 
-/// Largest line width, for readability.
+/// Largest width of a line, in columns, for readability.
 const WIDEST: u16 = 84;
 
-/// Drawing context of a sheet.
+/// Drawing context of a sheet (a form at full size).
 pub(super) struct Pen<'a, 'b> {
-    /// What draws.
+    /// Painter that draws on the screen.
     pub brush: &'a mut Painter<'b>,
-    /// Whether the keys have their meanings: not in a replay.
+    /// Whether the sheet's keys work and are shown; they do not in a replay.
     pub with_keys: bool,
 }
 
-/// A text of a line with its indent and style.
+/// A text within a line: its indent in columns, the text, and its style.
 type PagePart = (u16, String, TextRole);
 
-/// Lines of a sheet.
+/// Text page of a sheet (a form at full size).
 #[derive(Default)]
 pub(super) struct Page {
     columns: u16,
     lines: Vec<Vec<PagePart>>,
-    /// Index of the line that must be visible.
+    /// Index of the line that must be visible if the page is longer than the screen.
     focus: usize,
-    /// Lines that can be clicked, each with its key.
+    /// Lines that can be clicked, each with the key that a click stands for.
     keys: Vec<(usize, KeyChord)>,
 }
 
 impl Page {
-    /// An empty page for a screen.
+    /// An empty text page that fits this screen area.
     pub(super) fn new(screen: Rect) -> Page {
         Page { columns: screen.width.saturating_sub(4).min(WIDEST).saturating_sub(4), ..Page::default() }
     }
 
-    /// Width of its text.
+    /// Width of the page's text, in columns.
     pub(super) fn columns(&self) -> u16 {
         self.columns
     }
 
-    /// Adds a text, in as many lines as it needs.
+    /// Adds a text to the page, in as many lines as it needs.
     pub(super) fn text(&mut self, indent: u16, text: &str, role: TextRole) {
         let lines = wrap(text, self.columns.saturating_sub(indent));
         self.lines.extend(lines.into_iter().map(|line| vec![(indent, line, role)]));
     }
 
-    /// Adds a line of texts in columns of this width.
+    /// Adds a line whose texts stand in columns of this width.
     pub(super) fn cells(&mut self, width: u16, cells: Vec<(&str, TextRole)>) {
         let part = |(index, (text, role)): (usize, (&str, TextRole))| (index as u16 * width, text.to_string(), role);
         self.lines.push(cells.into_iter().enumerate().map(part).collect());
     }
 
-    /// The next line must be visible, or the last where none follows.
+    /// Marks the next line as the one that must be visible, or the last line if none follows.
     pub(super) fn focus_here(&mut self) {
         self.focus = self.lines.len();
     }
@@ -70,19 +71,19 @@ impl Page {
         }
     }
 
-    /// Adds a choice with its digit, which can be clicked.
+    /// Adds a numbered choice, which can be clicked.
     pub(super) fn choice(&mut self, index: usize, mark: &str, text: &str, role: TextRole) {
         let digit = char::from_digit(index as u32 + 1, 10).unwrap_or(' ');
         self.keys.push((self.lines.len(), KeyChord::char(digit)));
         self.marked(mark, text, role);
     }
 
-    /// Adds an empty line.
+    /// Adds an empty line to the page.
     pub(super) fn space(&mut self) {
         self.lines.push(Vec::new());
     }
 
-    /// Draws the visible part of the page around its focus, with key hints on the last line.
+    /// Draws the part of the page around the line that must be visible, with key hints in the last line.
     pub(super) fn draw(self, pen: &mut Pen, screen: Rect, title: &str, remark: &str, keys: &[KeyHint]) {
         let rows = (self.lines.len() as u16 + 5).min(screen.height.saturating_sub(2));
         let brush = &mut *pen.brush;
@@ -107,7 +108,7 @@ impl Page {
     }
 }
 
-/// The key of a hint that can be clicked.
+/// The key that a click on a key hint stands for.
 pub(super) fn plain(code: KeyCode) -> Option<KeyChord> {
     Some(KeyChord::plain(code))
 }

@@ -1,4 +1,4 @@
-//! The participant's side: the signal on the display, its content and its remaining time.
+//! Panel of the participant's side: the signal on the display, its content and its remaining time.
 
 use super::paint::{Painter, width, wrap};
 use super::regions::{Regions, ScreenSize};
@@ -9,7 +9,7 @@ use crate::console::key_action::KeyAction;
 use crate::history::wording;
 use crate::session::{Phase, Session, ShownSignal, proposals};
 
-/// Draws the panel that says which signal the participant sees now.
+/// Draws the panel that tells which signal the participant sees now.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.shown;
     if area.area() == 0 {
@@ -20,7 +20,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
         line(brush, area.x + 10, area.y, area.width.saturating_sub(11), session, model);
         return;
     }
-    let back = model.keys.chord_for(&KeyAction::TakeBack).map(|key| format!("{key} takes it back"));
+    let back = model.keys.chord_for(&KeyAction::TakeBack).map(|key| format!("{key} takes the signal back"));
     let remark = session.shown.as_ref().and(back).unwrap_or_default();
     let inside = brush.panel(area, "On the participant's display", &remark);
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
@@ -33,7 +33,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// The signal with its remaining time in one line.
+/// Draws the present signal with its remaining time in one line.
 fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
     let start = model.keys.chord_for(&KeyAction::Advance).filter(|_| session.phase == Phase::Ready);
     if let Some(key) = start {
@@ -43,7 +43,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         return;
     }
     let Some(shown) = &session.shown else {
-        brush.parts(x, y, columns, &[("no signal: the kitchen only", TextRole::Quiet)]);
+        brush.parts(x, y, columns, &[("no signal, only the kitchen", TextRole::Quiet)]);
         return;
     };
     let title = match (&shown.signal, columns > 60) {
@@ -62,18 +62,18 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
     brush.parts(at, y, 6, &[(&format!(" {left_s:>3.1} s"), TextRole::Text)]);
 }
 
-/// Remaining time in seconds, and as a share of its duration.
+/// Remaining time of a signal in seconds, and as a share of its duration.
 fn left(session: &Session, shown: &ShownSignal, model: &ConsoleModel) -> (f64, f64) {
     let now = if session.is_running() { model.now } else { session.paused_at };
     let left_s = shown.until.secs_since(now);
     (left_s, left_s / shown.until.secs_since(shown.since).max(1e-3))
 }
 
-/// Content of the signal in words.
+/// Content of the signal that the participant sees, in words.
 fn says(session: &Session, signal: &Signal) -> String {
     let kitchen = &session.kitchen;
     let Some(location) = signal.location(kitchen) else {
-        // Proposed presses: those that are still to be made.
+        // Of proposed presses, only those that the participant has not made yet are shown.
         return proposals::left(session).map_or(String::new(), |left| format!("next: {}", wording::proposal(left)));
     };
     let content = kitchen.content_label(session.state, location);
@@ -83,7 +83,7 @@ fn says(session: &Session, signal: &Signal) -> String {
             None => format!("{}: {content}", kitchen.location(location).label()),
         },
         Signal::Highlight(_) | Signal::Propose(_) => {
-            format!("look here: {} holds {content}", kitchen.location(location).label())
+            format!("highlight: {} holds {content}", kitchen.location(location).label())
         }
     }
 }

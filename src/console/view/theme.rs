@@ -1,98 +1,98 @@
-//! Colours and signs of the console, with ASCII fallback. Every meaning of a colour also has a sign or a letter. Colours come from
-//! the 256 colours of xterm, one set for dark and one for light terminals, with a contrast of at least 4.5 to the usual
-//! backgrounds (WCAG 2.1, success criterion 1.4.3).
+//! Colours and signs of the console, with a fallback in ASCII. Every meaning of a colour also has a sign or a letter.
+//! Colours come from xterm's palette of 256, one set for dark and one for light terminals, with a contrast of at least
+//! 4.5 to the usual backgrounds (WCAG 2.1, success criterion 1.4.3).
 
 use ratatui::style::{Color, Modifier, Style};
 
-/// Role of a text on the screen, from which its style follows.
+/// Role of a text on the screen, such as a title or an alarm, from which its style follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextRole {
-    /// Ordinary text.
+    /// Style of ordinary text.
     Text,
-    /// Labels and normal states.
+    /// Style of labels and normal states.
     Quiet,
-    /// Frames and separators.
+    /// Style of frames and separators.
     Frame,
-    /// Titles and contents.
+    /// Style of titles and contents.
     Strong,
-    /// The participant and its presses.
+    /// Style of the participant and of the participant's presses.
     Human,
-    /// The robot and its presses.
+    /// Style of the robot and of its presses.
     Robot,
-    /// Keys of the wizard, and signals.
+    /// Style of the wizard's keys, and of signals.
     Signal,
-    /// The participant's gaze.
+    /// Style of the participant's gaze.
     Gaze,
-    /// Alarms: stopped, lost, failed.
+    /// Style of alarms: stopped, lost, failed.
     Alarm,
-    /// False beliefs only.
+    /// Style of false beliefs, and of nothing else.
     FalseBelief,
 }
 
-/// The terminal's background.
+/// Brightness of the terminal's background.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TerminalBackground {
-    /// Light text on a dark background.
+    /// A terminal with light text on a dark background.
     Dark,
-    /// Dark text on a light background.
+    /// A terminal with dark text on a light background.
     Light,
 }
 
-/// Colours and signs of the console.
+/// Theme of the console: its colours and signs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Theme {
-    /// Whether colours are used; without, weight and signs tell the same.
+    /// Whether colours are used; without colours, weight and signs tell the same.
     pub colour: bool,
-    /// Whether signs beyond ASCII are used.
+    /// Whether the signs may be Unicode characters outside ASCII.
     pub unicode: bool,
-    /// The terminal's background, which the colours must contrast with.
+    /// Terminal background that the colours must contrast with.
     pub ground: TerminalBackground,
 }
 
-/// The signs of the console.
+/// Signs (glyphs) of the console, in Unicode or in ASCII.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Glyphs {
-    /// Corners top left, top right, bottom left, bottom right, then horizontal and vertical line.
+    /// Frame signs: corners top left, top right, bottom left, bottom right, then horizontal and vertical line.
     pub frame: [&'static str; 6],
-    /// Rules of a card: normal, just changed, highlighted by a signal.
+    /// Vertical rules of a location's box: normal, just changed, highlighted by a signal.
     pub rules: [&'static str; 3],
-    /// A full cell of a bar.
+    /// Sign for a full cell of a bar.
     pub bar_full: &'static str,
-    /// An empty cell of a bar.
+    /// Sign for an empty cell of a bar.
     pub bar_empty: &'static str,
-    /// Where the participant looks.
+    /// Sign for where the participant looks.
     pub gaze: &'static str,
-    /// Where the participant looked before.
+    /// Sign for where the participant looked before.
     pub trail: &'static str,
-    /// A press.
+    /// Sign for a press.
     pub press: &'static str,
-    /// An ineffective press.
+    /// Sign for a press without an effect.
     pub no_effect: &'static str,
-    /// A press that was an error.
+    /// Sign for a press that was an error.
     pub error: &'static str,
-    /// An order that was served.
+    /// Sign for an order that was served.
     pub served: &'static str,
-    /// A signal that was taken back.
+    /// Sign for a signal that was taken back.
     pub taken_back: &'static str,
-    /// The robot is stopped.
+    /// Sign for a stopped robot.
     pub stopped: &'static str,
-    /// Contact with the arm.
+    /// Sign for a contact with the robot arm.
     pub touched: &'static str,
-    /// Manual intervention of the experimenter.
+    /// Sign for a manual intervention of the experimenter.
     pub by_hand: &'static str,
-    /// From one thing to another.
+    /// Sign for a direction: an arrow from one thing to another.
     pub to: &'static str,
-    /// Changed just now.
+    /// Sign for a content that has just changed.
     pub changed: &'static str,
-    /// The session is recorded.
+    /// Sign for a session that is recorded.
     pub recording: &'static str,
-    /// The trial is paused.
+    /// Sign for a paused trial.
     pub pause: &'static str,
-    /// Text that was cut.
+    /// Sign for text that was cut off: an ellipsis.
     pub ellipsis: &'static str,
-    /// Bars from low to full, for curves.
+    /// Signs for curves: vertical bars from low to full.
     pub levels: [&'static str; 8],
-    /// No value.
+    /// Sign for a missing value.
     pub dash: &'static str,
 }
 
@@ -145,12 +145,12 @@ const ASCII: Glyphs = Glyphs {
 };
 
 impl Theme {
-    /// The signs of this theme.
+    /// The signs of this theme: those in Unicode or those in ASCII.
     pub fn signs(&self) -> &'static Glyphs {
         if self.unicode { &UNICODE } else { &ASCII }
     }
 
-    /// The colour of a role, as an index into the 256 colours of xterm; `None` is the terminal's own.
+    /// Colour of a text role, as an index into xterm's 256 colours; `None` is the terminal's own colour.
     pub fn colour(ground: TerminalBackground, role: TextRole) -> Option<u8> {
         let (dark, light) = match role {
             TextRole::Text | TextRole::Strong => return None,
@@ -166,11 +166,11 @@ impl Theme {
         Some(if ground == TerminalBackground::Dark { dark } else { light })
     }
 
-    /// The style of a role in this theme.
+    /// The style (colour, weight) of a text role in this theme.
     pub fn style(&self, role: TextRole) -> Style {
         let modifier = match role {
             TextRole::Text | TextRole::Human | TextRole::Robot => Modifier::empty(),
-            // Without colours, dim text replaces grey.
+            // Without colours, quiet text is drawn dim instead of grey.
             TextRole::Quiet | TextRole::Frame if self.colour => Modifier::empty(),
             TextRole::Quiet | TextRole::Frame => Modifier::DIM,
             TextRole::Strong | TextRole::Signal | TextRole::Gaze | TextRole::Alarm | TextRole::FalseBelief => {
@@ -184,7 +184,7 @@ impl Theme {
         }
     }
 
-    /// Style of a filled badge.
+    /// Style of a badge, an inverse label in the colour of a text role.
     pub fn badge(&self, role: TextRole) -> Style {
         self.style(role).remove_modifier(Modifier::DIM).add_modifier(Modifier::REVERSED | Modifier::BOLD)
     }

@@ -1,4 +1,4 @@
-//! The timeline on the trial's clock, which stands while the trial stands: one row per kind of event, columns of half a second,
+//! The timeline on the trial's clock, which stands during pauses: one row per kind of event, columns of half a second,
 //! the present at the right edge.
 
 use ratatui::layout::Rect;
@@ -19,14 +19,14 @@ use crate::session::probes::ProbeEvent;
 use crate::session::settings::Visibility;
 use crate::session::{Phase, Session, TimelineEntry, TimelineEvent};
 
-/// Duration of a column, in seconds.
+/// Time that one terminal column of the timeline stands for, in seconds.
 const COLUMN_S: f64 = 0.5;
-/// Times between the labels of an axis, in seconds, and columns that a label needs.
+/// Possible intervals between the labels of the time axis, in seconds, and columns that a label needs.
 const TICKS_S: [f64; 4] = [10.0, 20.0, 30.0, 60.0];
 const LABEL_COLUMNS: f64 = 8.0;
 const LABELS: u16 = 10;
 
-/// Draws the timeline.
+/// Draws the timeline of presses, signals, orders and notes.
 pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
     let area = regions.timeline;
     if area.area() == 0 {
@@ -35,9 +35,9 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let is_small = regions.room == ScreenSize::Small;
     let inside = if is_small { area } else { brush.panel(area, "Timeline", &legend(brush)) };
     let rows: &[&str] = match is_small {
-        // Signals, orders and notes share a row.
+        // In a low timeline, signals, orders and notes share a row.
         true => &["", "human", "robot", "events"],
-        // A rater sees no signals.
+        // A rater's timeline shows no signals.
         false if model.coding.is_some() => &["", "human", "robot", "", "orders", "notes"],
         false if has_offers(inside, session, model) => &["", "human", "robot", "signals", "orders", "notes", "offers"],
         false => &["", "human", "robot", "signals", "orders", "notes"],
@@ -73,14 +73,14 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     }
 }
 
-/// Whether there is room for a row of offers, and they may be seen.
+/// Whether the timeline has room for a row of offers, and the wizard may see them.
 fn has_offers(inside: Rect, session: &Session, model: &ConsoleModel) -> bool {
     let may_see = visibility(session, model) == Visibility::Recommendation;
     inside.height > 6 && may_see && offers::are_made(session)
 }
 
-/// Draws each offer from its opening to its close: the key of its signal, a line in the colour of signals where the signal was
-/// sent, and a tick where the offer was taken.
+/// Draws each offer from its opening to its close: the key of its signal, then a line, in the colour of signals if the
+/// signal was sent, and a tick where the wizard accepted the offer.
 fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleModel) {
     let back = (f64::from(model.timeline_back_s) / COLUMN_S) as i64;
     let column = |time: SessionTime| {
@@ -111,16 +111,16 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
     }
 }
 
-/// Number of columns between a time and the present, on the trial's clock.
+/// Number of timeline columns between a session time and the present, on the trial's clock.
 pub(super) fn columns_ago(session: &Session, model: &ConsoleModel, time: SessionTime, column_s: f64) -> i64 {
     let column = |time: SessionTime| (time.as_secs_f64() / column_s) as i64;
     let now = session.trial_clock(model.now);
     column(now) - column(now - session.age(time, model.now))
 }
 
-/// Session time of the end of the column that is so many columns ago.
+/// Session time at the end of the column that is `ago` columns before the present.
 fn column_end(session: &Session, model: &ConsoleModel, ago: i64) -> SessionTime {
-    // The columns count down while the time goes on.
+    // Binary search: the number of columns before the present falls as the session time rises.
     let (mut from, mut until) = (session.trial_start.0, model.now.0);
     while from < until {
         let middle = until - (until - from) / 2;
@@ -132,7 +132,7 @@ fn column_end(session: &Session, model: &ConsoleModel, ago: i64) -> SessionTime 
     SessionTime(from)
 }
 
-/// A sign in the plot.
+/// A sign in the timeline.
 struct Mark {
     x: u16,
     y: u16,
@@ -140,8 +140,8 @@ struct Mark {
     role: TextRole,
 }
 
-/// Draws the signs, the newest first. Several presses in one column share a sign; any other sign whose cell is taken moves to the
-/// next free cell towards the past.
+/// Draws the signs of the timeline, the newest first. Several presses in one column share a sign; any other sign whose
+/// cell is taken moves to the next free cell towards the past.
 fn place(brush: &mut Painter, plot: Rect, marks: &[Mark]) {
     let signs = brush.theme.signs();
     let rank = |mark: &Mark| match mark.sign.as_str() {
@@ -172,13 +172,13 @@ fn legend(brush: &Painter) -> String {
     format!("{} press  {} no effect  {} error  {} served", signs.press, signs.no_effect, signs.error, signs.served)
 }
 
-/// Draws the axis in the first row: the trial's clock, with the present or an earlier time at the right end.
+/// Draws the time axis in the first row: the trial's clock, with the present or an earlier time at the right end.
 pub(super) fn axis(brush: &mut Painter, plot: Rect, session: &Session, model: &ConsoleModel, column_s: f64) {
     let back = SessionTime::from_secs_f64(f64::from(model.timeline_back_s));
     ticks(brush, Rect { height: 1, ..plot }, session.trial_clock(model.now) - back, column_s);
 }
 
-/// Draws a line with the trial's clock at full tens of seconds; its right end is `end`.
+/// Draws a time axis in full tens of seconds of the trial's clock; `end` is the time at its right end.
 pub(super) fn ticks(brush: &mut Painter, line: Rect, end: SessionTime, column_s: f64) {
     let quiet = brush.style(TextRole::Quiet);
     let thin = brush.style(TextRole::Frame);
@@ -202,7 +202,7 @@ pub(super) fn ticks(brush: &mut Painter, line: Rect, end: SessionTime, column_s:
     }
 }
 
-/// Row, sign and meaning of an entry of the timeline.
+/// Row, sign and style of an entry of the timeline.
 fn mark(
     brush: &Painter,
     session: &Session,
@@ -252,7 +252,7 @@ fn mark(
     })
 }
 
-/// The key of the signal, as shown in the kitchen.
+/// The key of the signal, as shown in the kitchen panel.
 fn signal_sign(session: &Session, model: &ConsoleModel, signal: &Signal) -> String {
     let location = signal.location(&session.kitchen);
     location.and_then(|id| model.keys.mark(id)).map_or("!".to_string(), |chord| chord.to_string())

@@ -1,4 +1,5 @@
-//! One connection of a page, which identifies itself and then acts or watches.
+//! One network connection of a participant page, which identifies itself and then either takes part (acts) or only
+//! watches.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -17,20 +18,20 @@ use super::status::{ActivePage, count};
 use crate::edge::connection_table::ConnectionPlace;
 use crate::edge::pairing::PairingVerdict;
 
-/// Time limit for a page's hello.
+/// Time limit for the first message of a participant page.
 const HELLO: Duration = Duration::from_secs(5);
 /// Time after which a page that accepts no message is disconnected.
 const STUCK: Duration = Duration::from_secs(5);
-/// Number of codes that a connection may send.
+/// Largest number of pairing codes that a page may try in one connection.
 const ATTEMPTS: u32 = 20;
-/// Largest rate of messages per second (a pointer at 120 Hz, and presses).
+/// Largest rate of messages from a page, per second (a pointer at 120 Hz, and presses).
 const PER_SECOND: f64 = 300.0;
-/// Number of malformed messages after which a connection is closed.
+/// Number of malformed messages after which a page's connection is closed.
 const FAULTS: u32 = 100;
 /// Presses of the same button within this time count as contact bounce, in milliseconds.
 const BOUNCE_MS: f64 = 50.0;
 
-/// State of a connected page.
+/// Connection with a participant page and the page's state.
 struct Talk {
     socket: WebSocket,
     hub: Arc<ServerState>,
@@ -39,22 +40,22 @@ struct Talk {
     page: String,
     size: ActivePage,
     faults: u32,
-    /// Budget of messages (token bucket) with the time of its last update.
+    /// Budget of messages that the page may send (token bucket), with the time of its last update.
     allowed: (f64, Instant),
-    /// Number of its last press.
+    /// Number of the last press on the participant's page.
     pressed: u64,
-    /// Last pressed button with its time on the server's clock.
+    /// Name of the last pressed button, and the time of the press on the server's clock.
     last: Option<(String, f64)>,
 }
 
-/// Serves a page until one side closes the connection.
+/// Serves a participant page until one side closes the connection.
 pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<ConnectionPlace>) {
     let now = Instant::now();
     let (page, size, life) = (String::new(), ActivePage::default(), PageLife::new(now));
     let (faults, allowed, pressed) = (0, (PER_SECOND, now), 0);
     let mut talk = Talk { socket, hub, place, life, page, size, faults, allowed, pressed, last: None };
     let Some(waits) = talk.greet().await else { return };
-    // Beyond the limit of watching pages only the acting page is let in.
+    // Beyond the limit of watching pages, only the page that takes part is admitted.
     if !talk.take_seat(waits).await && !talk.place.admit() {
         count(&talk.hub.status.refused);
         return;
@@ -66,8 +67,8 @@ pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<Co
 }
 
 impl Talk {
-    /// Gives the page its words, and waits for it to say who it is; where a code is asked for, until it is right. Whether it
-    /// waits for another page.
+    /// Sends the display texts to a new page, and waits until the page has identified itself and, if required, sent the
+    /// right pairing code. Returns whether the page wants to watch while another page takes part.
     async fn greet(&mut self) -> Option<bool> {
         self.say(&ToPage::Words { words: self.hub.words.clone() }).await?;
         let hello_by = tokio::time::Instant::now() + HELLO;
@@ -99,7 +100,7 @@ impl Talk {
                         return None;
                     }
                 }
-                // A page that shows the form for the code sends pings, too.
+                // A page that shows the form for the pairing code also sends pings.
                 Some(FromPage::Ping { t, hidden, .. }) if has_said => self.pong(t, hidden).await?,
                 Some(FromPage::Size { width, height }) if has_said => {
                     (self.size.width_px, self.size.height_px) = (width, height);
@@ -109,7 +110,7 @@ impl Talk {
         }
     }
 
-    /// Checks the code and tells the page if it is not right; returns whether it is.
+    /// Checks the page's pairing code, and tells the page if the code is wrong; returns whether the code is right.
     async fn pair(&mut self, code: Option<String>) -> Option<bool> {
         let Some(code) = code else {
             self.say(&ToPage::Pairing { why: "code", wait_s: 0 }).await?;
@@ -126,7 +127,8 @@ impl Talk {
         Some(false)
     }
 
-    /// The page's message, if the frame contains one that is to be handled; outer `None` ends the connection.
+    /// Parses the page's message, if the WebSocket frame contains one that is to be handled; outer `None` ends the
+    /// connection.
     fn message(&mut self, message: Message) -> Option<Option<FromPage>> {
         let now = Instant::now();
         self.life.heard(now, matches!(message, Message::Text(_)));
@@ -147,7 +149,7 @@ impl Talk {
         }
     }
 
-    /// Sends a ping; `None` if the page is gone.
+    /// Sends a ping to the page; `None` if the page no longer responds.
     async fn keep_alive(&mut self) -> Option<()> {
         let now = Instant::now();
         if self.life.is_gone(now) {
@@ -162,15 +164,15 @@ impl Talk {
         self.say(&ToPage::Pong { t, at: self.hub.now_ms() }).await
     }
 
-    /// Counts a message that was none; nothing, if it was one too many.
+    /// Counts a malformed message; `None` if the page has sent too many of them.
     fn fault(&mut self) -> Option<()> {
         count(&self.hub.status.malformed);
         self.faults += 1;
         (self.faults < FAULTS).then_some(())
     }
 
-    /// The first page acts, unless it waits for another; one that is loaded again acts in the place of itself. Whether this
-    /// page acts now.
+    /// Lets the page take part if no other page does and it does not want to wait, or if it is the same page after a
+    /// reload. Returns whether this page takes part now.
     async fn take_seat(&mut self, waits: bool) -> bool {
         let mut took = false;
         self.hub.acting.send_if_modified(|acting| {
@@ -187,7 +189,7 @@ impl Talk {
         took
     }
 
-    /// Says that the page which acts is there, of this size.
+    /// Reports to the session that a page takes part, with the page's size.
     async fn tell_size(&mut self) -> Option<()> {
         let ActivePage { width_px, height_px, .. } = self.size;
         self.hub.status.page(|page| {
@@ -210,11 +212,11 @@ impl Talk {
         self.hub.acting.borrow().as_ref().is_some_and(|(number, _)| *number == self.place.number)
     }
 
-    /// Tells scene, role and sight whenever they change, and takes what the page says.
+    /// Sends scene, role and state to the page whenever they change, and handles the page's messages.
     async fn run(&mut self) -> Option<()> {
         let PageFeed { mut scene, mut sight, mut robot } = self.hub.told.clone();
         let mut acting = self.hub.acting.subscribe();
-        // What is there already is new to this page.
+        // For a newly connected page, the present content counts as new.
         scene.mark_changed();
         sight.mark_changed();
         robot.mark_changed();
@@ -227,7 +229,7 @@ impl Talk {
                 changed = scene.changed() => {
                     changed.ok()?;
                     self.pass_on(&mut scene).await?;
-                    // A page that is built anew shows nothing yet.
+                    // After a new scene, a page shows no state yet, so the state is sent again.
                     sight.mark_changed();
                     robot.mark_changed();
                 }
@@ -264,7 +266,7 @@ impl Talk {
         timeout(STUCK, self.socket.send(message)).await.ok()?.ok()
     }
 
-    /// Takes what the page says; nothing, if it is to be left.
+    /// Handles a message of the page; `None` if the connection is to be closed.
     async fn hear(&mut self, message: Message) -> Option<()> {
         match self.message(message)? {
             None => Some(()),
@@ -291,7 +293,8 @@ impl Talk {
         }
     }
 
-    /// A page that sends more than hands and pointer can is not listened to for a while.
+    /// Whether a message is within the rate that hands and pointer can produce; faster messages are ignored for a
+    /// while.
     fn is_allowed(&mut self) -> bool {
         let (allowed, since) = self.allowed;
         let now = Instant::now();
@@ -300,7 +303,7 @@ impl Talk {
         allowed >= 1.0
     }
 
-    /// Passes on what the page that acts says.
+    /// Passes inputs of the page that takes part on to the session.
     async fn act(&mut self, message: FromPage) -> Option<()> {
         let input = match message {
             FromPage::Press { number, button, at } => {
@@ -310,7 +313,7 @@ impl Talk {
                 }
                 PageInput::Press { button, at: self.hub.moment(at) }
             }
-            // A pointer that cannot be taken now is soon elsewhere.
+            // Pointer positions may be dropped, since newer ones follow at once.
             FromPage::Pointer { x, y } => {
                 let _ = self.hub.inputs.try_send(PageInput::Pointer { x, y });
                 return Some(());
@@ -329,7 +332,7 @@ impl Talk {
         self.hub.inputs.send(input).await.ok()
     }
 
-    /// Whether a press is a press of its own: not one that was said before, nor a contact that bounces.
+    /// Whether a press is a new one: neither a repeated message nor contact bounce of the button.
     fn is_new(&mut self, number: u64, button: &str, at: f64) -> bool {
         let bounces = self.last.as_ref().is_some_and(|(last, when)| last == button && (at - when).abs() < BOUNCE_MS);
         let is_new = number > self.pressed && !bounces;

@@ -1,21 +1,22 @@
-//! Check of the `Host` and `Origin` headers. A browser lets every website connect to this machine, but no website can change
-//! these two headers.
+//! Check of the `Host` and `Origin` headers of HTTP requests. A browser lets every website connect to this machine, but
+//! no website can change these two headers.
 
 use axum::http::{HeaderMap, HeaderName, Uri, header};
 
 use crate::edge::host_name::is_local;
 
-/// Whether a request is addressed to this server. Without a pairing code the host must be a loopback address or
-/// `localhost`: any other name that resolves to this machine, `127.evil.example` too, belongs to a foreign page (DNS
-/// rebinding). In the network the pairing code keeps foreign pages out.
+/// Whether an HTTP request is addressed to this server. Without a pairing code, the host must be a loopback address or
+/// `localhost`: any other name that resolves to this machine, such as `127.evil.example`, belongs to a foreign website
+/// (DNS rebinding). In the network, the pairing code keeps foreign websites out.
 pub(super) fn has_own_host(headers: &HeaderMap, target: &Uri, has_code: bool) -> bool {
     let Some(host) = single(headers, header::HOST) else { return false };
-    // A host in the request line takes precedence over the header (RFC 9112, section 3.2.2).
+    // A host in the HTTP request line takes precedence over the `Host` header (RFC 9112, section 3.2.2).
     let is_named_alike = target.authority().is_none_or(|authority| authority.as_str() == host);
     is_named_alike && (has_code || is_local(host))
 }
 
-/// Whether a request without `Origin`, or with the server's own, arrived. Browsers always send it when a page opens a WebSocket.
+/// Whether an HTTP request has no `Origin` header, or this server's own origin. Browsers always send the header when a
+/// page opens a WebSocket.
 pub(super) fn has_own_origin(headers: &HeaderMap) -> bool {
     if !headers.contains_key(header::ORIGIN) {
         return true;
@@ -24,7 +25,7 @@ pub(super) fn has_own_origin(headers: &HeaderMap) -> bool {
     origin.is_some() && origin == single(headers, header::HOST)
 }
 
-/// Value of a header that occurs exactly once. Two values are ambiguous.
+/// Value of an HTTP header that occurs exactly once; two values would be ambiguous.
 fn single(headers: &HeaderMap, name: HeaderName) -> Option<&str> {
     let mut values = headers.get_all(name).iter();
     match (values.next(), values.next()) {
@@ -52,7 +53,7 @@ mod tests {
         assert!(!is_own("localhost:50022", Some("https://localhost:50022"), false));
         assert!(!is_own("localhost:50022", Some("null"), false));
         assert!(!is_own("somewhere.example:50022", Some("http://somewhere.example:50022"), false));
-        // Names that only look like an address of this machine.
+        // Host names that only look like an address of this machine.
         for foreign in [
             "127.evil.example",
             "127.0.0.1.evil.example",

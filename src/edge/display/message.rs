@@ -1,4 +1,5 @@
-//! The messages between page and program, one JSON object each. Times are milliseconds on the server's clock.
+//! Messages between the participant's page and the program, one JSON object each. Times are milliseconds on the
+//! server's clock.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -9,103 +10,103 @@ use super::page_input::PageReply;
 use crate::display::{DisplayScene, DisplayUpdate, RobotPose};
 use crate::session::answer_value::AnswerValue;
 
-/// Longest message of a page, in bytes.
+/// Longest message of a participant page, in bytes.
 pub(super) const MAX_BYTES: usize = 4096;
-/// Longest text in a message.
+/// Longest name or other text in a page's message, in bytes.
 const MAX_TEXT: usize = 64;
-/// Most items of a stack.
+/// Largest number of items in a stack that a participant answers.
 const MAX_ITEMS: usize = 16;
-/// Longest answer in words, in characters.
+/// Longest typed answer, in characters.
 const MAX_ANSWER: usize = 500;
-/// Largest screen width or height, in pixels.
+/// Largest page width or height that is accepted, in pixels.
 const MAX_PIXELS: u32 = 100_000;
 
-/// A message of a page.
+/// A message from the participant's page to the program.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum FromPage {
-    /// First message.
+    /// First message of a page, with which it identifies itself.
     Hello {
-        /// The page's random name, which it keeps when it is loaded again.
+        /// Random name of the page, which it keeps when it is loaded again.
         page: String,
-        /// Width of the page in pixels.
+        /// Width of the participant's page in pixels.
         width: u32,
-        /// Height of the page in pixels.
+        /// Height of the participant's page in pixels.
         height: u32,
-        /// The pairing code that was entered.
+        /// Pairing code that was typed into the page.
         code: Option<String>,
-        /// It watched before: another page takes part, and may come back later than this one.
+        /// Whether the page only watched before it was reconnected, so that it leaves taking part to another page.
         #[serde(default)]
         waits: bool,
     },
-    /// New size of the page.
+    /// New size of the participant's page, after its window was resized.
     Size {
-        /// Width of the page in pixels.
+        /// Width of the participant's page in pixels.
         width: u32,
-        /// Height of the page in pixels.
+        /// Height of the participant's page in pixels.
         height: u32,
     },
-    /// A watching page asks to act.
+    /// A watching page asks to take part.
     TakePart,
-    /// A ping.
+    /// Ping of the page, to measure the round-trip time.
     Ping {
-        /// The page's time in milliseconds.
+        /// Time on the page's clock, in milliseconds.
         t: f64,
-        /// Its last round trip time in milliseconds.
+        /// Round-trip time of the page's previous ping, in milliseconds.
         took: Option<f64>,
-        /// Whether the page is hidden.
+        /// Whether the page is hidden, such as behind another browser tab.
         #[serde(default)]
         hidden: bool,
     },
-    /// A press.
+    /// A press of a kitchen button on the page.
     Press {
-        /// The press's number on this page, from 1.
+        /// Number of the press on this page, counted from 1.
         number: u64,
-        /// The button's name.
+        /// Name of the pressed button.
         button: String,
-        /// When, in milliseconds on the server's clock.
+        /// Time of the press, in milliseconds on the server's clock.
         at: f64,
     },
-    /// Position of the pointer.
+    /// Position of the mouse pointer on the page.
     Pointer {
-        /// Fraction of the display's width.
+        /// Horizontal position, as a fraction of the display's width.
         x: f64,
-        /// Fraction of the display's height, downwards.
+        /// Vertical position, as a fraction of the display's height, downwards.
         y: f64,
     },
-    /// The screen shows the event with this sequence number.
+    /// Report that the page has drawn the event with this sequence number.
     Drawn {
-        /// Sequence number of the event.
+        /// Sequence number of the event that was drawn.
         cue: u64,
-        /// When, in milliseconds on the server's clock.
+        /// Time of the drawing, in milliseconds on the server's clock.
         at: f64,
     },
-    /// A press had its effect on the screen.
+    /// Report that the effect of a press has been drawn.
     Redrawn {
-        /// Time from the press to the effect, in milliseconds.
+        /// Time from the press until its effect was drawn, in milliseconds.
         took: f64,
     },
-    /// What the participant does beside the task.
+    /// What the participant does on the page apart from the task: consent, answers, tutorial pages.
     #[serde(untagged)]
     Reply(PageReply),
 }
 
-/// A message to a page other than scene and sight.
+/// A message to the participant's page other than scene and state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub(super) enum ToPage {
-    /// Answer to a ping: the ping's time and the server's time.
+    /// Answer to a page's ping: the time in the ping, and the server's time.
     Pong { t: f64, at: f64 },
-    /// The words of the page.
+    /// Texts of the page in the participant's language.
     Words { words: BTreeMap<String, String> },
-    /// The page's role: acting, watching while another page acts, or free to act.
+    /// Role of the page: taking part, watching while another page takes part, or watching while it could take part.
     Role { acts: bool, free: bool },
-    /// "code": the pairing code is asked for; "wrong": it was not that; "locked": it was not looked at. After so many seconds
-    /// the next one is.
+    /// Result of pairing: "code" asks for the pairing code; "wrong" says that the code was wrong; "locked" says that it
+    /// was not checked, since too many wrong ones came before. After `wait_s` seconds the next code is checked.
     Pairing { why: &'static str, wait_s: u64 },
 }
 
-/// Parses a message; `None` if it is malformed.
+/// Parses a message of the page; `None` if it is malformed.
 pub fn read(text: &str) -> Option<FromPage> {
     let message: FromPage = serde_json::from_str(text).ok()?;
     let is_time = |ms: &f64| ms.is_finite() && ms.abs() < 1e13;
@@ -126,12 +127,12 @@ pub fn read(text: &str) -> Option<FromPage> {
     is_fine.then_some(message)
 }
 
-/// Whether a text names something.
+/// Whether a text can be a name: not empty, short, and without control characters.
 fn is_text(text: &str) -> bool {
     !text.is_empty() && text.len() <= MAX_TEXT && !text.chars().any(char::is_control)
 }
 
-/// Whether a reply is short enough to be looked at, with names and numbers that can be some.
+/// Whether a participant's reply has plausible lengths, names and numbers.
 fn is_reply(reply: &PageReply) -> bool {
     match reply {
         PageReply::Answer { item, answer } => is_text(item) && answer.as_ref().is_none_or(is_answer),
@@ -149,7 +150,7 @@ fn is_reply(reply: &PageReply) -> bool {
     }
 }
 
-/// Whether an answer is short enough to be looked at. Whether the item takes it, the session says.
+/// Whether an answer is short enough to be handled. The session decides whether the answer fits its questionnaire item.
 fn is_answer(answer: &AnswerValue) -> bool {
     let is_short = |text: &String| text.chars().count() <= MAX_ANSWER && !text.chars().any(char::is_control);
     match answer {
@@ -159,7 +160,7 @@ fn is_answer(answer: &AnswerValue) -> bool {
     }
 }
 
-/// The message with the static scene.
+/// The message with the static scene (layout of the kitchen on the display).
 pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
@@ -169,7 +170,8 @@ pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
     text(&Message { kind: "scene", scene })
 }
 
-/// The message with the present sight; during a probe also the seconds that it still has, and when that was on the server's clock.
+/// The message with the state that the display shows; during a freeze probe, also with the remaining seconds and the
+/// server time of that number.
 pub(super) fn sight(sight: &DisplayUpdate, left: Option<(f64, f64)>) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
@@ -184,7 +186,7 @@ pub(super) fn sight(sight: &DisplayUpdate, left: Option<(f64, f64)>) -> Arc<str>
     text(&Message { kind: "sight", sight, at, left_s })
 }
 
-/// The message with the robot's pose.
+/// The message to the page with the robot's pose.
 pub(super) fn robot(pose: &RobotPose) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
@@ -195,7 +197,7 @@ pub(super) fn robot(pose: &RobotPose) -> Arc<str> {
 }
 
 pub(super) fn text(message: &impl Serialize) -> Arc<str> {
-    // All messages have string keys, so serialisation cannot fail.
+    // Messages have only string keys, so serialisation cannot fail.
     Arc::from(serde_json::to_string(message).unwrap_or_default())
 }
 

@@ -1,7 +1,8 @@
-//! The participant's wall display: a page in a browser, served on its own thread, so that connections cannot delay the session.
+//! The participant's wall display: a page in a browser, served on its own thread, so that connections cannot delay the
+//! session.
 //!
-//! The page receives scene and sight as JSON over a WebSocket, and sends presses, answers and the pointer. One page acts, all others
-//! watch.
+//! The page receives scene and state as JSON over a WebSocket, and sends presses, answers and the pointer. One page
+//! takes part (acts), all others watch.
 
 mod connection;
 mod host_check;
@@ -31,10 +32,10 @@ use crate::display::{DisplayScene, DisplayUpdate, RobotPose};
 use crate::edge::outer_address::reachable;
 use crate::edge::pairing_code::pairing_code;
 
-/// Capacity of the queue of page inputs.
+/// Largest number of page inputs that wait for the session.
 const WAITING: usize = 1024;
 
-/// The running display: its address and its inputs. Dropping it stops the server.
+/// Server of the participant's display: its address and its inputs. Dropping it stops the server.
 pub struct Display {
     address: SocketAddr,
     code: Option<String>,
@@ -42,22 +43,23 @@ pub struct Display {
     screen: PageConnection,
 }
 
-/// Shared handle to the content and the state of the pages.
+/// Handle with which the program sends content to all pages of the display and reads their counters.
 #[derive(Clone)]
 pub struct PageConnection {
     scene: watch::Sender<Arc<str>>,
     sight: watch::Sender<Arc<str>>,
     robot: watch::Sender<Arc<str>>,
     status: Arc<DisplayStatus>,
-    /// Zero of the server's clock.
+    /// Instant at which the display server's clock was zero.
     began: Instant,
 }
 
 impl Display {
-    /// Serves the page at an address with these words. Addresses other than localhost need a pairing code.
+    /// Serves the participant's page at an address, with these texts. Addresses other than localhost need a pairing
+    /// code.
     ///
     /// # Errors
-    /// The address cannot be listened on.
+    /// The program cannot listen at the address.
     pub async fn open(listen: IpAddr, port: u16, words: &DisplayWords) -> io::Result<Display> {
         let listener = TcpListener::bind((listen, port)).await?;
         let address = listener.local_addr()?;
@@ -85,45 +87,46 @@ impl Display {
         Ok(Display { address, code, inputs, screen })
     }
 
-    /// Waits for the next input of the acting page.
+    /// Waits for the next input of the page that takes part.
     pub async fn next(&mut self) -> Option<PageInput> {
         self.inputs.recv().await
     }
 
-    /// URL of the page, such as "http://127.0.0.1:50022"; for a wildcard address, that of this machine in the network.
+    /// URL of the participant's page, such as "http://127.0.0.1:50022"; for a wildcard address, with this machine's
+    /// address in the network.
     pub fn url(&self) -> String {
         format!("http://{}", reachable(self.address))
     }
 
-    /// Pairing code, if the page needs one.
+    /// Pairing code that the page asks for, if it needs one.
     pub fn code(&self) -> Option<&str> {
         self.code.as_deref()
     }
 
-    /// Handle to the content of the pages.
+    /// Handle with which content is sent to the pages.
     pub fn screen(&self) -> PageConnection {
         self.screen.clone()
     }
 }
 
 impl PageConnection {
-    /// Sends a new scene to the pages.
+    /// Sends a new static scene to the pages.
     pub fn build(&self, scene: &DisplayScene) {
         self.scene.send_replace(message::scene(scene));
     }
 
-    /// Sends the present sight to the pages, with the time in seconds that a probe still has.
+    /// Sends the present state of the kitchen to the pages, with the remaining seconds of a freeze probe.
     pub fn show(&self, sight: &DisplayUpdate, left_s: Option<f64>) {
         let at_ms = self.began.elapsed().as_secs_f64() * 1000.0;
         self.sight.send_replace(message::sight(sight, left_s.map(|left_s| (at_ms, left_s))));
     }
 
-    /// Sends where the robot's hand is to the pages.
+    /// Sends the pose of the robot's hand to the pages.
     pub fn move_robot(&self, pose: &RobotPose) {
         self.robot.send_replace(message::robot(pose));
     }
 
-    /// Counters of the pages.
+    /// State and counters of the connected pages.
     pub fn counts(&self) -> DisplayCounts {
         self.status.counts()
     }

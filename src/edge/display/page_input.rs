@@ -1,4 +1,4 @@
-//! Inputs of the acting page for the session.
+//! Inputs to the session from the participant page that takes part.
 
 use std::time::Instant;
 
@@ -6,95 +6,96 @@ use serde::Deserialize;
 
 use crate::session::answer_value::AnswerValue;
 
-/// An input of the acting page.
+/// An input to the session from the participant page that takes part.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PageInput {
-    /// The page is connected, with this size in pixels.
+    /// A participant page is connected and takes part.
     Connected {
-        /// Width of the page in pixels.
+        /// Width of the participant's page in pixels.
         width_px: u32,
-        /// Height of the page in pixels.
+        /// Height of the participant's page in pixels.
         height_px: u32,
     },
-    /// The page is gone.
+    /// The participant's page is disconnected.
     Lost,
-    /// A press at this instant.
+    /// A press of a kitchen button on the participant's page.
     Press {
-        /// The button's name.
+        /// Name of the pressed kitchen button.
         button: String,
-        /// When, by this computer's clock.
+        /// Time of the press, on this computer's clock.
         at: Instant,
     },
-    /// Position of the pointer, in fractions of the display.
+    /// Position of the mouse pointer, in fractions of the display.
     Pointer {
-        /// Fraction of the display's width.
+        /// Horizontal position, as a fraction of the display's width.
         x: f64,
-        /// Fraction of the display's height, downwards.
+        /// Vertical position, as a fraction of the display's height, downwards.
         y: f64,
     },
-    /// What the participant does beside the task.
+    /// What the participant does on the page apart from the task: consent, answers, tutorial pages.
     Reply(PageReply),
-    /// The event with this sequence number was drawn at this instant.
+    /// Report that the page has drawn an event.
     Drawn {
-        /// Sequence number of the event.
+        /// Sequence number of the drawn event.
         cue: u64,
-        /// When, by this computer's clock.
+        /// Time of the drawing, on this computer's clock.
         at: Instant,
     },
 }
 
-/// What the participant does on the page beside the task: consents, answers a questionnaire or a probe, reads the tutorial.
+/// What the participant does on the page apart from the task: consents, answers a questionnaire or a freeze probe,
+/// reads the tutorial.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum PageReply {
-    /// Answer to a questionnaire item, or skipping it.
+    /// Answer to a questionnaire item, or leaving it unanswered.
     Answer {
-        /// The item's name.
+        /// Name of the questionnaire item.
         item: String,
-        /// The answer; none: left out.
+        /// The answer; `None` leaves the item unanswered.
         answer: Option<AnswerValue>,
     },
-    /// Going on to the next questionnaire item, or to all answers.
+    /// Going on to the next questionnaire item, or to the list of all answers.
     Next,
-    /// Return to a questionnaire item.
+    /// Return to an earlier questionnaire item.
     Back {
-        /// The item's name.
+        /// Name of the questionnaire item.
         item: String,
     },
-    /// The button of the consent was held for as long as the page asks.
+    /// Consent: the participant held its button for as long as the page asks.
     Consent,
-    /// Confirmation of all answers.
+    /// Confirmation of all questionnaire answers.
     Confirm,
-    /// Turning the page of the tutorial from this step.
+    /// Turning the tutorial's page forward or back.
     Turn {
-        /// The id of the step that is shown.
+        /// Id of the tutorial step that is shown.
         step: String,
-        /// To the next step; else to the one before.
+        /// Whether to go to the next step; else to the previous one.
         forward: bool,
     },
-    /// Answer to the question of a tutorial's step.
+    /// Answer to the question of a tutorial step.
     Choose {
-        /// The step's id.
+        /// Id of the tutorial step.
         step: String,
-        /// The choice, counted from 1.
+        /// Number of the chosen answer, counted from 1.
         choice: u8,
     },
-    /// The recipe cards of a tutorial's step were shown for their time.
+    /// The recipe cards of a tutorial step have been shown for their set time.
     CardsShown {
-        /// The step's id.
+        /// Id of the tutorial step.
         step: String,
     },
-    /// Answer to the question of a probe: a choice, or items that lie on one another; neither: "I don't know".
+    /// Answer to a freeze probe's question: a choice, or a stack of items; with neither, "I don't know".
     Believe {
-        /// Number of the probe.
+        /// Number of the freeze probe.
         probe: u32,
-        /// Number of the question, from 1.
+        /// Number of the question, counted from 1.
         question: u32,
-        /// Number of the choice, from 1.
+        /// Number of the chosen answer, counted from 1.
         choice: Option<u16>,
-        /// The items of a stack, by name.
+        /// Names of the items of which the answered stack consists.
         items: Vec<String>,
-        /// How sure the participant is, from 1 to 3, if that is asked.
+        /// How sure the participant is of the answer, from 1 to 3, if that is asked.
         sure: Option<u8>,
     },
 }

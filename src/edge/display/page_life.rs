@@ -1,35 +1,35 @@
-//! Detection of pages that are gone. A browser answers the server's pings by itself, even if its page hangs. The page's own
-//! messages come from timers, which browsers throttle to one per minute while the page is hidden.
+//! Detection of participant pages that are gone. A browser answers the server's pings by itself, even if its page
+//! hangs. The page's own messages come from timers, which browsers throttle to one per minute while the page is hidden.
 
 use std::time::{Duration, Instant};
 
-/// Interval of the server's pings.
+/// Interval of the server's pings to a page.
 const PING: Duration = Duration::from_secs(2);
-/// Silence after which a browser is gone.
+/// Silence of a browser (no answer to pings) after which it counts as gone.
 const SILENCE: Duration = Duration::from_secs(8);
-/// Time without a message after which a visible page hangs; it sends one per second.
+/// Time without a message after which a visible page counts as hanging; it sends one per second.
 const VISIBLE: Duration = Duration::from_secs(8);
-/// The same for a hidden page.
+/// Time without a message after which a hidden page counts as hanging.
 const HIDDEN: Duration = Duration::from_secs(90);
 
-/// Times of the last signs of life.
+/// Times of a participant page's last signs of life.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PageLife {
-    /// Arrival of the last frame of any kind, answers to pings included.
+    /// Arrival of the last WebSocket frame of any kind, answers to pings included.
     heard: Instant,
-    /// Arrival of the page's last own message.
+    /// Arrival of the last message that the page itself sent.
     spoke: Instant,
     pinged: Instant,
     is_hidden: bool,
 }
 
 impl PageLife {
-    /// A page that was heard just now.
+    /// Signs of life of a page that has just sent something.
     pub fn new(now: Instant) -> PageLife {
         PageLife { heard: now, spoke: now, pinged: now, is_hidden: false }
     }
 
-    /// Notes the arrival of a frame; `is_message` if the page itself sent it.
+    /// Records the arrival of a WebSocket frame; `is_message` says that the page itself sent it.
     pub fn heard(&mut self, now: Instant, is_message: bool) {
         self.heard = now;
         if is_message {
@@ -37,22 +37,22 @@ impl PageLife {
         }
     }
 
-    /// Notes whether the page is hidden.
+    /// Records whether the participant's page is hidden.
     pub fn hide(&mut self, is_hidden: bool) {
         self.is_hidden = is_hidden;
     }
 
-    /// A ping was sent to the page.
+    /// Records that a ping was sent to the page.
     pub fn pinged(&mut self, now: Instant) {
         self.pinged = now;
     }
 
-    /// Time of the next ping, or of giving the page up.
+    /// Time of the server's next ping, or of giving up the page.
     pub fn next(&self) -> Instant {
         (self.pinged + PING).min(self.gone_at())
     }
 
-    /// Nothing was heard of the page for too long.
+    /// Whether nothing was heard from the page for too long.
     pub fn is_gone(&self, now: Instant) -> bool {
         now >= self.gone_at()
     }
@@ -67,7 +67,7 @@ impl PageLife {
 mod tests {
     use super::*;
 
-    /// Seconds, of six hours, for which a page stays connected.
+    /// Seconds, out of six hours, for which a page stays connected.
     fn stays_s(answers: bool, is_hidden: bool, message_s: u64) -> u64 {
         let start = Instant::now();
         let mut life = PageLife::new(start);

@@ -1,4 +1,4 @@
-//! The display's server: the page's files, and the WebSocket.
+//! Web server of the participant's display: the files of the page, and the WebSocket.
 
 use std::convert::Infallible;
 use std::io;
@@ -26,21 +26,21 @@ use super::server_state::ServerState;
 use super::status::count;
 use crate::edge::connection_table::ConnectionPlace;
 
-/// Content security policy: the page loads nothing from elsewhere and must not be framed.
+/// Content security policy: the page loads nothing from other servers and must not be framed.
 const POLICY: &str = "default-src 'self'; connect-src 'self' ws:; img-src data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
-/// Time limit for the head of a request.
+/// Time limit for receiving the head of an HTTP request.
 const HEADER: Duration = Duration::from_secs(5);
-/// Time limit for request and response together.
+/// Time limit for an HTTP request and its response together.
 const ANSWER: Duration = Duration::from_secs(30);
-/// Longest head of a request, in bytes.
+/// Longest head of an HTTP request, in bytes.
 const MAX_REQUEST: usize = 16 * 1024;
-/// Pause after an error of `accept`.
+/// Pause after an error while accepting connections.
 const AGAIN: Duration = Duration::from_millis(100);
 
-/// Body of a refusal, for somebody who opened the page by another host name.
+/// Response to somebody who opened the page by another host name.
 const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
-/// Files of the page: path, content type, text.
+/// Files of the participant's page: path, content type, content.
 const FILES: [(&str, &str, &str); 11] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
@@ -55,10 +55,10 @@ const FILES: [(&str, &str, &str); 11] = [
     ("/art.js", "text/javascript; charset=utf-8", include_str!("page/art.js")),
 ];
 
-/// The router as a service of hyper.
+/// The router of HTTP requests, as a service of the `hyper` crate.
 type Answers = TowerToHyperService<Router>;
 
-/// Serves until the receiver of inputs is dropped.
+/// Serves the display until the receiver of page inputs is dropped.
 pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> io::Result<()> {
     let listener = TcpListener::from_std(listener)?;
     let hub = Arc::new(hub);
@@ -74,18 +74,18 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> 
     }
     let answers = TowerToHyperService::new(router.with_state(hub.clone()));
     let inputs = hub.inputs.clone();
-    // The session is over: its connections end with it, without waiting for what they may still say.
+    // At the end of the session its connections are closed, without waiting for further messages.
     tokio::select! {
         () = take_connections(listener, hub, answers) => Ok(()),
         () = inputs.closed() => Ok(()),
     }
 }
 
-/// Accepts connections without end.
+/// Accepts network connections until the server stops.
 async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers: Answers) {
     loop {
         let Ok((stream, from)) = listener.accept().await else {
-            // The process may be out of descriptors: the pause prevents a busy loop.
+            // The process may have run out of file descriptors: the pause prevents a busy loop.
             sleep(AGAIN).await;
             continue;
         };
@@ -94,7 +94,7 @@ async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers:
             count(&hub.status.refused);
         }
         let Some(arrival) = arrival else { continue };
-        // A press is a small message: it must not wait for a larger one.
+        // Small messages such as presses are sent at once (no Nagle delay).
         let _ = stream.set_nodelay(true);
         tokio::spawn(answer(stream, Arc::new(arrival.place), hub.clone(), answers.clone()));
         // The new connection's request is read before further connections can replace it.
@@ -102,7 +102,8 @@ async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers:
     }
 }
 
-/// Answers one request. A WebSocket that it opens continues in a task of its own; other connections are then closed.
+/// Answers one HTTP request. A WebSocket that the request opens continues in a task of its own; other connections are
+/// then closed.
 async fn answer(stream: TcpStream, place: Arc<ConnectionPlace>, hub: Arc<ServerState>, answers: Answers) {
     let shared = place.clone();
     let service = service_fn(move |mut request: Request<Incoming>| {
@@ -116,13 +117,13 @@ async fn answer(stream: TcpStream, place: Arc<ConnectionPlace>, hub: Arc<ServerS
     http.timer(TokioTimer::new()).header_read_timeout(HEADER).keep_alive(false).max_buf_size(MAX_REQUEST);
     let served = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
     tokio::select! {
-        // Errors and time-outs close the connection as success does.
+        // Errors and time-outs close the connection in the same way as success does.
         _ = timeout(ANSWER, served) => {}
         () = place.closed() => {}
     }
 }
 
-/// Lets a page connect: of this server, and of no other that a browser may have open.
+/// Opens the WebSocket of a page of this server; pages of other websites in the browser are refused.
 async fn connect(
     State(hub): State<Arc<ServerState>>,
     Extension(place): Extension<Arc<ConnectionPlace>>,

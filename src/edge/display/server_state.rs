@@ -1,4 +1,4 @@
-//! State that all connections of the display share.
+//! State that all connections of the participant's display share.
 
 use std::collections::BTreeMap;
 use std::net::IpAddr;
@@ -13,44 +13,44 @@ use super::status::DisplayStatus;
 use crate::edge::connection_table::{ConnectionLimits, ConnectionTable};
 use crate::edge::pairing::{PairingDesk, PairingVerdict};
 
-/// Limits of the display's server. Far fewer connections are admitted as watching pages than can be open, so that a new page
-/// always has room for its handshake. The acting page is reserved and not counted.
+/// Limits for connections to the display's server. Far fewer connections are admitted as watching pages than can be
+/// open, so that a new page always has room for its handshake. The page that takes part is reserved and not counted.
 const LIMITS: ConnectionLimits = ConnectionLimits {
     most: 256,
     per_address: 128,
     admitted: 96,
     admitted_per_address: 32,
-    // The connection of a page that is silent for so long has been closed already.
+    // A page that is silent for this long has already been disconnected.
     silence: Duration::from_secs(90),
 };
 
-/// What the pages are told, each the newest message.
+/// Messages for the pages: of each kind, the newest one.
 #[derive(Clone)]
 pub(super) struct PageFeed {
     pub scene: watch::Receiver<Arc<str>>,
     pub sight: watch::Receiver<Arc<str>>,
-    /// Where the robot's hand is.
+    /// Pose of the robot's hand.
     pub robot: watch::Receiver<Arc<str>>,
 }
 
-/// State that all connections share.
+/// State that all connections of the participant's display share.
 pub(super) struct ServerState {
-    /// Pairing code and attempts at it; `None` if no code is asked for.
+    /// Pairing code and attempts at it; `None` if no code is required.
     pairing: Option<Mutex<PairingDesk>>,
-    /// Words of the page by key.
+    /// Texts of the participant's page, by key.
     pub words: BTreeMap<String, String>,
     pub inputs: Sender<PageInput>,
-    /// What the pages are told.
+    /// Messages for the participant's pages.
     pub told: PageFeed,
     pub status: Arc<DisplayStatus>,
-    /// Number of the acting connection and name of its page.
+    /// Connection number and page name of the page that takes part.
     pub acting: watch::Sender<Option<(u64, String)>>,
     pub connections: Arc<ConnectionTable>,
     began: Instant,
 }
 
 impl ServerState {
-    /// The state of a server that nobody is connected to yet; its clock begins at `began`.
+    /// State of a display server without connections; its clock is zero at `began`.
     pub fn new(
         code: Option<String>,
         words: BTreeMap<String, String>,
@@ -63,12 +63,12 @@ impl ServerState {
         ServerState { pairing, words, inputs, told, status, acting, connections, began }
     }
 
-    /// Whether pages have to pair.
+    /// Whether participant pages need a pairing code.
     pub fn has_code(&self) -> bool {
         self.pairing.is_some()
     }
 
-    /// Checks a typed code. Attempts of all connections are checked one after another.
+    /// Checks a pairing code that was typed into a page. Attempts of all connections are checked one after another.
     pub fn pair(&self, address: IpAddr, page: &str, typed: &str) -> PairingVerdict {
         match &self.pairing {
             Some(desk) => {
@@ -79,14 +79,15 @@ impl ServerState {
         }
     }
 
-    /// The server's clock, in milliseconds.
+    /// Time on the display server's clock, in milliseconds.
     pub fn now_ms(&self) -> f64 {
         self.began.elapsed().as_secs_f64() * 1000.0
     }
 
-    /// The instant of a time on the server's clock, bounded to the last 2 s: a page's times are not trusted further.
+    /// Instant of a time on the server's clock. Times of pages are trusted only within the last 2 s, and else set to
+    /// that range.
     pub fn moment(&self, at_ms: f64) -> Instant {
-        /// Longest delay of a press on its way, in milliseconds.
+        /// Longest delay of a press between page and server, in milliseconds.
         const OLDEST_MS: f64 = 2000.0;
         let now = Instant::now();
         let age_ms = (self.now_ms() - at_ms).clamp(0.0, OLDEST_MS);

@@ -1,31 +1,31 @@
-//! State and counters of the pages, written by the server and read by the session.
+//! State and counters of the participant's pages, written by the server and read by the session.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// State of the acting page.
+/// State of the participant page that takes part.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ActivePage {
-    /// Width in pixels.
+    /// Width of the participant's page in pixels.
     pub width_px: u32,
-    /// Height in pixels.
+    /// Height of the participant's page in pixels.
     pub height_px: u32,
-    /// Last measured round trip time, in milliseconds.
+    /// Last measured round-trip time between page and server, in milliseconds.
     pub round_trip_ms: Option<f64>,
-    /// Time from the last press to its effect on the screen, in milliseconds.
+    /// Time from the last press until its effect was drawn, in milliseconds.
     pub redraw_ms: Option<f64>,
 }
 
-/// Counters so far.
+/// State and counters of the participant's pages.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DisplayCounts {
-    /// The page that acts, if there is one.
+    /// State of the page that takes part, if there is one.
     pub page: Option<ActivePage>,
-    /// Number of watching pages.
+    /// Number of participant pages that only watch.
     pub watching: u64,
-    /// Number of malformed messages.
+    /// Number of malformed messages from pages.
     pub malformed: u64,
-    /// Number of refused pages and messages: wrong code, too many, too fast, or from a watching page.
+    /// Number of refused pages and messages: wrong pairing code, too many, too fast, or from a watching page.
     pub refused: u64,
 }
 
@@ -38,7 +38,7 @@ pub(super) struct DisplayStatus {
 }
 
 impl DisplayStatus {
-    /// What was counted so far.
+    /// The present state and counters of the participant's pages.
     pub fn counts(&self) -> DisplayCounts {
         let page = *self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         DisplayCounts {
@@ -49,13 +49,13 @@ impl DisplayStatus {
         }
     }
 
-    /// Updates the state of the acting page.
+    /// Updates the state of the page that takes part.
     pub fn page(&self, change: impl FnOnce(&mut Option<ActivePage>)) {
         change(&mut self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner));
     }
 }
 
-/// Increments a counter.
+/// Adds 1 to a counter.
 pub(super) fn count(counter: &AtomicU64) {
     counter.fetch_add(1, Ordering::Relaxed);
 }

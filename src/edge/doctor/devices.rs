@@ -1,5 +1,5 @@
-//! Checks of the participant's page and of the gaze sources. Sources that the session does not use are checked at their default
-//! places and never fail.
+//! Checks of the participant's page and of the gaze sources for `tomcom doctor`. Sources that the session does not use
+//! are checked at their default addresses and never fail.
 
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
@@ -15,10 +15,11 @@ use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use crate::session::tracker::TrackerSpec;
 
-/// Corners of a surface that covers the whole display: reading a file does not depend on the tags.
+/// Corners of a surface that covers the whole display, since the check of a gaze file does not depend on the display's
+/// markers.
 const WHOLE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
-/// How long streams of the Lab Streaming Layer are looked for, and their channels, in seconds.
+/// Time limit for finding streams of the Lab Streaming Layer and for reading their channels, in seconds.
 const STREAM_S: f64 = 3.0;
 
 /// Checks whether the participant's page can be served.
@@ -45,7 +46,8 @@ pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
     }
 }
 
-/// Result for a missing device: a failure if the session uses it, else a remark about the option that would use it.
+/// Result for a missing device: a failure if the session uses it, else a remark that names the option that would use
+/// it.
 fn missing(is_used: bool, name: &str, found: String, flag: &str, remedy: &str) -> PreflightCheck {
     match is_used {
         true => PreflightCheck::new(name, PreflightVerdict::Failed, found, remedy),
@@ -85,20 +87,21 @@ fn lines(spec: &ParticipantSpec) -> PreflightCheck {
     }
 }
 
-/// Checks whether there is a library of the Lab Streaming Layer.
+/// Checks whether a library of the Lab Streaming Layer can be loaded.
 pub(super) fn lsl(spec: &SessionSpec) -> PreflightCheck {
     match lsl::load(spec.lsl.as_ref()) {
         Ok(library) => {
             PreflightCheck::ok("lsl", format!("liblsl {:.2} can be loaded", f64::from(library.version) / 100.0))
         }
         Err(error) => {
-            // The reasons of the system's loader are long.
+            // Error texts of the operating system's loader are long.
             missing(spec.uses_lsl(), "lsl", printable(&error.to_string()).into_owned(), "[lsl]", error.remedy())
         }
     }
 }
 
-/// Checks whether the stream of gaze is there, and lists those that are, with their channels.
+/// Checks whether the session's gaze stream is offered by the Lab Streaming Layer, and lists the available streams with
+/// their channels.
 fn stream(spec: &SessionSpec) -> PreflightCheck {
     let Some(wanted) = spec.lsl.as_ref().and_then(|lsl| lsl.gaze.as_ref()) else {
         return PreflightCheck::new(
@@ -141,7 +144,7 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
     PreflightCheck::new("gaze", PreflightVerdict::Failed, found, "start what sends it; name and type under [lsl.gaze]")
 }
 
-/// Checks whether a gaze file can be replayed.
+/// Checks whether the session's gaze file can be replayed.
 fn file(tracker: &TrackerSpec) -> PreflightCheck {
     let path = tracker.file.as_deref().unwrap_or_default();
     let remedy =
@@ -156,7 +159,7 @@ fn file(tracker: &TrackerSpec) -> PreflightCheck {
     }
 }
 
-/// Remedy of a file error.
+/// The remedy that a file error names.
 fn told(error: &FileError) -> String {
     match error {
         FileError::Unreadable { remedy, .. } | FileError::Unfit { remedy, .. } | FileError::Wrong { remedy, .. } => {

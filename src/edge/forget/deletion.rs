@@ -1,4 +1,5 @@
-//! Deletes what was found of a participant. Whatever can fail without a change is tried first.
+//! Deletes the data of a participant that were found (`tomcom forget`). Every step that can fail is tried first without
+//! changing anything.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -11,37 +12,38 @@ use crate::analysis::training_record::TrainingRecord;
 use crate::edge::file_error::FileError;
 use crate::edge::log::{LOG_NAME, RecordingLock, SETTINGS_NAME, WriteError};
 
-/// Why nothing of a participant was deleted.
+/// Why no data of a participant were deleted.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ForgetError {
-    /// A recording is being written, or its folder cannot be written to.
+    /// A recording of the participant is being written, or its folder cannot be written to.
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
     Recording(WriteError),
-    /// A file cannot be read.
+    /// A file with possible data of the participant cannot be read.
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
     File(Box<FileError>),
-    /// A file cannot be deleted or written anew.
+    /// A file with data of the participant cannot be deleted or rewritten.
     #[error("nothing was deleted: {}: cannot be deleted or written anew: {reason}", path.display())]
     #[diagnostic(help("the right to write to its folder, on a disk with free space"))]
     Unwritable {
-        /// The file or folder.
+        /// File or folder that cannot be deleted or rewritten.
         path: PathBuf,
-        /// Why not.
+        /// Why the file or folder cannot be deleted or rewritten.
         reason: io::Error,
     },
-    /// Files have changed since they were listed.
+    /// Files have changed since the participant's data were listed.
     #[error("nothing was deleted: files in {} have changed since they were listed", folder.display())]
     #[diagnostic(help("run the command again, when nothing else writes there"))]
     Changed {
-        /// The folder that they are in.
+        /// Folder with files that have changed.
         folder: PathBuf,
     },
 }
 
-/// Deletes what was found. What could not be deleted in the end is told as left. Nothing is deleted if one of the recordings
-/// is being written, if something has changed since it was found, or if a folder cannot be written to.
+/// Deletes the participant's data that were found. Files that could not be deleted in the end are listed as left.
+/// Nothing is deleted if one of the recordings is being written, if a file has changed since it was found, or if a
+/// folder cannot be written to.
 ///
 /// # Errors
 /// Nothing was deleted, for one of these reasons.
@@ -65,14 +67,14 @@ pub fn delete(found: ParticipantData) -> Result<ParticipantData, ForgetError> {
         replacements.push(Replacement::begin(path, rewrite).map_err(unwritable(path))?);
     }
     for path in &found.files {
-        // Whether the folder can be written to is known when something was written there.
+        // Whether a folder can be written to is only known after writing a file there.
         Replacement::begin(path, |_| Ok(())).map_err(unwritable(path))?;
     }
     Ok(commit(found, replacements, locks))
 }
 
-/// Puts the new files in their places, and deletes the rest: the recordings last, since their names are what other files are
-/// known by if the command has to be run again.
+/// Moves the new files into place, and deletes all others. Recordings are deleted last, since other files are
+/// recognised by their names if the command has to be run again.
 fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<RecordingLock>) -> ParticipantData {
     let mut done =
         ParticipantData { recording_files: Vec::new(), files: Vec::new(), left: Vec::new(), ..found.clone() };
@@ -96,7 +98,8 @@ fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<Rec
             done.files.push(path);
         }
     }
-    // Log and settings of a recording say whose it is if the rest cannot be deleted.
+    // A recording's log and settings are deleted last, since they tell whose recording it is if another file cannot be
+    // deleted.
     let (known_by, mut files): (Vec<PathBuf>, Vec<PathBuf>) =
         found.recording_files.into_iter().partition(|path| path.ends_with(LOG_NAME) || path.ends_with(SETTINGS_NAME));
     files.extend(known_by);
@@ -111,10 +114,10 @@ fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<Rec
             false => done.recording_files.push(path),
         }
     }
-    // The lock of a recording is a file in its folder.
+    // The lock of a recording is a file in its folder, so locks are released before folders are removed.
     drop(locks);
     for folder in found.folders.iter().rev() {
-        // Those with something in them stay: that is told as left, or is of somebody else.
+        // Folders that are not empty stay: their files are listed as left, or belong to somebody else.
         let _ = fs::remove_dir(folder);
     }
     done.recording_files.sort();
@@ -122,7 +125,7 @@ fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<Rec
     ParticipantData { left, ..done }
 }
 
-/// A new file beside the one that it is to replace. It is removed if it is not put in its place.
+/// A new file beside the one that it is to replace. It is removed again unless it is moved into place.
 struct Replacement {
     new: PathBuf,
     path: PathBuf,
@@ -130,7 +133,7 @@ struct Replacement {
 }
 
 impl Replacement {
-    /// Writes the new content beside a file.
+    /// Writes the new content of a file to another file beside it.
     fn begin(path: &Path, write: impl FnOnce(&mut File) -> io::Result<()>) -> io::Result<Replacement> {
         let mut name = path.file_name().unwrap_or_default().to_os_string();
         name.push(format!(".tomcom-{}.new", std::process::id()));
@@ -153,13 +156,13 @@ impl Replacement {
 impl Drop for Replacement {
     fn drop(&mut self) {
         if !self.is_put {
-            // Left behind it is a copy without the participant.
+            // If removal fails, the file left behind contains nothing of the participant.
             let _ = fs::remove_file(&self.new);
         }
     }
 }
 
-/// Copies a file without these bytes.
+/// Copies a file without these byte ranges.
 fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut File) -> io::Result<()> {
     let mut old = File::open(path)?;
     let mut from = 0;
@@ -170,7 +173,7 @@ fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut File) -> io::Result<(
     io::copy(&mut old, new).map(drop)
 }
 
-/// Writes a record of training without the participant's recordings.
+/// Writes a wizard's training record without the participant's recordings.
 fn write_others(path: &Path, found: &ParticipantData, new: &mut File) -> io::Result<()> {
     let record = training(path)?.ok_or_else(|| io::Error::other("it is no record of training any more"))?;
     let record = TrainingRecord { recordings: others(&record, &found.subject), ..record };

@@ -1,4 +1,4 @@
-//! Whose recording a folder holds.
+//! Which participant the recording in a folder belongs to.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader};
@@ -10,23 +10,23 @@ use crate::edge::log::{LOCK_NAME, LOG_NAME, RRD_NAME, SETTINGS_NAME, is_written_
 use crate::edge::stream_head;
 use crate::session::header::FORMAT;
 
-/// Whose recording a folder holds.
+/// Which participant the recording in a folder belongs to.
 pub(super) enum RecordingOwner {
     Participant {
         code: String,
-        /// When it began, as the identity of a stream says it; none without a readable header.
+        /// Begin of the recording, as the identity of a stream states it; `None` without a readable header.
         began: Option<String>,
     },
-    /// A recording that does not say whose it is, with the reason.
+    /// A recording whose participant cannot be determined, with the reason.
     Unknown(&'static str),
     NoRecording,
 }
 
-/// What the first line of a log is.
+/// Content of the first line of a log.
 enum FirstLine {
-    /// There is no log.
+    /// The folder contains no log.
     Missing,
-    /// It is of another program.
+    /// The first line belongs to a log of another program.
     Foreign,
     Damaged,
     Header {
@@ -36,8 +36,9 @@ enum FirstLine {
 }
 
 impl RecordingOwner {
-    /// Reads the header of the folder's log. Where that is damaged or gone, the settings beside it say the code. A session file
-    /// alone is a recording only if this program wrote it, which a kill before the log leaves behind.
+    /// Determines the owner of the recording in a folder from the header of its log. If the header is damaged or the
+    /// log is gone, the settings beside it tell the participant's code. A settings file alone counts as a recording
+    /// only if this program wrote it: a program that is killed before it writes the log leaves one behind.
     pub(super) fn read(folder: &Path) -> RecordingOwner {
         let settings = || read_settings(folder);
         match first_line(folder) {
@@ -68,8 +69,8 @@ impl RecordingOwner {
     }
 }
 
-/// Whether there is a plain file at this path: what a symbolic link leads to is left alone, and opening a named pipe would wait
-/// for its other end.
+/// Whether this path is a regular file: the targets of symbolic links are left alone, and opening a named pipe would
+/// block.
 fn is_file(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|data| data.is_file())
 }
@@ -85,7 +86,7 @@ fn first_line(folder: &Path) -> FirstLine {
         return FirstLine::Damaged;
     };
     if header.get("format").and_then(Value::as_str) != Some(FORMAT) {
-        // An event: the header before it is lost.
+        // The first line is an event, so the header before it is lost.
         let is_event = header.contains_key("seq") && header.contains_key("t_ns");
         return if is_event { FirstLine::Damaged } else { FirstLine::Foreign };
     }
@@ -101,7 +102,8 @@ fn first_line(folder: &Path) -> FirstLine {
     code.map_or(FirstLine::Damaged, |code| FirstLine::Header { code: code.to_string(), began })
 }
 
-/// The code in the settings of a folder, and whether this program wrote them: it writes all settings and nothing else.
+/// The participant's code in the settings of a folder, and whether this program wrote the settings: it writes all of
+/// them and nothing else.
 fn read_settings(folder: &Path) -> Option<(String, bool)> {
     let path = folder.join(SETTINGS_NAME);
     let text = is_file(&path).then(|| fs::read_to_string(path).ok()).flatten()?;

@@ -1,4 +1,4 @@
-//! What there is about a participant below a folder.
+//! Everything that a folder contains about one participant.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,49 +18,50 @@ use crate::edge::stream_head;
 use crate::edge::written_tables::table_named;
 use crate::study::report::page_head;
 
-/// No report, and no record of training, is longer, in bytes.
+/// Largest size of a report or a training record, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// What there is about a code.
+/// Everything that a folder contains about one participant code.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParticipantData {
-    /// The participant's code.
+    /// Code of the participant whose data are to be deleted.
     pub code: String,
-    /// The folder that was searched.
+    /// Folder that was searched for data of the participant.
     pub root: PathBuf,
     /// The system's folder for temporary files, which was searched as well.
     pub temporary: PathBuf,
-    /// Folders of recordings, their later parts among them.
+    /// Folders of the participant's recordings, including later parts of continued recordings.
     pub recordings: Vec<PathBuf>,
-    /// The files in these folders that are deleted.
+    /// Files in the folders of the participant's recordings that are deleted.
     pub recording_files: Vec<PathBuf>,
-    /// Other files that are deleted as a whole.
+    /// Other files about the participant that are deleted as a whole.
     pub files: Vec<PathBuf>,
-    /// CSV tables about several participants, each with the number of its rows that are deleted.
+    /// CSV tables about several participants, each with the number of rows that are deleted.
     pub tables: Vec<(PathBuf, u64)>,
-    /// Records of a wizard's training from which these recordings are deleted.
+    /// Training records of wizards from which the participant's recordings are deleted.
     pub trainings: Vec<PathBuf>,
-    /// What is or may be about the participant and stays, with the reason.
+    /// Files that are or may be about the participant and stay, with the reason.
     pub left: Vec<LeftFile>,
-    /// Where the rows of each table are, in bytes.
+    /// Byte ranges of the participant's rows in each table.
     pub(super) cuts: BTreeMap<PathBuf, Vec<Range<u64>>>,
-    /// Folders that are removed if nothing is in them afterwards, each after the one that it is in.
+    /// Folders that are removed if they are empty afterwards, each after the one that contains it.
     pub(super) folders: Vec<PathBuf>,
     pub(super) subject: ForgetSubject,
 }
 
 impl ParticipantData {
-    /// Whether nothing can be deleted. There may be something that is left.
+    /// Whether there is nothing to delete; there may still be files that are left.
     pub fn is_empty(&self) -> bool {
         self.recording_files.is_empty() && self.files.is_empty() && self.tables.is_empty() && self.trainings.is_empty()
     }
 }
 
-/// Looks for everything with this code below a folder, and for what was saved from that folder, or made of recordings in it,
-/// in `temporary`, the system's folder for temporary files. Session files, and what symbolic links lead to, are left alone.
+/// Looks for everything about this code below a folder, and in `temporary`, the system's folder for temporary files,
+/// for recordings that were rescued from that folder and for streams made from its recordings. Session files and the
+/// targets of symbolic links are left alone.
 ///
 /// # Errors
-/// The folder cannot be read. What cannot be read in it is left.
+/// The folder cannot be read. Unreadable files in it are listed as left.
 pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<ParticipantData> {
     let mut walk = ForgetWalk::through(root, temporary, code)?;
     let folders = std::mem::take(&mut walk.folders);
@@ -98,7 +99,8 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
         look.close();
     }
     found.left.append(&mut walk.left);
-    // The settings of a recording say whose its folder is, as long as something else of the participant is in there.
+    // A recording's settings tell whose its folder is, so they stay as long as another file of the participant stays
+    // there.
     let is_occupied =
         |folder: &Path| found.left.iter().any(|left| left.path != folder && left.path.starts_with(folder));
     let (kept, deleted): (Vec<PathBuf>, Vec<PathBuf>) = walk
@@ -113,18 +115,18 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
     Ok(found)
 }
 
-/// A look at the files of one folder.
+/// Search for data of the participant in the files of one folder.
 struct FolderLook<'a> {
     tables: &'a FolderTables,
-    /// It is in the folder of a recording of the participant.
+    /// Whether the folder is, or is inside, the folder of one of the participant's recordings.
     is_own: bool,
-    /// Tables with rows of the participant.
+    /// Tables with rows of the participant, and the byte ranges of the rows.
     cuts: Vec<(PathBuf, Vec<Range<u64>>)>,
     found: &'a mut ParticipantData,
 }
 
 impl FolderLook<'_> {
-    /// Takes a file up, if something of the participant is in it. Whether it is known what it is.
+    /// Adds a file to the results if it contains data of the participant. Returns whether the kind of file is known.
     fn at(&mut self, path: &Path) -> io::Result<bool> {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -151,7 +153,7 @@ impl FolderLook<'_> {
         let is_dictionary = path.ends_with("dictionary.csv");
         match self.tables.look_at(path, &self.found.subject)? {
             TableMatch::Nothing => return Ok(false),
-            // Of an analysis of the participant alone nothing remains.
+            // Tables of an analysis of this participant alone are deleted as a whole.
             TableMatch::Own { kept, .. } if self.is_own && (kept == 0 || is_dictionary) => {
                 self.found.files.push(path.to_path_buf());
             }
@@ -203,8 +205,8 @@ impl FolderLook<'_> {
         Ok(true)
     }
 
-    /// Takes up the tables of the folder: all of them that name the participant, or none. The table of trials says whose the
-    /// recordings in the others are, so it is no use to change it as long as one of those stays.
+    /// Adds the tables of the folder to the results: all that name the participant, or none. The table of trials tells
+    /// whose the recordings in the other tables are, so it must not be changed while one of those stays.
     fn close(self) {
         let is_study_table = |path: &Path| {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -231,18 +233,18 @@ impl FolderLook<'_> {
     }
 }
 
-/// The recordings of other participants that a wizard judged in the same training.
+/// Recordings of other participants in the same training record of a wizard.
 pub(super) fn others(record: &TrainingRecord, subject: &ForgetSubject) -> Vec<JudgedRecording> {
     let is_other = |one: &&JudgedRecording| subject.recording(&one.recording) != NamedPerson::Subject;
     record.recordings.iter().filter(is_other).cloned().collect()
 }
 
-/// The record of training in a file; none where there is anything else.
+/// The training record in a file; `None` if the file is anything else.
 pub(super) fn training(path: &Path) -> io::Result<Option<TrainingRecord>> {
     Ok(read_small(path)?.and_then(|bytes| serde_json::from_slice(&bytes).ok()))
 }
 
-/// The content of a file; none where it is too long for what this program writes.
+/// The content of a file; `None` if it is longer than any report or training record.
 fn read_small(path: &Path) -> io::Result<Option<Vec<u8>>> {
     match fs::metadata(path)?.len() {
         ..=MAX_BYTES => fs::read(path).map(Some),

@@ -1,4 +1,5 @@
-//! Rows of tables (CSV) that are about the participant. Tables are read as bytes: what is no UTF-8 stays as it is.
+//! Rows of CSV tables that are about the participant. Tables are read as bytes, so that text that is not UTF-8 stays as
+//! it is.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -14,32 +15,32 @@ use crate::edge::log::rater_codes::EXPORT_COLUMNS;
 use crate::edge::written_tables::{WrittenTables, reader, records};
 use crate::study::column::Table;
 
-/// Why a table is left that names a recording of which there are several.
+/// Why a table is left if it names a recording whose name several people's recordings share.
 const AMBIGUOUS: &str = "it names a recording, and recordings of several people in different folders have this name; \
                          tomcom forget --in the folder with one of them, or delete the rows by hand";
-/// What to do with a table that this program does not change.
+/// Advice for a table that this program does not change.
 const REMEDY: &str = "make it anew with tomcom study or tomcom codes --export, or delete it";
 
-/// What a table says of the participant.
+/// What a table contains about the participant.
 #[derive(Debug)]
 pub(super) enum TableMatch {
-    /// Nothing, as far as it can be told.
+    /// Nothing about the participant, as far as can be determined.
     Nothing,
-    /// A table that this program wrote: where the participant's rows are, in bytes, and how many other rows there are.
+    /// A table that this program wrote: byte ranges of the participant's rows, and number of other rows.
     Own { cut: Vec<Range<u64>>, kept: u64 },
-    /// It names the participant and stays as it is, for this reason.
+    /// The table names the participant but stays as it is, for this reason.
     Unclear(String),
 }
 
-/// What the tables of one folder say about each other.
+/// What the tables of one folder tell about each other: the data dictionary, and the table of trials.
 #[derive(Debug)]
 pub(super) struct FolderTables {
     written: WrittenTables,
-    /// By the folder's table of trials: whose each recording is.
+    /// Whose each recording is, according to the folder's table of trials.
     recordings: BTreeMap<Vec<u8>, NamedPerson>,
 }
 
-/// Where a table names the participant, and where the recording.
+/// Columns of a table that name the participant and the recording.
 #[derive(Clone, Copy)]
 struct KeyColumns {
     participant: Option<usize>,
@@ -54,10 +55,10 @@ impl KeyColumns {
 }
 
 impl FolderTables {
-    /// Reads the dictionary and the table of trials in a folder; what is not there says nothing.
+    /// Reads the data dictionary and the table of trials of a folder, if they exist.
     ///
     /// # Errors
-    /// One of them is there, and cannot be read.
+    /// One of them exists but cannot be read.
     pub fn read(folder: &Path, subject: &ForgetSubject) -> io::Result<FolderTables> {
         let mut tables = FolderTables { written: WrittenTables::read(folder)?, recordings: BTreeMap::new() };
         let trials = records(&folder.join("trials.csv"))?;
@@ -84,11 +85,10 @@ impl FolderTables {
         self.recordings.values().any(|&whose| whose != NamedPerson::Other)
     }
 
-    /// Looks for rows of the participant in a table, by the column that names the participant, else by the one that names
-    /// the recording.
+    /// Looks for rows of the participant in a table, by the column that names the participant, or else the recording.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// The table cannot be read.
     pub fn look_at(&self, path: &Path, subject: &ForgetSubject) -> io::Result<TableMatch> {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let mut table = reader(File::open(path)?);
@@ -110,11 +110,13 @@ impl FolderTables {
     ) -> io::Result<TableMatch> {
         let key = KeyColumns::new(header.iter());
         let (mut cut, mut kept, mut row) = (Vec::new(), 0, ByteRecord::new());
-        // A record begins where the one before ended, so that ranges of bytes are whole lines whatever ends these.
+        // Each record begins where the previous one ended, so that byte ranges are whole lines with any kind of line
+        // end.
         let mut start = table.position().byte();
         while table.read_byte_record(&mut row)? {
             let end = table.position().byte();
-            // No table has line breaks in a row: a quotation mark too much makes one row of several.
+            // No cell of a table contains line breaks; one quotation mark too many would make one record of several
+            // rows.
             let is_damaged = row.len() != header.len() || row.iter().any(|cell| cell.contains(&b'\n'));
             if is_damaged && row.iter().any(|cell| subject.may_be_in(cell)) {
                 let line = row.position().map_or(0, |position| position.line());
@@ -135,7 +137,8 @@ impl FolderTables {
         Ok(TableMatch::Own { cut, kept })
     }
 
-    /// Looks at a table that does not say that this program wrote it. It stays as it is; what is found is told.
+    /// Looks at a table that may not be of this program. Such a table stays as it is, and is listed if it names the
+    /// participant.
     fn look_at_other(
         &self,
         mut table: Reader<File>,
@@ -144,7 +147,7 @@ impl FolderTables {
         subject: &ForgetSubject,
     ) -> io::Result<TableMatch> {
         let own = self.written.columns_of(stem);
-        // Of a damaged header the number of columns still says which is which.
+        // If the header is damaged but has the right number of columns, the columns are still known.
         let is_damaged = own.as_ref().is_some_and(|own| own.len() == header.len());
         let key = match &own {
             Some(own) if is_damaged => KeyColumns::new(own.iter().map(Vec::as_slice)),
@@ -176,7 +179,7 @@ impl FolderTables {
         })
     }
 
-    /// Whose a row is.
+    /// Which person a row of a table is about.
     fn whose(&self, row: &ByteRecord, key: KeyColumns, subject: &ForgetSubject) -> NamedPerson {
         let cell = |column: Option<usize>| column.and_then(|column| row.get(column));
         let participant = cell(key.participant).map(|cell| subject.participant(&String::from_utf8_lossy(cell)));
@@ -190,7 +193,7 @@ impl FolderTables {
         }
     }
 
-    /// Whether this program wrote a table with this header: for a study, or as an export of raters' codes.
+    /// Whether this program wrote a table with this header: as a study's table, or as an export of raters' codes.
     fn is_own(&self, stem: &str, header: &ByteRecord) -> bool {
         self.written.has(stem, header) || header.iter().eq(EXPORT_COLUMNS.map(str::as_bytes))
     }

@@ -1,69 +1,70 @@
-//! Whose a name in a table, a report or a training record is.
+//! Which person a name in a table, report or training record means: the participant whose data are to be deleted, or
+//! another one.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
 use crate::session::participant_code::{is_participant_code, without_seed};
 
-/// Whose a name or a row is.
+/// Which person a name or a row of a table is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NamedPerson {
-    /// The participant who is looked for.
+    /// The participant whose data are to be deleted.
     Subject,
     Other,
-    /// The participant's or somebody else's: both have this name.
+    /// Either the participant or somebody else: both have this name.
     Ambiguous,
 }
 
-/// A recording of the participant.
+/// A recording of the participant whose data are to be deleted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct OwnRecording {
     pub folder: PathBuf,
-    /// When it began, as the identity of a stream says it; none without a readable header.
+    /// Begin of the recording, as the identity of a stream states it; `None` without a readable header.
     pub began: Option<String>,
 }
 
-/// The recordings whose folders have one name.
+/// Recordings whose folders have the same name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Namesakes {
     own: Vec<OwnRecording>,
     others: Vec<PathBuf>,
 }
 
-/// The participant who is looked for, by the code and the recordings that were found.
+/// The participant whose data are to be deleted, with the code and the recordings found so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct ForgetSubject {
     pub code: String,
     recordings: BTreeMap<String, Namesakes>,
-    /// The codes of everybody else of whom there are recordings.
+    /// Codes of all other people who have recordings.
     others: BTreeSet<String>,
 }
 
 impl ForgetSubject {
-    /// The participant with this code, of whom nothing else is known yet.
+    /// The participant with this code, before any recording has been found.
     pub fn new(code: &str) -> ForgetSubject {
         ForgetSubject { code: code.to_string(), ..ForgetSubject::default() }
     }
 
-    /// Takes note of a recording of the participant.
+    /// Adds a recording of the participant.
     pub fn add_own(&mut self, folder: &Path, began: Option<String>) {
         let own = OwnRecording { folder: folder.to_path_buf(), began };
         self.recordings.entry(name(folder)).or_default().own.push(own);
     }
 
-    /// Takes note of a recording of somebody else.
+    /// Adds a recording of somebody else.
     pub fn add_other(&mut self, folder: &Path, code: String) {
         self.recordings.entry(name(folder)).or_default().others.push(folder.to_path_buf());
         self.others.insert(code);
     }
 
-    /// Whose a name in a column of participants is: the code, with the seed in front where several seeds were analysed
-    /// together.
+    /// Which person a name in a column of participants means: the name is a code, with a random seed before it if
+    /// several seeds were analysed together.
     pub fn participant(&self, cell: &str) -> NamedPerson {
         let is_code = cell == self.code;
         let is_simulated = without_seed(cell) == Some(&self.code);
         match is_code || is_simulated {
-            // `seed7-S001` can be S001 with seed 7, and somebody who was called that.
+            // `seed7-S001` can mean S001 with seed 7, but also somebody with exactly this code.
             true if is_simulated && self.others.contains(cell) => NamedPerson::Ambiguous,
             true if is_code && without_seed(cell).is_some() => NamedPerson::Ambiguous,
             true => NamedPerson::Subject,
@@ -71,7 +72,8 @@ impl ForgetSubject {
         }
     }
 
-    /// Whose recording has this name: that of its folder, with folders before it where several have the same.
+    /// Which person's recording has this name: that of its folder, with parent folders before it if several folders
+    /// share the name.
     pub fn recording(&self, cell: &str) -> NamedPerson {
         let path = Path::new(cell);
         let named = path.file_name().and_then(|name| self.recordings.get(name.to_string_lossy().as_ref()));
@@ -82,7 +84,7 @@ impl ForgetSubject {
         match (own.iter().any(|one| one.folder.ends_with(path)), others.iter().any(|one| one.ends_with(path))) {
             (true, false) => NamedPerson::Subject,
             (true, true) => NamedPerson::Ambiguous,
-            // Where the analysis ran is not known.
+            // A relative path depends on the folder in which the analysis ran, which is not known.
             (false, false) if is_relative => NamedPerson::Ambiguous,
             (false, _) => NamedPerson::Other,
         }
@@ -98,19 +100,19 @@ impl ForgetSubject {
         self.recordings.iter().any(own)
     }
 
-    /// Whether a text that need not be this program's names the participant. Codes that are numbers or words of their own
-    /// stand for something else there.
+    /// Whether a text of unknown origin names the participant. Codes that are numbers or ordinary words do not count,
+    /// since they mean something else there.
     pub fn is_named_in(&self, text: &[u8]) -> bool {
         let is_distinct = is_participant_code(&self.code) && self.code.bytes().any(|byte| byte.is_ascii_alphabetic());
         words(text).any(|word| self.is_own_folder(&word) || (is_distinct && self.is_own_code(&word)))
     }
 
-    /// Whether the participant can be meant in a damaged piece of a file of this program.
+    /// Whether a damaged piece of one of this program's files may name the participant.
     pub fn may_be_in(&self, text: &[u8]) -> bool {
         words(text).any(|word| self.is_own_folder(&word) || self.is_own_code(&word))
     }
 
-    /// Whether the name of a file has the name of a recording of the participant in it.
+    /// Whether the name of a file contains the name of one of the participant's recordings.
     pub fn is_named_by_recording(&self, file: &str) -> bool {
         words(file.as_bytes()).any(|word| self.is_own_folder(&word))
     }
@@ -128,8 +130,8 @@ fn name(folder: &Path) -> String {
     folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The words of a text, of the signs that codes and names of recordings have. Zero bytes are skipped, so that words of a file
-/// in UTF-16 are found, too.
+/// Words of a text that consist of the characters of codes and recording names. Zero bytes are skipped, so that words
+/// of a file in UTF-16 are found, too.
 fn words(text: &[u8]) -> impl Iterator<Item = String> + '_ {
     let mut bytes = text.iter().copied().filter(|&byte| byte != 0);
     let is_sign = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_';

@@ -1,4 +1,4 @@
-//! The walk through folders: recordings, and all files that are not in the place of one.
+//! Search through folders for recordings and for all other files (`tomcom forget`).
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -16,20 +16,20 @@ use crate::edge::log::{
 use crate::edge::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
 use crate::session::settings::is_code;
 
-/// Why a file in the folder of a recording is left.
+/// Why an unknown file in the folder of a recording is left.
 const STRANGE: &str = "in the folder of one of the participant's recordings, and tomcom did not write it; it is to be deleted or \
                        moved by hand";
 
-/// Why a data set with the participant in it is left.
+/// Why a data set that contains the participant is left.
 const EXPORTED: &str = "a BIDS data set of tomcom export with the participant in it; delete the folder, and export what is left of the \
                         recordings again";
 
-/// What is or may be about the participant and is left, with the reason.
+/// A file that is or may be about the participant and is left, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LeftFile {
-    /// The file.
+    /// Path of the file that is not deleted.
     pub path: PathBuf,
-    /// Why it is left, in words.
+    /// Why the file is not deleted, in words.
     pub reason: String,
 }
 
@@ -43,44 +43,44 @@ impl LeftFile {
     }
 }
 
-/// What kind of thing has a name in a folder.
+/// Kind of an entry in a folder: file, folder or something else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum EntryKind {
     File,
     Folder,
-    /// A symbolic link, a pipe, a device.
+    /// A symbolic link, a named pipe, or a device.
     Other,
 }
 
-/// The other files of a folder.
+/// Files of a folder that do not belong to a recording.
 #[derive(Debug, Default)]
 pub(super) struct WalkedFolder {
     pub files: Vec<PathBuf>,
-    /// It is in the folder of a recording of the participant.
+    /// Whether the folder is, or is inside, the folder of one of the participant's recordings.
     pub is_own: bool,
 }
 
-/// What was found on a walk through folders.
+/// Results of the search through folders.
 #[derive(Debug)]
 pub(super) struct ForgetWalk {
     pub subject: ForgetSubject,
-    /// Folders of recordings of the participant.
+    /// Folders of the participant's recordings.
     pub recordings: Vec<PathBuf>,
-    /// The files of these recordings.
+    /// Files of the participant's recordings.
     pub recording_files: Vec<PathBuf>,
-    /// The folders of these recordings, and those in them that are of nobody else; each after the one that it is in.
+    /// Folders of the participant's recordings, and folders in them that belong to nobody else; each after the one that
+    /// contains it.
     pub own_folders: Vec<PathBuf>,
-    /// All other files that are in no recording's place, by folder.
+    /// All files that do not belong to a recording, by folder.
     pub folders: BTreeMap<PathBuf, WalkedFolder>,
     pub left: Vec<LeftFile>,
 }
 
 impl ForgetWalk {
-    /// Walks through a folder, and through the recordings that were in it before they were saved below the system's folder for
-    /// temporary files.
+    /// Searches a folder, and those of its recordings that were rescued into the system's folder for temporary files.
     ///
     /// # Errors
-    /// The folder cannot be read. What cannot be read in it is left.
+    /// The folder cannot be read. Unreadable files in it are listed as left.
     pub(super) fn through(root: &Path, temporary: &Path, code: &str) -> FileResult<ForgetWalk> {
         let mut walk = ForgetWalk {
             subject: ForgetSubject::new(code),
@@ -95,14 +95,14 @@ impl ForgetWalk {
         }
         walk.enter(root, false);
         let (home, elsewhere) = (canonical(root), canonical(temporary));
-        // Otherwise they were on the way.
+        // A folder for temporary files inside the searched folder has been searched already.
         if !elsewhere.starts_with(&home) {
             walk.enter_rescued(&home, temporary);
         }
         Ok(walk)
     }
 
-    /// Takes up a folder with everything below it.
+    /// Searches a folder with everything below it.
     fn enter(&mut self, folder: &Path, is_inside: bool) {
         if bids_tree::codes(folder).is_some_and(|codes| codes.contains(&self.subject.code)) {
             return self.left.push(LeftFile::new(folder, EXPORTED));
@@ -137,7 +137,7 @@ impl ForgetWalk {
             let is_of_recording = is_known && is_of_recording(&path);
             match kind {
                 EntryKind::Folder => self.enter(&path, is_own),
-                // Whoever takes the lock of a recording gives it back.
+                // The lock of a recording is removed by the program that holds it.
                 EntryKind::File if is_of_recording && is_lock(&path) => {}
                 EntryKind::File if is_of_recording => self.recording_files.push(path),
                 EntryKind::File => files.push(path),
@@ -148,31 +148,31 @@ impl ForgetWalk {
         self.folders.insert(folder.to_path_buf(), WalkedFolder { files, is_own });
     }
 
-    /// Takes up recordings that were saved from a folder below `home`.
+    /// Searches recordings that were rescued from a folder below `home`.
     fn enter_rescued(&mut self, home: &Path, temporary: &Path) {
         for (folder, _) in entries(temporary).unwrap_or_default().iter().filter(is_rescued) {
             for (recording, kind) in entries(folder).unwrap_or_default() {
                 let is_from_here = RescueNote::read(&recording).is_some_and(|note| note.home.starts_with(home));
                 if kind == EntryKind::Folder && is_from_here {
-                    // It goes, too, when nothing is in it any more.
+                    // The rescue folder is also removed once it is empty.
                     self.own_folders.push(folder.clone());
                     self.enter(&recording, false);
                 }
             }
         }
-        // Streams of the recordings that could not stand beside them.
+        // Streams of recordings that could not be written beside them.
         let streams =
             entries(temporary).unwrap_or_default().into_iter().filter(is_stream).map(|(path, _)| path).collect();
         self.folders.insert(temporary.to_path_buf(), WalkedFolder { files: streams, is_own: false });
     }
 
-    /// Tells what of the participant's own folders nothing is known about.
+    /// Lists a file of unknown kind in the participant's own folders as left.
     pub(super) fn leave_strange(&mut self, path: &Path) {
         self.left.push(LeftFile::new(path, STRANGE));
     }
 }
 
-/// The files and folders in a folder, in the order of their names.
+/// Files and folders in a folder, sorted by name.
 fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, EntryKind)>> {
     let mut entries = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -188,7 +188,7 @@ fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, EntryKind)>> {
     Ok(entries)
 }
 
-/// Whether the program writes a file of this name into the folder of a recording, or has left it there when it was killed.
+/// Whether the program writes a file of this name into the folder of a recording, or leaves it there when it is killed.
 fn is_of_recording(path: &Path) -> bool {
     let Some(name) = path.file_name().and_then(|name| name.to_str()) else { return false };
     let name = name.strip_suffix(".new").unwrap_or(name);
@@ -198,7 +198,7 @@ fn is_of_recording(path: &Path) -> bool {
     is_lock(path) || is_code_file || is_damaged_log(name) || names.contains(&name) || seal == RRD_NAME
 }
 
-/// Whether this is a lock of a recording.
+/// Whether this file is the lock of a recording.
 fn is_lock(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     name == LOCK_NAME || name.starts_with(CODES_LOCK)
@@ -209,7 +209,7 @@ fn is_rescued((path, kind): &&(PathBuf, EntryKind)) -> bool {
     *kind == EntryKind::Folder && name.starts_with(RESCUED)
 }
 
-/// Whether this is a stream that `tomcom review` left in the system's folder for temporary files.
+/// Whether this file is a stream that `tomcom review` left in the system's folder for temporary files.
 fn is_stream((path, kind): &(PathBuf, EntryKind)) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     *kind == EntryKind::File && name.starts_with("tomcom-") && (name.ends_with(".rrd") || name.ends_with(".rrd.new"))

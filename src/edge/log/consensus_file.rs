@@ -1,5 +1,5 @@
-//! `consensus.csv`, beside a log: the codes on which two raters agree, or which they decided together, each with the raters' own
-//! codes at that time. The raters' files stay as they are.
+//! The file `consensus.csv` beside a log: codes of errors on which two raters agree, or which they decided together,
+//! each with the code that each rater had given before. The raters' own files stay as they are.
 
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -12,17 +12,17 @@ use crate::measures::cause_codes::{Codable, Code};
 use crate::measures::consensus::{Consensus, SettledCode};
 use crate::session::settings::is_code;
 
-/// The name of the file in the folder of a recording.
+/// Name of the consensus file in the folder of a recording.
 pub const CONSENSUS_NAME: &str = "consensus.csv";
 
-/// The columns: what each rater had said, then the press and its shared code.
+/// Columns of the consensus file: the code of each rater, then the press and the shared code.
 const COLUMNS: [&str; 9] =
     ["rater_1", "cause_1", "aspect_1", "rater_2", "cause_2", "aspect_2", "press", "cause", "aspect"];
 
-/// The consensus about the recording in this folder; `None` if nothing is settled.
+/// The raters' consensus about the recording in this folder; `None` if nothing is settled.
 ///
 /// # Errors
-/// The file is there but cannot be read, or says something that cannot be of this recording.
+/// The file exists but cannot be read, or contains something that cannot be about this recording.
 pub fn read(folder: &Path, codable: &Codable) -> FileResult<Option<Consensus>> {
     let path = folder.join(CONSENSUS_NAME);
     let mut bytes = Vec::new();
@@ -64,7 +64,7 @@ pub fn read(folder: &Path, codable: &Codable) -> FileResult<Option<Consensus>> {
     Ok(consensus)
 }
 
-/// A rater's own code in a row; none if its fields are empty.
+/// A rater's own code in a row; `None` if its cells are empty.
 fn own(cause: &str, aspect: &str) -> Result<Option<Code>, (String, &'static str)> {
     match (cause, aspect) {
         ("", "") => Ok(None),
@@ -72,7 +72,7 @@ fn own(cause: &str, aspect: &str) -> Result<Option<Code>, (String, &'static str)
     }
 }
 
-/// Writes the consensus, to the disk; whoever reads meanwhile finds the old file or the new one.
+/// Writes the consensus to the disk; programs that read it meanwhile find the old file or the new one.
 ///
 /// # Errors
 /// The folder cannot be written to.

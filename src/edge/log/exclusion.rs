@@ -1,5 +1,5 @@
-//! `exclusion.toml`, beside a closed log: that its trial is to be left out of the analysis, and why, or that it is not after
-//! all. The log of a closed recording stays as it is; what was said at the console is an event in it. Every entry is kept,
+//! The file `exclusion.toml` beside a closed log: whether the trial is excluded from the analysis, and why. The log of
+//! a closed recording is never changed; exclusions at the console are events in the log instead. All entries are kept,
 //! and the last one holds.
 
 use std::io::ErrorKind;
@@ -12,19 +12,19 @@ use crate::edge::clock::WallTime;
 use crate::edge::file_error::{FileError, FileResult, read_regular};
 use crate::edge::replace_file;
 
-/// The name of the file in the folder of a recording.
+/// Name of the exclusion file in the folder of a recording.
 pub const EXCLUSION_NAME: &str = "exclusion.toml";
 
-/// What was said about a closed recording.
+/// Decision to exclude a closed recording from the analysis, or to include it again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExclusionRecord {
-    /// The recording is left out of the analysis; false: it is not any more.
+    /// Whether the recording is excluded from the analysis; false if it is included again.
     pub excluded: bool,
-    /// Why; of those that take an exclusion back it may be empty.
+    /// Reason of the decision; may be empty if the recording is included again.
     #[serde(default)]
     pub reason: String,
-    /// When it was said (UTC, RFC 3339).
+    /// Time of the decision about the recording (UTC, RFC 3339).
     pub at: String,
 }
 
@@ -35,18 +35,18 @@ struct Rulings {
     ruling: Vec<ExclusionRecord>,
 }
 
-/// Why nothing can be said about a recording.
+/// Why a decision about a recording cannot be recorded.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ExclusionError {
-    /// A file cannot be read.
+    /// The recording, or an earlier decision, cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
-    /// The record cannot be written.
+    /// The decision about the recording cannot be written to its folder.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] WriteError),
-    /// The reason does not have 1 to 200 characters; it has this many.
+    /// The reason does not have 1 to 200 characters; the number is its length.
     #[error("found a reason of {0} characters")]
     #[diagnostic(help("a reason of 1 to 200 characters, on one line"))]
     Reason(usize),
@@ -58,10 +58,10 @@ impl From<FileError> for ExclusionError {
     }
 }
 
-/// The last ruling on the recording in this folder, if there is any.
+/// The last decision about the recording in this folder, if there is any.
 ///
 /// # Errors
-/// The file is there but cannot be read, or says something else.
+/// The file exists but cannot be read, or has other content.
 pub fn ruling(folder: &Path) -> FileResult<Option<ExclusionRecord>> {
     Ok(rulings(folder)?.ruling.pop())
 }
@@ -81,10 +81,11 @@ fn rulings(folder: &Path) -> FileResult<Rulings> {
     })
 }
 
-/// Adds a ruling on a closed recording; the one that holds from now on.
+/// Records a decision about a closed recording, and returns it.
 ///
 /// # Errors
-/// It is no recording, it is being written, a later part continues it, or its folder cannot be written to.
+/// The folder is not a recording, the recording is being written or is continued by a later part, or its folder cannot
+/// be written to.
 pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionRecord, ExclusionError> {
     let length = reason.chars().count();
     if length > 200 || (excluded && reason.trim().is_empty()) || reason.chars().any(char::is_control) {

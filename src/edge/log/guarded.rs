@@ -1,5 +1,5 @@
-//! The file of a log while it is written. A guarded file has a copy that no other program can change: the log is compared with
-//! it, and saved from it if another program damaged the log.
+//! File of a log while it is written, with a guarding copy that no other program can change: the log is compared with
+//! the copy, and restored from it if another program damaged the log.
 
 use std::fs::File;
 use std::io::{self, Seek, Write};
@@ -8,21 +8,22 @@ use std::path::Path;
 #[cfg(unix)]
 use crate::edge::temporary::new_file;
 
-/// Length of the end of the log that every check compares, in bytes (some seconds of gaze).
+/// Length of the log's end that every check compares with the copy, in bytes (some seconds of gaze).
 const TAIL: u64 = 64 << 10;
-/// Length of the stretch of the rest that every check compares, in bytes; consecutive checks go round the whole log.
+/// Length of the further stretch that every check compares with the copy, in bytes; consecutive checks go through the
+/// whole log.
 const STRETCH: u64 = 1 << 20;
-/// Length of a comparison, in bytes.
+/// Number of bytes of log and copy that are compared at a time.
 #[cfg(unix)]
 const PIECE: usize = 64 << 10;
 
-/// A log that is being written.
+/// A log file that is being written, with its guarding copy.
 #[derive(Debug)]
 pub(super) struct GuardedFile {
     file: File,
-    /// The copy, a file without a name; `None` if the file is not guarded or the copy could not be written.
+    /// Guarding copy, a file without a name; `None` if the log is not guarded or the copy could not be written.
     copy: Option<File>,
-    /// Number of bytes written.
+    /// Number of bytes written to the log.
     length: u64,
     /// Position of the next check's stretch, in bytes.
     next: u64,
@@ -32,7 +33,7 @@ impl Write for GuardedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = self.file.write(bytes)?;
         self.length += written as u64;
-        // An incomplete copy is dropped; the log continues without it.
+        // An incomplete copy is dropped, and the log continues without a copy.
         self.copy = self.copy.take().filter(|mut copy| copy.write_all(&bytes[..written]).is_ok());
         Ok(written)
     }
@@ -43,12 +44,12 @@ impl Write for GuardedFile {
 }
 
 impl GuardedFile {
-    /// A file without a copy.
+    /// A log file without a guarding copy.
     pub(super) fn unguarded(file: File) -> GuardedFile {
         GuardedFile { file, copy: None, length: 0, next: 0 }
     }
 
-    /// A file with a copy in the system's folder for temporary files, or else in this folder.
+    /// A log file with a guarding copy in the system's folder for temporary files, or else in this folder.
     pub(super) fn guarded(file: File, folder: &Path) -> GuardedFile {
         let copy = nameless(&std::env::temp_dir()).or_else(|_| nameless(folder)).ok();
         GuardedFile { copy, ..GuardedFile::unguarded(file) }
@@ -58,7 +59,8 @@ impl GuardedFile {
         &self.file
     }
 
-    /// Compares length, end and the next stretch of the file with what was written; returns the damage, if any.
+    /// Compares the length, the end and the next stretch of the log with what was written; returns the damage in words,
+    /// if any.
     pub(super) fn damage(&mut self) -> Option<String> {
         let length = match self.file.metadata() {
             Ok(data) => data.len(),
@@ -78,7 +80,8 @@ impl GuardedFile {
         Some(format!("was overwritten by another program, at byte {at} of {}", self.length))
     }
 
-    /// Position of the first differing byte in this range; `None` without a difference or a copy.
+    /// Position of the first byte in this range that differs between log and copy; `None` without a difference or a
+    /// copy.
     #[cfg(unix)]
     fn difference(&mut self, from: u64, until: u64) -> Option<u64> {
         use std::os::unix::fs::FileExt;
@@ -91,7 +94,7 @@ impl GuardedFile {
                 self.copy = None;
                 return None;
             }
-            // The file was cut meanwhile, or the disk is broken.
+            // The log was cut meanwhile, or the disk is broken.
             if self.file.read_exact_at(&mut found[..size], at).is_err() {
                 return Some(at);
             }
@@ -104,13 +107,13 @@ impl GuardedFile {
         None
     }
 
-    /// This system has no copies.
+    /// On this operating system, logs have no copies.
     #[cfg(not(unix))]
     fn difference(&mut self, _from: u64, _until: u64) -> Option<u64> {
         None
     }
 
-    /// Writes the log to another file, from the copy, or from the file itself if that is undamaged.
+    /// Saves the log to another file: from the copy, or from the log itself if that is undamaged.
     ///
     /// # Errors
     /// There is no undamaged source, or the other file cannot be written.
@@ -126,14 +129,14 @@ impl GuardedFile {
     }
 }
 
-/// A file without a name, which only this process can reach.
+/// A new file without a name, which only this process can reach.
 #[cfg(unix)]
 fn nameless(folder: &Path) -> io::Result<File> {
     let (path, file) = new_file(folder, &format!(".tomcom-{}", std::process::id()), "")?;
     std::fs::remove_file(path).map(|()| file)
 }
 
-/// Not available on this system.
+/// Files without a name are not available on this operating system.
 #[cfg(not(unix))]
 fn nameless(_folder: &Path) -> io::Result<File> {
     Err(io::Error::from(io::ErrorKind::Unsupported))
@@ -144,7 +147,7 @@ mod tests {
     use super::*;
     use crate::edge::temporary::new_folder;
 
-    /// Harms a guarded log of this length, and compares the damage that is found, and the saved log.
+    /// Damages a guarded log of this length, and compares the reported damage and the saved log with the expected ones.
     fn check(name: &str, bytes: usize, harm: impl FnOnce(&Path), found: Option<&str>) {
         let name_of_folder = format!("tomcom-guarded-{}-{name}", std::process::id());
         let folder = new_folder(&std::env::temp_dir(), &name_of_folder).unwrap();
@@ -154,7 +157,7 @@ mod tests {
         log.write_all(&vec![b'x'; bytes]).unwrap();
         assert_eq!(log.damage(), None);
         harm(&path);
-        // A live session writes before the next check.
+        // As in a live session, something is written before the next check.
         log.write_all(b"more\n").unwrap();
         let rounds = bytes as u64 / STRETCH + 2;
         let damage = (0..rounds).find_map(|_| log.damage());
@@ -176,7 +179,7 @@ mod tests {
     fn what_another_program_does_to_a_log_is_noticed_and_what_was_recorded_is_saved() {
         const LONG: usize = 5 << 20;
         check("untouched", LONG, |_| (), None);
-        // The next write restores the length, with zeros in between.
+        // The next write restores the log's length, with zeros in between.
         check(
             "cut",
             LONG,

@@ -1,4 +1,4 @@
-//! A recording is written by one program at a time.
+//! Lock that lets only one program at a time write a recording.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Write};
@@ -7,35 +7,36 @@ use std::path::{Path, PathBuf};
 use super::WriteError;
 use crate::edge::file_error::open_regular;
 
-/// The name of the lock in the folder of a recording that is being written, with the number of the process in it, and
-/// where viewers connect.
+/// Name of the lock file in the folder of a recording that is being written. The file contains the process id and the
+/// address for viewers.
 pub const LOCK_NAME: &str = "lock";
-/// How the name of the lock of raters' codes begins; their names follow.
+/// Prefix of the lock file's name while raters' codes are written; the raters' names follow.
 pub const CODES_LOCK: &str = "lock-codes-";
-/// How often somebody else may give the lock up between our opening and taking it.
+/// Number of times that taking the lock is tried again because its holder removed the file meanwhile.
 const ATTEMPTS: usize = 8;
 
-/// The right to write a recording, until it is dropped. The operating system holds it: it ends with the process, so a
-/// file that a killed program left behind locks nobody out, whichever process has its number now.
+/// The right to write a recording, until the value is dropped. The operating system holds the lock and releases it when
+/// the process ends, so a lock file that a killed program left behind blocks nobody, even if another process has its id
+/// now.
 #[derive(Debug)]
 pub struct RecordingLock {
     file: File,
     path: PathBuf,
 }
 
-/// Who writes a recording now, as far as that is told.
+/// The program that writes a recording at present, as far as the lock file tells.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LockHolder {
-    /// Its process id.
+    /// Process id of the program that writes the recording.
     pub pid: Option<u32>,
-    /// Where viewers can look on.
+    /// Address at which viewers can watch the running session.
     pub viewers: Option<String>,
 }
 
 impl LockHolder {
     fn read(file: &mut File) -> LockHolder {
         let mut text = String::new();
-        // Who cannot be asked holds it all the same.
+        // If the lock file cannot be read, the lock still counts as held.
         let _ = file.read_to_string(&mut text);
         let mut lines = text.lines();
         let pid = lines.next().and_then(|line| line.trim().parse().ok());
@@ -47,15 +48,16 @@ impl RecordingLock {
     /// Takes the lock of the recording in this folder.
     ///
     /// # Errors
-    /// Another program has it, or the folder cannot be written to.
+    /// Another program holds the lock, or the folder cannot be written to.
     pub fn take(folder: &Path) -> Result<RecordingLock, WriteError> {
         RecordingLock::take_file(folder.join(LOCK_NAME), folder)
     }
 
-    /// Takes the right to code the errors of the recording in this folder as these raters: their codes are replaced as a whole.
+    /// Takes the right to code the errors of the recording in this folder as these raters, whose codes are always
+    /// replaced as a whole.
     ///
     /// # Errors
-    /// Another program has it, or the folder cannot be written to.
+    /// Another program holds it, or the folder cannot be written to.
     pub fn take_for_codes(folder: &Path, raters: &[&str]) -> Result<RecordingLock, WriteError> {
         let mut raters = raters.to_vec();
         raters.sort_unstable();
@@ -68,7 +70,8 @@ impl RecordingLock {
 
     fn take_file(path: PathBuf, folder: &Path) -> Result<RecordingLock, WriteError> {
         let failed = |reason| WriteError::unwritable(&path, reason);
-        // Taking it empties the file, which must not be one that a link leads to; opening a pipe would wait for its other end.
+        // Taking the lock empties the file, which must therefore not be the target of a link; and opening a named pipe
+        // would block.
         if fs::symlink_metadata(&path).is_ok_and(|data| !data.is_file()) {
             return Err(failed(io::Error::new(
                 ErrorKind::InvalidInput,
@@ -79,14 +82,14 @@ impl RecordingLock {
             let options = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
             let mut file = options.map_err(failed)?;
             match file.try_lock() {
-                // Where a file system has no locks, a recording is still worth more than none.
+                // On a file system without locks, recording without a lock is better than not recording.
                 Ok(()) | Err(TryLockError::Error(_)) => {}
                 Err(TryLockError::WouldBlock) => {
                     let pid = LockHolder::read(&mut file).pid;
                     return Err(WriteError::InUse { folder: folder.to_path_buf(), pid });
                 }
             }
-            // Its last holder may have removed the file after we opened it: then it locks nothing.
+            // If the previous holder removed the file after it was opened here, the lock on it has no effect.
             if is_same(&file, &path) {
                 file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(failed)?;
                 return Ok(RecordingLock { file, path });
@@ -95,7 +98,7 @@ impl RecordingLock {
         Err(WriteError::InUse { folder: folder.to_path_buf(), pid: None })
     }
 
-    /// Who writes the recording in this folder; none where nobody does.
+    /// The program that writes the recording in this folder; `None` if there is none.
     pub fn holder(folder: &Path) -> Option<LockHolder> {
         let mut file = open_regular(&folder.join(LOCK_NAME)).ok()?;
         match file.try_lock_shared() {
@@ -104,10 +107,10 @@ impl RecordingLock {
         }
     }
 
-    /// Tells whoever asks who writes here where viewers can look on.
+    /// Writes into the lock file the address at which viewers can watch.
     ///
     /// # Errors
-    /// The lock cannot be written to.
+    /// The lock file cannot be written to.
     pub fn announce(&mut self, viewers: &str) -> io::Result<()> {
         writeln!(self.file, "{viewers}")
     }
@@ -116,13 +119,13 @@ impl RecordingLock {
 impl Drop for RecordingLock {
     fn drop(&mut self) {
         if is_same(&self.file, &self.path) {
-            // Left behind it does no harm.
+            // A lock file that is left behind does no harm.
             let _ = fs::remove_file(&self.path);
         }
     }
 }
 
-/// Whether the file at this path is still the one that was opened.
+/// Whether the file at this path is still the opened one.
 #[cfg(unix)]
 pub fn is_same(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -133,7 +136,7 @@ pub fn is_same(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Whether there is still a file at this path.
+/// Whether a file still exists at this path.
 #[cfg(not(unix))]
 pub fn is_same(_: &File, path: &Path) -> bool {
     path.exists()

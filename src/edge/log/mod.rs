@@ -1,6 +1,6 @@
-//! The recording of a session: a folder with `session.toml` (the settings as they were in force) and `events.jsonl` (the
-//! log: a header line, then one event a line; the only source of truth). A recording that was cut is continued by a part
-//! in a folder beside it, whose header names the one before.
+//! Recordings of sessions. A recording is a folder with `session.toml` (the session's settings) and `events.jsonl` (the
+//! log: a header line, then one event per line; the only source of truth). A recording that was cut off is continued by
+//! a further part in a folder beside it, whose header names the previous part.
 
 pub mod consensus_file;
 mod exclusion;
@@ -22,81 +22,81 @@ pub use reader::{LogEnding, LogLine, LogReader, at_line};
 pub use simulated_log::{SimulatedLog, check_simulated};
 pub use writer::{LogWriter, check_continued, is_written_settings};
 
-/// The name of the log in its folder.
+/// File name of the log in the folder of a recording.
 pub const LOG_NAME: &str = "events.jsonl";
-/// Suffix of the name of an unusable log; from the second on a number follows.
+/// Suffix of the name of an unusable log; from the second one on, a number follows.
 const DAMAGED: &str = ".damaged";
-/// The name of the settings in the folder of a recording.
+/// File name of the settings in the folder of a recording.
 pub const SETTINGS_NAME: &str = "session.toml";
-/// The name of the stream in the folder of a recording.
+/// File name of the Rerun stream in the folder of a recording.
 pub const RRD_NAME: &str = "recording.rrd";
-/// The name of the MCAP in the folder of a recording.
+/// File name of the recording's MCAP version in the folder of a recording.
 pub const MCAP_NAME: &str = "recording.mcap";
 
-/// Why a recording is not written, or not on.
+/// Why a recording cannot be written, or not any further.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum WriteError {
-    /// What was acknowledged before is there, nothing after it.
+    /// The recording cannot be written any further; events acknowledged before are in it.
     #[error("{}: the recording cannot be written: {reason}{}", path.display(), rescued(.saved))]
     #[diagnostic(help("a folder that can be written to, on a disk with free space"))]
     Unwritable {
-        /// The file or folder.
+        /// File or folder that cannot be written.
         path: PathBuf,
-        /// Why not.
+        /// Why the recording's file or folder cannot be written.
         reason: io::Error,
-        /// Where what was recorded was saved to, if it is no longer where it was.
+        /// Folder to which the recording was saved, if it is no longer at its place.
         saved: Option<PathBuf>,
     },
-    /// The saved log, if there is one, has every acknowledged event.
+    /// Another program changed the log; the saved log, if there is one, contains every acknowledged event.
     #[error("{}: the log {found}{}", path.display(), rescued(.saved))]
     #[diagnostic(help(
         "other programs may read the log of a running session, and change nothing; as they left it, it is kept beside the \
          saved one as {LOG_NAME}.damaged"
     ))]
     Damaged {
-        /// The log.
+        /// Path of the damaged log.
         path: PathBuf,
-        /// The damage.
+        /// Damage of the log that was found, in words.
         found: String,
-        /// Where what was recorded was saved to, if it could be saved.
+        /// Folder to which the recording was saved, if it could be saved.
         saved: Option<PathBuf>,
     },
-    /// Another program writes this recording.
+    /// Another program is writing this recording.
     #[error("{}: another program{} writes this recording", folder.display(), process(.pid))]
     #[diagnostic(help("end the other one first, or watch it: tomcom replay RECORDING --follow"))]
     InUse {
-        /// The recording's folder.
+        /// Folder of the recording.
         folder: PathBuf,
-        /// That program's process id, if it is known.
+        /// Process id of the program that writes the recording, if known.
         pid: Option<u32>,
     },
-    /// Another program codes the errors of this recording as the same rater.
+    /// Another program is coding the errors of this recording as the same rater.
     #[error("{}: another program{} codes its errors as {raters}", folder.display(), process(.pid))]
     #[diagnostic(help("go on there, or leave it first; every rater has a name of its own"))]
     Coded {
-        /// The recording's folder.
+        /// Folder of the recording.
         folder: PathBuf,
-        /// The rater, or the two who settle their differences.
+        /// Name of the rater, or of the two raters who settle their differences.
         raters: String,
-        /// That program's process id, if it is known.
+        /// Process id of the program that codes the errors, if known.
         pid: Option<u32>,
     },
-    /// The recording was continued already.
+    /// The recording has already been continued.
     #[error("{}: this recording was continued already", folder.display())]
     #[diagnostic(help("its next part: tomcom operate --continue {}, if that was cut", part.display()))]
     Continued {
-        /// The recording's folder.
+        /// Folder of the recording.
         folder: PathBuf,
-        /// The folder of its next part.
+        /// Folder of the part that continues the recording.
         part: PathBuf,
     },
-    /// The folder holds something else already.
+    /// The folder for a recording already contains something else.
     #[error("{}: {what} is there already", folder.display())]
     #[diagnostic(help("another folder, or remove that one first: only the same session replaces its recording"))]
     Taken {
-        /// The folder.
+        /// Folder that was to contain the recording.
         folder: PathBuf,
-        /// What is there.
+        /// What the folder contains instead.
         what: &'static str,
     },
 }
@@ -115,14 +115,14 @@ fn process(pid: &Option<u32>) -> String {
     pid.map_or(String::new(), |pid| format!(" (process {pid})"))
 }
 
-/// Whether a file of this name in the folder of a recording is a log that was renamed because it was unusable.
+/// Whether a file of this name in the folder of a recording is an unusable log that was renamed.
 pub fn is_damaged_log(name: &str) -> bool {
     let number = name.strip_prefix(LOG_NAME).and_then(|rest| rest.strip_prefix(DAMAGED));
     number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// Renames an unusable log to the first free one of `events.jsonl.damaged`, `events.jsonl.damaged2`, …; returns its new path, or
-/// `None` if there was no log.
+/// Renames an unusable log to the first free one of `events.jsonl.damaged`, `events.jsonl.damaged2`, …; returns its new
+/// path, or `None` if there was no log.
 fn move_aside(log: &Path) -> io::Result<Option<PathBuf>> {
     let named = |n: u32| {
         let number = if n == 1 { String::new() } else { n.to_string() };
@@ -133,7 +133,7 @@ fn move_aside(log: &Path) -> io::Result<Option<PathBuf>> {
     fs::rename(log, &aside).map(|()| Some(aside))
 }
 
-/// The line of the log for an event, without its end.
+/// The log's line for an event, without its line end.
 pub fn event_line(stamped: &Stamped) -> String {
     serde_json::to_string(stamped).expect("events have no maps with other keys than strings")
 }

@@ -1,4 +1,5 @@
-//! `codes-RATER.csv`, beside a log: what one rater says about its errors. The log stays as it is.
+//! The file `codes-RATER.csv` beside a log: the codes that one rater gave to the errors in the log. The log stays as it
+//! is.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -13,32 +14,32 @@ use crate::edge::replace_file;
 use crate::measures::cause_codes::{CauseKind, Codable, Code, Codes};
 use crate::session::settings::is_code;
 
-/// The columns of the file; those of an export of several recordings have two more before them.
+/// Columns of the file of one rater's codes; an export of several recordings has two more columns before them.
 const COLUMNS: [&str; 3] = ["press", "cause", "aspect"];
-/// The columns of an export of several recordings.
+/// Columns of an export of raters' codes of several recordings.
 pub const EXPORT_COLUMNS: [&str; 5] = ["recording", "rater", "press", "cause", "aspect"];
-/// What would be right of a line that is no row at all.
+/// Advice for a line that has the wrong number of cells.
 const REMEDY: &str = "as many fields as the first line has";
 
-/// A row of an export.
+/// A row of an export of raters' codes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CodeRow {
-    /// The line of the file, for messages.
+    /// Line of the row in the file, for error messages.
     pub line: usize,
-    /// The name of the recording's folder.
+    /// Name of the folder of the coded recording.
     pub recording: String,
-    /// The rater.
+    /// Name of the rater.
     pub rater: String,
-    /// The number of the press that was an error.
+    /// Sequence number of the press that was an error.
     pub press: u64,
-    /// The cause that the rater saw.
+    /// Cause of the error, as the rater judged it.
     pub code: Code,
 }
 
-/// What one rater says about the recording in this folder; nothing, if there is no such file.
+/// The codes that one rater gave to the recording in this folder; empty if there is no such file.
 ///
 /// # Errors
-/// The file is there but cannot be read, or says something that cannot be of this recording.
+/// The file exists but cannot be read, or contains something that cannot be about this recording.
 pub fn read(folder: &Path, rater: &str, codable: &Codable) -> FileResult<Codes> {
     let path = path(folder, rater);
     let mut bytes = Vec::new();
@@ -58,7 +59,7 @@ pub fn read(folder: &Path, rater: &str, codable: &Codable) -> FileResult<Codes> 
     Ok(codes)
 }
 
-/// The raters with codes of the recording in this folder.
+/// Names of the raters who have coded the recording in this folder.
 ///
 /// # Errors
 /// The folder cannot be read.
@@ -73,7 +74,7 @@ pub fn raters(folder: &Path) -> FileResult<BTreeSet<String>> {
     Ok(all)
 }
 
-/// What all raters say about the recording in this folder, by rater.
+/// The codes of all raters for the recording in this folder, by rater.
 ///
 /// # Errors
 /// Those of [`read`] and [`raters`].
@@ -82,7 +83,7 @@ pub fn read_all(folder: &Path, codable: &Codable) -> FileResult<BTreeMap<String,
     raters(folder)?.into_iter().map(codes).collect()
 }
 
-/// Writes what a rater says, to the disk; whoever reads meanwhile finds the old file or the new one.
+/// Writes a rater's codes to the disk; programs that read them meanwhile find the old file or the new one.
 ///
 /// # Errors
 /// The folder cannot be written to.
@@ -99,10 +100,10 @@ pub fn write(folder: &Path, rater: &str, codes: &Codes) -> Result<(), WriteError
     replace_file::replace(&path, &bytes).map_err(failed)
 }
 
-/// Reads an export: the codes of several raters about several recordings.
+/// Reads an export of the codes of several raters for several recordings.
 ///
 /// # Errors
-/// It cannot be read, or is none.
+/// The file cannot be read, or is not an export.
 pub fn read_export(path: &Path) -> FileResult<(String, Vec<CodeRow>)> {
     let bytes = fs::read(path);
     let bytes =
@@ -116,10 +117,10 @@ pub fn read_export(path: &Path) -> FileResult<(String, Vec<CodeRow>)> {
     Ok((text, rows))
 }
 
-/// Writes an export.
+/// Writes an export of raters' codes.
 ///
 /// # Errors
-/// It cannot be written, or another file is there.
+/// The file cannot be written, or the path has a file of another kind.
 pub fn write_export(path: &Path, rows: &[CodeRow]) -> Result<(), WriteError> {
     let failed = |reason| WriteError::unwritable(path, reason);
     let is_own = |head: &[u8]| overwrite::first_line(head) == EXPORT_COLUMNS.join(",").as_bytes();
@@ -136,10 +137,10 @@ pub fn write_export(path: &Path, rows: &[CodeRow]) -> Result<(), WriteError> {
     write().map_err(|error| failed(error.into()))
 }
 
-/// The text of a table.
+/// The text of a table file.
 ///
 /// # Errors
-/// A line is no UTF-8.
+/// A line is not UTF-8.
 pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
@@ -149,21 +150,21 @@ pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
     })
 }
 
-/// An error about a line of such a file.
+/// An error about one line of a table of raters' codes.
 pub fn wrong_line(path: &Path, text: &str, line: usize, found: String, remedy: &str) -> FileError {
     let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     let length = text[before..].lines().next().map_or(0, str::len);
     FileError::at(path, text, Some(before..before + length), found, remedy.to_string())
 }
 
-/// Line, the fields before the code, the number of the press, and the code.
+/// A parsed row: line number, cells before the code, sequence number of the press, and code.
 pub(super) type ParsedRow = (usize, Vec<String>, u64, Code);
 
-/// The rows of a table; the last three of its columns are a press and its code. No press stands twice in it, of a rater in a
-/// recording.
+/// Reads the rows of a raters' table, whose last three columns are a press and its code. No press may occur twice for
+/// the same rater and recording.
 pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>> {
     let mut table = csv::Reader::from_reader(text.as_bytes());
-    // The position of a row is that of the first empty line before it.
+    // The CSV reader gives as a row's position that of empty lines before it, so lines are counted here.
     let (mut counted, mut number) = (0, 1);
     let mut line_of = |position: Option<&csv::Position>| {
         let start = position.map_or(0, |position| (position.byte() as usize).min(text.len()));
@@ -206,14 +207,14 @@ pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<
     Ok(rows)
 }
 
-/// A press and its code as they stand in a row, or what was found there and what would be right.
+/// Sequence number of the press and its code from the cells of a row, or what was found and what would be valid.
 fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, Code), (String, &'static str)> {
     let number = press.parse();
     let number = number.map_err(|_| (format!("the press \"{press}\""), "the number of the press in its log"))?;
     Ok((number, code_of(cause, aspect)?))
 }
 
-/// The code of a cause and an aspect, or what was found and what would be right.
+/// The code of a cause and a state aspect, or what was found and what would be valid.
 pub(super) fn code_of(cause: &str, aspect: &str) -> Result<Code, (String, &'static str)> {
     let kind = CauseKind::named(cause);
     let kind = kind.ok_or_else(|| (format!("the cause \"{cause}\""), "belief, slip, race, other or buttons"))?;

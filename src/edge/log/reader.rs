@@ -1,4 +1,4 @@
-//! Reads recordings, also those that are still being written, and over all their parts.
+//! Reader of recordings: also of those that are still being written, and of those that consist of several parts.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
@@ -14,59 +14,60 @@ use crate::session::header::{Continues, FORMAT, VERSION};
 use crate::session::ranges;
 use crate::session::{Event, Header, Session, Stamped};
 
-/// No line of a log is longer, in bytes: what is longer is no log.
+/// Longest line of a log, in bytes; a file with a longer line is not a log.
 const MAX_LINE: usize = 1 << 24;
 /// The last event is looked for in so many bytes at the end of a log.
 const TAIL: u64 = 1 << 16;
-/// No recording has more parts.
+/// Largest number of parts of a recording.
 const MAX_PARTS: usize = 100;
 
-/// A line of the log.
+/// A line of the log with its event.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogLine {
-    /// Counted from 1, the header's line.
+    /// Number of the line in the file, counted from 1; line 1 is the header.
     pub number: usize,
-    /// The line as it stands in the file, without its end.
+    /// Line of the log as it is in the file, without its line end.
     pub text: String,
-    /// The event that it holds.
+    /// Event that the line of the log contains.
     pub stamped: Stamped,
 }
 
-/// How the end of what was read of a recording is.
+/// How the events read so far of a recording end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogEnding {
-    /// The session is over.
+    /// The session has ended regularly.
     Closed,
-    /// Somebody still writes it.
+    /// A program is still writing the recording.
     Running,
-    /// The session's end is missing, and nobody writes on.
+    /// The session's end is missing, and no program is writing.
     Cut,
 }
 
-/// Reads a log, line by line, with the parts that it continues before it. A log that is still being written can be read
-/// on when it has grown.
+/// Reads a log line by line, after the earlier parts that it continues. Reading can go on when a log that is still
+/// being written has grown.
 #[derive(Debug)]
 pub struct LogReader {
-    /// The header of this part.
+    /// Header of this part of the recording.
     pub header: Header,
-    /// The kitchen that the header describes.
+    /// Kitchen that the header describes.
     pub kitchen: Arc<Kitchen>,
     path: PathBuf,
-    /// The part that this one continues, until all that was continued of it is read.
+    /// Previous part of the recording, until all of its continued events are read.
     before: Option<Box<LogReader>>,
     input: BufReader<File>,
     number: usize,
     next_seq: u64,
-    /// A last line without its end: cut, or not yet written in full.
+    /// Last line without its line end: cut off, or not yet written completely.
     partial: Vec<u8>,
     ended: bool,
 }
 
 impl LogReader {
-    /// Opens a recording, by its folder or its log. One that continues another is read from the first part on.
+    /// Opens a recording by its folder or its log. A recording that continues another one is read from the first part
+    /// on.
     ///
     /// # Errors
-    /// No such file, another format or version, a header that is broken, or a part before it that is not there.
+    /// The file does not exist, has another format or version or a damaged header, or an earlier part is missing.
     pub fn open(recording: &Path) -> FileResult<LogReader> {
         LogReader::open_part(recording, MAX_PARTS)
     }
@@ -96,22 +97,23 @@ impl LogReader {
         Ok(LogReader { header, kitchen, path, before, input, number: 1, next_seq, partial: Vec::new(), ended: false })
     }
 
-    /// The first number in the header that no settings file may have today; an earlier version of the program took it.
+    /// The first number in the header that is outside the range which settings files may have today; an earlier version
+    /// of the program accepted it.
     pub fn unusual(&self) -> Option<OutOfRange> {
         let layout = || layout_ranges::check(&self.header.layout.text).err();
         ranges::check_session(&self.header.session).err().or_else(layout)
     }
 
-    /// The session before its first event.
+    /// The session's state before its first event.
     pub fn session(&self) -> Session {
         let session = Session::new(self.kitchen.clone(), self.header.session.clone(), self.header.trial);
         Session { makes_offers: self.header.has_offers(), ..session }
     }
 
-    /// The next event; `None` where the log ends for now.
+    /// Reads the next event; `None` where the log ends at present.
     ///
     /// # Errors
-    /// A line that is no event, or not the next one.
+    /// The line is not an event, or not the next one.
     pub fn next_line(&mut self) -> FileResult<Option<LogLine>> {
         if let Some(before) = self.before.as_mut().filter(|before| before.events() < self.next_seq) {
             let line = before.next_line()?;
@@ -171,12 +173,12 @@ impl LogReader {
         Ok(lines.next().and_then(|line| serde_json::from_slice(line).ok()))
     }
 
-    /// Whether what was read so far lacks the session's end.
+    /// Whether the events read so far lack the session's end.
     pub fn is_cut(&self) -> bool {
         !self.ended
     }
 
-    /// The same, and whether more is to come.
+    /// How the events read so far end, and whether more events are to come.
     pub fn ending(&self) -> LogEnding {
         match (self.ended, RecordingLock::holder(self.folder())) {
             (true, _) => LogEnding::Closed,
@@ -185,24 +187,24 @@ impl LogReader {
         }
     }
 
-    /// The logs of all its parts, the first one first, before any of it was read.
+    /// Logs of all parts of the recording, first part first, before any of it was read.
     pub fn logs(&self) -> Vec<PathBuf> {
         let mut logs = self.before.as_ref().map_or_else(Vec::new, |before| before.logs());
         logs.push(self.path.clone());
         logs
     }
 
-    /// The number of events that were read so far.
+    /// Number of events read so far.
     pub fn events(&self) -> u64 {
         self.before.as_ref().map_or(self.next_seq, |before| before.events())
     }
 
-    /// The file of the last line that was read.
+    /// File that contains the last line read.
     pub fn path(&self) -> &Path {
         self.before.as_ref().map_or(&self.path, |before| before.path())
     }
 
-    /// The folder of the recording that was opened, of several parts the last one's.
+    /// Folder of the opened recording; for several parts, that of the last part.
     pub fn folder(&self) -> &Path {
         self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
     }
@@ -213,7 +215,7 @@ impl LogReader {
     }
 }
 
-/// Opens the part that this one continues.
+/// Opens the previous part of the recording.
 fn open_before(path: &Path, text: &str, header: &Header, before: &Continues, parts: usize) -> FileResult<LogReader> {
     let wrong = |found: String, remedy: &str| {
         let column = text.find("\"continues\"").unwrap_or(0);
@@ -227,11 +229,11 @@ fn open_before(path: &Path, text: &str, header: &Header, before: &Continues, par
     if parts == 0 {
         return Err(wrong(format!("more than {MAX_PARTS} parts"), "parts that lead to a first one"));
     }
-    // Resolved, so that the folder beside `.` is found too.
+    // The path is resolved, so that the sibling folder is also found from a path like `.`.
     let log = path.canonicalize().map_err(|reason| FileError::unreadable(path, reason, "a readable recording"))?;
     let beside = log.parent().and_then(Path::parent).unwrap_or(Path::new("."));
     let beside = match path.parent().and_then(Path::parent) {
-        // As it was typed, where that is possible: messages are shorter.
+        // If possible, messages show the path as the user typed it, which is shorter.
         Some(typed) if typed.join(name).exists() => typed,
         _ => beside,
     };
@@ -250,7 +252,8 @@ fn open_before(path: &Path, text: &str, header: &Header, before: &Continues, par
     }
 }
 
-/// Whether the first line of a log is what a power failure left of a header: nothing, zeros, or its beginning.
+/// Whether the first line of a log is what a power failure leaves of a header: nothing, zeros, or the header's
+/// beginning.
 pub(super) fn ends_in_header(line: &[u8]) -> bool {
     let begins = format!("{{\"format\":\"{FORMAT}\"");
     let is_begun = line.iter().zip(begins.as_bytes()).all(|(there, ours)| there == ours);
@@ -263,7 +266,7 @@ pub(super) fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
     log.take(MAX_LINE as u64).read_until(b'\n', &mut line).map(|_| line)
 }
 
-/// An error in one line of a long file: the excerpt keeps the number of the line.
+/// An error in one line of a long file; the excerpt in the message keeps the number of the line.
 pub fn at_line(path: &Path, number: usize, text: &str, column: usize, found: String, remedy: String) -> FileError {
     let is_boundary = |index: &usize| text.is_char_boundary(*index);
     let column = (0..=column.min(text.len())).rev().find(is_boundary).unwrap_or(0);
@@ -275,7 +278,7 @@ pub fn at_line(path: &Path, number: usize, text: &str, column: usize, found: Str
     FileError::at(path, &excerpt, Some(place..place), found, remedy)
 }
 
-/// What serde_json says, without the line and column within the one line that it saw.
+/// The message of `serde_json`, without the line and column, which refer to the single line that it parsed.
 fn json_message(error: &serde_json::Error) -> String {
     let message = error.to_string();
     message.split(" at line ").next().unwrap_or(&message).to_string()

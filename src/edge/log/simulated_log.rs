@@ -1,5 +1,6 @@
-//! Logs of simulated sessions. The same header gives the same recording, so a complete recording is read, and an incomplete one is
-//! replaced. Several programs may simulate into one folder; each recording is written by one of them.
+//! Logs of simulated sessions. The same header always gives the same recording, so a complete recording is kept and
+//! only read, and an incomplete one is replaced. Several programs may simulate into one folder; each recording is
+//! written by one of them.
 
 use std::fs;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -15,17 +16,17 @@ use crate::session::{Event, Header, Stamped};
 /// Upper limit of the length of a complete log's last line, in bytes.
 const LAST: u64 = 256;
 
-/// The log of a simulated session, before it is simulated.
+/// State of a simulated session's log before the simulation.
 #[derive(Debug)]
 pub enum SimulatedLog {
-    /// A new log.
+    /// The log is new and has to be written.
     Begun {
-        /// The log to write to.
+        /// Writer of the new log.
         log: Box<LogWriter>,
-        /// New path of a log that ended before the end of its header.
+        /// New path of an old log that ended before the end of its header.
         moved: Option<PathBuf>,
     },
-    /// The recording exists and is complete.
+    /// The simulated recording exists and is complete.
     Whole,
 }
 
@@ -42,7 +43,7 @@ impl SimulatedLog {
         fs::create_dir_all(folder).map_err(|reason| WriteError::unwritable(folder, reason))?;
         let lock = RecordingLock::take(folder)?;
         check_simulated(folder, header)?;
-        // The last holder of the lock may have completed it.
+        // The previous holder of the lock may have completed the recording.
         if is_whole(folder, header) {
             return Ok(SimulatedLog::Whole);
         }
@@ -56,15 +57,15 @@ impl SimulatedLog {
     }
 }
 
-/// Checks that a simulated recording may be written to this folder: it may replace a recording with the same header, and a log
-/// that ends before the end of its header.
+/// Checks that a simulated recording may be written to this folder: it may replace a recording with the same header,
+/// and a log that ends before the end of its header.
 ///
 /// # Errors
 /// The folder holds another recording.
 pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError> {
     let path = folder.join(LOG_NAME);
     if !path.exists() {
-        // A kill before the log leaves settings behind.
+        // A program that was killed before it wrote the log leaves settings behind.
         let is_foreign = read_regular(&folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
         let what = "a session.toml that tomcom did not write";
         return if is_foreign { Err(WriteError::Taken { folder: folder.to_path_buf(), what }) } else { Ok(()) };
@@ -87,7 +88,7 @@ fn is_without_header(path: &Path) -> bool {
     line.is_ok_and(|line| ends_in_header(&line))
 }
 
-/// Whether this folder holds the complete recording of this header.
+/// Whether this folder holds the complete recording that has this header.
 fn is_whole(folder: &Path, header: &Header) -> bool {
     let ends = || -> io::Result<bool> {
         let mut log = open_regular(&folder.join(LOG_NAME))?;

@@ -1,4 +1,4 @@
-//! Writes recordings.
+//! Writer of recordings: creates the folder, the settings and the log, and appends events.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -15,29 +15,29 @@ use crate::edge::file_error::read_regular;
 use crate::edge::rescue::{RescueNote, new_rescue_folder};
 use crate::session::{Header, SessionSpec, Stamped};
 
-/// Gaze samples wait at most so long, in session time, before they are handed to the operating system.
+/// Longest time, in session time, for which gaze samples are held back before they are handed to the operating system.
 const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);
-/// What the folders of later parts are called: `<recording>-part2`, `<recording>-part3`, …
+/// Suffix of the folders of later parts: `<recording>-part2`, `<recording>-part3`, …
 const PART: &str = "-part";
 
-/// Writes the log of a session.
+/// Writer of the log of a session, one event per line.
 #[derive(Debug)]
 pub struct LogWriter {
     folder: PathBuf,
     path: PathBuf,
     out: BufWriter<GuardedFile>,
-    /// Hand events to the operating system as they come, because somebody relies on them.
+    /// Whether events are handed to the operating system at once, because other programs rely on them.
     prompt: bool,
     flushed_at: SessionTime,
     settings: String,
-    /// Where the recording belongs, whatever becomes of its folder.
+    /// Original folder of the recording, even if the folder is moved or deleted.
     home: PathBuf,
     lock: RecordingLock,
 }
 
 impl LogWriter {
-    /// Starts a live recording `<date>-<participant>-<n>` in `root`, with the first n that is free. What is appended is
-    /// handed to the operating system at once, gaze within 50 ms of session time or by [`LogWriter::flush`].
+    /// Starts a live recording `<date>-<participant>-<n>` in `root`, with the first free n. Events are handed to the
+    /// operating system at once, gaze samples within 50 ms of session time or by [`LogWriter::flush`].
     pub fn create_live(root: &Path, date: &str, header: &Header) -> Result<LogWriter, WriteError> {
         fs::create_dir_all(root).map_err(|reason| WriteError::unwritable(root, reason))?;
         let mut n = 1;
@@ -54,7 +54,7 @@ impl LogWriter {
     /// Starts the live recording that continues the one in `folder`, in a folder beside it.
     ///
     /// # Errors
-    /// It was continued already, or cannot be written.
+    /// The recording has already been continued, or cannot be written.
     pub fn create_part(folder: &Path, header: &Header) -> Result<LogWriter, WriteError> {
         check_continued(folder)?;
         let part = next_part(folder);
@@ -62,7 +62,7 @@ impl LogWriter {
         LogWriter::begin(RecordingLock::take(&part)?, part, header, true)
     }
 
-    /// The log gets its name when its header is complete, so that no log is without one after a kill.
+    /// Creates the log. It gets its name when its header is complete, so that no log lacks a header after a crash.
     pub(super) fn begin(
         lock: RecordingLock,
         folder: PathBuf,
@@ -74,7 +74,7 @@ impl LogWriter {
         let settings = toml::to_string(&header.session).map_err(|error| failed(io::Error::other(error)))?;
         fs::write(folder.join(SETTINGS_NAME), &settings).map_err(failed)?;
         let begun = folder.join(format!("{LOG_NAME}.new"));
-        // It is read again if the folder vanishes.
+        // The file is opened for reading, too, since it is read if the folder vanishes.
         let file =
             OpenOptions::new().read(true).write(true).create(true).truncate(true).open(&begun).map_err(failed)?;
         let file = if prompt { GuardedFile::guarded(file, &folder) } else { GuardedFile::unguarded(file) };
@@ -85,18 +85,18 @@ impl LogWriter {
         Ok(LogWriter { folder, path, out, prompt, flushed_at: SessionTime::ZERO, settings, home, lock })
     }
 
-    /// The folder of the recording.
+    /// Folder of the recording that is being written.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// Tells whoever finds the recording while it is written where viewers can look on.
+    /// Writes into the lock file the address at which viewers can watch.
     pub fn announce(&mut self, viewers: &str) {
-        // Nothing depends on it.
+        // If the address cannot be written into the lock file, that has no further consequences.
         let _ = self.lock.announce(viewers);
     }
 
-    /// Adds an event.
+    /// Appends an event to the log.
     pub fn append(&mut self, stamped: &Stamped) -> Result<(), WriteError> {
         write_line(&mut self.out, stamped).map_err(|reason| WriteError::unwritable(&self.path, reason))?;
         let waits = stamped.event.is_sample() && stamped.time - self.flushed_at < FLUSH_AFTER;
@@ -107,17 +107,17 @@ impl LogWriter {
         Ok(())
     }
 
-    /// Hands everything to the operating system.
+    /// Hands all events to the operating system.
     pub fn flush(&mut self) -> Result<(), WriteError> {
         self.out.flush().map_err(|reason| WriteError::unwritable(&self.path, reason))
     }
 
-    /// Looks whether what is written still goes where it should, and is as it was written: an open file takes every event,
-    /// also after it was deleted, moved away, cut, overwritten or made read-only. What was recorded is saved into a folder of
-    /// the same name: where it was, or else below the system's folder for temporary files.
+    /// Checks that the log is still at its place and undamaged: an open file accepts every event even after it was
+    /// deleted, moved, cut, overwritten or made read-only. If not, the recording is saved into a folder of the same
+    /// name: at its place, or else below the system's folder for temporary files.
     ///
     /// # Errors
-    /// The log is gone or damaged, or it must not be written any more.
+    /// The log is gone or damaged, or must not be written any more.
     pub fn check(&mut self) -> Result<(), WriteError> {
         if !is_same(self.out.get_ref().file(), &self.path) {
             let found = if self.path.exists() { "another file took its place" } else { "its folder was removed" };
@@ -137,9 +137,9 @@ impl LogWriter {
         }
     }
 
-    /// Saves what was recorded; the folder where it is now.
+    /// Saves the recording elsewhere; returns the folder that contains it now.
     fn rescue(&mut self, is_damaged: bool) -> Option<PathBuf> {
-        // What cannot be handed over any more was not acknowledged for longer than gaze may wait.
+        // Events that cannot be handed over now have not been acknowledged.
         let _ = self.out.flush();
         let name = self.folder.file_name()?.to_owned();
         if self.save_to(&self.folder.clone(), is_damaged).is_ok() {
@@ -147,7 +147,7 @@ impl LogWriter {
         }
         let elsewhere = new_rescue_folder().ok()?.join(name);
         self.save_to(&elsewhere, is_damaged).ok()?;
-        // The data is saved; the note only helps to find out later where it belongs.
+        // The recording is saved; the note only helps to find its original place later.
         let _ = RescueNote { home: self.home.clone() }.write(&elsewhere);
         Some(elsewhere)
     }
@@ -157,11 +157,11 @@ impl LogWriter {
         let (log, begun) = (folder.join(LOG_NAME), folder.join(format!("{LOG_NAME}.new")));
         let mut saved = File::create(&begun)?;
         if let Err(reason) = self.out.get_mut().save(is_damaged, &mut saved) {
-            // A leftover temporary file is harmless.
+            // A temporary file that is left behind is harmless.
             let _ = fs::remove_file(&begun);
             return Err(reason);
         }
-        // Existing settings stay: the log contains all of them.
+        // Existing settings stay, since the log contains all settings, too.
         match OpenOptions::new().write(true).create_new(true).open(folder.join(SETTINGS_NAME)) {
             Ok(mut file) => file.write_all(self.settings.as_bytes())?,
             Err(reason) if reason.kind() == io::ErrorKind::AlreadyExists => {}
@@ -172,10 +172,10 @@ impl LogWriter {
     }
 }
 
-/// Whether the recording in this folder can still be continued.
+/// Checks that the recording in this folder has not been continued yet.
 ///
 /// # Errors
-/// It was continued already.
+/// The recording has already been continued.
 pub fn check_continued(folder: &Path) -> Result<(), WriteError> {
     let part = next_part(folder);
     match part.join(LOG_NAME).exists() {
@@ -184,7 +184,8 @@ pub fn check_continued(folder: &Path) -> Result<(), WriteError> {
     }
 }
 
-/// The folder of the part after the one in `folder`: the first with a log, or that can be written without losing anything.
+/// Folder of the part after the one in `folder`: the first that has a log, or that can be written without losing
+/// anything.
 fn next_part(folder: &Path) -> PathBuf {
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let numbered = name.rsplit_once(PART).and_then(|(first, n)| Some((first, n.parse::<u64>().ok()?)));
@@ -198,7 +199,7 @@ fn next_part(folder: &Path) -> PathBuf {
     }
 }
 
-/// Whether a folder is not there, or holds no more than a part that was killed before it had a log.
+/// Whether a folder does not exist, or contains only a part whose program was killed before it wrote a log.
 fn holds_nothing(part: &Path) -> bool {
     let is_left = |entry: io::Result<fs::DirEntry>| {
         entry.is_ok_and(|entry| match entry.file_name().to_str() {
@@ -213,13 +214,13 @@ fn holds_nothing(part: &Path) -> bool {
     }
 }
 
-/// Whether this program wrote these settings into the folder of a recording: it writes all of them and nothing else.
+/// Whether this program wrote these settings into the folder of a recording: it writes all settings and nothing else.
 pub fn is_written_settings(text: &str) -> bool {
     let spec = toml::from_str::<SessionSpec>(text).ok();
     spec.and_then(|spec| toml::to_string(&spec).ok()).is_some_and(|written| written == text)
 }
 
-/// Writes a line of the log, or nothing of it.
+/// Writes a line of the log completely or not at all.
 fn write_line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
     let mut line = Vec::with_capacity(256);
     value.serialize(&mut serde_json::Serializer::with_formatter(&mut line, FiniteNumbers))?;
@@ -227,7 +228,8 @@ fn write_line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
     out.write_all(&line)
 }
 
-/// JSON without `null`. Nothing in a log is written so but numbers that are not finite, and no log with one can be read.
+/// JSON serialiser that rejects `null`: in a log, only numbers that are not finite would become `null`, and a log with
+/// one could not be read.
 struct FiniteNumbers;
 
 impl Formatter for FiniteNumbers {

@@ -1,17 +1,18 @@
-//! Configuration of liblsl: the file that the lab has for it, without messages on the terminal, which is the console's.
+//! Configuration of liblsl (the library of the Lab Streaming Layer): the lab's own configuration file, but without log
+//! messages, since the terminal belongs to the console.
 
 use std::path::PathBuf;
 
-/// The variable of the environment that names the file.
+/// Environment variable that names liblsl's configuration file.
 const VARIABLE: &str = "LSLAPICFG";
-/// Where liblsl looks for it besides.
+/// Default name of liblsl's configuration file.
 const NAME: &str = "lsl_api.cfg";
-/// The table of the file that is about messages.
+/// Table of the configuration file that controls log messages.
 const LOG: &str = "log";
-/// Only what ends the program is printed.
+/// Table that turns off all log messages except fatal ones.
 const QUIET: &str = "\n[log]\nlevel = -3\n";
 
-/// The text of the lab's configuration file, if there is one, with the library's messages off.
+/// Text of the lab's configuration file for liblsl, if there is one, with log messages turned off.
 pub(super) fn configuration() -> String {
     let named = std::env::var_os(VARIABLE).map(PathBuf::from);
     let home = std::env::home_dir().map(|home| home.join("lsl_api").join(NAME));
@@ -21,7 +22,7 @@ pub(super) fn configuration() -> String {
     quiet(&text)
 }
 
-/// A configuration file without its table about messages, and with our own.
+/// A configuration file in which the table for log messages is replaced by one that turns them off.
 fn quiet(text: &str) -> String {
     let mut is_about_messages = false;
     let kept = text.lines().filter(|line| {

@@ -1,7 +1,8 @@
-//! Gaze from a stream of the Lab Streaming Layer, read by a thread of its own. The stream may come and go.
+//! Gaze from a stream of the Lab Streaming Layer (LSL), read by a separate thread. The stream may come and go.
 //!
-//! Times of samples are those of the sender's LSL clock, which `lsl_time_correction` maps to ours. Where a sender stamps samples by
-//! another clock, its offset is estimated from their arrival, as for lines of JSON.
+//! Samples are stamped by the sender's LSL clock; `lsl_time_correction` maps these times to this computer's LSL clock.
+//! If a sender stamps samples by another clock, the clock's offset is estimated from the samples' arrival, as for lines
+//! of JSON.
 
 use std::io;
 use std::sync::mpsc;
@@ -18,35 +19,36 @@ use crate::edge::gaze_input::{GazeNews, WAITING};
 use crate::gaze::GazeSample;
 use crate::session::settings::LslGazeSpec;
 
-/// How long a stream is looked for before the session is asked whether it goes on, in seconds.
+/// Time for which a stream is looked for before the thread checks whether the session goes on, in seconds.
 const LOOK_S: f64 = 1.0;
-/// How long a connection, its metadata and the first comparison of clocks may take, in seconds.
+/// Time limit for connecting to a stream, for its metadata, and for the first clock comparison, in seconds.
 const CONNECT_S: f64 = 5.0;
-/// How long a sample is waited for, in seconds.
+/// Time limit for waiting for a gaze sample, in seconds.
 const SAMPLE_S: f64 = 0.2;
-/// Period of comparing clocks.
+/// Period of comparing LSL's clock with this computer's.
 const COMPARE: Duration = Duration::from_secs(1);
-/// How long the end of the program waits for the end of the thread.
+/// Longest time for which the program's end waits for the end of the reading thread.
 const END: Duration = Duration::from_secs(2);
-/// Pause before a stream that cannot be read is tried again.
+/// Pause before the next attempt to read an unreadable stream.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// The end of the thread that reads. Whoever drops it waits for that end, since the library must not be in use when the program ends;
-/// the receiver of news is to be dropped before.
+/// Waits, when it is dropped, for the end of the reading thread, since liblsl must not be in use when the program ends.
+/// The receiver of gaze messages must be dropped before.
 #[derive(Debug)]
 pub struct InletEnd(mpsc::Receiver<()>);
 
 impl Drop for InletEnd {
     fn drop(&mut self) {
-        // A library that hangs does not hold up the end of the program.
+        // A library that hangs does not delay the end of the program beyond the time limit.
         let _ = self.0.recv_timeout(END);
     }
 }
 
-/// Follows the stream from a thread of its own until the session no longer listens. The display has `display_m` metres.
+/// Reads the gaze stream in a separate thread until the session no longer listens. `display_m` is the size of the
+/// display in metres.
 ///
 /// # Errors
-/// No thread can be started.
+/// The thread cannot be started.
 pub fn follow(
     library: LslLibrary,
     stream: LslGazeSpec,
@@ -56,29 +58,29 @@ pub fn follow(
     let mut inlet = GazeInlet { library, stream, display_m, news, lost: 0, complaint: None };
     let work = move || {
         inlet.run();
-        // Whoever waited may be gone.
+        // The waiting side may already have ended.
         let _ = end.send(());
     };
     thread::Builder::new().name("lsl-gaze".to_string()).spawn(work)?;
     Ok((heard, InletEnd(ended)))
 }
 
-/// Names by which the channels of a stream can be meant: their labels, and numbers where there is no label.
+/// Names by which settings can refer to a stream's channels: their labels, or numbers where there is no label.
 pub fn channel_names(found: &FoundStream, patience_s: f64) -> Option<Vec<String>> {
     let labels = found.connect(patience_s)?.labels(patience_s)?;
     let name = |(index, label): (usize, String)| if label.is_empty() { (index + 1).to_string() } else { label };
     Some(labels.into_iter().enumerate().map(name).collect())
 }
 
-/// The channel that the settings name and that is not among these; `None` if all are there.
+/// The channel that the settings name but that is not among these labels; `None` if all are there.
 pub fn missing_channel(stream: &LslGazeSpec, labels: &[String]) -> Option<String> {
     channels(stream, labels).err()
 }
 
-/// Places of x, y and confidence among the channels.
+/// Indices of the channels for x, y and confidence.
 ///
 /// # Errors
-/// The name of a channel that is not there.
+/// The name of the channel that is missing.
 fn channels(stream: &LslGazeSpec, labels: &[String]) -> Result<GazeChannels, String> {
     let place = |name: &String| {
         let by_number = name.parse::<usize>().ok().filter(|number| (1..=labels.len()).contains(number));
@@ -89,18 +91,18 @@ fn channels(stream: &LslGazeSpec, labels: &[String]) -> Result<GazeChannels, Str
     Ok(GazeChannels { x: place(&stream.x)?, y: place(&stream.y)?, confidence })
 }
 
-/// A way out of reading: nobody listens any more.
+/// Nobody receives the gaze any more, so that reading ends.
 struct NobodyListens;
 
-/// Reads a stream of gaze.
+/// Reader of a gaze stream of the Lab Streaming Layer.
 struct GazeInlet {
     library: LslLibrary,
     stream: LslGazeSpec,
     display_m: [f64; 2],
     news: Sender<GazeNews>,
-    /// Number of dropped messages that have not been told yet.
+    /// Number of dropped samples that have not been reported yet.
     lost: u64,
-    /// Why the stream cannot be read, if that was told.
+    /// Why the stream cannot be read, if that has been reported.
     complaint: Option<String>,
 }
 
@@ -124,7 +126,8 @@ impl GazeInlet {
         }
     }
 
-    /// Reads the stream until it is lost; why it cannot be read, unless it is only gone before it was there.
+    /// Reads the stream until it is lost; returns why it cannot be read, or `None` if it only vanished before it was
+    /// connected.
     fn read(&mut self, found: &FoundStream) -> Result<Option<String>, NobodyListens> {
         let [name, _, host] = found.identity();
         if found.is_text() {
@@ -147,7 +150,7 @@ impl GazeInlet {
         Ok(Some(format!("the stream {name} on {host} ended")))
     }
 
-    /// Passes samples on until the stream is lost.
+    /// Passes on gaze samples until the LSL stream is lost.
     fn pass(&mut self, inlet: &LslInletHandle, channels: &GazeChannels) -> Result<(), NobodyListens> {
         let mut clock = ComparedClock::new();
         (0..ANSWERS).for_each(|_| compare(&mut clock, &self.library));
@@ -173,7 +176,7 @@ impl GazeInlet {
         }
     }
 
-    /// Passes a sample on.
+    /// Passes a gaze sample of an LSL stream on to the session.
     fn take(
         &mut self,
         stamp_s: f64,
@@ -185,7 +188,7 @@ impl GazeInlet {
         let value = |channel: usize| values.get(channel).copied().unwrap_or(f64::NAN);
         let point = [value(channels.x), value(channels.y)];
         let confidence = channels.confidence.map_or(1.0, value);
-        // A tracker that does not see the eyes sends NaN: no sample, and no fault.
+        // A tracker that does not see the eyes sends NaN: this is neither a sample nor a fault.
         if point.iter().any(|coordinate| coordinate.is_nan()) || confidence.is_nan() {
             return;
         }
@@ -203,12 +206,12 @@ impl GazeInlet {
         self.offer(GazeNews::Sample(sample, Some(taken)));
     }
 
-    /// Tells what must not be lost; waits where the session is behind.
+    /// Sends a message that must not be lost; waits if the session is late.
     fn tell(&self, news: GazeNews) -> Result<(), NobodyListens> {
         self.news.blocking_send(news).map_err(|_| NobodyListens)
     }
 
-    /// Tells what may be dropped, and counts what was.
+    /// Sends a message that may be dropped, and counts dropped ones.
     fn offer(&mut self, news: GazeNews) {
         self.lost += u64::from(self.news.try_send(news).is_err());
         if self.lost > 0 && self.news.try_send(GazeNews::Overrun(self.lost)).is_ok() {
@@ -217,14 +220,14 @@ impl GazeInlet {
     }
 }
 
-/// Places of the coordinates and of the confidence among the channels.
+/// Indices of the coordinates and of the confidence among the stream's channels.
 struct GazeChannels {
     x: usize,
     y: usize,
     confidence: Option<usize>,
 }
 
-/// Compares LSL's clock with ours.
+/// Compares LSL's clock on this computer with the program's own clock.
 pub(super) fn compare(clock: &mut ComparedClock, library: &LslLibrary) {
     let asked = Instant::now();
     let lsl_s = library.local_clock();

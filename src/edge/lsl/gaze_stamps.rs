@@ -1,4 +1,4 @@
-//! When samples of a stream were taken, by their stamps.
+//! Conversion of the time stamps of a Lab Streaming Layer (LSL) stream into times on this computer.
 
 use std::time::{Duration, Instant};
 
@@ -7,38 +7,40 @@ use crate::edge::compared_clock::ComparedClock;
 use crate::edge::gaze_input::GazeNews;
 use crate::gaze::device_clock::{ClockStep, DeviceClock};
 
-/// A first sample older than this has no stamp of LSL's clock, in seconds.
+/// Largest age of the first sample, in seconds, at which its stamp still counts as one of LSL's clock.
 const OLDEST_S: f64 = 2.0;
-/// A first sample further ahead than this has none either, in seconds: comparing clocks of two computers is more exact.
+/// Largest time by which the first sample's stamp may lie in the future, in seconds, to count as one of LSL's clock:
+/// comparing the clocks of two computers is more exact.
 const AHEAD_S: f64 = 0.05;
-/// A correction that changes by more than this was set, in seconds.
+/// Change of the clock correction that means that the sender's clock was set, in seconds.
 const SET_S: f64 = 0.01;
 
-/// Maps stamps to instants. A stamp plus the correction is a time of this computer's LSL clock. Where the first sample shows that it is
-/// not, arrival tells the offset; where samples agree that the sender's stamps were set, they are followed.
+/// Maps time stamps of a stream to instants. A stamp plus the correction is a time of this computer's LSL clock. If the
+/// first sample shows that it is not, the offset is estimated from the samples' arrival; if several samples agree that
+/// the sender's clock was set, the change is followed.
 #[derive(Debug)]
 pub(super) struct StreamStamps {
-    /// Added to the stream's stamps, in seconds.
+    /// Correction that is added to the stream's stamps, in seconds.
     correction_s: Option<f64>,
-    /// When that was last found as it was before.
+    /// Instant at which the correction was last found unchanged.
     known_at: Instant,
-    /// Beginning of the times that `device` has.
+    /// Zero of the times that `device` receives.
     origin: Instant,
     device: DeviceClock,
-    /// How far the sender's clock is ahead of LSL's; `None` before the first sample.
+    /// Seconds by which the sender's clock is ahead of LSL's; `None` before the first sample.
     ahead_s: Option<f64>,
-    /// Whether the stamps are not those of LSL's clock.
+    /// Whether the stamps come from another clock than LSL's.
     is_foreign: bool,
 }
 
 impl StreamStamps {
-    /// Stamps of a stream with this correction; `None` where clocks could not be compared.
+    /// Conversion for a stream with this clock correction; `None` if the clocks could not be compared.
     pub fn new(correction_s: Option<f64>) -> StreamStamps {
         let (now, device) = (Instant::now(), DeviceClock::default());
         StreamStamps { correction_s, known_at: now, origin: now, device, ahead_s: None, is_foreign: false }
     }
 
-    /// Takes a new correction; what is to be told, if the clock of the sender's computer was set.
+    /// Takes a new clock correction; returns a message if the clock of the sender's computer was set.
     pub fn correct(&mut self, correction_s: Option<f64>) -> Option<GazeNews> {
         let correction_s = correction_s?;
         let by_s = self.correction_s.map(|before| before - correction_s).filter(|by_s| by_s.abs() > SET_S);
@@ -50,7 +52,8 @@ impl StreamStamps {
         step
     }
 
-    /// When the sample with this stamp, which arrived now, was taken; and what is to be told, if the stamps were set.
+    /// Instant at which the sample with this stamp, which has just arrived, was taken; and a message if the sender's
+    /// clock was set.
     pub fn taken(&mut self, stamp_s: f64, clock: &ComparedClock, now: Instant) -> (Instant, Option<GazeNews>) {
         let corrected_s = stamp_s + self.correction_s.unwrap_or(0.0);
         let late_s = clock.device_s(now).map(|now_s| now_s - corrected_s);
@@ -76,7 +79,7 @@ impl StreamStamps {
 mod tests {
     use super::*;
 
-    /// Our clock and LSL's, which is 100 s ahead of the seconds since `origin`.
+    /// This computer's clock, and LSL's clock, which is 100 s ahead of the seconds since `origin`.
     fn clocks() -> (Instant, ComparedClock) {
         let (origin, mut clock) = (Instant::now(), ComparedClock::new());
         for ms in 0..10 {
@@ -93,7 +96,7 @@ mod tests {
     #[test]
     fn stamps_of_lsl_are_corrected_and_a_delay_does_not_move_them() {
         let (origin, clock) = clocks();
-        // The sender's clock is 5 s behind ours; samples arrive 8 ms after they were taken, every fifth one 40 ms after.
+        // The sender's clock is 5 s behind; samples arrive 8 ms after they were taken, every fifth one after 40 ms.
         let mut stamps = StreamStamps::new(Some(5.0));
         for index in 0..400u64 {
             let taken = origin + Duration::from_millis(1000 + 5 * index);
@@ -128,7 +131,7 @@ mod tests {
             let mut stamps = StreamStamps::new(correction);
             for index in 0..400u64 {
                 let taken = origin + Duration::from_millis(1000 + 5 * index);
-                // Seconds since 1970.
+                // The stamps are seconds since 1970.
                 let (found, step) =
                     stamps.taken(1.7e9 + 0.005 * index as f64, &clock, taken + Duration::from_millis(8));
                 assert!(off_s(found, taken) < 0.009 && step.is_none(), "{index}: {}", off_s(found, taken));

@@ -1,5 +1,6 @@
-//! liblsl, loaded when a session asks for it: its functions, and what they make, as values that are used safely. This is the only file
-//! of the crate with code that the compiler cannot check.
+//! Interface to liblsl, the library of the Lab Streaming Layer, which is loaded when a session asks for it. It wraps
+//! the library's functions and objects in values that are safe to use. This is the only file of the crate with code
+//! whose safety the compiler cannot check.
 
 use std::error::Error;
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -10,10 +11,10 @@ use libloading::Library;
 use super::lsl_error::LslError;
 use crate::analysis::lsl::{MetadataNode, StreamDescription};
 
-/// An object of liblsl, or an element of its metadata.
+/// Pointer to an object of liblsl, or to an element of its metadata.
 type Pointer = *mut c_void;
 
-/// Names of the library on a system that has it.
+/// File names of liblsl on this operating system.
 #[cfg(target_os = "macos")]
 const SYSTEM_NAMES: [&str; 2] = ["liblsl.dylib", "/opt/homebrew/lib/liblsl.dylib"];
 #[cfg(windows)]
@@ -21,22 +22,23 @@ const SYSTEM_NAMES: [&str; 1] = ["lsl.dll"];
 #[cfg(not(any(target_os = "macos", windows)))]
 const SYSTEM_NAMES: [&str; 2] = ["liblsl.so.2", "liblsl.so"];
 
-/// Formats of channels (`lsl_channel_format_t`).
+/// Formats of channels (liblsl's `lsl_channel_format_t`).
 const DOUBLE: i32 = 2;
 const STRING: i32 = 3;
-/// A rate that is not regular (`LSL_IRREGULAR_RATE`).
+/// Sampling rate that marks a stream as irregular (`LSL_IRREGULAR_RATE`).
 const IRREGULAR: f64 = 0.0;
-/// Samples that an outlet keeps for a consumer that is slow, in hundreds, and that an inlet keeps for us, in seconds.
+/// Samples that an outlet buffers for a slow consumer, in hundreds, and samples that an inlet buffers for this program,
+/// in seconds.
 const KEPT_OUT: i32 = 360;
 const KEPT_IN: i32 = 10;
-/// Largest number of streams that are found at once.
+/// Largest number of LSL streams that one search can find.
 pub(super) const MOST_FOUND: u16 = 32;
-/// What a function without an answer in time gives as error (`lsl_timeout_error`).
+/// Error that a function of liblsl returns on a time-out (`lsl_timeout_error`).
 const TIMEOUT: i32 = -1;
 
 macro_rules! functions {
     ($($name:ident: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
-        /// The functions of liblsl that are used, with the signatures of its header files (`include/lsl/*.h`).
+        /// The used functions of liblsl, with the signatures of its header files (`include/lsl/*.h`).
         #[derive(Debug)]
         struct Functions { $($name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)* }
 
@@ -44,7 +46,8 @@ macro_rules! functions {
             fn find(library: &Library, place: &str) -> Result<Functions, LslError> {
                 Ok(Functions { $($name: {
                     let symbol = concat!("lsl_", stringify!($name));
-                    // SAFETY: the signatures are those of liblsl's header files, which have not changed since version 1.13.
+                    // SAFETY: the signatures are those of liblsl's header files, which have not changed since version
+                    // 1.13.
                     let found = unsafe { library.get::<unsafe extern "C" fn($($argument),*) $(-> $result)?>(symbol) };
                     *found.map_err(|_| LslError::Unfit { place: place.to_string(), lacks: symbol })?
                 },)* })
@@ -84,19 +87,19 @@ functions! {
     pull_sample_d: fn(Pointer, *mut f64, i32, f64, *mut i32) -> f64;
 }
 
-/// The loaded library. It stays loaded until the program ends: threads of its own may still run.
+/// The loaded library liblsl. It stays loaded until the program ends, since its own threads may still run.
 #[derive(Clone, Copy, Debug)]
 pub struct LslLibrary {
     functions: &'static Functions,
-    /// Its version, times 100.
+    /// Version of the LSL library, times 100.
     pub version: i32,
 }
 
 impl LslLibrary {
-    /// Loads the library from this path, or the one that the system has, and gives it this configuration.
+    /// Loads liblsl from this path, or the installed one, and passes it this configuration.
     ///
     /// # Errors
-    /// There is none, or it lacks a function that is needed.
+    /// The library is missing, or lacks a required function.
     pub fn load(path: Option<&Path>, configuration: &str) -> Result<LslLibrary, LslError> {
         let (library, place) = match path {
             Some(path) => (open(path)?, path.display().to_string()),
@@ -109,7 +112,7 @@ impl LslLibrary {
         let functions: &'static Functions = Box::leak(Box::new(Functions::find(&library, &place)?));
         std::mem::forget(library);
         let configuration = text(configuration);
-        // SAFETY: the text ends with a zero byte and lives until the call is over; the library copies it.
+        // SAFETY: the text ends with a zero byte and lives until the call returns; the library copies it.
         unsafe { (functions.set_config_content)(configuration.as_ptr()) };
         // SAFETY: the function takes nothing and only returns a number.
         let version = unsafe { (functions.library_version)() };
@@ -122,10 +125,10 @@ impl LslLibrary {
         unsafe { (self.functions.local_clock)() }
     }
 
-    /// Begins to offer a stream.
+    /// Starts to offer a stream to other programs.
     ///
     /// # Errors
-    /// The library refuses it.
+    /// The library refuses the stream.
     pub fn offer(&self, stream: &StreamDescription) -> Result<LslOutletHandle, LslError> {
         let functions = self.functions;
         let (name, content, source) = (text(&stream.name), text(stream.content), text(&stream.source));
@@ -133,8 +136,9 @@ impl LslLibrary {
         let channels = stream.channels.len();
         let refused = || LslError::Refused(stream.name.clone());
         let count = i32::try_from(channels).map_err(|_| refused())?;
-        // SAFETY: all texts end with a zero byte and live until the calls are over; `info` is destroyed once, and the outlet has its
-        // own copy of it. The library returns null for what it cannot make, which is not used any further.
+        // SAFETY: all texts end with a zero byte and live until the calls return; `info` is destroyed once, and the
+        // outlet has its own copy of it. If the library cannot make an object it returns null, which is not used any
+        // further.
         let pointer = unsafe {
             let info = (functions.create_streaminfo)(
                 name.as_ptr(),
@@ -156,10 +160,11 @@ impl LslLibrary {
         if pointer.is_null() { Err(refused()) } else { Ok(LslOutletHandle { functions, pointer, channels }) }
     }
 
-    /// Streams that satisfy a predicate (XPath 1.0); waits for so many of them, not longer than this.
+    /// Streams that satisfy a predicate (XPath 1.0); waits for `wanted` streams, but not longer than `patience_s`
+    /// seconds.
     pub fn resolve(&self, predicate: &str, wanted: u16, patience_s: f64) -> Vec<FoundStream> {
         let (predicate, mut found) = (text(predicate), vec![std::ptr::null_mut(); usize::from(MOST_FOUND)]);
-        // SAFETY: the buffer has room for as many pointers as the library is told that it has.
+        // SAFETY: the buffer has room for as many pointers as the library is told.
         let count = unsafe {
             let (buffer, room) = (found.as_mut_ptr(), u32::from(MOST_FOUND));
             (self.functions.resolve_bypred)(buffer, room, predicate.as_ptr(), i32::from(wanted), patience_s)
@@ -170,16 +175,17 @@ impl LslLibrary {
 }
 
 fn open(path: &Path) -> Result<Library, LslError> {
-    // SAFETY: loading a library runs its initialisers; the session file, or the system, names it as liblsl.
+    // SAFETY: loading a library runs its initialisers; the session file, or the operating system, names this one as
+    // liblsl.
     unsafe { Library::new(path) }.map_err(|error| {
-        // The error itself only names the function of the system that failed.
+        // The outer error only names the operating system's function that failed.
         let reason = error.source().map_or(error.to_string(), ToString::to_string);
         let place = path.display().to_string();
         LslError::Missing(if reason.contains(&place) { reason } else { format!("{place}: {reason}") })
     })
 }
 
-/// A text for the library; it ends at its first zero byte, of which ours have none.
+/// A text for the library; it ends at its first zero byte (this program's texts contain none).
 fn text(text: &str) -> CString {
     let bytes: Vec<u8> = text.bytes().take_while(|byte| *byte != 0).collect();
     CString::new(bytes).unwrap_or_default()
@@ -189,10 +195,10 @@ impl Functions {
     /// Adds an element to an element of a stream's metadata.
     ///
     /// # Safety
-    /// `parent` is an element of a stream's description that lives.
+    /// `parent` is an element of a stream description that exists.
     unsafe fn append(&self, parent: Pointer, node: &MetadataNode) {
         let (name, content) = (text(node.name), text(&node.text));
-        // SAFETY: texts live until the calls are over; elements belong to the description, which the caller keeps.
+        // SAFETY: texts live until the calls return; elements belong to the description, which the caller keeps.
         unsafe {
             if node.inside.is_empty() {
                 (self.append_child_value)(parent, name.as_ptr(), content.as_ptr());
@@ -203,17 +209,17 @@ impl Functions {
         }
     }
 
-    /// A text of the library, which lives as long as what it belongs to.
+    /// Copies a text of the library, which exists as long as the object that it belongs to.
     ///
     /// # Safety
     /// `from` is null or a text that ends with a zero byte.
     unsafe fn read(from: *const c_char) -> String {
-        // SAFETY: as the caller says.
+        // SAFETY: the caller guarantees that `from` is null or a valid text.
         if from.is_null() { String::new() } else { unsafe { CStr::from_ptr(from) }.to_string_lossy().into_owned() }
     }
 }
 
-/// A stream that is offered, until this is dropped. It stays on the thread that made it.
+/// An outgoing stream, offered until this value is dropped. It stays on the thread that created it.
 #[derive(Debug)]
 pub struct LslOutletHandle {
     functions: &'static Functions,
@@ -222,25 +228,25 @@ pub struct LslOutletHandle {
 }
 
 impl LslOutletHandle {
-    /// Sends a sample of numbers with this time of LSL's clock; whether the library took it.
+    /// Sends a sample of numbers with this time of LSL's clock; returns whether the library accepted it.
     pub fn push_numbers(&self, values: &[f64], time_s: f64) -> bool {
         // SAFETY: there is a value for every channel, and the outlet has numbers of this type.
         values.len() == self.channels
             && unsafe { (self.functions.push_sample_dt)(self.pointer, values.as_ptr(), time_s) } == 0
     }
 
-    /// Sends a sample of texts with this time of LSL's clock; whether the library took it.
+    /// Sends a sample of texts with this time of LSL's clock; returns whether the library accepted it.
     pub fn push_texts(&self, values: &[String], time_s: f64) -> bool {
         let texts: Vec<CString> = values.iter().map(|value| text(value)).collect();
         let pointers: Vec<*const c_char> = texts.iter().map(|text| text.as_ptr()).collect();
-        // SAFETY: there is a text for every channel; each lives until the call is over, and the library copies it.
+        // SAFETY: there is a text for every channel; each lives until the call returns, and the library copies it.
         pointers.len() == self.channels
             && unsafe { (self.functions.push_sample_strt)(self.pointer, pointers.as_ptr(), time_s) } == 0
     }
 
-    /// Whether anybody reads it.
+    /// Whether any program reads the outgoing stream.
     pub fn has_consumers(&self) -> bool {
-        // SAFETY: the outlet lives as long as this value.
+        // SAFETY: the outlet exists as long as this value.
         unsafe { (self.functions.have_consumers)(self.pointer) != 0 }
     }
 }
@@ -252,7 +258,7 @@ impl Drop for LslOutletHandle {
     }
 }
 
-/// A stream that somebody offers.
+/// A stream that another program offers, found by a search.
 #[derive(Debug)]
 pub struct FoundStream {
     functions: &'static Functions,
@@ -260,37 +266,38 @@ pub struct FoundStream {
 }
 
 impl FoundStream {
-    /// Its name, content type, and the computer that offers it.
+    /// Name and content type of the stream, and name of the computer that offers it.
     pub fn identity(&self) -> [String; 3] {
         let functions = self.functions;
-        // SAFETY: the description lives as long as this value, and its texts with it; they are copied.
+        // SAFETY: the description exists as long as this value, and its texts with it; the texts are copied.
         [functions.get_name, functions.get_type, functions.get_hostname]
             .map(|get| unsafe { Functions::read(get(self.info)) })
     }
 
-    /// Whether its samples are texts.
+    /// Whether the samples of the LSL stream are texts.
     pub fn is_text(&self) -> bool {
-        // SAFETY: as above.
+        // SAFETY: the description exists as long as this value.
         unsafe { (self.functions.get_channel_format)(self.info) == STRING }
     }
 
-    /// Number of its channels.
+    /// Number of channels of the LSL stream.
     pub fn channel_count(&self) -> usize {
-        // SAFETY: as above.
+        // SAFETY: the description exists as long as this value.
         usize::try_from(unsafe { (self.functions.get_channel_count)(self.info) }).unwrap_or(0)
     }
 
-    /// Connects to the stream; `None` if it is gone or does not answer in time.
+    /// Connects to the stream; `None` if it no longer exists or does not answer in time.
     pub fn connect(&self, patience_s: f64) -> Option<LslInletHandle> {
         let channels = self.channel_count();
-        // SAFETY: the description lives; the inlet has its own copy of it. Without recovery a lost stream is told as lost.
+        // SAFETY: the description exists; the inlet has its own copy of it. Without recovery, the library reports a
+        // lost stream as lost.
         let pointer = unsafe { (self.functions.create_inlet)(self.info, KEPT_IN, 0, 0) };
         if pointer.is_null() {
             return None;
         }
         let inlet = LslInletHandle { functions: self.functions, pointer, channels };
         let mut error = 0;
-        // SAFETY: the inlet lives, and the error is written before the call returns.
+        // SAFETY: the inlet exists, and the error is written before the call returns.
         unsafe { (self.functions.open_stream)(inlet.pointer, patience_s, &raw mut error) };
         (error == 0).then_some(inlet)
     }
@@ -303,11 +310,11 @@ impl Drop for FoundStream {
     }
 }
 
-/// A stream is gone, or the library does not read it any more.
+/// The stream was lost, or the library no longer reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StreamLost;
 
-/// A stream that is read, until this is dropped. It stays on the thread that made it.
+/// An incoming stream, read until this value is dropped. It stays on the thread that created it.
 #[derive(Debug)]
 pub struct LslInletHandle {
     functions: &'static Functions,
@@ -316,11 +323,11 @@ pub struct LslInletHandle {
 }
 
 impl LslInletHandle {
-    /// Labels of the channels, as far as the stream's metadata name them; `None` if they do not come in time.
+    /// Labels of the channels, as far as the stream's metadata name them; `None` if the metadata do not arrive in time.
     pub fn labels(&self, patience_s: f64) -> Option<Vec<String>> {
         let (functions, mut error) = (self.functions, 0);
-        // SAFETY: the inlet lives; the description that it gives belongs to us and is destroyed once. Elements that are not there are
-        // null or empty, which the library takes as well; there are no more steps than channels.
+        // SAFETY: the inlet exists; the description that it returns belongs to this function and is destroyed once.
+        // Missing elements are null or empty, which the library accepts as well; there are no more steps than channels.
         unsafe {
             let info = (functions.get_fullinfo)(self.pointer, patience_s, &raw mut error);
             if info.is_null() {
@@ -338,22 +345,23 @@ impl LslInletHandle {
         }
     }
 
-    /// What is to be added to the stream's times for times of this computer's LSL clock, in seconds; `None` while it is not known.
+    /// Correction that maps the stream's times to this computer's LSL clock when it is added, in seconds; `None` while
+    /// unknown.
     pub fn time_correction(&self, patience_s: f64) -> Option<f64> {
         let mut error = 0;
-        // SAFETY: the inlet lives, and the error is written before the call returns.
+        // SAFETY: the inlet exists, and the error is written before the call returns.
         let correction = unsafe { (self.functions.time_correction)(self.pointer, patience_s, &raw mut error) };
         (error == 0).then_some(correction)
     }
 
-    /// The next sample into `values`, and its time on the stream's clock; `None` if none comes in time.
+    /// Reads the next sample into `values` and returns its time on the stream's clock; `None` if none arrives in time.
     ///
     /// # Errors
     /// The stream is lost.
     pub fn pull(&self, values: &mut Vec<f64>, patience_s: f64) -> Result<Option<f64>, StreamLost> {
         values.resize(self.channels, 0.0);
         let mut error = 0;
-        // SAFETY: the buffer has room for a value of every channel.
+        // SAFETY: the buffer has room for a value of each channel.
         let time = unsafe {
             let room = self.channels as i32;
             (self.functions.pull_sample_d)(self.pointer, values.as_mut_ptr(), room, patience_s, &raw mut error)

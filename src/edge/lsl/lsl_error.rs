@@ -1,29 +1,29 @@
 //! Errors of the Lab Streaming Layer.
 
-/// The Lab Streaming Layer cannot be used.
+/// Why the Lab Streaming Layer (LSL) cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LslError {
-    /// The library cannot be loaded, for this reason.
+    /// The LSL library cannot be loaded, for this reason.
     #[error("the library of the Lab Streaming Layer (liblsl) cannot be loaded: {0}")]
     Missing(String),
-    /// The library lacks a function.
+    /// The LSL library lacks a required function.
     #[error("{place} is no liblsl of version 1.17.7 or newer: it lacks {lacks}")]
     Unfit {
-        /// Where it is.
+        /// Path of the LSL library that lacks the function.
         place: String,
-        /// The function.
+        /// Name of the function that the LSL library lacks.
         lacks: &'static str,
     },
-    /// The library does not offer the stream of this name.
+    /// The LSL library refuses to offer the stream of this name.
     #[error("liblsl does not offer the stream {0}")]
     Refused(String),
-    /// The thread that sends cannot be started, or does not answer in time.
+    /// The sending thread cannot be started, or does not answer in time.
     #[error("the thread for the Lab Streaming Layer does not start")]
     NoThread,
 }
 
 impl LslError {
-    /// What to do about it.
+    /// Advice for the user about this error of the Lab Streaming Layer.
     pub fn remedy(&self) -> &'static str {
         match self {
             LslError::Missing(_) | LslError::Unfit { .. } => {

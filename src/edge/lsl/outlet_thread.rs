@@ -1,5 +1,5 @@
-//! Sends streams of the Lab Streaming Layer from a thread of its own. Whoever tells it something never waits: where the thread does not
-//! keep up, samples are dropped and counted.
+//! Sends streams of the Lab Streaming Layer from a separate thread. Senders of samples never wait: if the thread is too
+//! slow, samples are dropped and counted.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,36 +15,37 @@ use crate::analysis::lsl::{SampleValues, StreamDescription};
 use crate::edge::compared_clock::{ANSWERS, ComparedClock};
 use crate::session::settings::LslOutlet;
 
-/// Number of packets of samples that may wait; at 200 gaze samples a second they are those of 20 seconds.
+/// Number of packets of samples that may wait to be sent; at 200 gaze samples per second, they are those of 20 seconds.
 const WAITING: usize = 4096;
-/// How long the library may take to offer the streams.
+/// Time limit for the library to offer the streams.
 const BEGIN: Duration = Duration::from_secs(10);
-/// How long streams are still offered after their last sample, if somebody reads them: the library sends from threads of its own.
+/// Time for which streams are still offered after their last sample, if a program reads them, since the library sends
+/// from its own threads.
 const LINGER: Duration = Duration::from_millis(500);
-/// How long the end of the program waits for that.
+/// Longest time for which the end of the program waits for the end of the sending thread.
 const END: Duration = Duration::from_secs(2);
-/// Period of comparing LSL's clock with ours.
+/// Period of comparing LSL's clock with this computer's.
 const COMPARE: Duration = Duration::from_secs(1);
 
-/// A sample with the instant of what it tells.
+/// A sample for a stream, with the time of the event that it describes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimedSample {
-    /// The stream.
+    /// LSL stream that the sample is sent to.
     pub outlet: LslOutlet,
-    /// When.
+    /// Instant of the event that the sample describes.
     pub at: Instant,
-    /// A value for each channel.
+    /// Values of the sample, one for each channel.
     pub values: SampleValues,
 }
 
-/// Counts of samples.
+/// Numbers of samples sent over LSL, dropped, and refused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LslCounts {
-    /// Samples that the library took.
+    /// Number of samples that the library accepted.
     pub sent: u64,
-    /// Samples that were dropped, since the thread did not keep up.
+    /// Number of samples dropped because the sending thread was too slow.
     pub dropped: u64,
-    /// Samples that the library refused.
+    /// Number of samples that the library refused.
     pub refused: u64,
 }
 
@@ -55,22 +56,22 @@ struct Counters {
     refused: AtomicU64,
 }
 
-/// Streams that are offered, until this is dropped.
+/// Streams that are offered to other programs until this value is dropped.
 #[derive(Debug)]
 pub struct LslStreams {
-    /// What is offered.
+    /// Descriptions of the LSL streams on offer.
     pub descriptions: Vec<StreamDescription>,
-    /// `None` once no more is told.
+    /// Queue to the sending thread; `None` once no more samples will be sent.
     packets: Option<SyncSender<Vec<TimedSample>>>,
     counters: Arc<Counters>,
     done: Receiver<()>,
 }
 
 impl LslStreams {
-    /// Offers these streams.
+    /// Offers these streams to other programs.
     ///
     /// # Errors
-    /// The library refuses one of them, or does not answer.
+    /// The library refuses one of the streams, or does not answer.
     pub fn offer(library: LslLibrary, descriptions: Vec<StreamDescription>) -> Result<LslStreams, LslError> {
         let (packets, told) = sync_channel::<Vec<TimedSample>>(WAITING);
         let (begun, begins) = channel();
@@ -89,7 +90,7 @@ impl LslStreams {
                 thread::sleep(LINGER);
             }
             drop(outlets);
-            // Whoever waited may be gone.
+            // The waiting side may already have ended.
             let _ = end.send(());
         };
         thread::Builder::new().name("lsl".to_string()).spawn(work).map_err(|_| LslError::NoThread)?;
@@ -97,7 +98,7 @@ impl LslStreams {
         Ok(LslStreams { descriptions, packets: Some(packets), counters, done })
     }
 
-    /// Sends samples, or drops them where the thread does not keep up.
+    /// Sends samples, or drops them if the sending thread is too slow.
     pub fn tell(&self, samples: Vec<TimedSample>) {
         let Some(packets) = self.packets.as_ref().filter(|_| !samples.is_empty()) else { return };
         if let Err(TrySendError::Full(samples) | TrySendError::Disconnected(samples)) = packets.try_send(samples) {
@@ -105,7 +106,7 @@ impl LslStreams {
         }
     }
 
-    /// Counts so far.
+    /// Numbers of samples sent, dropped and refused so far.
     pub fn counts(&self) -> LslCounts {
         let Counters { sent, dropped, refused } = &*self.counters;
         LslCounts { sent: sent.load(Relaxed), dropped: dropped.load(Relaxed), refused: refused.load(Relaxed) }
@@ -115,7 +116,7 @@ impl LslStreams {
 impl Drop for LslStreams {
     fn drop(&mut self) {
         self.packets = None;
-        // A library that hangs does not hold up the end of the program.
+        // A library that hangs does not delay the end of the program beyond the time limit.
         let _ = self.done.recv_timeout(END);
     }
 }
@@ -127,7 +128,7 @@ fn offer_all(
     streams.iter().map(|stream| Ok((stream.outlet, library.offer(stream)?))).collect()
 }
 
-/// Sends what is told until nobody tells anything any more.
+/// Sends the queued samples over LSL until the queue is closed.
 fn send(
     library: LslLibrary,
     outlets: &BTreeMap<LslOutlet, LslOutletHandle>,

@@ -1,4 +1,4 @@
-//! Asks Capture for its time, and carries out what [`CaptureRecorder`] decides.
+//! Carries out requests to Pupil Capture: asks for its time, and does what [`CaptureRecorder`] decides.
 
 use std::future::pending;
 use std::io;
@@ -14,19 +14,19 @@ use super::zmtp::{ZmtpConnection, ZmtpMessage};
 use crate::edge::compared_clock::{ANSWERS, ComparedClock, DeviceClockStep};
 use crate::edge::gaze_input::GazeNews;
 
-/// Period of time requests to Capture: a clock that was set is noticed within this time.
+/// Period of time requests to Pupil Capture; a clock that was set is noticed within this time.
 const ASK_TIME: Duration = Duration::from_millis(250);
-/// How long Capture's subscriptions are waited for. They arrive with the connection.
+/// Time limit for the subscriptions of Capture's plugins, which arrive right after the connection.
 const SUBSCRIPTIONS: Duration = Duration::from_millis(200);
 
-/// The connections for requests and annotations.
+/// Connections to Capture for requests and annotations.
 pub(super) struct CaptureDesk {
     pub remote: ZmtpConnection,
     pub annotations: ZmtpConnection,
     pub news: Sender<GazeNews>,
 }
 
-/// What the desk waits for.
+/// Event for which the task that serves Capture waits.
 enum DeskEvent {
     Time,
     Order(Option<CaptureRequest>),
@@ -36,7 +36,7 @@ enum DeskEvent {
 }
 
 impl CaptureDesk {
-    /// Averages the first answers to time requests.
+    /// Initialises the clock offset by averaging Capture's first replies to time requests.
     pub async fn set_clock(remote: &mut ZmtpConnection, clock: &Mutex<ComparedClock>) -> io::Result<()> {
         for _ in 0..ANSWERS {
             ask_time(remote, clock).await?;
@@ -44,8 +44,8 @@ impl CaptureDesk {
         Ok(())
     }
 
-    /// Starts Capture's annotation plugin unless it runs: a second start replaces it, and the annotations that the lab defined in it.
-    /// Returns whether it listens already.
+    /// Starts Capture's annotation plugin unless it runs: starting it twice would replace it and the annotations that
+    /// the lab defined in it. Returns whether the plugin already listens.
     pub async fn start_plugin(&mut self) -> io::Result<bool> {
         let until = tokio::time::Instant::now() + SUBSCRIPTIONS;
         while let Ok(found) = timeout_at(until, self.annotations.receive()).await {
@@ -58,7 +58,7 @@ impl CaptureDesk {
         Ok(false)
     }
 
-    /// Serves requests until one fails.
+    /// Serves requests to Capture until one fails.
     pub async fn attend(
         &mut self,
         orders: &mut Receiver<CaptureRequest>,
@@ -105,10 +105,11 @@ impl CaptureDesk {
         }
     }
 
-    /// Asks for the time; if the clock was set, tells so and asks until the mean is as good as before.
+    /// Compares the clocks; if Capture's clock was set, reports that and asks again until the mean is as exact as
+    /// before.
     async fn check_time(&mut self, clock: &Mutex<ComparedClock>) -> io::Result<()> {
         let Some(DeviceClockStep { by_s, known_at }) = ask_time(&mut self.remote, clock).await? else { return Ok(()) };
-        // The receiver may be gone; the listener notices.
+        // The receiver may no longer exist; the listener notices that.
         let _ = self.news.send(GazeNews::ClockSet { by_s, known_at }).await;
         CaptureDesk::set_clock(&mut self.remote, clock).await
     }
@@ -129,7 +130,7 @@ impl CaptureDesk {
                 Ok(())
             }
             CaptureAction::Report(to) => {
-                // Who asked may be gone by now.
+                // Whoever asked for the report may no longer wait for it.
                 let _ = to.send(());
                 Ok(())
             }
@@ -137,7 +138,7 @@ impl CaptureDesk {
     }
 }
 
-/// Whether this is the subscription of Capture's annotation plugin.
+/// Whether the message is the subscription of Capture's annotation plugin.
 fn is_annotated(message: &ZmtpMessage) -> bool {
     message.first().and_then(|frame| frame.strip_prefix(&[1])) == Some(ANNOTATION.as_bytes())
 }

@@ -1,36 +1,40 @@
-//! Whole fixations and blinks from the messages of Capture's online detectors.
+//! Merges the messages of Pupil Capture's online detectors into whole fixations and blinks.
 //!
-//! The fixation detector sends a fixation anew with every frame, under one id, over a window of the latest gaze (300 ms by default): the
-//! windows overlap, and together they are the fixation. The blink detector repeats onset and offset with every frame in which the
-//! confidence falls or rises; as in Pupil Player, a blink lasts from its first onset to its last offset.
+//! The fixation detector sends a fixation anew with every frame, under one id, over a window of the latest gaze (300 ms
+//! by default): the windows overlap, and together they are the fixation. The blink detector repeats onset and offset
+//! with every frame in which the confidence falls or rises; as in Pupil Player, a blink lasts from its first onset to
+//! its last offset.
 
 use std::time::{Duration, Instant};
 
 use super::message::PupilBlink;
 
-/// A fixation or the end of a blink is over after this long without a further message: several frames of a slow camera.
+/// Time without a message after which a fixation, or the end of a blink, is over: several frames of a slow camera.
 const SILENCE: Duration = Duration::from_millis(500);
-/// An onset after this long without a message begins another blink: the lids must have opened for the confidence to fall again.
+/// Time without a message after which an onset begins another blink: the lids must have opened for the confidence to
+/// fall again.
 const REOPENED: Duration = Duration::from_secs(1);
-/// Windows with one id belong together if they are no further apart than this, in seconds. Ids begin anew when the detector is restarted.
+/// Largest gap between windows with one id that belong to one fixation, in seconds. Ids begin anew when the detector is
+/// restarted.
 const APART_S: f64 = 1.0;
 
-/// A window of a fixation as Capture sends it, or several windows merged.
+/// A window of a fixation as Capture sends it, or several merged windows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixationWindow {
-    /// Capture's number for the fixation.
+    /// Pupil Capture's id of the fixation.
     pub id: u64,
-    /// Position on the display, in fractions, if it is known.
+    /// Position on the display, in fractions, if known.
     pub at: Option<[f64; 2]>,
-    /// Beginning and end in Pupil time, in seconds.
+    /// Beginning and end of the window in Pupil time, in seconds.
     pub span_s: [f64; 2],
-    /// How far its samples are spread, in degrees. The largest one of merged windows: less than the spread of the whole fixation may be.
+    /// Spatial dispersion of the gaze samples, in degrees. For merged windows the largest value, which may be less than
+    /// the dispersion of the whole fixation.
     pub dispersion_deg: f64,
-    /// Capture's confidence, 0 to 1; of merged windows their mean.
+    /// Capture's confidence, 0 to 1; for merged windows the mean.
     pub confidence: f64,
 }
 
-/// Merges the windows of a fixation.
+/// Merges the overlapping windows of a fixation.
 #[derive(Debug, Default)]
 pub struct FixationMerger {
     current: Option<MergedWindows>,
@@ -39,14 +43,14 @@ pub struct FixationMerger {
 #[derive(Clone, Copy, Debug)]
 struct MergedWindows {
     merged: FixationWindow,
-    /// Number of windows, and of those with a position.
+    /// Number of merged windows, and number of those with a position.
     windows: f64,
     places: f64,
     heard: Instant,
 }
 
 impl FixationMerger {
-    /// Takes a window that arrived at `now`; the fixation before it, if that one is over.
+    /// Adds a window that arrived at `now`; returns the previous fixation, if that is over.
     pub fn take(&mut self, window: FixationWindow, now: Instant) -> Option<FixationWindow> {
         let belongs = |merged: &FixationWindow| {
             let [begin, end] = merged.span_s;
@@ -60,13 +64,13 @@ impl FixationMerger {
         self.current.replace(MergedWindows { merged: window, windows: 1.0, places, heard: now }).map(|over| over.merged)
     }
 
-    /// The fixation, if nothing was heard of it for a while.
+    /// Returns the present fixation if no window of it has arrived for a while.
     pub fn expire(&mut self, now: Instant) -> Option<FixationWindow> {
         let is_over = |current: &MergedWindows| now.saturating_duration_since(current.heard) >= SILENCE;
         self.current.take_if(|current| is_over(current)).map(|over| over.merged)
     }
 
-    /// The fixation that was not over yet when the messages ended.
+    /// Returns the fixation that was not over when the messages ended.
     pub fn end(&mut self) -> Option<FixationWindow> {
         self.current.take().map(|over| over.merged)
     }
@@ -98,17 +102,18 @@ pub struct BlinkMerger {
 enum Lids {
     #[default]
     Open,
-    /// After an onset; the latest one was heard then.
+    /// Closed: an onset was received, the latest one at this instant.
     Closed(Instant),
-    /// After an offset: the latest one, and when it was heard.
+    /// Opening: an offset was received; the latest one, and its arrival.
     Opening(PupilBlink, Instant),
 }
 
 impl BlinkMerger {
-    /// Takes a message that arrived at `now`; the onset of a blink, and before it the offset of the one before, if it is that.
+    /// Adds an onset or offset that arrived at `now`. Returns the offset of the previous blink, if that is over, and
+    /// then the onset of a new blink.
     pub fn take(&mut self, blink: PupilBlink, now: Instant) -> [Option<PupilBlink>; 2] {
         let (lids, told) = match (self.lids, blink.is_onset) {
-            // An offset without an onset is the rest of a blink that began before anybody listened.
+            // An offset without an onset belongs to a blink that began before listening started.
             (Lids::Open, false) => (Lids::Open, [None, None]),
             (Lids::Closed(heard), true) if now.saturating_duration_since(heard) < REOPENED => {
                 (Lids::Closed(now), [None, None])
@@ -126,7 +131,7 @@ impl BlinkMerger {
         told
     }
 
-    /// The last offset of a blink, if nothing was heard for a while.
+    /// Returns the last offset of a blink if no message has arrived for a while.
     pub fn expire(&mut self, now: Instant) -> Option<PupilBlink> {
         match self.lids {
             Lids::Opening(last, heard) if now.saturating_duration_since(heard) >= SILENCE => {
@@ -137,7 +142,7 @@ impl BlinkMerger {
         }
     }
 
-    /// The last offset of a blink that was about to end when the messages ended.
+    /// Returns the last offset of a blink that was about to end when the messages ended.
     pub fn end(&mut self) -> Option<PupilBlink> {
         match std::mem::take(&mut self.lids) {
             Lids::Opening(last, _) => Some(last),

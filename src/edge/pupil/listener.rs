@@ -1,4 +1,4 @@
-//! Passes on what Capture publishes.
+//! Reads the messages that Pupil Capture publishes, and passes them on to the session.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -16,14 +16,14 @@ use crate::edge::gaze_input::{GazeNews, SampleTime, TrackerFixation};
 use crate::gaze::GazeSample;
 use crate::gaze::surface::SurfaceMap;
 
-/// The surface counts as lost after this long without a datum.
+/// The display's surface counts as lost after this long without a datum about it.
 const UNSEEN: Duration = Duration::from_secs(1);
-/// Longest wait for a message before what is over is told.
+/// Longest wait for a message before fixations, blinks and lost surfaces are checked for being over.
 const WAKE: Duration = Duration::from_millis(250);
-/// Largest number of other surfaces that are told.
+/// Largest number of other surfaces whose names are reported.
 const MAX_OTHERS: usize = 8;
 
-/// Reads Capture's messages, and sends what they say to the session and to the recorder.
+/// Reads the messages that Capture publishes, and passes them on to the session and to the recorder.
 pub(super) struct Listener<'a> {
     news: Sender<GazeNews>,
     recorder: Sender<RecorderNews>,
@@ -34,15 +34,15 @@ pub(super) struct Listener<'a> {
     lost: &'a mut u64,
     fixations: FixationMerger,
     blinks: BlinkMerger,
-    /// Whether the display has been reported as detected.
+    /// Whether the display has been reported as detected; `None` before the first report.
     sees: Option<bool>,
-    /// Names of surfaces that are seen instead.
+    /// Names of other surfaces that are detected while the display's is not.
     others: BTreeSet<String>,
     has_new_others: bool,
 }
 
 impl<'a> Listener<'a> {
-    /// A listener that has heard nothing yet.
+    /// A listener that has received no message yet.
     pub fn new(
         news: Sender<GazeNews>,
         recorder: Sender<RecorderNews>,
@@ -67,7 +67,7 @@ impl<'a> Listener<'a> {
         }
     }
 
-    /// Listens until the connection fails.
+    /// Reads Capture's messages until the connection fails.
     pub async fn listen(&mut self, backbone: &mut ZmtpConnection) -> io::Error {
         let connected = Instant::now();
         let mut seen: Option<Instant> = None;
@@ -84,7 +84,7 @@ impl<'a> Listener<'a> {
                 Err(_) => {}
             }
             let sees = seen.is_some_and(|seen| seen.elapsed() < UNSEEN);
-            // Nothing is known before the first datum, or until it is overdue.
+            // Before the first datum, or until one is overdue, it is unknown whether the surface is detected.
             if sees || connected.elapsed() >= UNSEEN {
                 self.tell_surfaces(sees).await;
             }
@@ -95,7 +95,7 @@ impl<'a> Listener<'a> {
         }
     }
 
-    /// Tells the fixation and the blink that were going on.
+    /// Reports the fixation and the blink that had not ended.
     pub fn end(&mut self) {
         let (fixation, blink) = (self.fixations.end(), self.blinks.end());
         self.tell_over(fixation, blink);
@@ -115,7 +115,7 @@ impl<'a> Listener<'a> {
         }
     }
 
-    /// Tells whether the surface is seen, and which others are if it is not.
+    /// Reports whether the display's surface is detected, and which other surfaces are if it is not.
     async fn tell_surfaces(&mut self, sees: bool) {
         if sees {
             self.others.clear();
@@ -130,7 +130,8 @@ impl<'a> Listener<'a> {
         }
     }
 
-    /// Passes on a parsed message. If the queue is full, messages are counted and dropped, so that Capture is never blocked.
+    /// Passes on a parsed message. If the queue is full, messages are counted and dropped, so that Capture is never
+    /// blocked.
     fn pass(&mut self, told: PupilMessage) {
         let (now, mut malformed) = (Instant::now(), told.malformed);
         for gaze in told.gaze {
@@ -159,7 +160,7 @@ impl<'a> Listener<'a> {
             self.has_new_others |= self.others.insert(name);
         }
         if let Some(news) = told.recorder {
-            // The desk reads at once, unless it is about to end.
+            // The recorder's task reads at once, unless it is about to end.
             let _ = self.recorder.try_send(news);
         }
         if malformed > 0 {

@@ -1,93 +1,93 @@
-//! Parser of Pupil Capture's messages: gaze and fixations on a surface, blinks, what its recorder does. Payloads are msgpack maps. Memory
-//! is bounded by a multiple of their length; valid parts of a partly invalid message are used.
+//! Parser of Pupil Capture's messages: gaze and fixations on a surface, blinks, and the state of its recorder. Payloads
+//! are msgpack maps. Memory is bounded by a multiple of their length; valid parts of a partly invalid message are used.
 
 use rmpv::Value;
 use rmpv::decode::read_value_with_max_depth;
 
-/// Largest nesting depth of a message.
+/// Largest nesting depth of a Capture message.
 const MAX_DEPTH: usize = 16;
-/// Largest number of items of a datum.
+/// Largest number of items in a datum of a Capture message.
 const MAX_ITEMS: usize = 4096;
-/// Longest name of a surface that is passed on, in bytes.
+/// Longest surface name that is passed on, in bytes.
 const MAX_NAME: usize = 100;
 
-/// Begin of the topics of surfaces; the surface's name follows.
+/// Prefix of the topics of surfaces; the surface's name follows.
 pub const SURFACES: &str = "surfaces.";
-/// The topic of annotations, to which Capture's annotation plugin subscribes.
+/// Topic of annotations, to which Capture's annotation plugin subscribes.
 pub const ANNOTATION: &str = "annotation";
-/// Other topics of interest.
+/// Further topics of Capture's messages that the program subscribes to.
 pub const TOPICS: [&str; 4] = ["fixations", "blinks", STARTED, STOPPED];
 const STARTED: &str = "notify.recording.started";
 const STOPPED: &str = "notify.recording.stopped";
 
-/// Gaze on a surface.
+/// A gaze sample on a surface, as Capture sends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceGaze {
-    /// Position in fractions of the surface, origin at the bottom left, y up; can lie outside.
+    /// Position in fractions of the surface, origin at the bottom left, y up; can lie outside of the surface.
     pub norm_pos: [f64; 2],
-    /// Confidence from 0 to 1.
+    /// Capture's confidence in the sample, from 0 to 1.
     pub confidence: f64,
-    /// Pupil time in seconds.
+    /// Time of the sample in Pupil time, in seconds.
     pub timestamp: f64,
 }
 
-/// A fixation; messages with the same id repeat while it lasts.
+/// A fixation as Capture sends it; messages with the same id repeat while the fixation lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilFixation {
-    /// Pupil's number for it.
+    /// Pupil Capture's id of the fixation.
     pub id: u64,
-    /// Position on the surface; `None` if it is given in the scene camera's picture.
+    /// Position on the surface; `None` if the position is given in the scene camera's image.
     pub on_surface: Option<[f64; 2]>,
-    /// Pupil's confidence, 0 to 1.
+    /// Capture's confidence in the fixation, 0 to 1.
     pub confidence: f64,
-    /// Beginning in Pupil time, in seconds.
+    /// Beginning of the fixation in Pupil time, in seconds.
     pub timestamp: f64,
-    /// How long it has lasted, in milliseconds.
+    /// Duration of the fixation so far, in milliseconds.
     pub duration_ms: f64,
-    /// How far its samples are spread, in degrees.
+    /// Spatial dispersion of the fixation's gaze samples, in degrees.
     pub dispersion_deg: f64,
 }
 
-/// The beginning (onset) or end of a blink.
+/// Onset or offset of a blink, as Capture sends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PupilBlink {
-    /// The lids closed; false: they opened.
+    /// Whether the lids closed (onset); false if they opened (offset).
     pub is_onset: bool,
-    /// Pupil's confidence, 0 to 1.
+    /// Capture's confidence in the blink, 0 to 1.
     pub confidence: f64,
-    /// When, in Pupil time in seconds.
+    /// Time of the onset or offset in Pupil time, in seconds.
     pub timestamp: f64,
 }
 
-/// What Capture's recorder did.
+/// Notification of Capture's recorder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RecorderNews {
-    /// It began a recording under this session name.
+    /// The recorder began a recording under this session name.
     Started(String),
-    /// It ended its recording.
+    /// The recorder ended its recording.
     Stopped,
 }
 
-/// Content of a message.
+/// Content of a message from Capture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PupilMessage {
-    /// Whether it is about the requested surface, which is then visible to the tracker.
+    /// Whether the message is about the requested surface, which shows that the tracker detects it.
     pub sees_surface: bool,
-    /// Samples in the order in which they were taken.
+    /// Gaze samples in the message, in the order in which they were taken.
     pub gaze: Vec<SurfaceGaze>,
-    /// Fixations that go on or are over.
+    /// Fixations in the message, which continue or have ended.
     pub fixations: Vec<PupilFixation>,
-    /// A blink that began or ended, if the message tells one.
+    /// Onset or offset of a blink, if the message contains one.
     pub blink: Option<PupilBlink>,
-    /// The name of another surface that the tracker sees.
+    /// Name of another surface that the tracker detects.
     pub other_surface: Option<String>,
-    /// What the recorder did, if the message tells that.
+    /// Notification of the recorder, if the message contains one.
     pub recorder: Option<RecorderNews>,
-    /// Number of malformed items; 1 for a malformed message.
+    /// Number of malformed items in the message; 1 if the whole message is malformed.
     pub malformed: u64,
 }
 
-/// Parses a message with this topic; topics without a subscription are ignored.
+/// Parses a Capture message with this topic; topics without a subscription are ignored.
 pub fn read(topic: &[u8], payload: &[u8], surface: &str) -> PupilMessage {
     let Ok(topic) = std::str::from_utf8(topic) else { return PupilMessage::default() };
     let surface_seen = topic.strip_prefix(SURFACES);
@@ -125,7 +125,7 @@ fn of_surface(datum: &Value) -> PupilMessage {
             None => told.malformed += 1,
         }
     }
-    // The samples of both eyes come interleaved, and not always in order.
+    // Samples of the two eyes are interleaved, and not always in the order of time.
     told.gaze.sort_by(|a, b| a.timestamp.total_cmp(&b.timestamp));
     for item in items(datum, "fixations_on_surfaces", &mut told.malformed) {
         match fixation(item, true) {
@@ -136,7 +136,7 @@ fn of_surface(datum: &Value) -> PupilMessage {
     told
 }
 
-/// The list with this name; empty if it is missing, counted as malformed if it is not a list.
+/// The list with this name in a datum; empty if missing, and counted as malformed if not a list.
 fn items<'a>(datum: &'a Value, name: &str, malformed: &mut u64) -> &'a [Value] {
     match field(datum, name) {
         Some(Value::Array(items)) => {
@@ -176,7 +176,8 @@ fn blink(item: &Value) -> Option<PupilBlink> {
     Some(PupilBlink { is_onset, confidence: confidence(item)?, timestamp: time(item)? })
 }
 
-/// Whether the blink detector sent no number as its confidence: it does while a confidence of the pupil is none, whatever the lids do.
+/// Whether the blink detector sent NaN as its confidence: it does while a pupil's confidence is NaN, whatever the lids
+/// do.
 fn is_undecided(item: &Value) -> bool {
     field(item, "confidence").and_then(Value::as_f64).is_some_and(f64::is_nan)
 }
@@ -192,7 +193,7 @@ fn field<'a>(item: &'a Value, name: &str) -> Option<&'a Value> {
     item.as_map()?.iter().find(|(key, _)| key.as_str() == Some(name)).map(|(_, value)| value)
 }
 
-/// A number that is one; integers count as such.
+/// A field that is a finite number; integers are converted.
 fn number(item: &Value, name: &str) -> Option<f64> {
     field(item, name)?.as_f64().filter(|value| value.is_finite())
 }
@@ -200,7 +201,7 @@ fn number(item: &Value, name: &str) -> Option<f64> {
 fn place(item: &Value) -> Option<[f64; 2]> {
     let [x, y] = field(item, "norm_pos")?.as_array()?.as_slice() else { return None };
     let place = [x.as_f64()?, y.as_f64()?];
-    // Points beside the surface are valid up to this distance.
+    // Points outside of the surface are valid up to this distance.
     place.iter().all(|value| value.abs() < 1e3).then_some(place)
 }
 
@@ -208,12 +209,12 @@ fn confidence(item: &Value) -> Option<f64> {
     number(item, "confidence").filter(|value| (0.0..=1.0).contains(value))
 }
 
-/// A Pupil time, whose origin is arbitrary; `None` if it does not fit into nanoseconds.
+/// The Pupil time of a datum, whose origin is arbitrary; `None` if it does not fit into nanoseconds.
 fn time(item: &Value) -> Option<f64> {
     number(item, "timestamp").filter(|value| (0.0..1e10).contains(value))
 }
 
-/// The payload of a notification that starts a plugin of Capture.
+/// The payload of a notification with which Capture starts a plugin.
 pub fn start_plugin(name: &str) -> Vec<u8> {
     let text = |text: &str| Value::from(text);
     encode(vec![
@@ -223,7 +224,7 @@ pub fn start_plugin(name: &str) -> Vec<u8> {
     ])
 }
 
-/// The payload of an annotation at this Pupil time, which is `late_s` seconds later than what it tells of.
+/// The payload of an annotation at this Pupil time, which is `late_s` seconds after the event that it describes.
 pub fn annotation(label: &str, timestamp: f64, late_s: f64) -> Vec<u8> {
     let text = |text: &str| Value::from(text);
     encode(vec![

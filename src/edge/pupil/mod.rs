@@ -1,5 +1,6 @@
-//! Pupil Core through Pupil Capture's network API: requests for ports and time, subscription, recording, annotations. The connection
-//! is retried without limit when Capture is missing, ends, hangs or restarts.
+//! Connection to the eye tracker Pupil Core through Pupil Capture's network API: requests for ports and time,
+//! subscription, recording, annotations. The connection is retried without limit when Capture is missing, ends, hangs
+//! or restarts.
 
 mod capture_desk;
 pub mod eye_events;
@@ -25,29 +26,29 @@ use recorder::CaptureRecorder;
 pub use recorder::CaptureRequest;
 use zmtp::{SocketRole, ZmtpConnection};
 
-/// Time between connection attempts.
+/// Time between attempts to connect to Pupil Capture.
 const RETRY: Duration = Duration::from_millis(300);
 /// Capacity of the queue of requests to Capture.
 const ORDERS: usize = 256;
-/// Capacity of the queue of news about Capture's recorder.
+/// Capacity of the queue of notifications from Capture's recorder.
 const RECORDER_NEWS: usize = 16;
 
-/// Address of Capture, and what to receive from it.
+/// Network address of Pupil Capture, and what to receive from it.
 #[derive(Clone, Debug)]
 pub struct CaptureAddress {
-    /// The host on which Capture runs.
+    /// Host on which Capture runs.
     pub address: String,
-    /// Port of Pupil Remote.
+    /// Port of Capture's plugin Pupil Remote.
     pub port: u16,
-    /// The name of the surface that Capture defines by the tags.
+    /// Name of the surface that Capture defines by the display's markers.
     pub surface: String,
-    /// Map from the surface to the display.
+    /// Map from the surface to the wall display.
     pub map: SurfaceMap,
-    /// Whether Capture records. Annotated is it in any case.
+    /// Whether Capture is to make a recording; its recordings are annotated in any case.
     pub records: bool,
 }
 
-/// Starts following Capture; returns the channels of its messages and of requests. Ends when the receiver is dropped.
+/// Starts following Capture; returns the channels for its messages and for requests. Ends when the receiver is dropped.
 pub fn follow(capture: CaptureAddress) -> (Receiver<GazeNews>, Sender<CaptureRequest>) {
     let (news, receiver) = channel(WAITING);
     let (sender, orders) = channel(ORDERS);
@@ -65,10 +66,10 @@ pub fn follow(capture: CaptureAddress) -> (Receiver<GazeNews>, Sender<CaptureReq
     (receiver, sender)
 }
 
-/// Name and version of Capture at this port.
+/// Name and version of the Capture at this port.
 ///
 /// # Errors
-/// Reason why it does not respond.
+/// Why Capture does not respond.
 pub async fn version(address: &str, port: u16) -> io::Result<String> {
     let mut remote = ZmtpConnection::open(address, port, SocketRole::Req).await?;
     Ok(format!("Pupil Capture {}", remote.ask(&[b"v"]).await?))
@@ -79,14 +80,14 @@ struct Follower {
     news: Sender<GazeNews>,
     orders: Receiver<CaptureRequest>,
     recorder: CaptureRecorder,
-    /// Ports of the backbone of the Capture that was connected last: another one has others.
+    /// Ports of the message bus of the Capture that was connected last, by which a restarted Capture is recognised.
     run: Option<[u16; 2]>,
     /// Number of dropped messages that have not been reported yet.
     lost: u64,
 }
 
 impl Follower {
-    /// Follows Capture until the connection is lost; returns the reason, and whether it was connected.
+    /// Follows Capture until the connection is lost; returns the reason, and whether Capture had been connected.
     async fn once(&mut self) -> Result<(), Lost> {
         let never = |reason: io::Error| Lost { reason, was_there: false };
         let (address, port) = (self.capture.address.clone(), self.capture.port);
@@ -97,7 +98,8 @@ impl Follower {
         let sub_port = port_of(&remote.ask(&[b"SUB_PORT"]).await.map_err(never)?).map_err(never)?;
         let pub_port = port_of(&remote.ask(&[b"PUB_PORT"]).await.map_err(never)?).map_err(never)?;
         let mut backbone = ZmtpConnection::open(&address, sub_port, SocketRole::Sub).await.map_err(never)?;
-        // All surfaces: where ours is not seen, the names of the others help.
+        // All surfaces are subscribed to: if the display's is not detected, the names of the others help to find the
+        // error.
         for topic in [SURFACES].iter().chain(&TOPICS) {
             backbone.subscribe(topic).await.map_err(never)?;
         }
@@ -112,7 +114,7 @@ impl Follower {
         Err(Lost { reason: ended, was_there: true })
     }
 
-    /// Listens, asks for the time, and passes orders on, until one of it fails.
+    /// Listens, compares clocks, and passes requests on, until one of these fails.
     async fn attend(
         &mut self,
         mut desk: CaptureDesk,
@@ -137,7 +139,7 @@ impl Follower {
     }
 
     async fn tell(&mut self, news: GazeNews) {
-        // The receiver was dropped; the outer loop ends.
+        // If the receiver of gaze messages was dropped, the outer loop ends.
         let _ = self.news.send(news).await;
     }
 
@@ -153,10 +155,10 @@ impl Follower {
     }
 }
 
-/// Loss of the connection to Capture.
+/// Loss of the connection to Capture, or failure to connect.
 struct Lost {
     reason: io::Error,
-    /// Whether it was connected before.
+    /// Whether Capture had been connected before.
     was_there: bool,
 }
 

@@ -1,9 +1,10 @@
-//! What is asked of Capture's recorder, and when its recording is annotated. It decides; the desk carries out.
+//! Decides what is requested of Pupil Capture's recorder, and when its recording is annotated; the module
+//! `capture_desk` carries the decisions out.
 //!
-//! Capture answers `OK` to a request for a recording before it has begun: an annotation before `recording.started` is in no recording. A
-//! request while Capture records already has no effect and no notification, so a recording that was not announced is not ours, and is
-//! never ended by us. Capture handles requests before annotations in each of its frames, so a recording ends some frames after its last
-//! annotation.
+//! Capture answers `OK` to a request for a recording before the recording has begun: an annotation before
+//! `recording.started` is in no recording. A request while Capture is already recording has no effect and no
+//! notification, so a recording that was not announced is not this program's, and is never ended by it. Capture handles
+//! requests before annotations in each of its frames, so a recording is ended some frames after its last annotation.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -13,97 +14,97 @@ use tokio::sync::oneshot;
 use super::message::RecorderNews;
 use crate::session::tracker::TrackerRecording;
 
-/// Longest time from a request to the beginning of the recording.
+/// Longest time from a request for a recording to its beginning.
 const BEGINS_WITHIN: Duration = Duration::from_secs(3);
-/// Longest time until the annotation plugin listens.
+/// Longest time until Capture's annotation plugin listens.
 const LISTENS_WITHIN: Duration = Duration::from_millis(1500);
-/// Time from the last annotation to the end of the recording: some frames of Capture.
+/// Time from the last annotation to the end of the recording, for Capture to handle the annotation.
 const LAST_FRAMES: Duration = Duration::from_millis(500);
 
-/// A request to Capture.
+/// A request of the session to Capture.
 #[derive(Debug)]
 pub enum CaptureRequest {
-    /// Start a recording with this name.
+    /// Start a recording with this name in Capture.
     Record(String),
-    /// End the recording.
+    /// End Capture's recording.
     StopRecording,
-    /// Annotate its recording with an event.
+    /// Annotate Capture's recording with an event.
     Annotate {
-        /// The event.
+        /// Name of the event that is annotated.
         label: String,
-        /// When it happened.
+        /// Instant of the event that is annotated.
         at: Instant,
-        /// What holds from now on, for a recording that begins later: the labels of the trial's state.
+        /// Labels of the trial's state from now on, with which a recording that begins later is annotated first.
         state: Vec<String>,
     },
-    /// Report when all earlier requests have been carried out.
+    /// Report when all earlier requests to Capture have been carried out.
     Report(oneshot::Sender<()>),
 }
 
-/// What is to be done now.
+/// A decision of the recorder logic, to be carried out now.
 #[derive(Debug)]
 pub enum CaptureAction {
-    /// Request a recording with this name.
+    /// Request a recording with this name from Capture.
     Start(String),
-    /// Request the end of the recording.
+    /// Request the end of Capture's recording.
     Stop,
-    /// Send an annotation.
+    /// Send an annotation to Capture.
     Annotate {
-        /// The event.
+        /// Name of the event that is annotated.
         label: String,
-        /// When it happened.
+        /// Instant of the event that is annotated.
         at: Instant,
-        /// The annotation stands at the beginning of the recording, if the event was before it.
+        /// Begin of the recording; an earlier event is annotated at this instant.
         not_before: Option<Instant>,
     },
-    /// Tell what became of the recording.
+    /// Report the state of Capture's recording to the session.
     Tell(TrackerRecording),
-    /// Everything before is done.
+    /// Report that all earlier requests have been carried out.
     Report(oneshot::Sender<()>),
 }
 
-/// Whose recording runs in Capture while we want one.
+/// Who started the recording that runs in Capture while the session wants one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RecordingOwner {
-    /// None is known.
+    /// No recording of Capture is known.
     Nobody,
-    /// It began at our request.
+    /// This program started Capture's recording.
     Us,
-    /// The lab began it, or none could begin.
+    /// The lab started Capture's recording, or none could be started.
     Lab,
 }
 
-/// What holds back further requests.
+/// Why further requests to Capture have to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Hold {
-    /// The recording is about to begin, at the latest then.
+    /// Capture's recording is about to begin, at the latest at this instant.
     Beginning(Instant),
-    /// It ends then.
+    /// Capture's recording is ended at this instant.
     Ending(Instant),
 }
 
-/// The state of Capture's recording as far as we know it.
+/// State of Capture's recording, as far as this program knows it, and waiting requests.
 #[derive(Debug)]
 pub struct CaptureRecorder {
-    /// Whether Capture is to record; annotated is it in any case.
+    /// Whether Capture is to make a recording; its recordings are annotated in any case.
     records: bool,
-    /// The name of the recording that is wanted now.
+    /// Name of the Capture recording that the session wants now.
     wanted: Option<String>,
     owner: RecordingOwner,
-    /// When the present recording was announced.
+    /// Instant at which Capture announced the present recording.
     since: Option<Instant>,
     hold: Option<Hold>,
-    /// Until when the annotation plugin is waited for.
+    /// Time limit for the annotation plugin to listen; `None` if it listens or is no longer waited for.
     listens_by: Option<Instant>,
-    /// Whether the next recording is told the state of the trial.
+    /// Whether the next recording is first annotated with the trial's state.
     resumes: bool,
-    /// The labels of the trial's state.
+    /// Labels of the trial's present state.
     state: Vec<String>,
     waiting: VecDeque<CaptureRequest>,
 }
 
 impl CaptureRecorder {
-    /// A recorder that knows nothing of Capture yet.
+    /// State before anything is known about Capture.
     pub fn new(records: bool) -> CaptureRecorder {
         CaptureRecorder {
             records,
@@ -118,18 +119,19 @@ impl CaptureRecorder {
         }
     }
 
-    /// Takes a request that waits until Capture is connected.
+    /// Stores a request until Capture is connected.
     pub fn queue(&mut self, request: CaptureRequest) {
         self.waiting.push_back(request);
     }
 
-    /// Capture is connected. `is_same_run`: it was not restarted since it was connected last; `listens`: its annotation plugin runs.
+    /// Handles a new connection to Capture. `is_same_run` says that Capture was not restarted since the last
+    /// connection; `listens` says that its annotation plugin runs.
     pub fn connected(&mut self, now: Instant, is_same_run: bool, listens: bool) -> Vec<CaptureAction> {
         let mut actions = Vec::new();
         self.listens_by = (!listens).then_some(now + LISTENS_WITHIN);
         let is_ours = is_same_run && self.owner == RecordingOwner::Us;
         self.owner = if is_ours { RecordingOwner::Us } else { RecordingOwner::Nobody };
-        // What ended while nobody answered is in no recording.
+        // Events before a stop request that could not be sent are in no recording, so their annotations are dropped.
         if let Some(last) = self.waiting.iter().rposition(|request| matches!(request, CaptureRequest::StopRecording)) {
             self.waiting.drain(..=last);
             self.wanted = None;
@@ -147,12 +149,12 @@ impl CaptureRecorder {
         actions
     }
 
-    /// The connection is lost.
+    /// Handles the loss of the connection to Capture.
     pub fn disconnected(&mut self) {
         (self.hold, self.listens_by) = (None, None);
     }
 
-    /// Takes a request.
+    /// Handles a request of the session to Capture.
     pub fn order(&mut self, request: CaptureRequest, now: Instant) -> Vec<CaptureAction> {
         self.waiting.push_back(request);
         let mut actions = Vec::new();
@@ -160,7 +162,7 @@ impl CaptureRecorder {
         actions
     }
 
-    /// The annotation plugin listens now.
+    /// Handles that the annotation plugin listens now.
     pub fn listens(&mut self, now: Instant) -> Vec<CaptureAction> {
         self.listens_by = None;
         let mut actions = Vec::new();
@@ -168,7 +170,7 @@ impl CaptureRecorder {
         actions
     }
 
-    /// Takes what Capture's recorder told.
+    /// Handles a notification of Capture's recorder.
     pub fn heard(&mut self, news: RecorderNews, now: Instant) -> Vec<CaptureAction> {
         let mut actions = Vec::new();
         let is_beginning = matches!(self.hold, Some(Hold::Beginning(_)));
@@ -176,7 +178,7 @@ impl CaptureRecorder {
             RecorderNews::Started(name)
                 if self.wanted.as_ref() == Some(&name) && (is_beginning || self.is_overdue()) =>
             {
-                // What was annotated before it began is not in it.
+                // Annotations sent before the recording began are not in it, so the trial's state is annotated again.
                 self.resumes |= !is_beginning;
                 (self.owner, self.since) = (RecordingOwner::Us, Some(now));
                 actions.push(CaptureAction::Tell(TrackerRecording::Begun));
@@ -197,12 +199,12 @@ impl CaptureRecorder {
         actions
     }
 
-    /// Whether a recording of ours may still begin, later than it should have.
+    /// Whether a recording that this program requested may still begin, later than it should have.
     fn is_overdue(&self) -> bool {
         self.owner == RecordingOwner::Lab && self.since.is_none()
     }
 
-    /// When something is to be done without further news.
+    /// Next instant at which something has to be done even without further messages.
     pub fn due(&self) -> Option<Instant> {
         let hold = self.hold.map(|hold| match hold {
             Hold::Beginning(by) | Hold::Ending(by) => by,
@@ -210,7 +212,7 @@ impl CaptureRecorder {
         hold.into_iter().chain(self.listens_by).min()
     }
 
-    /// Does what is due.
+    /// Does what is due at this time, such as ending Capture's recording.
     pub fn pass(&mut self, now: Instant) -> Vec<CaptureAction> {
         let mut actions = Vec::new();
         if self.listens_by.is_some_and(|by| by <= now) {
@@ -219,7 +221,8 @@ impl CaptureRecorder {
         }
         match self.hold {
             Some(Hold::Beginning(by)) if by <= now => match self.owner {
-                // After a loss of the connection our recording may run on, which is not announced again.
+                // After a lost connection the recording of this program may still run, which Capture does not announce
+                // again.
                 RecordingOwner::Us => self.begun(now),
                 RecordingOwner::Nobody | RecordingOwner::Lab => self.is_not_ours(now, &mut actions),
             },
@@ -241,7 +244,7 @@ impl CaptureRecorder {
         self.resume(now);
     }
 
-    /// Annotates the state of the trial before anything else, if the recording began in the middle of it.
+    /// If the recording began in the middle of the trial, annotates the trial's state before anything else.
     fn resume(&mut self, now: Instant) {
         if !std::mem::take(&mut self.resumes) {
             return;
@@ -262,7 +265,7 @@ impl CaptureRecorder {
         actions.push(CaptureAction::Stop);
     }
 
-    /// Carries out what waits, as far as nothing holds it back.
+    /// Carries out waiting requests to Capture until one has to wait.
     fn go_on(&mut self, now: Instant, actions: &mut Vec<CaptureAction>) {
         while self.hold.is_none() && self.listens_by.is_none() {
             match self.waiting.pop_front() {

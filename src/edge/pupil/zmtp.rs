@@ -1,5 +1,6 @@
-//! The part of ZeroMQ's wire protocol (ZMTP 3.0, <https://rfc.zeromq.org/spec/23/>, without security) that Pupil Remote,
-//! subscriptions and annotations need. Input is bounded: memory is allocated for received bytes, never for claimed lengths.
+//! The part of ZeroMQ's wire protocol (ZMTP 3.0, <https://rfc.zeromq.org/spec/23/>, without security) that the
+//! connection to Pupil Capture needs. Input is bounded: memory is allocated for received bytes, never for claimed
+//! lengths.
 
 use std::io;
 use std::time::Duration;
@@ -8,13 +9,13 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-/// The frames of a message.
+/// A ZeroMQ message, as a list of its frames.
 pub type ZmtpMessage = Vec<Vec<u8>>;
 
 /// Longest message, in bytes of all frames, and largest number of frames.
 const MAX_MESSAGE: usize = 1 << 20;
 const MAX_FRAMES: usize = 16;
-/// Time limit of the other side for immediate answers.
+/// Time limit for replies of the other side that need no work.
 const PATIENCE: Duration = Duration::from_secs(2);
 const GREETING: usize = 64;
 
@@ -22,14 +23,14 @@ const MORE: u8 = 1;
 const LONG: u8 = 2;
 const COMMAND: u8 = 4;
 
-/// Role of a socket.
+/// Role of a ZeroMQ socket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SocketRole {
-    /// Sends requests and receives replies.
+    /// Request socket: sends requests and receives replies.
     Req,
-    /// Receives subscribed messages.
+    /// Subscriber socket: receives subscribed messages.
     Sub,
-    /// Sends to subscribers.
+    /// Publisher socket: sends messages to subscribers.
     Pub,
 }
 
@@ -47,25 +48,25 @@ fn broken(what: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, what)
 }
 
-/// Assembles messages from received bytes.
+/// Assembles ZeroMQ messages from received bytes.
 #[derive(Debug, Default)]
 pub struct FrameAssembler {
     bytes: Vec<u8>,
-    /// Number of bytes already consumed.
+    /// Number of received bytes that have been consumed already.
     read: usize,
     frames: ZmtpMessage,
     size: usize,
 }
 
 impl FrameAssembler {
-    /// Adds received bytes.
+    /// Adds bytes received from the ZeroMQ socket.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.drain(..self.read);
         self.read = 0;
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// The next complete message; commands are skipped.
+    /// The next complete message; protocol commands are skipped.
     ///
     /// # Errors
     /// The bytes are not a message, or the message is too large.
@@ -112,7 +113,7 @@ impl FrameAssembler {
     }
 }
 
-/// A connection to a socket of another program.
+/// A connection to a ZeroMQ socket of another program.
 #[derive(Debug)]
 pub struct ZmtpConnection {
     stream: TcpStream,
@@ -121,10 +122,10 @@ pub struct ZmtpConnection {
 }
 
 impl ZmtpConnection {
-    /// Connects and performs the handshake.
+    /// Connects to a ZeroMQ socket and performs the handshake.
     ///
     /// # Errors
-    /// Nothing listens at the address, or it does not speak the protocol.
+    /// Nothing listens at the address, or the other side does not speak the protocol.
     pub async fn open(address: &str, port: u16, role: SocketRole) -> io::Result<ZmtpConnection> {
         let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no answer");
         timeout(PATIENCE, ZmtpConnection::agree(address, port, role)).await.map_err(late)?
@@ -152,7 +153,7 @@ impl ZmtpConnection {
         }
         stream.write_all(&[&[COMMAND, ready.len() as u8], ready.as_slice()].concat()).await?;
         let mut connection = ZmtpConnection { stream, inbox: FrameAssembler::default(), chunk: vec![0; 1 << 16] };
-        // Their READY comes before anything else.
+        // The other side's READY command comes before anything else.
         let flags = loop {
             match connection.inbox.next_frame()? {
                 Some((flags, body)) if body.starts_with(b"\x05READY") => break flags,
@@ -176,7 +177,7 @@ impl ZmtpConnection {
         }
     }
 
-    /// Waits for the next message; cancel safe.
+    /// Waits for the next ZeroMQ message; cancel safe.
     ///
     /// # Errors
     /// The connection ended, or the bytes are not a message.
@@ -189,7 +190,7 @@ impl ZmtpConnection {
         }
     }
 
-    /// Sends a message.
+    /// Sends a ZeroMQ message.
     ///
     /// # Errors
     /// The connection ended, or the other side accepts no data.
@@ -231,7 +232,7 @@ impl ZmtpConnection {
     }
 }
 
-/// A property of a READY command.
+/// A property in ZeroMQ's READY command, as bytes.
 fn property(name: &str, value: &str) -> Vec<u8> {
     let mut bytes = vec![name.len() as u8];
     bytes.extend(name.as_bytes());

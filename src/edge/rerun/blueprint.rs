@@ -1,5 +1,5 @@
-//! What a viewer shows without a click: kitchen and arm above, beliefs and what signals are worth below, what happened at
-//! the side; several recordings beside each other.
+//! Layout (blueprint) of the Rerun viewer when it opens a stream: kitchen and arm above, beliefs and benefits of
+//! signals below, a list of events at the side; several recordings beside each other.
 
 use std::io;
 
@@ -15,48 +15,49 @@ use re_sdk_types::blueprint::archetypes::{EyeControls3D, PlotLegend, ScalarAxis,
 
 use crate::base::time::SessionTime;
 
-/// All recordings share one blueprint.
+/// Application name of all streams, by which recordings share one layout in the viewer.
 pub(super) const APPLICATION: &str = "tomcom";
 /// The timeline that viewers open with: the trial's clock, as the console shows it.
 pub const TRIAL_TIME: &str = "trial_time";
 
-/// From where the arm is looked at, and what at, in metres from its base: the whole table, from the human's side.
+/// Position of the camera, and the point that it looks at, in metres from the arm's base: the view shows the whole
+/// table from the human's side.
 const EYE_M: [f32; 3] = [1.3, -1.0, 0.98];
 const LOOKED_AT_M: [f32; 3] = [0.3, 0.0, 0.2];
-/// The axis of probabilities, with room for curves at its ends.
+/// Range of the axis of probabilities, with room for curves at both ends.
 const PROBABILITY: [f64; 2] = [-0.03, 1.03];
 
-/// One of the recordings in a stream.
+/// One of the recordings that a stream shows side by side.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StreamLane {
-    /// Its entities are below this one; empty: at the top.
+    /// Path of the entity that contains all entities of the recording; empty for the top level.
     pub root: String,
-    /// What the viewer calls it among others.
+    /// Title of the recording in the viewer.
     pub title: String,
 }
 
-/// A property of a view: where it stands in the blueprint, and what it is.
+/// A property of a view: its path in the blueprint, and its components.
 type Property = (String, Vec<SerializedComponentBatch>);
 
-/// What a viewer does when it has opened.
+/// What a viewer does when it has opened a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ViewerStart {
-    /// It stands at the beginning.
+    /// The viewer stands at the beginning of the recording.
     Waiting,
-    /// It shows the newest, because more is to come.
+    /// The viewer follows the newest data of a running session.
     Following,
-    /// It plays from this moment of the trial's clock on: nothing else that a layout can say makes it go there.
+    /// The viewer plays from this time on the trial's clock; no other layout setting makes it go there.
     From(SessionTime),
 }
 
-/// The views, and properties that Rerun's own description of views leaves out.
+/// Layout of a viewer: the views, and properties that Rerun's own API for views lacks.
 pub(super) struct ViewerLayout {
     blueprint: Blueprint,
     properties: Vec<Property>,
 }
 
 impl ViewerLayout {
-    /// The layout of these recordings.
+    /// The viewer's layout for these recordings.
     pub(super) fn from_lanes(lanes: &[StreamLane], opens: ViewerStart) -> ViewerLayout {
         let mut properties = Vec::new();
         let root: ContainerLike = match lanes {
@@ -83,8 +84,8 @@ impl ViewerLayout {
         ViewerLayout { blueprint, properties }
     }
 
-    /// Sends it ahead of what a stream shows. The properties go into the same blueprint as the views, before it is made the
-    /// one in force.
+    /// Sends the layout before the stream's data. The properties go into the same blueprint as the views, before that
+    /// blueprint is activated.
     pub(super) fn send(self, stream: &RecordingStream) -> io::Result<()> {
         let memory = || RecordingStreamBuilder::new(APPLICATION).enabled(true);
         let (views, kept) = memory().memory().map_err(io::Error::other)?;
@@ -110,7 +111,7 @@ impl ViewerLayout {
     }
 }
 
-/// One recording.
+/// Viewer layout for a single recording.
 fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let above = Horizontal::new([kitchen(lane), arm(lane, properties)]).with_column_shares([3.0, 2.0]);
     let wrong = StateTimelineView::new("Believed wrong")
@@ -133,7 +134,7 @@ fn alone(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     Horizontal::new([left.into(), side.into()]).with_column_shares([5.0, 2.0]).into()
 }
 
-/// One of several recordings.
+/// Viewer layout for one of several recordings side by side.
 fn beside(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let belief = beliefs(lane, "P(truth)", properties);
     let below = Horizontal::new([belief, benefit(lane, properties)]);
@@ -150,7 +151,7 @@ fn titled(lane: &StreamLane, name: &str) -> String {
     if lane.title.is_empty() { name.to_string() } else { format!("{}: {name}", lane.title) }
 }
 
-/// A view with a property of its own.
+/// A view of the Rerun viewer with one property.
 fn with(
     view: impl Into<ContainerLike>,
     name: &str,
@@ -176,15 +177,16 @@ fn arm(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     with(view, "EyeControls3D", &eye, properties)
 }
 
-/// Curves. A legend would cover them: their colours are those of the names in the kitchen, and a viewer names the one that
-/// the mouse is over.
+/// A view of curves, without a legend, which would cover them: their colours are those of the names in the kitchen, and
+/// the viewer names the curve under the mouse.
 fn series(lane: &StreamLane, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
     let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
     let view = TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents);
     with(view, "PlotLegend", &PlotLegend::new().with_visible(false), properties)
 }
 
-/// Estimate and, of a simulated participant, true belief: every curve quiet, false beliefs marked in the aspect's colour.
+/// A view of belief probabilities: the estimate and, for a simulated participant, the true belief. Curves are
+/// inconspicuous, and false beliefs are marked in the colour of their state aspect.
 fn beliefs(lane: &StreamLane, name: &str, properties: &mut Vec<Property>) -> ContainerLike {
     let curves = ["estimated", "true", "estimated_wrong", "truly_wrong"].map(|of| format!("human/belief/{of}/**"));
     let entities: Vec<&str> = curves.iter().map(String::as_str).chain(["human/errors/**"]).collect();
@@ -204,7 +206,7 @@ fn believed(lane: &StreamLane) -> ContainerLike {
         .into()
 }
 
-/// What happened, with nothing beside it but the trial's clock.
+/// A view of the list of events, each with its time on the trial's clock.
 fn happened(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     let lines = path(lane, "happened");
     let view = TextLogView::new(titled(lane, "What happened")).with_origin(path(lane, "")).with_contents([lines]);

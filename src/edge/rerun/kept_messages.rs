@@ -1,59 +1,61 @@
-//! Messages of a stream, kept for viewers that connect later: up to a number of bytes, and each read from its own place.
+//! Messages of a Rerun stream, kept for viewers that connect later, up to a limit in bytes; every viewer reads from its
+//! own position.
 //!
-//! Pieces of an entity arrive several times a second, and each has an overhead of some kilobytes. A number of them is merged into
-//! one, which needs a fraction of the memory. When there are too many bytes the oldest pieces go, but never the newest piece of
-//! an entity: a viewer that connects late still sees how everything is.
+//! Pieces of an entity arrive several times per second, and each has an overhead of some kilobytes. A number of them is
+//! merged into one, which needs a fraction of the memory. Beyond the limit the oldest pieces are removed, but never the
+//! newest piece of an entity: a viewer that connects late still sees the present state.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// So many pieces of an entity are merged into one.
+/// Number of pieces of an entity that are merged into one.
 const MERGED: usize = 64;
-/// Number of an entity's newest pieces that are left unmerged. A viewer that keeps up has read all older ones, so it gets none of
-/// them a second time as part of a merged piece.
+/// Number of an entity's newest pieces that are left unmerged. A viewer that keeps up has read all older ones, so it
+/// never receives a piece twice as part of a merged one.
 const RECENT: usize = 16;
 
-/// Merges pieces of one entity; the piece with its size in bytes. None: they cannot be merged.
+/// A function that merges pieces of one entity; returns the merged piece with its size in bytes, or `None` if they
+/// cannot be merged.
 pub(super) type Merge<M> = fn(&[M]) -> Option<(M, usize)>;
 
-/// A piece of the stream.
+/// A piece (chunk) of the stream, with data of one entity.
 #[derive(Debug)]
 struct KeptPiece<M> {
     message: M,
     bytes: usize,
-    /// Of what it tells; none of what stays for ever.
+    /// Entity that the piece belongs to; `None` for pieces that are kept for ever.
     entity: Option<String>,
 }
 
-/// What is kept of an entity.
+/// Bookkeeping of the pieces that are kept of one entity.
 #[derive(Debug, Default)]
 struct KeptEntity {
     newest: u64,
-    /// The numbers of pieces that were not merged yet, oldest first.
+    /// Numbers of the pieces that are not merged yet, oldest first.
     unmerged: Vec<u64>,
 }
 
-/// The messages of a stream.
+/// The kept messages of a stream.
 #[derive(Debug)]
 pub(super) struct KeptMessages<M> {
     most_bytes: usize,
     merge: Merge<M>,
     bytes: usize,
-    /// By number, in the order of arrival.
+    /// Pieces of the stream by number, in the order of arrival.
     pieces: BTreeMap<u64, KeptPiece<M>>,
-    /// Those that may go: a newer piece tells of their entity.
+    /// Numbers of pieces that may be removed, since there is a newer piece of the same entity.
     outdated: BTreeSet<u64>,
     entities: HashMap<String, KeptEntity>,
     next: u64,
 }
 
 impl<M: Clone> KeptMessages<M> {
-    /// No messages; at most so many bytes of those that may go are kept.
+    /// An empty collection; `most_bytes` limits the size of pieces that may be removed.
     pub fn new(most_bytes: usize, merge: Merge<M>) -> KeptMessages<M> {
         let (pieces, outdated, entities) = (BTreeMap::new(), BTreeSet::new(), HashMap::new());
         KeptMessages { most_bytes, merge, bytes: 0, pieces, outdated, entities, next: 0 }
     }
 
-    /// Adds a message of this size in bytes. One of no entity stays for ever.
+    /// Adds a message of this size in bytes. A message without an entity is kept for ever.
     pub fn add(&mut self, message: M, bytes: usize, entity: Option<&str>) {
         let number = self.next;
         self.next += 1;
@@ -74,18 +76,19 @@ impl<M: Clone> KeptMessages<M> {
         self.forget();
     }
 
-    /// The first message from this number on, with its number.
+    /// The first message whose number is at least `from`, with its number.
     pub fn next(&self, from: u64) -> Option<(u64, M)> {
         self.pieces.range(from..).next().map(|(number, piece)| (*number, piece.message.clone()))
     }
 
-    /// How many bytes are kept.
+    /// Size of all kept messages in bytes.
     #[cfg(test)]
     fn bytes(&self) -> usize {
         self.bytes
     }
 
-    /// Puts one piece in the place of these. It has the number of the last one: who has read that has read all of it.
+    /// Replaces these pieces by one merged piece. It gets the number of the last one: a viewer that has read that
+    /// number has read all of them.
     fn merge(&mut self, numbers: &[u64], entity: &str) {
         let there: Vec<M> =
             numbers.iter().filter_map(|number| self.pieces.get(number)).map(|p| p.message.clone()).collect();
@@ -102,7 +105,7 @@ impl<M: Clone> KeptMessages<M> {
         }
     }
 
-    /// Lets the oldest pieces go.
+    /// Removes the oldest pieces that may be removed, until the limit is met.
     fn forget(&mut self) {
         while self.bytes > self.most_bytes {
             let Some(oldest) = self.outdated.first().copied() else { return };
@@ -156,7 +159,7 @@ mod tests {
         let found = all(&kept);
         let numbers: Vec<u64> = found.iter().map(|(number, _)| *number).collect();
         assert_eq!(numbers, (1000 - 14..1000).collect::<Vec<u64>>());
-        // Who reads slowly goes on with the oldest that is there.
+        // A slow viewer continues with the oldest message that is still kept.
         assert_eq!(kept.next(3).map(|(number, _)| number), Some(1000 - 14));
         assert_eq!(kept.next(1000), None);
     }
@@ -171,7 +174,8 @@ mod tests {
         let found = all(&kept);
         assert_eq!((found.len(), &found[0]), (1 + RECENT, &(MERGED as u64 - 1, merged.clone())));
         assert_eq!(kept.bytes(), 10 + 100 * RECENT);
-        // A viewer that has read some of them gets the rest, with those again; one that has read all gets the next.
+        // A viewer that has read some of the merged pieces gets the whole merged piece; one that has read all of them
+        // gets the next piece.
         assert_eq!(kept.next(10).map(|(_, message)| message), Some(merged));
         assert_eq!(kept.next(MERGED as u64), Some((MERGED as u64, MERGED.to_string())));
     }
@@ -182,7 +186,7 @@ mod tests {
         let (mut from, mut read) = (0, Vec::new());
         for step in 0..1000 {
             kept.add(step.to_string(), 100, Some(["human/gaze", "robot/arm"][step % 2]));
-            // It is a few pieces behind.
+            // The viewer has not yet read the last few pieces.
             if step % 10 == 9 {
                 while let Some((number, message)) = kept.next(from) {
                     (from, read) = (number + 1, [read, vec![message]].concat());

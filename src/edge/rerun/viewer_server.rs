@@ -1,10 +1,10 @@
-//! The server that Rerun's viewers connect to. It speaks Rerun's protocol (gRPC, and gRPC-Web for viewers in a browser), but only
-//! hands out: whoever writes is refused.
+//! Server to which Rerun's viewers connect. It speaks Rerun's protocol (gRPC, and gRPC-Web for viewers in a browser),
+//! but only provides data: clients that send data are refused.
 //!
-//! The server of Rerun's SDK would not do. It takes messages from everybody who reaches its port and shows them to all viewers;
-//! while a viewer is stopped it holds up the stream, and what the viewer has not read stays in memory beside the history.
-//! Here each viewer reads from its own place in the messages that are kept (`kept_messages.rs`): one that is slow or stopped
-//! holds up nobody, takes no memory of its own, and misses what was let go meanwhile.
+//! The server in Rerun's SDK is not suitable. It accepts messages from everybody who reaches its port and shows them to
+//! all viewers; a stopped viewer blocks the stream, and the data that the viewer has not read stay in memory besides
+//! the history. Here each viewer reads from its own position in the kept messages (`kept_messages.rs`): a slow or
+//! stopped viewer delays nobody, takes no memory of its own, and misses only what has been removed meanwhile.
 
 use std::io;
 use std::net::SocketAddr;
@@ -37,21 +37,22 @@ use tower_layer::Layer;
 use super::kept_messages::KeptMessages;
 use crate::edge::host_name::is_local;
 
-/// Connections at a time; those beyond are closed at once.
+/// Largest number of connections at a time; further ones are closed at once.
 const MOST_CONNECTIONS: usize = 32;
-/// A connection asks for something within this time, or it is closed.
+/// Time limit for the first request of a viewer's connection.
 const ASKS: Duration = Duration::from_secs(5);
-/// Viewers are asked so often whether they are still there, and answer within this time: one that is stopped does not.
+/// Period of checking whether a viewer still responds, and time limit for its response: a stopped viewer does not
+/// respond.
 const PING: Duration = Duration::from_secs(10);
 const PONG: Duration = Duration::from_secs(20);
-/// When the stream is over, viewers have so long to take the rest of it.
+/// Time that viewers have to read the rest of the stream after its end.
 const LAST: Duration = Duration::from_secs(1);
-/// When no connection can be taken, as without free descriptors, the next is waited for after this time.
+/// Pause after a failure to accept a connection, such as too many open files.
 const AGAIN: Duration = Duration::from_millis(100);
-/// What a message takes in memory beside its data, in bytes.
+/// Memory that a message needs besides its data, in bytes.
 const OVERHEAD: usize = 512;
 
-/// A message, as it came or as it is sent.
+/// A message of the stream, as received from the SDK or encoded for viewers.
 #[derive(Clone)]
 enum StreamMessage {
     Told(Arc<LogMsg>),
@@ -59,7 +60,7 @@ enum StreamMessage {
 }
 
 impl StreamMessage {
-    /// As viewers read it; none of a message that cannot be encoded.
+    /// The message in the encoding for viewers; `None` if it cannot be encoded.
     fn encoded(&self) -> Option<messages::log_msg::Msg> {
         match self {
             StreamMessage::Told(message) => message.to_transport(Compression::LZ4).ok(),
@@ -68,24 +69,24 @@ impl StreamMessage {
     }
 }
 
-/// What the stream and all viewers share.
+/// State that the stream and all viewers share.
 struct SharedStream {
     kept: Mutex<KeptMessages<StreamMessage>>,
-    /// Counts the messages; gone when the stream is over.
+    /// Number of messages so far; the channel closes at the end of the stream.
     told: watch::Receiver<u64>,
 }
 
-/// Hands a stream out to viewers, until it is dropped.
+/// Provides a stream to viewers until this value is dropped.
 pub(super) struct ViewerServer {
     shared: Arc<SharedStream>,
     tell: watch::Sender<u64>,
 }
 
 impl ViewerServer {
-    /// Listens at this address; at most so many bytes are kept for viewers that connect later.
+    /// Listens at this address; at most `most_bytes` bytes are kept for viewers that connect later.
     ///
     /// # Errors
-    /// Nothing can listen there.
+    /// The program cannot listen at the address.
     pub fn open(address: SocketAddr, most_bytes: usize) -> io::Result<ViewerServer> {
         let listener = std::net::TcpListener::bind(address)?;
         listener.set_nonblocking(true)?;
@@ -106,7 +107,7 @@ impl ViewerServer {
     }
 }
 
-/// Waits for the end of the stream.
+/// Completes when the stream ends.
 async fn over(mut told: watch::Receiver<u64>) {
     while told.changed().await.is_ok() {}
 }
@@ -114,7 +115,8 @@ async fn over(mut told: watch::Receiver<u64>) {
 impl LogSink for ViewerServer {
     fn send(&self, message: LogMsg) {
         let bytes = OVERHEAD + message.total_size_bytes() as usize;
-        // What is told once stays: the recording's name, the layout of the viewer, and data without a time.
+        // Messages that are sent once are kept for ever: the recording's name, the viewer's layout, and data without a
+        // time.
         let entity = match &message {
             LogMsg::ArrowMsg(store, data) if store.is_recording() => Chunk::from_arrow_msg(data).ok(),
             _ => None,
@@ -129,7 +131,7 @@ impl LogSink for ViewerServer {
     }
 }
 
-/// Pieces of one entity as one piece.
+/// Merges pieces (chunks) of one entity into one.
 fn merged(pieces: &[StreamMessage]) -> Option<(StreamMessage, usize)> {
     let mut chunks = Vec::new();
     let mut recording = None;
@@ -157,7 +159,8 @@ impl SharedStream {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The first message from this number on, with its number; waits for one. None: the stream is over.
+    /// The first message whose number is at least `from`, with its number; waits if there is none yet. `None` at the
+    /// end of the stream.
     async fn next(&self, from: u64) -> Option<(u64, StreamMessage)> {
         let mut told = self.told.clone();
         loop {
@@ -171,11 +174,11 @@ impl SharedStream {
     }
 }
 
-/// Rerun's service of messages, for reading only.
+/// Rerun's gRPC service for stream messages, for reading only.
 #[derive(Clone)]
 struct ViewerService(Arc<SharedStream>);
 
-/// An answer that goes on.
+/// A gRPC response that consists of many messages.
 type Answers<T> = Pin<Box<dyn Stream<Item = Result<T, Status>> + Send>>;
 
 fn read_only<T>() -> Result<Response<T>, Status> {
@@ -219,7 +222,7 @@ impl MessageProxyService for ViewerService {
     }
 }
 
-/// Takes connections for ever.
+/// Accepts connections of viewers until the server stops.
 async fn serve(listener: std::net::TcpListener, is_loopback: bool, service: ViewerService) -> io::Result<()> {
     let listener = TcpListener::from_std(listener)?;
     let places = Arc::new(Semaphore::new(MOST_CONNECTIONS));
@@ -237,7 +240,7 @@ async fn serve(listener: std::net::TcpListener, is_loopback: bool, service: View
     }
 }
 
-/// Answers the requests of a connection until it ends. Whatever becomes of it: the stream goes on.
+/// Answers the requests of a connection until it ends. Errors of a connection do not affect the stream.
 async fn answer(connection: TcpStream, is_loopback: bool, service: ViewerService) {
     let _ = connection.set_nodelay(true);
     let (asks, mut asked) = watch::channel(false);
@@ -259,7 +262,8 @@ async fn answer(connection: TcpStream, is_loopback: bool, service: ViewerService
     let _ = served.await;
 }
 
-/// A request that a browser sends to this machine by another name comes from a foreign page (DNS rebinding).
+/// Refuses requests that a browser sends to this machine under another name: they come from a foreign website (DNS
+/// rebinding).
 fn with_local_host(request: Request<()>) -> Result<Request<()>, Status> {
     let host = request.metadata().get("host").map(|host| host.to_str().unwrap_or_default());
     match host.is_none_or(is_local) {

@@ -93,7 +93,7 @@ fn an_offer_says_what_is_believed_what_is_true_and_what_it_saves() {
     for size in SIZES {
         let screen = advised(true).screen(size);
         for words in
-            ["thinks salmon nigiri, is tuna nigiri", "83 % for 0:0", "next press: take salmon", "saves ≈ 4 presses"]
+            ["thinks salmon nigiri, is tuna nigiri", "83 % for 0:0", "next error: take salmon", "saves ≈ 4 presses"]
         {
             assert!(screen.contains(words), "{words} is missing at {size:?}:\n{screen}");
         }

@@ -35,7 +35,7 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
     }
     stage.wait(1.0);
     // Letters choose, and only enter takes the gaze.
-    for (letter, marked) in [('u', "enter    u  takes it as it is"), ('o', "enter    o  takes it with")] {
+    for (letter, marked) in [('u', "enter    u  accept without"), ('o', "enter    o  accept with")] {
         assert_eq!(stage.key(KeyCode::Char(letter)), None);
         assert!(stage.screen((80, 24)).contains(marked), "{}", stage.screen((80, 24)));
     }

@@ -126,7 +126,7 @@ fn arrows_and_clicks_go_to_an_error_of_the_list() {
     }
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('1')), None, "the present error is not the chosen one");
-    assert!(stage.notice().contains("error 5 is chosen"), "{}", stage.notice());
+    assert!(stage.notice().contains("error 5 is only selected"), "{}", stage.notice());
     assert_eq!(stage.key(KeyCode::Enter), go(400));
     stage.model.size = (120, 40);
     let screen = stage.screen((120, 40));
@@ -168,7 +168,7 @@ fn the_last_code_says_what_comes_next() {
     let all = Codes((0..12).map(|index| (100 * index, Code::Slip)).collect());
     let mut stage = rater(all);
     for size in SIZES {
-        assert!(stage.screen(size).contains("all 12 coded; next: another rater"), "{}", stage.screen(size));
+        assert!(stage.screen(size).contains("all 12 coded; next: a second rater"), "{}", stage.screen(size));
     }
     if let Some(coding) = &mut stage.model.coding {
         coding.finished.push("R0".to_string());

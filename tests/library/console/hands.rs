@@ -58,7 +58,7 @@ fn the_robot_is_held_skipped_and_driven_by_keys() {
     stage.at(22.7, Event::RobotHeld { by });
     check_snapshot("console", "held_80x24", stage.screen((80, 24)));
     let screen = stage.screen((120, 40));
-    assert!(screen.contains("HELD") && screen.contains("^p releases it"), "{screen}");
+    assert!(screen.contains("HELD") && screen.contains("^p releases the robot"), "{screen}");
     stage.wait(1.0);
     assert_eq!(input(stage.control('s')), Some(Event::RobotSkipped { by }));
     assert_eq!(stage.control('d'), None);

@@ -24,7 +24,7 @@ fn the_participant_at_the_keyboard_sees_no_estimate() {
         stage.model.size = size;
         let screen = stage.screen(size);
         assert!(screen.contains("KEYS: PARTICIPANT"), "{screen}");
-        for words in ["thinks", "Beliefs", "beliefs", "What signals would save", "No false beliefs"] {
+        for words in ["thinks", "Beliefs", "beliefs", "Signals by benefit", "No false beliefs"] {
             assert!(!screen.contains(words), "{words} is shown at {size:?}:\n{screen}");
         }
         let seen = seen(&stage);
@@ -33,7 +33,7 @@ fn the_participant_at_the_keyboard_sees_no_estimate() {
     }
     stage.wait(1.0);
     assert_eq!(stage.control('b'), None);
-    assert_eq!(stage.notice(), "the belief is not shown in this session");
+    assert_eq!(stage.notice(), "beliefs are not shown in this session");
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Tab), None);
     assert!(stage.screen((120, 40)).contains("thinks salmon nigiri"), "the wizard's keys bring it back");

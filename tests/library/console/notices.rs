@@ -30,7 +30,7 @@ fn ages_stand_still_in_a_pause_and_after_the_end() {
     stage.at(107.0, Event::TrialEnded { reason: EndReason::Wizard });
     assert_eq!(age_s(&stage, 200.0), 5.0);
     let screen = stage.screen((120, 40));
-    assert!(screen.contains("^c closes the session"), "{screen}");
+    assert!(screen.contains("^c close the session"), "{screen}");
     assert!(!screen.contains("STOP ROBOT"), "{screen}");
 }
 
@@ -60,7 +60,7 @@ fn a_lost_keyboard_is_an_alarm_and_an_event() {
     assert_eq!(focus(false), None);
     for size in SIZES {
         let screen = stage.screen(size);
-        assert!(screen.contains("NO KEYBOARD") && screen.contains("THE KEYBOARD IS ELSEWHERE"), "{screen}");
+        assert!(screen.contains("NO KEYBOARD") && screen.contains("KEYBOARD FOCUS LOST"), "{screen}");
     }
     assert_eq!(
         input(update(&mut stage.model, &stage.session, ConsoleMessage::Focus(true))),
@@ -76,10 +76,10 @@ fn what_mends_is_told_with_the_keys_that_hold() {
         let checks = checks(&stage.session, &stage.model);
         checks.into_iter().find(|check| check.name == "calibration").and_then(|check| check.remedy).unwrap_or_default()
     };
-    assert!(remedy(&stage).starts_with("^v checks the gaze"), "{}", remedy(&stage));
+    assert!(remedy(&stage).starts_with("^v checks gaze accuracy"), "{}", remedy(&stage));
     let map: KeyMap = toml::from_str("[console]\ncheck_gaze = \"f9\"\n").expect("a key file");
     stage.model.keys = KeyBindings::live(&stage.session.kitchen, &stage.session.spec, &map).expect("f9 is free");
-    assert!(remedy(&stage).starts_with("F9 checks the gaze"), "{}", remedy(&stage));
+    assert!(remedy(&stage).starts_with("F9 checks gaze accuracy"), "{}", remedy(&stage));
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn the_notes_are_those_of_the_session() {
 fn notes_in_words_are_written_when_paused_and_only_there_the_space_bar_types() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     assert_eq!(stage.key(KeyCode::Char('0')), None);
-    assert!(stage.notice().contains("only when paused"), "{}", stage.notice());
+    assert!(stage.notice().contains("only in a pause"), "{}", stage.notice());
     stage.at(23.0, Event::TrialPaused);
     stage.wait(1.0);
     stage.key(KeyCode::Char('0'));
@@ -134,11 +134,11 @@ fn a_press_without_effect_says_why_and_a_switch_says_whose_the_keys_are() {
     // The hand holds raw salmon, the assembly board a stack, the pot is empty.
     for (key, words) in [
         ('e', "no effect: the hand is full"),
-        ('a', "no effect: they do not go together"),
+        ('a', "no effect: the items cannot be stacked"),
         ('v', "no effect: the cooking pot is empty"),
-        ('b', "no effect: it does not go there"),
+        ('b', "no effect: it is not accepted there"),
         ('1', "no effect: the plate is empty"),
-        ('z', "no effect: not with raw salmon"),
+        ('z', "no effect: cannot process raw salmon"),
     ] {
         stage.wait(1.0);
         assert!(matches!(input(stage.key(KeyCode::Char(key))), Some(Event::Press { .. })), "the press counts");
@@ -148,7 +148,7 @@ fn a_press_without_effect_says_why_and_a_switch_says_whose_the_keys_are() {
     stage.wait(1.0);
     assert!(input(stage.key(KeyCode::Char('f'))).is_some());
     assert_eq!(stage.notice(), "", "a press with an effect needs no words");
-    for words in ["from now on, keys send the wizard's signals", "from now on, keys press the participant's buttons"] {
+    for words in ["keys now send the wizard's signals", "keys now press the participant's buttons"] {
         stage.wait(1.0);
         stage.key(KeyCode::Tab);
         assert_eq!(stage.notice(), words);
@@ -210,12 +210,12 @@ fn an_arm_that_stopped_itself_is_told_for_as_long_as_it_stands() {
     for size in SIZES {
         let screen = stage.screen(size);
         assert!(
-            screen.contains("The arm stands: protective stop: felt somebody, with 126 N; ^r resumes it"),
+            screen.contains("Arm stopped: protective stop: contact with a person, 126 N; ^r resumes it"),
             "{screen}"
         );
     }
     stage.at(61.0, Event::RobotResumed);
-    assert!(!stage.screen((120, 40)).contains("The arm stands"));
+    assert!(!stage.screen((120, 40)).contains("Arm stopped"));
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn the_palette_lists_every_action_and_keeps_head_and_stop_visible() {
     for size in SIZES {
         stage.model.size = size;
         let screen = stage.screen(size);
-        for text in ["RUNNING", "STOP ROBOT", "type to filter, without spaces", "space stops the robot"] {
+        for text in ["RUNNING", "STOP ROBOT", "type to filter (no spaces)", "space stops the robot"] {
             assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
         }
         check_snapshot("console", format!("palette_{}x{}", size.0, size.1), screen);
@@ -65,7 +65,7 @@ fn enter_in_the_palette_sends_no_signal_and_neither_does_the_next_one() {
     assert!(stage.notice().contains("press n to highlight counter"), "{}", stage.notice());
     stage.wait(0.3);
     assert_eq!(stage.key(KeyCode::Enter), None);
-    assert!(stage.notice().contains("right after that of a list"), "{}", stage.notice());
+    assert!(stage.notice().contains("right after a list"), "{}", stage.notice());
 }
 
 #[test]

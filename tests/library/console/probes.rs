@@ -119,7 +119,7 @@ fn an_answer_is_entered_where_no_page_is_connected() {
         on: Answering::Console,
     };
     assert_eq!(stage.type_keys(&[KeyCode::Enter]), None, "nothing is chosen yet");
-    assert!(stage.notice().contains("first the number"), "{}", stage.notice());
+    assert!(stage.notice().contains("the number of the choice first"), "{}", stage.notice());
     assert_eq!(stage.type_keys(&digits("3\n")), Some(answered(choices.get(2), None)));
     assert_eq!(stage.type_keys(&digits("0\n")), Some(answered(None, None)));
     assert_eq!(stage.type_keys(&digits("012\n")), Some(answered(choices.get(11), None)));
@@ -191,7 +191,7 @@ fn a_probe_is_asked_for_paused_and_skipped() {
     assert!(stage.screen((80, 24)).contains("after the count-down"), "{}", stage.screen((80, 24)));
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Delete), None);
-    assert_eq!(stage.notice(), "no probe is open");
+    assert_eq!(stage.notice(), "no freeze probe is open");
 }
 
 /// Reasons that were asked for one probe must not skip the next one.
@@ -251,7 +251,7 @@ fn the_head_line_and_the_preflight_checks_tell_of_probes() {
     };
     let found = |where_: &str| format!("4 in 15 min, on the {where_}");
     assert_eq!(probes(&probed("sushi", true, false)), Some((PreflightVerdict::Ok, found("display"))));
-    let lost = Some((PreflightVerdict::Warning, found("console: no page is connected")));
+    let lost = Some((PreflightVerdict::Warning, found("console: participant's page not connected")));
     assert_eq!(probes(&probed("sushi", false, false)), lost);
     assert_eq!(probes(&Stage::new("sushi", ParticipantKind::Display)), None);
 }

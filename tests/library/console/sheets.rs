@@ -51,7 +51,7 @@ fn the_sheets_around_a_trial_fit_every_size() {
         stage.at(0.0, Event::TrialStarted);
         assert!(stage.screen(size).contains("P01 trial 2/2 wizard"), "{}", stage.screen(size));
         stage.at(9.0, Event::TrialEnded { reason: EndReason::Wizard });
-        assert!(stage.screen(size).contains(". on to the questionnaire"), "{}", stage.screen(size));
+        assert!(stage.screen(size).contains(". next: questionnaire"), "{}", stage.screen(size));
         stage.at(9.0, Event::Protocol(ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 2 }));
         stage.at(
             9.0,

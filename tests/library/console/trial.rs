@@ -51,7 +51,7 @@ fn a_trial_is_aborted_with_a_reason_and_done_again() {
     stage.at(30.0, aborted);
     for size in SIZES {
         let screen = stage.screen(size);
-        assert!(screen.contains("ABORTED") && screen.contains("^n do it again"), "{screen}");
+        assert!(screen.contains("ABORTED") && screen.contains("^n repeat the trial"), "{screen}");
     }
     assert_eq!(stage.control('n'), Some(ConsoleCommand::Redo));
 }

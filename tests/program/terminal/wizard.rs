@@ -43,7 +43,7 @@ fn check_wizard(session: &str) {
     terminal.key_logs(".", "trial_paused");
     terminal.see("PAUSED");
     terminal.key("0");
-    terminal.see("A note");
+    terminal.see("Note");
     terminal.tmux(&["send-keys", "-l", "Asks for help"]);
     terminal.see("Asks for help");
     terminal.key_logs("Enter", "\"note\":\"Asks for help\"");
@@ -97,7 +97,7 @@ fn an_aborted_trial_is_done_again_in_a_recording_of_its_own() {
     terminal.key("C-u");
     terminal.see("Correct the kitchen");
     terminal.key("Enter");
-    terminal.see("What is at human hand?");
+    terminal.see("What is really at human hand?");
     terminal.key("Escape");
     terminal.see("Correct the kitchen");
     terminal.key_logs("Space", "robot_stopped");
@@ -106,7 +106,7 @@ fn an_aborted_trial_is_done_again_in_a_recording_of_its_own() {
     terminal.key("C-x");
     terminal.see("Abort the trial: why?");
     terminal.key_logs("Enter", "\"trial_aborted\",\"reason\":\"participant stopped\"");
-    terminal.see("^n do it again");
+    terminal.see("^n repeat the trial");
     terminal.key("C-n");
     terminal.see("READY");
     let name = first.file_name().expect("a name").to_string_lossy().into_owned();
@@ -148,11 +148,11 @@ fn wizard_and_assistant_are_compared_live_and_from_another_terminal() {
         one.see("tom-com");
     }
     // What may still be matched is no difference.
-    terminal.see("opens it");
+    terminal.see("o details");
     terminal.key("C-o");
-    terminal.see("What each knew");
+    terminal.see("What wizard and assistant knew");
     terminal.key("x");
-    terminal.wait("a closed dialog", || !terminal.screen().contains("What each knew"));
+    terminal.wait("a closed dialog", || !terminal.screen().contains("What wizard and assistant knew"));
     beside.key("q");
     beside.is_whole("0");
     terminal.quit();

@@ -1,11 +1,12 @@
 "use strict";
-// How things look: one function for each shape that recipe and layout files may name. Each returns SVG in a box of 100 by
-// 100 (furniture: 100 high, as wide as its place). Shapes of things that look alike are alike on purpose.
+// How the things on the participant's display look: one function for each shape that recipe and layout files may name.
+// Each returns SVG in a box of 100 by 100 (furniture: 100 high, as wide as its place). Similar things look alike on
+// purpose.
 
 const Art = (() => {
   const number = (value) => value.toFixed(1);
 
-  /** A colour, lighter (above 0) or darker (below). */
+  /** A colour made lighter (above 0) or darker (below 0). */
   function shade(colour, by) {
     const part = (at) => {
       const value = parseInt(colour.slice(at, at + 2), 16);
@@ -19,7 +20,7 @@ const Art = (() => {
     return text.replace(/[&<>"']/g, (sign) => `&#${sign.charCodeAt(0)};`);
   }
 
-  /** A colour of its own for a name that no file gives a look. */
+  /** A colour for a thing whose look no file defines, computed from its name. */
   function ownColour(name) {
     let sum = 7;
     for (const sign of name) sum = (sum * 31 + sign.codePointAt(0)) % 360;
@@ -34,7 +35,7 @@ const Art = (() => {
   const shadow = (cx, cy, rx, ry) => `<ellipse cx="${cx}" cy="${cy}" rx="${rx}" ry="${ry}" fill="#000" opacity=".13"/>`;
   const outline = (colour, width = 2.2) => `stroke="${shade(colour, -0.42)}" stroke-width="${width}" stroke-linejoin="round"`;
 
-  /** A body that is bent like that of a shellfish, in segments; both shellfish have it. */
+  /** A bent body in segments, as both shellfish have it. */
   function bent(colour) {
     const arc = "M22 66 C14 34 44 14 68 26 C84 34 86 54 76 66";
     const rings = [[25, 50, 41, 55], [30, 34, 45, 45], [45, 23, 51, 39], [62, 22, 58, 39], [77, 32, 63, 45], [82, 48, 65, 54]];
@@ -192,7 +193,7 @@ const Art = (() => {
     },
   };
 
-  // Furniture: `w` is its width where its height is 100.
+  // Furniture: `w` is its width when its height is 100.
   const PLACES = {
     board: (w) => `<rect x="4" y="8" width="${w - 8}" height="84" rx="12" fill="#d8b98c"/><rect x="4" y="8" width="${w - 8}" height="78" rx="12" fill="#e6cda4"/>
       <path d="M12 30 H${w - 12} M12 50 H${w - 12} M12 70 H${w - 12}" stroke="#d3b68a" stroke-width="2"/>`,
@@ -219,7 +220,7 @@ const Art = (() => {
       <path d="M18 28 h16 v28 l-8 30 h-12 v-34 z M82 28 h-16 v28 l8 30 h12 v-34 z" fill="#c3ced7" stroke="#7a8894" stroke-width="2.4" stroke-linejoin="round"/></g>`,
   };
 
-  /** What no file gives a look: its name on a tile. */
+  /** A thing whose look no file defines: its name on a tile. */
   function tile(name, label, isDish) {
     const colour = ownColour(name);
     const words = label.split(/\s+/).slice(0, 3);
@@ -240,22 +241,25 @@ const Art = (() => {
   const svg = (inside, box = "0 0 100 100", more = "") => `<svg viewBox="${box}" ${more} aria-hidden="true">${inside}</svg>`;
 
   return {
-    /** An item of the scene. */
+    /** Picture of an item of the scene. */
     item: (scene, name) => svg(picture(name, scene.items[name], false)),
-    /** The final product of a dish. */
+    /** Picture of a dish's final product. */
     dish: (scene, name) => svg(picture(name, scene.dishes[name], true)),
-    /** Items on one another, the last on top. */
+    /** Picture of stacked items, the last one on top. */
     stack(scene, names) {
       const scale = names.length > 2 ? 0.6 : 0.7, step = names.length > 2 ? 21 : 26;
       const first = 50 + (step * (names.length - 1)) / 2;
       return svg(names.map((name, i) => `<g transform="translate(50 ${first - i * step}) scale(${scale}) translate(-50 -50)">${picture(name, scene.items[name], false)}</g>`).join(""));
     },
-    /** The furniture of a place that is `w` wide where it is 100 high; it fills its box, or keeps its shape in it. */
+    /**
+     * Picture of the furniture of a place that is `w` wide and 100 high; it fills its box, or keeps its proportions in
+     * it.
+     */
     place(shape, w, keeps = false) {
       const draw = PLACES[shape] || PLACES.counter;
       return svg(draw(w), `0 0 ${number(w)} 100`, keeps ? "" : 'preserveAspectRatio="none"');
     },
-    /** A tag's cells: rows of "#" and " ". */
+    /** Cells of a display tag (marker): rows of "#" and " ". */
     tag(rows) {
       const cells = rows.flatMap((row, y) => [...row].map((cell, x) => (cell === "#" ? `M${x} ${y}h1v1h-1z` : "")));
       return svg(`<rect width="${rows.length}" height="${rows.length}" fill="#fff"/><path d="${cells.join("")}" fill="#000" shape-rendering="crispEdges"/>`, `0 0 ${rows.length} ${rows.length}`);

@@ -1,18 +1,18 @@
 "use strict";
-// The connection: what comes goes to the stage, what the hands do goes to the program. If it is lost it comes back by
-// itself, and brings the whole state.
+// Connection of the page to the program: received messages go to the stage, inputs of the participant go to the
+// program. A lost connection is opened again automatically, and then transmits the whole state.
 
 (() => {
   const RESIZED_MS = 400, IDLE_MS = 3000, PING_MS = 1000, FIRST_PINGS = 5, FIRST_PING_MS = 60, SILENCE_MS = 4000, AGAIN_MS = 500, POINTER_MS = 16;
   let socket = null, code = new URLSearchParams(location.search).get("code"), number = 0, acts = null, isFree = false;
   let trips = [], took = null, cue = null, pointed = null, pinger = 0;
-  // When the ping was sent that nothing has answered yet; 0: there is none. The timers of a hidden page are slow: the time
-  // since the last message says nothing of the connection.
+  // When the unanswered ping was sent; 0: no ping is unanswered. The timers of a hidden page are slow, so the time
+  // since the last message does not show whether the connection works.
   let asked = 0;
-  // Presses whose effect is not on the screen yet.
+  // Times of presses whose effect is not on the screen yet.
   const waiting = [];
 
-  /** A page keeps its name when it is loaded again, so that it acts in its own place. */
+  /** Name of the page, which it keeps when it is loaded again, so that it takes part again in its old role. */
   const page = (() => {
     let name = sessionStorage.getItem("page");
     if (!name) {
@@ -25,7 +25,10 @@
   const isOpen = () => socket && socket.readyState === WebSocket.OPEN;
   const say = (message) => isOpen() && socket.send(JSON.stringify(message));
 
-  /** The server's clock: of the last answers the one that was quickest says how far it is from ours. */
+  /**
+   * Converts a time of this page to the server's clock, with the offset measured by the ping that had the shortest
+   * round trip.
+   */
   const serverTime = (at) => {
     const best = trips.reduce((a, b) => (b.took < a.took ? b : a));
     return at + best.offset;
@@ -64,7 +67,10 @@
     }
   }
 
-  /** What is seen now. A probe had so many seconds left at a time of the program's clock, which a new page learns a moment later. */
+  /**
+   * Handles a message with the state to show. A freeze probe had `left_s` seconds left at the server time `toldAt`; a
+   * new page may receive the message later.
+   */
   function see({ sight, at: toldAt, left_s }) {
     const before = Stage.shown(), count = (one) => (one && one.presses[0] ? one.presses[0].number : 0);
     const isAnswer = before && count(sight) > count(before);
@@ -79,7 +85,7 @@
     });
   }
 
-  /** Once what was changed just now is on the screen. */
+  /** Calls `then` once the last change is on the screen. */
   function afterPaint(then) {
     requestAnimationFrame(() => {
       const channel = new MessageChannel();
@@ -94,7 +100,7 @@
   };
 
   function hello() {
-    // A page that watched goes on watching: the one that takes part may come back later than this one.
+    // A page that was watching goes on watching, since the page that takes part may reconnect later than this one.
     say({ kind: "hello", page, ...size(), code, waits: acts === false });
     trips = [];
     number = 0;
@@ -116,7 +122,7 @@
   }
 
   function press(button, at) {
-    // Without the program's clock nobody knows when it was; without the connection it does not happen.
+    // Without the server's clock a press has no time; without a connection it has no effect.
     if (!isOpen() || !trips.length || !acts) return;
     number += 1;
     const stage = Stage.shown() && Stage.shown().stage;
@@ -133,7 +139,7 @@
     say({ kind: "pointer", x: pointed[0], y: pointed[1] });
   }
 
-  // A pointer that rests is still where it is: as a tracker that goes on sending.
+  // A resting pointer is sent repeatedly, as an eye tracker goes on sending while the eyes rest.
   setInterval(() => {
     const scene = Stage.scene();
     if (pointed && scene && scene.pointer && acts && performance.now() - (point.at || 0) >= POINTER_MS) {
@@ -141,14 +147,14 @@
       say({ kind: "pointer", x: pointed[0], y: pointed[1] });
     }
   }, POINTER_MS);
-  // Where nobody takes part any more, whoever touches a watching page does.
+  // If no page takes part any more, touching a watching page makes it take part.
   for (const kind of ["pointerdown", "keydown"]) window.addEventListener(kind, () => acts === false && isFree && say({ kind: "take_part" }));
   let resized = 0, idle = 0;
   window.addEventListener("resize", () => {
     clearTimeout(resized);
     resized = setTimeout(() => say({ kind: "size", ...size() }), RESIZED_MS);
   });
-  // A pointer that rests is no part of the kitchen.
+  // A resting pointer is hidden.
   const rest = () => document.body.classList.add("idle");
   window.addEventListener("pointermove", () => {
     document.body.classList.remove("idle");
@@ -156,13 +162,13 @@
     idle = setTimeout(rest, IDLE_MS);
   });
   rest();
-  // A connection that does not answer any more is none, although nobody closed it.
+  // A connection that no longer answers is closed, so that it is opened again.
   setInterval(() => isOpen() && asked && performance.now() - asked > SILENCE_MS && socket.close(), 500);
-  // The screen stays on; where the browser does not do that, nothing is lost.
+  // Keeps the screen on, if the browser supports that.
   const stayOn = () => navigator.wakeLock && navigator.wakeLock.request("screen").catch(() => {});
   document.addEventListener("visibilitychange", () => {
     if (document.visibilityState === "visible") stayOn();
-    // The server is patient with a page that nobody sees.
+    // Tells the server whether the page is hidden, since it waits longer for hidden pages.
     if (isOpen() && trips.length) ping();
   });
   stayOn();

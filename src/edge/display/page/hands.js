@@ -1,10 +1,10 @@
 "use strict";
-// The hands: keys, gamepad, touch. Each press is told once, with the time at which it happened.
+// Inputs of the participant's hands: keys, gamepad, touch. Each press is sent once, with the time at which it happened.
 
 const Hands = (() => {
-  // The same button within so many milliseconds is a contact that bounces.
+  // Presses of one button within this time are contact bounce.
   const BOUNCE_MS = 50, PUSHED_MS = 8;
-  // Buttons of a standard gamepad, by the keys that mean the same while a probe is asked.
+  // Buttons of a standard gamepad, with the keys that mean the same during a freeze probe.
   const PAD = { 0: "Enter", 12: "ArrowUp", 13: "ArrowDown", 14: "ArrowLeft", 15: "ArrowRight" };
   const down = new Set(), pads = new Map(), last = new Map();
   let tell = () => {};
@@ -13,11 +13,12 @@ const Hands = (() => {
     if (at - (last.get(button) ?? -Infinity) < BOUNCE_MS) return;
     last.set(button, at);
     tell(button, at);
-    // The program's answer is there sooner: both are drawn in one frame, and the answer does not wait for the next.
+    // The program's answer usually arrives before this delay: then both are drawn in one frame, and the answer need not
+    // wait for the next one.
     setTimeout(() => push(button), PUSHED_MS);
   }
 
-  /** Shows that the button went down. */
+  /** Shows that a button was pressed. */
   function push(button) {
     const drawn = document.querySelector(`[data-button="${CSS.escape(button)}"]`);
     if (!drawn) return;
@@ -26,7 +27,7 @@ const Hands = (() => {
     drawn.classList.add("pushed");
   }
 
-  /** An event's own time; one that is not on the page's clock counts as now. */
+  /** The time of an event; a time that is not on the page's clock is replaced by the present one. */
   function timeOf(stamp) {
     const now = performance.now();
     return stamp > 0 && stamp <= now && now - stamp < 1000 ? stamp : now;
@@ -35,7 +36,7 @@ const Hands = (() => {
   function typed(event) {
     const scene = Stage.scene();
     if (!scene || event.target instanceof HTMLInputElement || event.ctrlKey || event.altKey || event.metaKey) return;
-    // Words are typed there; only the enter key leaves them.
+    // Typed text stays in its field; only the enter key leaves it.
     if (event.target instanceof HTMLTextAreaElement && (event.key !== "Enter" || event.isComposing)) return;
     const isHeld = event.repeat || down.has(event.code || event.key);
     down.add(event.code || event.key);
@@ -45,7 +46,7 @@ const Hands = (() => {
       Questions.key(event.key, question, isHeld);
       return;
     }
-    // While a probe is asked no button of the kitchen is pressed.
+    // During a freeze probe, no button of the kitchen can be pressed.
     if (Stage.shown() && Stage.shown().probe) {
       if (Probe.press(event.key, isHeld)) event.preventDefault();
       return;
@@ -70,11 +71,11 @@ const Hands = (() => {
     else if (question) Questions.touch(hit.dataset, question);
   }
 
-  /** Looks at gamepads and button boxes: they do not say by themselves when a button goes down. */
+  /** Reads gamepads and button boxes, which send no events of their own. */
   function poll() {
     const scene = Stage.scene();
     const there = [...(navigator.getGamepads ? navigator.getGamepads() : [])].filter(Boolean);
-    // One that is unplugged says no more that its button went up.
+    // A gamepad that is unplugged does not report that its buttons are released.
     for (const index of [...pads.keys()].filter((known) => !there.some((pad) => pad.index === known))) {
       pads.delete(index);
       Questions.letGo();
@@ -104,14 +105,14 @@ const Hands = (() => {
       down.delete(event.code || event.key);
       Questions.holdBy("key", false);
     });
-    // Whoever leaves the page holds nothing: what goes up meanwhile may never be told.
+    // When the page loses the focus, all keys count as released, since later releases may never be reported.
     const leave = () => { down.clear(); Questions.letGo(); };
     window.addEventListener("blur", leave);
     document.addEventListener("visibilitychange", () => document.hidden && leave());
     window.addEventListener("pointerdown", touched);
     window.addEventListener("contextmenu", (event) => event.preventDefault());
     window.addEventListener("pointermove", (event) => event.pointerType === "mouse" && toPoint(event.clientX, event.clientY));
-    // More often than frames: a press must not wait for the next one.
+    // Gamepads are read more often than frames are drawn, so that a press need not wait for the next frame.
     setInterval(poll, 4);
   }
 

@@ -1,24 +1,27 @@
 "use strict";
-/** A freeze probe: one question after the other on the blanked display, answered by touch, mouse, keys or gamepad; then a count-down. */
+/**
+ * A freeze probe: questions one after another on the blanked display, answered by touch, mouse, keys or gamepad; then a
+ * count-down.
+ */
 const Probe = (() => {
-  // Lengths in hundredths of the stage's width: space between choices, their frames (of recipes), size of words that can still be read
-  // from afar, height of a row, and size of a recipe's pictures.
+  // Lengths in hundredths of the stage's width: gap between choices, their frames (of recipes: AROUND), size of words
+  // that can still be read from a distance, height of a row, and size of a recipe's pictures.
   const BETWEEN = 0.8, WITHIN = 0.9, AROUND = 2.4, READ = 1.38, HIGHEST = 17, LARGEST = 4.4;
-  // An answer that nothing follows for so long was not taken: it can be given again.
+  // An answer counts as lost if no new state follows within this time: then it can be given again.
   const UNHEARD_MS = 2000;
   let tell = () => {}, key = "", shown = null, parts = null, timer = 0;
-  // What is chosen and not told yet: numbers of choices. `waits`: they are to be confirmed by how sure the participant is.
+  // Choices that are selected but not sent yet, by number. `waits`: the participant's confidence has to be given first.
   let chosen = [], waits = false, isTold = false;
 
   const ruler = document.createElement("canvas").getContext("2d");
 
-  /** The width of the longest word, in the size that is still read well. */
+  /** Width of the longest word, in the smallest size that is easy to read. */
   function longest(all) {
     ruler.font = `600 100px ${getComputedStyle(document.body).fontFamily}`;
     return READ * Math.max(...all.flatMap((text) => text.split(/\s+/)).map((word) => ruler.measureText(word).width / 100));
   }
 
-  /** Puts the choices into the columns in which their pictures are largest. */
+  /** Arranges the choices in the number of columns that gives the largest pictures. */
   function arrange(list, choices, scene) {
     const em = parseFloat(getComputedStyle(list).fontSize), room = [list.clientWidth / em, list.clientHeight / em];
     const recipes = choices.map(({ shows }) => shows && shows.recipe).filter(Boolean), items = Math.max(0, ...recipes.map((of) => of.length));
@@ -27,21 +30,22 @@ const Probe = (() => {
     for (let columns = 1; columns <= choices.length; columns += 1) {
       const wide = (room[0] - BETWEEN * (columns - 1)) / columns, rows = Math.ceil(choices.length / columns);
       const high = (room[1] - BETWEEN * (rows - 1)) / rows, rest = wide - words;
-      // Pictures over two lines of words, or beside them; a recipe's items stand below one another, each beside its words.
+      // Pictures stand above two lines of words, or beside them; a recipe's items are below one another, each beside
+      // its words.
       const sizes = items ? [0, Math.min(LARGEST, (high - AROUND) / items - 0.4, rest - AROUND - 1)]
         : [rest < WITHIN ? 0 : Math.min(high - WITHIN - 3.4, HIGHEST - 4.3, wide - WITHIN), Math.min(high - WITHIN, rest - 2.4, HIGHEST / 2)];
       sizes.forEach((size, beside) => {
-        // Of equal pictures those in few rows; recipes in few columns, where their words have more room.
+        // Among equal picture sizes, few rows are preferred; for recipes few columns, which leave more room for words.
         if (size > best.size + (items || beside ? 0.01 : -0.01)) best = { columns, size, beside: Boolean(beside && !items) };
       });
     }
-    // The same rows, filled evenly.
+    // With the same number of rows, choices are distributed evenly.
     list.style.setProperty("--columns", Math.ceil(choices.length / Math.ceil(choices.length / best.columns)));
     list.style.setProperty("--part", `${Math.max(1, best.size).toFixed(2)}em`);
     list.classList.toggle("beside", best.beside);
   }
 
-  /** The picture of a choice: what lies there, a place, or nothing. */
+  /** Picture of a choice: a content, a place, or nothing. */
   function pictureOf(shows, { scene, contentOf }) {
     if (!shows || shows === "empty") return `<span class="nothing"></span>`;
     if (shows.order !== undefined) return `<span class="order-sign">${Number(shows.order) + 1}</span>`;
@@ -74,10 +78,10 @@ const Probe = (() => {
     return made;
   }
 
-  /** What the question is about, beside it. */
+  /** Picture of what the question is about, beside the question. */
   const subjectOf = (about, kit) => kit.element("span", "subject", pictureOf(about, kit));
 
-  /** Draws the question, or what is shown before the first and after the last one. */
+  /** Draws the question, or the text before the first and after the last question. */
   function draw(sheet, probe, left, kit) {
     const { element, text, scene } = kit, words = scene.words, now = `${probe.probe}/${probe.question}/${probe.closed}`;
     if (now !== key) [key, chosen, waits, isTold] = [now, [], false, false];
@@ -107,7 +111,7 @@ const Probe = (() => {
     run(bar, all.querySelector(".seconds"), left);
   }
 
-  /** Makes the words of the choices, and those of the question, smaller until each stands in its place. */
+  /** Makes the words of choices and question smaller until they fit. */
   function fit(all) {
     const fits = (made) => made.scrollWidth <= made.clientWidth + 1 && made.scrollHeight <= made.clientHeight + 1;
     for (const [words, places] of [["--asks", ".asks, .title"], ["--words", ".choices, .choice, .choice .words"]]) {
@@ -116,13 +120,13 @@ const Probe = (() => {
         if ([...all.querySelectorAll(places)].every(fits)) break;
       }
     }
-    // Where the words of one choice need two lines, all leave them room: the pictures are of one size.
+    // If the words of one choice need two lines, all choices get room for two lines, so that pictures have one size.
     const isBroken = (made) => made.clientHeight > 1.7 * parseFloat(getComputedStyle(made).fontSize);
     const list = all.querySelector(".choices:not(.cards, .beside)");
     if (list && [...list.querySelectorAll(".words")].some(isBroken)) list.classList.add("two");
   }
 
-  /** The time that is left: a quiet bar, or the seconds of the count-down. */
+  /** Shows the remaining time: as a bar, or as the seconds of the count-down. */
   function run(bar, seconds, left) {
     clearInterval(timer);
     const step = () => {
@@ -140,7 +144,7 @@ const Probe = (() => {
   };
   const slotOf = (number) => shown.parts.findIndex((items) => items.includes(itemOf(number)));
 
-  /** Marks what is chosen, and draws the buttons below. */
+  /** Marks the selected choices, and draws the buttons below. */
   function update() {
     const { all, kit } = parts, words = kit.scene.words, row = all.querySelector(".row");
     for (const made of all.querySelectorAll(".choice")) {
@@ -166,7 +170,7 @@ const Probe = (() => {
     all.classList.toggle("told", isTold);
   }
 
-  /** Tells the answer: a choice, items that lie on one another, or that the participant does not know. */
+  /** Sends the answer: a choice, a stack of items, or that the participant does not know. */
   function answer(numbers, sure) {
     isTold = true;
     update();
@@ -176,7 +180,7 @@ const Probe = (() => {
     setTimeout(() => { if (key === told && isTold) { isTold = false; update(); } }, UNHEARD_MS);
   }
 
-  /** A choice is touched. Items of different slots are chosen together, where they can lie on one another. */
+  /** A choice is selected. Items of different slots of a stack can be selected together. */
   function choose(number) {
     const slot = slotOf(number);
     if (!shown.parts.length) {
@@ -199,7 +203,7 @@ const Probe = (() => {
     return undefined;
   }
 
-  /** A touch of one of the buttons. */
+  /** One of the buttons is touched. */
   function touch({ believe, unknown, done, sure }) {
     if (isTold) return;
     if (believe) choose(Number(believe));
@@ -215,7 +219,7 @@ const Probe = (() => {
 
   const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-  /** The button that lies next in a direction: what is off the way counts twice. */
+  /** The next button in a direction; distance perpendicular to the direction counts twice. */
   function next(from, [x, y]) {
     const middle = (made) => { const { left, top, width, height } = made.getBoundingClientRect(); return [left + width / 2, top + height / 2]; };
     const [fromX, fromY] = middle(from);
@@ -227,7 +231,7 @@ const Probe = (() => {
     return best;
   }
 
-  /** A key or a button of a gamepad; whether it means something here. */
+  /** A key or a gamepad button is pressed; returns whether it has a meaning here. */
   function press(name, isHeld) {
     const step = STEPS[name];
     if (!step && !["Enter", " "].includes(name)) return false;
@@ -237,7 +241,7 @@ const Probe = (() => {
     else if (at && !isHeld) {
       const { believe } = at.dataset, { className } = at;
       touch(at.dataset);
-      // The buttons below are drawn anew.
+      // The buttons below have been drawn anew, so the marked one is restored.
       if (!parts.all.querySelector(".at")) mark(believe ? at : parts.buttons.find((made) => className.includes(made.className)));
     }
     return true;

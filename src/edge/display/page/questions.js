@@ -1,8 +1,8 @@
 "use strict";
-/** An item of a questionnaire, answered by touch, keys, or words that are typed. */
+/** A questionnaire item, answered by touch, keys, or typed text. */
 const Questions = (() => {
   const SLIDER_END = 100;
-  // What is typed or dragged and not told yet, of this item.
+  // Answer to the present item that is typed or dragged but not sent yet.
   let draft = { item: null, value: null };
   let redraw = () => {}, tell = () => {};
 
@@ -12,7 +12,7 @@ const Questions = (() => {
 
   function draw(sheet, question, words, kit) {
     const { element, text } = kit;
-    // Words that are being typed stay when the item is drawn again.
+    // Text that is being typed is kept when the item is drawn again.
     redraw = () => draw(sheet, question, words, kit);
     const isConsent = question.form && question.form.kind === "consent";
     const card = element("div", isConsent ? "card question consents" : "card question");
@@ -48,7 +48,7 @@ const Questions = (() => {
 
   const isTyped = ({ form }) => form && ["number", "text"].includes(form.kind);
 
-  /** A scale or slider with its anchors below the first and the last point. */
+  /** A rating scale or slider with its end labels below the first and the last point. */
   const anchored = (made, low, high, { element, text }) => {
     const frame = element("div", "anchored");
     frame.append(made, text("span", "anchor low", low), text("span", "anchor high", high));
@@ -134,7 +134,7 @@ const Questions = (() => {
   const onStep = ({ step }, value) => Math.min(SLIDER_END, Math.max(0, Math.round(value / step) * step));
   const isNumber = ({ min, max }, typed) => /^-?[0-9]{1,7}$/.test(typed) && Number(typed) >= min && Number(typed) <= max;
 
-  /** Goes on: with what is typed, or with the answer that was given before. */
+  /** Goes on to the next item, with the typed answer or with the answer that was given before. */
   function next(question) {
     const typed = isTyped(question) ? pending(question) : null;
     if (typed === null) return question.answer !== null && tell({ kind: "next" });
@@ -154,7 +154,7 @@ const Questions = (() => {
     return give(question, question.form.options.map((option) => option.id).filter(isChosen));
   }
 
-  /** A digit, a minus sign or the key that deletes, typed or touched. */
+  /** A digit, a minus sign or the delete key was typed or touched. */
   function type(question, key) {
     const typed = pending(question) ?? String(question.answer ?? "");
     const next = key === "⌫" ? typed.slice(0, -1) : pending(question) === null ? key : typed + key;
@@ -167,10 +167,13 @@ const Questions = (() => {
     give(question, draft.value);
   }
 
-  // What holds the button of the consent, and until when.
+  // Input that holds the consent button, and the timer at whose end consent is given.
   let holds = null, agrees = null;
 
-  /** The button of the consent goes down or up, by touch, a key or a gamepad. Only the whole time at a stretch agrees. */
+  /**
+   * The consent button is pressed or released, by touch, a key or a gamepad. Only an uninterrupted hold of the whole
+   * time gives consent.
+   */
   function hold(by, isDown, seconds) {
     if (isDown === (holds !== null) || (holds !== null && holds !== by)) return;
     holds = isDown ? by : null;
@@ -179,13 +182,13 @@ const Questions = (() => {
     document.querySelectorAll(".hold").forEach((button) => button.classList.toggle("held", isDown));
   }
 
-  /** A key or a button of a gamepad, while consent is asked for. */
+  /** A key or gamepad button is pressed or released while consent is asked for. */
   const holdBy = (by, isDown, question) => {
     if (!isDown) hold(by, false);
     else if (question && question.form && question.form.kind === "consent") hold(by, true, question.form.hold_s);
   };
 
-  /** A key, while an item is shown; `isHeld`: it is down since before. */
+  /** A key is pressed while an item is shown; `isHeld`: the key has been down since before. */
   function key(name, question, isHeld) {
     const { form } = question, kind = question.item && form && form.kind;
     if (kind === "consent") return ["Enter", " "].includes(name) ? holdBy("key", true, question) : read(name);
@@ -206,13 +209,13 @@ const Questions = (() => {
     return undefined;
   }
 
-  /** Scrolls a text that is longer than its place. */
+  /** Scrolls a text that is longer than its area. */
   function read(name) {
     const rows = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[name] || 0;
     document.querySelectorAll(".reading").forEach((reading) => reading.scrollBy(0, rows * 40));
   }
 
-  /** A touch of one of the buttons. */
+  /** One of the buttons is touched. */
   function touch({ rate, option, typed, does }, question) {
     if (rate) give(question, Number(rate));
     else if (option) choose(question, option);
@@ -223,7 +226,7 @@ const Questions = (() => {
     else if (does === "confirm") tell({ kind: "confirm" });
   }
 
-  /** Whatever holds the button of the consent counts as gone up. */
+  /** The consent button counts as released, whatever holds it. */
   const letGo = () => hold(holds, false);
 
   return { draw, key, touch, holdBy, letGo, begin: (toTell) => { tell = toTell; } };

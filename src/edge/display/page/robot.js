@@ -1,8 +1,9 @@
 "use strict";
-// The robot's hand over the kitchen, and its arm from above: drawn where the program says that it is now, with what it holds.
+// Picture of the robot's hand over the kitchen, and of its arm from above, at the pose that the program sends, with the
+// item that the hand holds.
 
 const Robot = (() => {
-  // Lengths of the arm's two links and height of its base, in heights of the stage: it reaches every place.
+  // Lengths of the arm's two links and position of its base, in heights of the stage; the arm reaches every place.
   const LINK = 0.68, BASE = [-0.02, 0.5];
   let made = null, ratio = 1, holds = "";
 
@@ -11,7 +12,7 @@ const Robot = (() => {
     <rect x="20" y="4" width="13" height="46" rx="6"/><rect x="67" y="4" width="13" height="46" rx="6"/>
     <path d="M14 46 h72 q8 0 8 9 v14 q0 27 -44 27 q-44 0 -44 -27 v-14 q0 -9 8 -9 z"/></g><circle cx="50" cy="72" r="9" fill="#4f7fb5"/>`);
 
-  /** Builds the hand for a scene; nothing, where the robot is not shown. */
+  /** Builds the hand for a scene; nothing if the robot is not shown. */
   function build(scene, element) {
     [made, holds, ratio] = [null, "", scene.display_m[0] / scene.display_m[1]];
     if (scene.arm === "none") return [];
@@ -22,7 +23,7 @@ const Robot = (() => {
     return links ? [links, hand] : [hand];
   }
 
-  /** Where the elbow is: on the side of the person who looks from below. */
+  /** Position of the elbow, on the side that is nearer to the viewer. */
   function elbow([x, y]) {
     const [dx, dy] = [x - BASE[0], y - BASE[1]], away = Math.min(Math.hypot(dx, dy), 2 * LINK - 1e-6);
     const out = Math.sqrt(LINK * LINK - (away * away) / 4) / Math.max(away, 1e-6);
@@ -31,7 +32,7 @@ const Robot = (() => {
 
   function move({ x, y, down }) {
     if (!made) return;
-    // An em is a hundredth of the stage's width.
+    // One em is a hundredth of the stage's width.
     made.hand.style.transform = `translate(${(100 * x).toFixed(2)}em, ${((100 * y) / ratio).toFixed(2)}em) scale(${(1.12 - 0.12 * down).toFixed(3)})`;
     made.hand.classList.add("there");
     made.hand.dataset.x = x;
@@ -45,7 +46,7 @@ const Robot = (() => {
     made.links.classList.add("there");
   }
 
-  /** Shows what the hand holds, of what is where. */
+  /** Shows the item that the hand holds, given the contents of all places. */
   function hold(contents, contentOf) {
     if (!made) return;
     const now = JSON.stringify(contents[made.at]);

@@ -1,12 +1,13 @@
 "use strict";
-// Where what the layout does not place has room: names, buttons of actions, recipes. Text is measured in the page's own font.
-// Rectangles are [left, top, width, height] in fractions of the stage; sizes of text are fractions of its width.
+// Positions of everything that the layout file does not place: names, buttons of actions, recipes. Text is measured in
+// the page's own font. Rectangles are [left, top, width, height] in fractions of the stage; text sizes are fractions of
+// its width.
 
 const Room = (scene, fontFamily) => {
-  // The size of names, and the least size of anything that has to be read at 3 m: its capitals are 17 arc minutes high there on a
-  // stage of 1.5 m. The height above a place that its name takes, and the least size of an action's button.
+  // Size of names, and smallest size of text that has to be read at 3 m: its capitals are 17 arc minutes high there on
+  // a stage of 1.5 m. Then the height of a name above its place, and the smallest size of an action's button.
   const NAME_SIZE = 0.0145, LEAST_SIZE = 0.0140, NAME = 0.034, PILL = [0.096, 0.05], GAP = 0.007;
-  // The frame of an order with a signal, and the sizes that are tried for the words of a button until it fits.
+  // Width of the frame around an order with a signal, and the sizes that are tried for a button's words until they fit.
   const FRAME = 0.007, SIZES = [1, 0.92, 0.84, 0.76, 0.68];
   const ratio = scene.display_m[0] / scene.display_m[1];
   const ruler = document.createElement("canvas").getContext("2d");
@@ -22,7 +23,7 @@ const Room = (scene, fontFamily) => {
     return [x0, y0, x1 - x0, y1 - y0];
   };
 
-  /** The width of bold words of this size. */
+  /** Width of bold words of this size. */
   function widthOf(said, size) {
     ruler.font = `700 100px ${fontFamily}`;
     return (ruler.measureText(said).width / 100) * size;
@@ -34,7 +35,7 @@ const Room = (scene, fontFamily) => {
     return [x + w / 2 - wide / 2, y - NAME, wide, NAME];
   };
 
-  /** The size of a place's name: no name meets its neighbour's or leaves the stage. */
+  /** Size of a place's name, so that no name overlaps another one or leaves the stage. */
   function nameSize(spot) {
     const obstacles = [...scene.tags.map(({ area }) => area), ...named.filter((other) => other !== spot).map((other) => nameArea(other, NAME_SIZE))];
     for (let size = NAME_SIZE; size > 0.005; size -= 0.0005) {
@@ -44,39 +45,42 @@ const Room = (scene, fontFamily) => {
     return LEAST_SIZE / 2;
   }
 
-  /** How large an action's button is: as wide as its words, `words` times their usual size, and its key. */
+  /** Size of an action's button, for its words at `words` times the usual size and its key. */
   function pillOf(knob, words) {
     const wide = widthOf(knob.label, words * LEAST_SIZE) + 0.026 + (scene.keys && knob.key ? 0.03 : 0);
     return [Math.max(PILL[0], wide), PILL[1]];
   }
 
   const areas = (kind) => scene.locations.filter((spot) => spot.kind === kind).map((spot) => spot.area);
-  /** The areas of robot and human, equally high. */
+  /** The areas of robot and human, with equal height. */
   function sides() {
     const both = ["robot", "human"].map((agent) => around([...areas(`${agent}_hand`), ...scene.storages.filter((shelf) => shelf.agent === agent).map((shelf) => shelf.area)]));
     const top = Math.min(...both.map(([, y]) => y)), bottom = Math.max(...both.map(([, y, , h]) => y + h));
-    // Towards the table there is room for the buttons of the hand.
+    // The side towards the table has room for the buttons of the hand.
     return both.map(([x, , w], human) => grown([x, top, w, bottom - top], [human ? 0.045 : 0.022, 0.085, human ? 0.022 : 0.045, 0.035]));
   }
 
   const table = () => grown(around(areas("place")), [0.03, 0.085, 0.03, 0.03]);
 
-  /** An order with the frame that a signal draws around it, any other location without one. */
+  /** The area of a location; for an order, with the frame that a signal draws around it. */
   const framed = ({ kind, area: [x, y, w, h] }) => (kind === "order" ? [x - FRAME, y - FRAME * ratio, w + 2 * FRAME, h + 2 * FRAME * ratio] : [x, y, w, h]);
 
-  /** Everything that is there already, for what still needs a place. */
+  /** All areas that are taken already, so that nothing else is placed there. */
   function taken() {
     const titles = sides().map(([x, y, w]) => [x, y, w, 0.05]);
     const names = named.map((spot) => nameArea(spot, nameSize(spot)));
     return [...scene.locations.map(framed), ...names, ...scene.storages.map((shelf) => shelf.area), ...titles, ...scene.tags.map((tag) => tag.area)];
   }
 
-  /** The nearest free place for an action's button: below its place, above it, or beside it, within the same zone; where no place is, none. */
+  /**
+   * The nearest free area for an action's button: below, above or beside its place, within the same zone; undefined if
+   * there is none.
+   */
   function besidePlace(area, [pw, ph], others) {
     const [x, y, w, h] = area, [zone, , wide] = [...sides(), table()].find((zone) => overlaps(zone, area)) || [0, 0, 1];
     const inside = (left) => Math.min(zone + wide - 0.006 - pw, Math.max(zone + 0.006, left));
     const middle = inside(x + w / 2 - pw / 2), tries = [[middle, y + h + GAP], [middle, y - NAME - GAP - ph]];
-    // A wide button may stand a little to the side.
+    // A wide button may be shifted a little to the side.
     for (const aside of [0.02, -0.02, 0.04, -0.04, 0.06, -0.06]) tries.push([inside(middle + aside), y + h + GAP], [inside(middle + aside), y - NAME - GAP - ph]);
     tries.push([x + w + GAP, y + h / 2 - ph / 2], [x - GAP - pw, y + h / 2 - ph / 2]);
     for (let step = 1; step < 6; step += 1) {
@@ -86,19 +90,22 @@ const Room = (scene, fontFamily) => {
     return tries.map(([left, top]) => [left, top, pw, ph]).find(fits);
   }
 
-  /** Where an action's button stands, and how large its words are: smaller ones where there is no room for the usual ones. */
+  /**
+   * Area of an action's button, and relative size of its words, which are smaller if there is no room for the usual
+   * size.
+   */
   function forPill(knob, others) {
     const at = framed(scene.locations[knob.at]);
     for (const words of SIZES) {
       const area = besidePlace(at, pillOf(knob, words), others);
       if (area) return { area, words };
     }
-    // A kitchen without any room for it gets it below its place.
+    // In a kitchen without a free area, the button is placed below its place.
     const words = SIZES[SIZES.length - 1], [w, h] = pillOf(knob, words);
     return { area: [Math.min(at[0], 1 - w), Math.min(at[1] + at[3], 1 - h), w, h], words };
   }
 
-  /** Where the number of served orders stands: on top, as near to the middle as there is room. */
+  /** Area of the number of served orders: at the top, as near to the middle as possible. */
   function forServed(others) {
     const [w, h] = [widthOf("✓ 88", 0.019), 0.06], y = 0.02, step = 0.01;
     const tries = Array.from({ length: Math.floor((1 - w) / step) }, (_, index) => [index * step, y, w, h]);
@@ -107,9 +114,12 @@ const Room = (scene, fontFamily) => {
     return (free.length ? free : tries).reduce((best, rect) => (off(rect) < off(best) ? rect : best));
   }
 
-  /** Where a recipe, line by line, hides nothing of the kitchen: of all free rectangles the largest, or one that is large enough and near its order. */
+  /**
+   * Area of a recipe that covers nothing of the kitchen: the largest free rectangle, or one that is large enough and
+   * near its order.
+   */
   function forRecipe(others, order) {
-    // A line is a picture with words beside it. A line of more than this height is not read better.
+    // A line is a picture with words beside it. A larger line height than `enough` does not improve reading.
     const margin = 0.012, lines = 4.4, line = 5.2, enough = 0.08;
     const walls = others.map((rect) => grown(rect, [margin, margin * ratio, margin, margin * ratio]));
     const lefts = [margin, ...walls.map(([x, , w]) => x + w)], rights = [1 - margin, ...walls.map(([x]) => x)];
@@ -122,7 +132,7 @@ const Room = (scene, fontFamily) => {
         const size = Math.min((top - low) / lines, ((right - left) * ratio) / line);
         const across = Math.max(0, left - aim, aim - right) + 0.15 * Math.abs((left + right) / 2 - aim);
         const down = order ? Math.max(0, low - order[1] - order[3]) : 0;
-        // Of equals the one nearer to the order, or to the middle.
+        // Among equal rectangles, the one nearer to the order or to the middle is taken.
         const worth = order ? Math.min(size, enough) - 0.03 * (across + down) : size - 0.01 * across;
         if (worth > most) [best, most] = [[left, low, right - left, top - low], worth];
         low = Math.max(low, bottom);

@@ -1,5 +1,6 @@
 "use strict";
-// The stage: built once from a scene, then changed by every sight. It shows what it is told and knows nothing else.
+// The stage, which draws the kitchen: built once from a scene, then changed by every state message. It shows what it
+// receives and knows nothing else.
 
 const Stage = (() => {
   const root = document.getElementById("stage");
@@ -91,7 +92,10 @@ const Stage = (() => {
     return { made };
   }
 
-  /** Buttons of actions, each beside the place that it works on; `others` is what is there, and what is added. */
+  /**
+   * Builds the buttons of actions, each beside its place; `others` are the taken areas, to which those of the buttons
+   * are added.
+   */
   function buildPills(others) {
     const makePill = (knob) => {
       const { area, words } = room.forPill(knob, others);
@@ -121,7 +125,7 @@ const Stage = (() => {
     const others = room.taken();
     kitchen.append(...locations.map((l) => l.made), ...storages.map((s) => s.made), ...buildPills(others));
     const tally = room.forServed(others), all = [...others, tally];
-    // A recipe opens near the order that it belongs to; the instruction where there is most room.
+    // A recipe opens near its order; the instruction opens in the largest free area.
     const free = room.forRecipe(all), cards = scene.locations.map(({ kind, area }) => (kind === "order" ? room.forRecipe(all, area) : free));
     const recipe = put(element("div", "recipe"), free);
     const why = element("div", "why");
@@ -164,7 +168,7 @@ const Stage = (() => {
     if (isNew) replay(part.content, "arrives");
   }
 
-  /** Starts an animation anew. */
+  /** Restarts an animation. */
   function replay(made, className) {
     made.classList.remove(className);
     void made.offsetWidth;
@@ -187,7 +191,7 @@ const Stage = (() => {
     });
   }
 
-  /** Why a press had no effect, in a line below its place, until the next press or for a moment. */
+  /** Shows why a press had no effect, in a line below its place, until the next press or for a moment. */
   function drawReason({ why }, made) {
     const said = why ? (scene.words[`why ${why.reason}`] || "").replace("#", scene.locations[why.about].label) : "";
     parts.why.replaceChildren(text("span", "", said));
@@ -222,7 +226,7 @@ const Stage = (() => {
     fitWords(parts.recipe);
   }
 
-  /** Proposed presses, where there is most room: the picture, the name and the key of each button. */
+  /** Shows proposed presses in the largest free area: picture, name and key of each button. */
   function drawProposal(next, contents) {
     put(parts.recipe, parts.free);
     const head = element("figure", "of");
@@ -237,7 +241,7 @@ const Stage = (() => {
     fitWords(parts.recipe);
   }
 
-  /** What a button of the human looks like in a proposal, and what it is called there. */
+  /** Picture and name of the human's button in a proposal. */
   function pictureOf({ does, at, label }, contents) {
     const named = (what) => scene.words[`proposes ${does}`].replace("#", what);
     if (does === "take") return { picture: Art.item(scene, scene.storages[at].item), label: named(scene.storages[at].label) };
@@ -265,14 +269,14 @@ const Stage = (() => {
   function drawSheet(sight, left) {
     const { stage, practice } = sight;
     root.dataset.stage = stage;
-    // What was said of a press says nothing of what comes now.
+    // The reason of an ineffective press is removed when the phase of the trial changes.
     if (shown && shown.stage !== stage) parts.why.classList.remove("says");
     const name = stage === "ready" && practice ? "practice" : stage;
     const title = scene.words[name], more = scene.words[`${name} text`];
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
-      // A page of the tutorial stands beside the recipe that it explains.
+      // A tutorial page is placed beside the recipe that it explains.
       const recipe = sight.signal && sight.signal.recipe;
       const free = recipe ? room.forRecipe([...parts.all, parts.cards[recipe.order]]) : parts.free;
       return Tutorial.draw(parts.sheet, sight.tutorial, { scene, free, element, text, put, partOf });
@@ -282,13 +286,13 @@ const Stage = (() => {
     Probe.end();
     const card = element("div", "card");
     card.append(text("h1", "", title || ""), text("p", "", more || ""));
-    // The kitchen is explained meanwhile, so nothing of it is hidden.
+    // The kitchen is explained during the instruction, so nothing covers it.
     if (stage === "instruction") put(card, parts.free);
     parts.sheet.replaceChildren(card);
     if (stage === "instruction") fitWords(card);
   }
 
-  /** The target of a check of the gaze: it is alone on the screen, so that the eyes have nowhere else to go. */
+  /** Shows the target of a gaze accuracy check, alone on the screen, so that nothing else attracts the eyes. */
   function drawTarget({ target, checks }) {
     root.classList.toggle("checks", checks);
     const [x, y] = target || [0, 0], is = JSON.stringify(target);
@@ -300,10 +304,10 @@ const Stage = (() => {
     parts.target.dataset.is = is;
   }
 
-  /** `left` tells the seconds that a probe still has. */
+  /** Shows a state; `left` returns the remaining seconds of a freeze probe. */
   function show(sight, left = () => 0) {
     if (!scene) return;
-    // The kitchen stands still during a probe, and nothing of it is told; then it is as it was.
+    // During a freeze probe the program sends no contents; afterwards the kitchen is as it was.
     sight.contents.forEach((what, index) => drawLocation(index, what));
     drawPresses(sight.presses);
     drawIntention(sight.intention);
@@ -315,12 +319,12 @@ const Stage = (() => {
     shown = sight;
   }
 
-  /** The square that a video from outside sees. */
+  /** Flashes the square by which an external video is synchronised. */
   function flash() {
     if (parts) replay(parts.flash, "on");
   }
 
-  /** Whether the connection is there, and whether this page acts. */
+  /** Shows whether the connection works, and whether this page takes part. */
   function mark(change) {
     marks = { ...marks, ...change };
     root.classList.toggle("lost", marks.lost);
@@ -331,7 +335,7 @@ const Stage = (() => {
     parts.toast.classList.toggle("open", Boolean(said));
   }
 
-  /** The words of the page: they come before anything else. */
+  /** Receives the texts of the page, which arrive before anything else. */
   function greet(next) {
     words = next;
     if (scene) return;
@@ -340,7 +344,10 @@ const Stage = (() => {
     root.replaceChildren(element("div", "sheet open big", card));
   }
 
-  /** Asks for the pairing code, the next one after so many seconds. What is typed already stays when the connection comes back. */
+  /**
+   * Asks for the pairing code; the next attempt is possible after `waitS` seconds. Typed text is kept when the
+   * connection comes back.
+   */
   function askCode(why, waitS, then) {
     const typed = why === "code" && root.querySelector("form input")?.value;
     scene = shown = parts = null;
@@ -351,7 +358,7 @@ const Stage = (() => {
     const hints = { code: [words["pairing text"]], wrong: [words["pairing wrong"]], locked: [words["pairing locked"]] };
     if (waitS) hints[why].push(words["pairing wait"].replace("#", waitS));
     card.append(text("h1", "", words.pairing), field, text("p", why === "code" ? "" : "wrong", hints[why].join(" ")));
-    // What is sent before the wait is over is not looked at.
+    // Codes sent before the waiting time is over would not be checked.
     const from = performance.now() + 1000 * waitS;
     card.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -363,7 +370,7 @@ const Stage = (() => {
     field.focus();
   }
 
-  /** A point of the window in fractions of the stage. */
+  /** Converts a point of the window to fractions of the stage. */
   function point(x, y) {
     const box = root.getBoundingClientRect();
     return [(x - box.left) / box.width, (y - box.top) / box.height];

@@ -1,5 +1,5 @@
 "use strict";
-/** The tutorial: a card a step, frames around what it is about, and the button that is to be pressed. */
+/** The tutorial: one card per step, frames around what the step explains, and a mark at the button to be pressed. */
 const Tutorial = (() => {
   let timer = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [];
 
@@ -16,7 +16,7 @@ const Tutorial = (() => {
 
   const buttonOf = (name) => document.querySelector(`[data-button="${CSS.escape(name)}"]`);
 
-  /** Frames what the step is about; marks the next button, at once or after a while. */
+  /** Frames what the step explains, and marks the next button, at once or after a while. */
   function point(page, partOf) {
     clearMarks();
     clearTimeout(hinter);
@@ -31,7 +31,7 @@ const Tutorial = (() => {
     else hinter = setTimeout(() => mark(buttonOf(button), "hinted"), 1000 * after_s);
   }
 
-  /** The time that the cards still have, in a bar; at its end the program is told. */
+  /** Shows the remaining time of the recipe cards as a bar; at its end the program is told. */
   function count(page, bar) {
     clearTimeout(timer);
     if (page.seconds === null) return;
@@ -72,7 +72,7 @@ const Tutorial = (() => {
     return made;
   }
 
-  /** Draws the card of the step: in the free place of the kitchen, or large where the kitchen does not matter. */
+  /** Draws the step's card: in a free area of the kitchen, or large where the kitchen does not matter. */
   function draw(sheet, page, { scene, free, element, text, put, partOf }) {
     const words = scene.words, isLarge = page.kind === "recipes" || page.kind === "question";
     const card = element("div", `card lesson ${isLarge ? "large" : ""}`), bar = element("div", "left");
@@ -106,7 +106,7 @@ const Tutorial = (() => {
     shownStep = page.step;
   }
 
-  /** Makes the card's words smaller until they fit its place. */
+  /** Makes the card's words smaller until they fit. */
   function fit(card) {
     for (let size = 1; size > 0.5; size -= 0.04) {
       card.style.fontSize = `${size}em`;
@@ -121,7 +121,7 @@ const Tutorial = (() => {
     shownStep = "";
   }
 
-  /** What a key means here: the page's message, if it means anything. */
+  /** The message to the program that a key means during the tutorial; null if it means nothing. */
   function meant(key, page) {
     const choice = page.question && /^[1-9]$/.test(key) ? Number(key) : 0;
     if (choice && choice <= page.question.choices.length && page.question.right === null) return { kind: "choose", step: page.step, choice };
@@ -130,7 +130,7 @@ const Tutorial = (() => {
     return null;
   }
 
-  /** Whether a key means something here; it is told once, however long it is held. */
+  /** Handles a key of the tutorial; it is sent once, however long it is held. Returns whether it means something. */
   function key(pressed, page, isHeld) {
     const message = meant(pressed, page);
     if (message && !isHeld) told(message);

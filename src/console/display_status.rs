@@ -2,7 +2,7 @@
 
 use crate::session::Session;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
-use crate::session::settings::ParticipantKind;
+use crate::session::settings::{GazeSource, ParticipantKind};
 
 /// The participant's display.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,6 +13,8 @@ pub struct DisplayHealth {
     pub code: Option<String>,
     /// The page that takes part: its size in pixels.
     pub page: Option<[u32; 2]>,
+    /// It shows the layout of upright screens, on which gaze is not mapped.
+    pub upright: bool,
     /// There and back, in milliseconds.
     pub round_trip_ms: Option<f64>,
     /// From the last press to its effect on the screen, in milliseconds.
@@ -40,27 +42,17 @@ impl DisplayHealth {
         }
     }
 
-    fn address(&self) -> String {
-        format!("open {} in a browser, full screen", self.url)
-    }
-
     /// What is to be opened, with its pairing code, as long as no page takes part.
     pub fn to_open(&self) -> Option<String> {
         let code = self.code.as_ref().map_or(String::new(), |code| format!("; pairing code {code}"));
-        self.page.is_none().then(|| self.address() + &code)
+        self.page.is_none().then(|| format!("open {} in a browser, full screen{code}", self.url))
     }
 
-    /// What is looked at before a trial.
-    pub fn check(&self) -> PreflightCheck {
+    /// What is looked at before a trial with gaze from this source.
+    pub fn check(&self, gaze: GazeSource) -> PreflightCheck {
         let Some([width, height]) = self.page else {
-            let code = self.code.as_ref().map_or(String::new(), |code| format!(", pairing code {code}"));
-            let open = self.address();
-            return PreflightCheck::new(
-                "display",
-                PreflightVerdict::Failed,
-                format!("no page is connected{code}"),
-                open,
-            );
+            let (found, open) = ("no page is connected", self.to_open().unwrap_or_default());
+            return PreflightCheck::new("display", PreflightVerdict::Failed, found, open);
         };
         let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms there and back"));
         let others = match self.watching {
@@ -71,10 +63,15 @@ impl DisplayHealth {
             0 => String::new(),
             _ => format!(", {} messages malformed, {} refused", self.malformed, self.refused),
         };
-        let found = format!("{width}x{height}{trip}{others}{wrong}");
-        let is_small = width < SMALL_PX[0] || height < SMALL_PX[1];
+        let upright = if self.upright { " upright" } else { "" };
+        let found = format!("{width}x{height}{upright}{trip}{others}{wrong}");
+        // Who holds an upright screen in the hand reads it from nearby.
+        let is_small = !self.upright && (width < SMALL_PX[0] || height < SMALL_PX[1]);
         let is_slow = self.round_trip_ms.is_some_and(|ms| ms > SLOW_MS);
         let (verdict, remedy) = match (is_small, is_slow) {
+            _ if self.upright && gaze != GazeSource::None => {
+                (PreflightVerdict::Warning, "turn the screen: on an upright page there is no gaze")
+            }
             (true, _) => (PreflightVerdict::Warning, "full screen (F11) on a display of at least 1280x720"),
             (false, true) => (PreflightVerdict::Warning, "a page on this computer, or a wire instead of radio"),
             (false, false) => (PreflightVerdict::Ok, ""),

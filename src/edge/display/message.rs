@@ -32,6 +32,9 @@ pub enum FromPage {
         width: u32,
         /// Height of the page in pixels.
         height: u32,
+        /// The page shows the layout of upright screens.
+        #[serde(default)]
+        upright: bool,
         /// The pairing code that was entered.
         code: Option<String>,
         /// It watched before: another page takes part, and may come back later than this one.
@@ -44,6 +47,9 @@ pub enum FromPage {
         width: u32,
         /// Height of the page in pixels.
         height: u32,
+        /// The page shows the layout of upright screens.
+        #[serde(default)]
+        upright: bool,
     },
     /// A watching page asks to act.
     TakePart,
@@ -120,7 +126,7 @@ pub fn read(text: &str) -> Option<FromPage> {
         FromPage::Reply(reply) => is_reply(reply),
         FromPage::Drawn { at, .. } => is_time(at),
         FromPage::Redrawn { took } => (0.0..1e6).contains(took),
-        FromPage::Size { width, height } => is_size(*width, *height),
+        FromPage::Size { width, height, .. } => is_size(*width, *height),
         FromPage::TakePart => true,
     };
     is_fine.then_some(message)
@@ -169,7 +175,8 @@ pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
     text(&Message { kind: "scene", scene })
 }
 
-/// The message with the present sight; during a probe also the seconds that it still has, and when that was on the server's clock.
+/// The message with the present sight; during a probe, or with the trial's clock, also the seconds that are left, and when that was on the
+/// server's clock.
 pub(super) fn sight(sight: &DisplayUpdate, left: Option<(f64, f64)>) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
@@ -207,6 +214,7 @@ mod tests {
     fn what_is_no_message_is_refused() {
         assert!(read(r#"{"kind": "press", "number": 1, "button": "cut", "at": 12.5}"#).is_some());
         assert!(read(r#"{"kind": "confirm"}"#).is_some());
+        assert!(read(r#"{"kind": "size", "width": 1170, "height": 2532, "upright": true}"#).is_some());
         assert!(read(r#"{"kind": "answer", "item": "age", "answer": 31}"#).is_some());
         assert!(read(r#"{"kind": "answer", "item": "remarks", "answer": "Too fast."}"#).is_some());
         assert!(read(r#"{"kind": "answer", "item": "aids", "answer": ["glasses"]}"#).is_some());

@@ -10,6 +10,8 @@ pub struct ActivePage {
     pub width_px: u32,
     /// Height in pixels.
     pub height_px: u32,
+    /// It shows the layout of upright screens, on which gaze is not mapped.
+    pub upright: bool,
     /// Last measured round trip time, in milliseconds.
     pub round_trip_ms: Option<f64>,
     /// Time from the last press to its effect on the screen, in milliseconds.

@@ -15,16 +15,17 @@ use std::sync::Arc;
 
 use self::reading::{AnalysisScope, RecordingAnalysis};
 pub use self::tell::{describe, describe_arms};
-use super::parallel;
 use super::replay::SameKitchen;
+use super::{consents, parallel};
 use crate::edge::export::{ExportError, ExportFolder};
-use crate::edge::file_error::FileError;
+use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::LogReader;
 use crate::edge::recordings;
 use crate::kitchen::Kitchen;
 use crate::study::dictionary::{DictionaryRow, dictionary};
 use crate::study::facts::Facts;
 use crate::study::figures::StudySummary;
+use crate::study::recorded_consent::RecordedConsent;
 use crate::study::report;
 use crate::study::tables::concept_table::{ConceptRow, concepts};
 use crate::study::tables::participants::{ParticipantRow, participants};
@@ -156,7 +157,7 @@ pub fn study(
         kept.clear();
     }
     let mut filled = export.tables_of_events(&kept)?;
-    filled.extend(export.table::<ParticipantRow>(participants(&trials))?);
+    filled.extend(export.table::<ParticipantRow>(participants(&trials, &consents(recordings)?))?);
     filled.extend(export.table::<Trial>(&trials)?);
     filled.extend(export.table::<AnswerRow>(trials.iter().flat_map(answers))?);
     filled.extend(export.table::<TutorialAnswer>(&tutorials)?);
@@ -176,6 +177,14 @@ fn tutorial_answers(recordings: &NamedRecordings) -> Result<Vec<TutorialAnswer>,
     }
     // The order of a tutorial's questions stays.
     all.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
+    Ok(all)
+}
+
+/// The consents that recordings begin with, by time.
+fn consents(recordings: &NamedRecordings) -> Result<Vec<RecordedConsent>, FileError> {
+    let read = recordings.found.iter().map(|(path, _)| consents::read(path));
+    let mut all: Vec<RecordedConsent> = read.filter_map(Result::transpose).collect::<FileResult<_>>()?;
+    all.sort_by(|a, b| a.started.cmp(&b.started));
     Ok(all)
 }
 

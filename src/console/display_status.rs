@@ -42,17 +42,25 @@ impl DisplayHealth {
         }
     }
 
+    fn address(&self) -> String {
+        format!("open {} in a browser, full screen", self.url)
+    }
+
+    /// The text with the pairing code behind it, if the page asks for one.
+    fn with_code(&self, text: String) -> String {
+        self.code.as_ref().map_or(text.clone(), |code| format!("{text}; pairing code {code}"))
+    }
+
     /// What is to be opened, with its pairing code, as long as no page takes part.
     pub fn to_open(&self) -> Option<String> {
-        let code = self.code.as_ref().map_or(String::new(), |code| format!("; pairing code {code}"));
-        self.page.is_none().then(|| format!("open {} in a browser, full screen{code}", self.url))
+        self.page.is_none().then(|| self.with_code(self.address()))
     }
 
     /// What is looked at before a trial with gaze from this source.
     pub fn check(&self, gaze: GazeSource) -> PreflightCheck {
         let Some([width, height]) = self.page else {
-            let (found, open) = ("no page is connected", self.to_open().unwrap_or_default());
-            return PreflightCheck::new("display", PreflightVerdict::Failed, found, open);
+            let found = self.with_code("no page is connected".to_string());
+            return PreflightCheck::new("display", PreflightVerdict::Failed, found, self.address());
         };
         let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms there and back"));
         let others = match self.watching {

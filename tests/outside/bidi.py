@@ -76,6 +76,8 @@ class Firefox:
         self.command("input.performActions", context=self.context, actions=[{"type": "key", "id": "keyboard", "actions": actions}])
 
     def screenshot(self, path):
+        """A picture of the page, once nothing moves on it any more."""
+        time.sleep(0.8)
         Path(path).write_bytes(base64.b64decode(self.command("browsingContext.captureScreenshot", context=self.context)["data"]))
 
     def __enter__(self):

@@ -13,12 +13,12 @@ from display import operate, presses_for, recorded, seed_of, session_file, start
 from page import Page, browser, plain
 
 # Counts what the page makes to be heard.
-LISTEN = """
+LISTEN = """() => {
 window.tones = [], window.contexts = 0;
 const make = AudioContext.prototype.createOscillator, Made = AudioContext;
 AudioContext.prototype.createOscillator = function () { const tone = make.call(this); tones.push(tone); return tone; };
 window.AudioContext = class extends Made { constructor(...all) { super(...all); contexts += 1; } };
-"""
+}"""
 UPRIGHT = (390, 844)
 
 
@@ -114,6 +114,7 @@ def upright(tomcom, chromium, folder, kitchen, seed):
         page.stage("running")
         page.wait_for("Stage.shown().contents.some((what) => what.dish)")
         presses = presses_for(kitchen, page.orders()[0], 1)
+        page.page.wait_for_timeout(500)
         page.screenshot(folder / "running.png")
         for button in presses[:-1]:
             page.press(button, "touch")

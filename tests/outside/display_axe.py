@@ -1,6 +1,6 @@
 """The participant's page has no violation of the rules of axe (WCAG among them), in any state.
 
-    tests/outside/display_axe.py TOMCOM FOLDER
+    tests/outside/display_axe.py TOMCOM FOLDER [--from-disk]
 """
 
 import argparse
@@ -26,11 +26,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tomcom")
     parser.add_argument("folder", type=Path)
+    parser.add_argument("--from-disk", action="store_true", help="the page's files as they are now, not as they were built")
     arguments = parser.parse_args()
     looked = 0
     with browser() as chromium:
         for kitchen, size in itertools.product(KITCHENS, SIZES):
-            with opened(arguments.tomcom, chromium, arguments.folder / f"{kitchen}-{size[0]}", kitchen, "en", size=size) as page:
+            with opened(arguments.tomcom, chromium, arguments.folder / f"{kitchen}-{size[0]}", kitchen, "en", size=size, from_disk=arguments.from_disk) as page:
                 every = states(page.ask("Stage.scene()"), kitchen)
                 names = [*STATES, *[next(name for name in every if name.startswith(kind)) for kind in ONE_OF], *[name for name in every if name.startswith(ALL_OF)]]
                 for name in names:

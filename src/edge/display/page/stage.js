@@ -116,13 +116,21 @@ const Stage = (() => {
     return isUpright() ? Upright(next, fontFamily, uprightRatio()) : Room(next, fontFamily);
   }
 
+  /** Gives the stage the shape of its layout; before a kitchen is there, too. */
+  function shape() {
+    const [wide, high] = told ? told.display_m : [16, 9];
+    root.classList.toggle("upright", isUpright());
+    root.style.setProperty("--ratio", isUpright() ? uprightRatio() : wide / high);
+  }
+
   /** The window has another size: an upright layout is one for this size, and goes when the screen is turned. */
   function resize() {
-    if (!scene || (!isUpright() && !room.isUpright)) return;
+    if (!scene) return shape();
+    if (!isUpright() && !room.isUpright) return undefined;
     const last = shown;
     build(told);
     Robot.again();
-    if (last) show(last, timeLeft);
+    return last && show(last, timeLeft);
   }
 
   function build(next) {
@@ -133,8 +141,7 @@ const Stage = (() => {
     document.documentElement.lang = scene.language;
     document.title = scene.title;
     root.replaceChildren();
-    root.classList.toggle("upright", room.isUpright);
-    root.style.setProperty("--ratio", scene.display_m[0] / scene.display_m[1]);
+    shape();
     Sound.build(scene);
     const kitchen = element("div", "kitchen");
     const [robot, human] = room.sides();
@@ -367,6 +374,7 @@ const Stage = (() => {
   function greet(next) {
     words = next;
     if (scene) return;
+    shape();
     const card = element("div", "card");
     card.append(text("h1", "", words.welcome), text("p", "", words["welcome text"]));
     root.replaceChildren(element("div", "sheet open big", card));
@@ -376,6 +384,7 @@ const Stage = (() => {
   function askCode(why, waitS, then) {
     const typed = why === "code" && root.querySelector("form input")?.value;
     told = scene = shown = parts = null;
+    shape();
     const card = element("form", "card");
     const field = element("input", "");
     Object.assign(field, { maxLength: 12, autocomplete: "off", spellcheck: false, autofocus: true, value: typed || "" });

@@ -41,15 +41,17 @@ const Upright = (wall, fontFamily, ratio) => {
   function putTheirs(top) {
     let y = top + TITLE;
     for (const row of rows.theirs) {
-      // A hand's frame goes around its name, and needs more room.
-      const share = (WIDE - 2 * EDGE) / (row.length + 0.45 * row.filter(({ location }) => location !== undefined).length);
+      // Each as wide as its name; a hand's frame goes around its name, and needs more room.
+      const spots = row.map(({ location, storage }) => (storage === undefined ? scene.locations[location] : scene.storages[storage]));
+      const air = row.map(({ storage }) => (storage === undefined ? 2.6 : 0.9)), wanted = spots.map(({ label }, at) => Math.max(SMALL, measure(label, WORDS)) + air[at]);
+      const scale = (WIDE - 2 * EDGE) / wanted.reduce((sum, width) => sum + width, 0);
       let x = EDGE;
-      for (const { location, storage } of row) {
-        const isHand = storage === undefined, wide = isHand ? 1.45 * share : share, area = rect(x + (wide - SMALL) / 2, y + NAME, SMALL, SMALL);
-        areas[isHand ? "locations" : "storages"][isHand ? location : storage] = area;
-        areas.limits.set(area, isHand ? wide - 2.3 : wide - 0.1);
+      row.forEach(({ location, storage }, at) => {
+        const wide = wanted[at] * scale, area = rect(x + (wide - SMALL) / 2, y + NAME, SMALL, SMALL);
+        areas[storage === undefined ? "locations" : "storages"][storage === undefined ? location : storage] = area;
+        areas.limits.set(area, wide - air[at]);
         x += wide;
-      }
+      });
       y += NAME + SMALL + INNER;
     }
     return y;

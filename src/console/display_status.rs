@@ -48,7 +48,10 @@ impl DisplayHealth {
 
     /// The text with the pairing code behind it, if the page asks for one.
     fn with_code(&self, text: String) -> String {
-        self.code.as_ref().map_or(text.clone(), |code| format!("{text}; pairing code {code}"))
+        match &self.code {
+            Some(code) => format!("{text}; pairing code {code}"),
+            None => text,
+        }
     }
 
     /// What is to be opened, with its pairing code, as long as no page takes part.

@@ -23,15 +23,16 @@ fn clock_and_number_of_served_orders_are_shown_where_the_session_says_so() {
             assert_eq!((seen.clock, seen.served), (wanted, shown.then_some(0)), "at {now_s} s");
             assert_eq!(left.map(SessionTime::as_secs_f64), shown.then_some(left_s), "at {now_s} s");
         };
+        let give = |engine: &mut Engine, now_s, event| assert_eq!(engine.input(at(now_s), event).refused, None);
         expect(&engine, 1.0, None, 600.0);
-        engine.input(at(2.0), Event::TrialStarted);
+        give(&mut engine, 2.0, Event::TrialStarted);
         expect(&engine, 12.0, Some(DisplayedClock::Goes), 590.0);
         // It stands in a pause, and goes on from there.
-        engine.input(at(12.0), Event::TrialPaused);
+        give(&mut engine, 12.0, Event::TrialPaused);
         expect(&engine, 50.0, Some(DisplayedClock::Stands), 590.0);
-        engine.input(at(62.0), Event::TrialResumed);
+        give(&mut engine, 62.0, Event::TrialResumed);
         expect(&engine, 72.0, Some(DisplayedClock::Goes), 580.0);
-        engine.input(at(72.0), Event::TrialEnded { reason: EndReason::Wizard });
+        give(&mut engine, 72.0, Event::TrialEnded { reason: EndReason::Wizard });
         expect(&engine, 99.0, Some(DisplayedClock::Stands), 580.0);
         let scene = scene(engine.session());
         assert_eq!((scene.clock, scene.served, scene.sound), (shown, shown, false));

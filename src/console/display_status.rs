@@ -2,7 +2,7 @@
 
 use crate::session::Session;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
-use crate::session::settings::ParticipantKind;
+use crate::session::settings::{GazeSource, ParticipantKind};
 
 /// State of the participant's display: the web page on the wall screen and its connection.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -13,6 +13,8 @@ pub struct DisplayHealth {
     pub code: Option<String>,
     /// Size in pixels of the page that the participant uses; `None` if no such page is connected.
     pub page: Option<[u32; 2]>,
+    /// It shows the layout of upright screens, on which gaze is not mapped.
+    pub upright: bool,
     /// Round-trip time between the program and the page, in milliseconds.
     pub round_trip_ms: Option<f64>,
     /// Delay from the participant's last press to its effect on the screen, in milliseconds.
@@ -44,23 +46,24 @@ impl DisplayHealth {
         format!("open {} in a browser, full screen", self.url)
     }
 
-    /// Address to open for the participant, with the pairing code, while no participant page is connected.
-    pub fn to_open(&self) -> Option<String> {
-        let code = self.code.as_ref().map_or(String::new(), |code| format!("; pairing code {code}"));
-        self.page.is_none().then(|| self.address() + &code)
+    /// The text with the pairing code behind it, if the page asks for one.
+    fn with_code(&self, text: String) -> String {
+        match &self.code {
+            Some(code) => format!("{text}; pairing code {code}"),
+            None => text,
+        }
     }
 
-    /// Preflight check of the participant's display.
-    pub fn check(&self) -> PreflightCheck {
+    /// Address to open for the participant, with the pairing code, while no participant page is connected.
+    pub fn to_open(&self) -> Option<String> {
+        self.page.is_none().then(|| self.with_code(self.address()))
+    }
+
+    /// What is looked at before a trial with gaze from this source.
+    pub fn check(&self, gaze: GazeSource) -> PreflightCheck {
         let Some([width, height]) = self.page else {
-            let code = self.code.as_ref().map_or(String::new(), |code| format!(", pairing code {code}"));
-            let open = self.address();
-            return PreflightCheck::new(
-                "display",
-                PreflightVerdict::Failed,
-                format!("participant's page not connected{code}"),
-                open,
-            );
+            let found = self.with_code("participant's page not connected".to_string());
+            return PreflightCheck::new("display", PreflightVerdict::Failed, found, self.address());
         };
         let trip = self.round_trip_ms.map_or(String::new(), |ms| format!(", {ms:.0} ms round trip"));
         let others = match self.watching {
@@ -71,10 +74,15 @@ impl DisplayHealth {
             0 => String::new(),
             _ => format!(", {} messages malformed, {} refused", self.malformed, self.refused),
         };
-        let found = format!("{width}x{height}{trip}{others}{wrong}");
-        let is_small = width < SMALL_PX[0] || height < SMALL_PX[1];
+        let upright = if self.upright { " upright" } else { "" };
+        let found = format!("{width}x{height}{upright}{trip}{others}{wrong}");
+        // Who holds an upright screen in the hand reads it from nearby.
+        let is_small = !self.upright && (width < SMALL_PX[0] || height < SMALL_PX[1]);
         let is_slow = self.round_trip_ms.is_some_and(|ms| ms > SLOW_MS);
         let (verdict, remedy) = match (is_small, is_slow) {
+            _ if self.upright && gaze != GazeSource::None => {
+                (PreflightVerdict::Warning, "turn the screen: on an upright page there is no gaze")
+            }
             (true, _) => (PreflightVerdict::Warning, "full screen (F11) on a display of at least 1280x720"),
             (false, true) => (PreflightVerdict::Warning, "a page on this computer, or a cable instead of Wi-Fi"),
             (false, false) => (PreflightVerdict::Ok, ""),

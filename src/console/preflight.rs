@@ -7,7 +7,7 @@ use crossterm::event::KeyCode;
 
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog, LslStatus, RecordingStatus, ViewerStreamStatus};
-use super::display_status::{DisplayHealth, is_wanted};
+use super::display_status::is_wanted;
 use super::key_action::KeyAction;
 use super::key_action::ManualAction;
 use super::notice::NoticeLevel;
@@ -24,7 +24,7 @@ pub const OVERRIDE: char = 'o';
 pub fn checks(session: &Session, model: &ConsoleModel) -> Vec<PreflightCheck> {
     let mut checks = participant(session, model.now, &key(model, &KeyAction::Hand(ManualAction::Calibrate)));
     checks.extend(model.gaze_pairing.as_ref().and_then(|pairing| pairing.check(session, model.now)));
-    checks.extend(model.display.as_ref().map(DisplayHealth::check));
+    checks.extend(model.display.as_ref().map(|display| display.check(session.spec.participant.gaze)));
     checks.extend(probes(session, model));
     checks.extend([robot(session, model), recording(model), space(model.free_bytes), keyboard(model)]);
     checks.extend(model.viewers.as_ref().map(viewers));

@@ -15,6 +15,7 @@ mod probe_page;
 mod robot_hand;
 mod robot_pose;
 mod scene;
+mod shown_clock;
 mod sight;
 mod tutorial_page;
 
@@ -23,4 +24,5 @@ pub use probe_page::{ProbeWording, choice_made_of, probe_left, probe_wording};
 pub use robot_hand::RobotHand;
 pub use robot_pose::RobotPose;
 pub use scene::{DisplayScene, scene};
+pub use shown_clock::{DisplayedClock, time_left};
 pub use sight::{DisplayStage, DisplayUpdate, sight};

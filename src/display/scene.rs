@@ -46,6 +46,12 @@ pub struct DisplayScene {
     pub arm: &'static str,
     /// Whether new events are marked by a flash, for recordings with a camera.
     pub flash: bool,
+    /// The page has room for the time that the trial still has.
+    pub clock: bool,
+    /// The page has room for the number of served orders.
+    pub served: bool,
+    /// A press without effect and a signal are heard.
+    pub sound: bool,
     /// Whether the mouse pointer stands for the participant's gaze.
     pub pointer: bool,
 }
@@ -154,6 +160,9 @@ pub fn scene(session: &Session) -> DisplayScene {
         keys: spec.display.keys,
         arm: spec.display.arm.unwrap_or(DisplayedArm::None).name(),
         flash: spec.display.flash,
+        clock: spec.display.clock,
+        served: spec.display.shows_served(),
+        sound: spec.display.sound,
         pointer: has_pointer(spec),
     }
 }

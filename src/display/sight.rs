@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::display_place::{DisplayPlace, spot};
 use super::displayed_item::{DisplayedItem, question};
 use super::probe_page::{DisplayedProbe, probe};
+use super::shown_clock::{DisplayedClock, clock};
 use super::tutorial_page::{DisplayedTutorial, RecipeCard, card, tutorial};
 use crate::communication::Signal;
 use crate::kitchen::no_effect::NoEffect;
@@ -22,8 +23,10 @@ pub struct DisplayUpdate {
     pub practice: bool,
     /// What each location shows, in the order of [`super::DisplayScene::locations`]; empty during a freeze probe.
     pub contents: Vec<ShownContent>,
-    /// Number of orders served in this trial.
-    pub served: usize,
+    /// Orders served in this trial, if the session shows their number.
+    pub served: Option<usize>,
+    /// Whether the trial's clock goes, if the session shows it. The message has the time that is left.
+    pub clock: Option<DisplayedClock>,
     /// Last press of the human and of the robot, by [`Agent::index`].
     pub presses: [Option<DisplayedPress>; 2],
     /// Location or storage where the robot is about to press, if the session shows the robot's intention.
@@ -141,11 +144,13 @@ pub fn sight(session: &Session) -> DisplayUpdate {
     let probe = probe(session);
     let is_trial = probe.is_none() && matches!(session.phase, Phase::Running | Phase::Paused);
     let intention = session.robot.intention.filter(|_| session.spec.display.intention && is_trial);
+    let stage = if probe.is_some() { DisplayStage::Probe } else { stage(session) };
     DisplayUpdate {
-        stage: if probe.is_some() { DisplayStage::Probe } else { stage(session) },
+        stage,
         practice: matches!(session.study_phase(), Some(PhaseSpec::Familiarisation)),
         contents: contents.filter(|_| probe.is_none()).collect(),
-        served: session.served.len(),
+        served: session.spec.display.shows_served().then_some(session.served.len()),
+        clock: clock(session, stage),
         presses: Agent::BOTH.map(|agent| match practised.is_some() {
             true => practised_press(session).filter(|_| agent == Agent::Human),
             false => pressed(session, agent),

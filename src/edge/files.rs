@@ -83,6 +83,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     }
     read_words(path, &text, &mut spec)?;
     spec.display.reasons.get_or_insert(true);
+    spec.display.served.get_or_insert(false);
     spec.display.arm.get_or_insert(DisplayedArm::Hand);
     // In a study plan, the condition decides whether the wizard sees offers.
     if spec.plan.is_none() && spec.wizard.kind == WizardKind::Scripted {

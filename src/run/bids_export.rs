@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::standing;
+use super::{consents, standing};
 use crate::analysis::bids::{
     BidsFile, BidsParticipant, Labels, Phenotypes, PressOutcome, RecordingTables, SessionRow, TableCounts,
     dataset_files, letters_and_digits, session_label, sessions_files,
@@ -93,7 +93,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     let plans: BTreeSet<String> =
         planned.iter().filter_map(|one| Some(one.header.session.step.as_ref()?.plan.clone())).collect();
     let plans: Vec<String> = plans.into_iter().collect();
-    let root = dataset_files(&plans, &participants(&planned), with_words);
+    let root = dataset_files(&plans, &participants(&planned)?, with_words);
     asked.iter().chain(&root).try_for_each(|file| tree.write(file))?;
     Ok(BidsSummary {
         folder: folder.to_path_buf(),
@@ -191,12 +191,20 @@ fn read(
     Ok((files, (row, kitchen.name.clone()), rows))
 }
 
-fn participants(planned: &[Planned]) -> Vec<BidsParticipant> {
+fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
     let mut rows: Vec<BidsParticipant> = Vec::new();
     for one in planned {
         let spec = &one.header.session;
+        let consent = consents::read(&one.recording)?;
+        let consent = consent.map(|given| [given.place().map(str::to_string), given.started, given.digest]);
         match rows.iter_mut().find(|row| row.label == one.label) {
-            Some(row) => row.recordings += 1,
+            Some(row) => {
+                row.recordings += 1;
+                // Recordings are in the order of their times: the first consent counts.
+                if let Some(consent) = consent.filter(|_| row.consent == [None, None, None]) {
+                    row.consent = consent;
+                }
+            }
             None => rows.push(BidsParticipant {
                 label: one.label.clone(),
                 code: spec.participant.code.clone(),
@@ -208,10 +216,11 @@ fn participants(planned: &[Planned]) -> Vec<BidsParticipant> {
                 .to_string(),
                 group: spec.step.as_ref().map(|step| step.group.clone()),
                 recordings: 1,
+                consent: consent.unwrap_or_default(),
             }),
         }
     }
-    rows
+    Ok(rows)
 }
 
 /// The export as text for the terminal.

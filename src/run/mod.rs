@@ -15,6 +15,8 @@ pub mod codes;
 #[cfg(feature = "cli")]
 mod coding_desk;
 #[cfg(feature = "cli")]
+mod consents;
+#[cfg(feature = "cli")]
 mod desk;
 pub mod engine;
 #[cfg(feature = "cli")]

@@ -43,6 +43,14 @@ pub struct DisplaySpec {
     /// without it was made when the page gave no reasons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reasons: Option<bool>,
+    /// Whether the page plays a tone at a press without effect, and another one at a signal.
+    pub sound: bool,
+    /// Whether the time that the trial still has is shown.
+    pub clock: bool,
+    /// Whether the number of served orders is shown. A session file without it means no; a recording without it was made when it
+    /// was always shown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub served: Option<bool>,
     /// Where questionnaires are answered: on the display or at the console.
     pub questionnaire: Answering,
 }
@@ -61,6 +69,9 @@ impl Default for DisplaySpec {
             tags: true,
             flash: true,
             reasons: None,
+            sound: false,
+            clock: false,
+            served: None,
             questionnaire: Answering::Console,
         }
     }
@@ -70,6 +81,11 @@ impl DisplaySpec {
     /// Whether other computers can open the display's page.
     pub fn is_open(&self) -> bool {
         !self.listen.is_loopback()
+    }
+
+    /// Whether the number of served orders is shown.
+    pub fn shows_served(&self) -> bool {
+        self.served != Some(false)
     }
 
     /// Language code of the page; a file with words contains its own.

@@ -48,6 +48,7 @@ pub mod power_chart;
 pub mod preregistration;
 pub mod prevention;
 pub mod rater_episodes;
+pub mod recorded_consent;
 pub mod report;
 pub mod robot_tally;
 pub mod roc;

@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 
 use super::facts::Facts;
 use super::preregistration::RecordedPlan;
+use super::recorded_consent::RecordedConsent;
 use super::tables::tutorial_answers::TutorialAnswer;
 use super::trial_statistics::Trial;
 use crate::session::header::FileText;
@@ -69,6 +70,8 @@ pub struct AnalysedRecording {
     pub recording: String,
     /// The plan that it belongs to.
     pub plan: RecordedPlan,
+    /// The consent that it begins with.
+    pub consent: Option<RecordedConsent>,
     /// The answers to the questions of its tutorial.
     pub tutorial: Vec<TutorialAnswer>,
     /// The trial, with what the report tells about the recording; `None` for practice.

@@ -103,7 +103,8 @@ fn has_recipe(kitchen: &Kitchen, list: &[String]) -> bool {
 }
 
 /// Fields of what the page is told.
-const FIELDS: [&str; 29] = [
+const FIELDS: [&str; 30] = [
+    "clock",
     "probe",
     "tutorial",
     "why",
@@ -157,6 +158,7 @@ pub(super) fn check(session: &Session) {
         let is_fine = match field.as_str() {
             "field" => FIELDS.contains(&text.as_str()),
             "stage" => true,
+            "clock" => session.spec.display.clock && ["goes", "stands"].contains(&text.as_str()),
             "reason" => words.contains_key(&format!("why {text}")),
             "contents" => ["empty", "served"].contains(&text.as_str()),
             "item" | "stack" | "dish" => on_display(text),
@@ -184,6 +186,7 @@ fn the_page_is_told_what_may_be_seen_and_nothing_else() {
             files.spec.trial.condition = condition;
             // Whatever is worth anything is said, so that there are signals to look at.
             files.spec.assistant.cost_of_communication = 0.0;
+            files.spec.display.clock = condition == Condition::Wizard;
             // With both arms: nothing of them is to be seen.
             files.spec.robot.arm = if condition == Condition::Wizard { ArmKind::Timed } else { ArmKind::Physics };
             let mut engine = engine(files);

@@ -7,6 +7,7 @@ mod connection_table;
 mod console;
 mod cost_to_go;
 mod display;
+mod display_clock;
 mod display_palette;
 mod display_probes;
 mod display_server;

@@ -101,6 +101,13 @@ class Console:
             self.key(".")
             self.wait_for("RUNNING")
 
+    def end(self):
+        """Ends the trial."""
+        self.key("\x05")
+        self.wait_for("End the trial")
+        self.key("y")
+        self.wait_for("OVER|over")
+
     def trial_s(self):
         """The trial's clock, as the head line shows it, in seconds."""
         clock = re.search(r"(\d+):(\d\d) / ", self.text())

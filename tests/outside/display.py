@@ -30,11 +30,9 @@ TOPPINGS = {
 }
 BURGER = ["take light bun", "board", "take cheese", "board", "take soy", "grill_plate", "grill", "grill_plate", "board",
           "take pepper", "slice", "board", "board", "tray", "serve 1"]
-# At most so long from a press to its effect on the screen, in milliseconds, in the median; and at the 99th percentile where
-# browser, program, planner and this script share two cores and nothing but software draws the page.
-LIMIT_MS, SHARED_LIMIT_MS = 50, 150
-# 60 frames a second, and half a millisecond for the rounding of the clock.
-FRAME_MS = 17.2
+# Asked for on an idle machine, where nothing but software draws the page, at 1280x800: frames a second, and milliseconds from a
+# press to its effect on the screen at the 99th percentile. Three times worse fails: browser, program and this script share two cores.
+SIZE, FRAMES_HZ, SCREEN_MS, WORSE = (1280, 800), 55, 40, 3
 
 
 def presses_for(kitchen, dish, order):
@@ -50,7 +48,7 @@ def session_file(folder, kitchen, seed, shadow="off", presses=304):
     layout = Path(f"layouts/{kitchen}.toml").resolve()
     path = folder / "session.toml"
     path.write_text(f'layout = "{layout}"\nseed = {seed}\n[trial]\npresses = {presses}\n[participant]\nkind = "display"\ngaze = "mouse"\n'
-                    f'[display]\nport = {PORT}\n[signals]\ncool_down_s = 0.0\n[assistant]\nshadow = "{shadow}"\n')
+                    f'[display]\nport = {PORT}\nserved = true\nclock = true\nsound = true\n[signals]\ncool_down_s = 0.0\n[assistant]\nshadow = "{shadow}"\n')
     return path
 
 
@@ -269,7 +267,7 @@ def is_quick(tomcom, browser, folder, seed, presses):
     """From press to screen, alone and with 200 connections that send nonsense a thousand times a second."""
     console = operate(tomcom, session_file(folder, "sushi", seed, shadow="on", presses=10_000), folder)
     with console:
-        page = Page(browser, url())
+        page = Page(browser, url(), size=SIZE)
         start(console, page, robot_held=False)
         measure(page, presses, "alone")
         abuse = subprocess.Popen([sys.executable, Path(__file__).with_name("abuse.py"), str(PORT)], stdout=subprocess.PIPE, text=True)
@@ -301,12 +299,13 @@ def measure(page, presses, how):
     took = [message["took"] for message in page.said[first:] if message["kind"] == "redrawn"]
     answers = page.answered_ms[answered:]
     assert min(len(took), len(answers)) >= 0.95 * presses, f"{len(took)} of {presses} presses were drawn"
-    known, drawn = percentile(answers, 0.99), percentile(took, 0.99)
-    print(f"{len(took)} presses {how}: answered p50 {percentile(answers, 0.5):.1f} ms, p99 {known:.1f} ms; "
-          f"on the screen p50 {percentile(took, 0.5):.1f} ms, p99 {drawn:.1f} ms; "
-          f"frames every {percentile(frames_ms, 0.5):.1f} ms, p99 {percentile(frames_ms, 0.99):.1f} ms", flush=True)
-    assert percentile(frames_ms, 0.5) <= FRAME_MS, "the page does not move at 60 frames a second"
-    assert percentile(took, 0.5) <= LIMIT_MS and drawn <= SHARED_LIMIT_MS, "a press took too long"
+    frames_hz, drawn_ms = 1000 * len(frames_ms) / sum(frames_ms), percentile(took, 0.99)
+    verdict = "as asked" if frames_hz >= FRAMES_HZ and drawn_ms < SCREEN_MS else f"asked: {FRAMES_HZ} frames, {SCREEN_MS} ms"
+    print(f"{len(took)} presses at {SIZE[0]}x{SIZE[1]} {how}: answered p50 {percentile(answers, 0.5):.1f} ms, p99 {percentile(answers, 0.99):.1f} ms; "
+          f"key to screen p50 {percentile(took, 0.5):.1f} ms, p99 {drawn_ms:.1f} ms; {frames_hz:.1f} frames a second, the longest of 100 takes "
+          f"{percentile(frames_ms, 0.99):.1f} ms ({verdict})", flush=True)
+    assert frames_hz >= FRAMES_HZ / WORSE, "the page does not move"
+    assert drawn_ms <= WORSE * SCREEN_MS, "a press took too long"
 
 
 def has_phases(tomcom, browser, folder):
@@ -337,9 +336,7 @@ def has_phases(tomcom, browser, folder):
         assert "Bereit?" in page.ask("document.querySelector('.sheet').innerText")
         console.key(".")
         page.stage("running")
-        console.key("\x05")
-        console.wait_for("End the trial")
-        console.key("y")
+        console.end()
         page.stage("over")
         time.sleep(1)
         console.key(".")

@@ -15,7 +15,9 @@ from display_states import items_of, opened, show, states
 from page import browser
 
 SIZE = (960, 540)
-# Each picture is drawn twice as large, then scaled down; it has at most so many bytes.
+# A telephone.
+UPRIGHT = (390, 844)
+# Each picture but those of a telephone is drawn twice as large, then scaled down; it has at most so many bytes.
 MAX_BYTES = 60_000
 
 
@@ -69,16 +71,19 @@ def main():
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     with browser() as chromium:
-        for kitchen, language, wanted in [("sushi", "en", None), ("burger", "de", ("running", "recipe"))]:
-            folder = arguments.folder / f"pictures-{kitchen}"
-            with opened(arguments.tomcom, chromium, folder, kitchen, language, from_disk=arguments.from_disk) as page:
+        for kitchen, language, wanted, (page_size, size), before in [
+            ("sushi", "en", None, ((1920, 1080), SIZE), ""), ("burger", "de", ("running", "recipe"), ((1920, 1080), SIZE), "burger-de-"),
+            ("sushi", "en", ("running", "recipe", "highlight"), (UPRIGHT, UPRIGHT), "upright-"),
+        ]:
+            folder = arguments.folder / f"pictures-{before}{kitchen}"
+            with opened(arguments.tomcom, chromium, folder, kitchen, language, size=page_size, from_disk=arguments.from_disk) as page:
                 for file, sight in chosen(page.ask("Stage.scene()"), kitchen).items():
                     if wanted and file not in wanted:
                         continue
                     show(page, sight)
                     page.page.wait_for_timeout(100)
-                    picture = Image.open(io.BytesIO(page.page.screenshot())).convert("RGB").resize(SIZE, Image.LANCZOS)
-                    path = arguments.out / (f"{file}.webp" if kitchen == "sushi" else f"{kitchen}-{language}-{file}.webp")
+                    picture = Image.open(io.BytesIO(page.page.screenshot())).convert("RGB").resize(size, Image.LANCZOS)
+                    path = arguments.out / f"{before}{file}.webp"
                     picture.save(path, quality=80, method=6)
                     assert path.stat().st_size <= MAX_BYTES, f"{path}: {path.stat().st_size} bytes"
                     print(f"{path}: {path.stat().st_size} bytes", flush=True)

@@ -48,7 +48,7 @@ def opened(tomcom, browser, folder, kitchen, language, size=(1920, 1080), from_d
     folder.mkdir(parents=True, exist_ok=True)
     session = folder / "session.toml"
     layout = Path(f"layouts/{kitchen}.toml").resolve()
-    session.write_text(f'layout = "{layout}"\n[participant]\nkind = "display"\ngaze = "none"\n[display]\nport = {PORT}\nlanguage = "{language}"\n{settings}')
+    session.write_text(f'layout = "{layout}"\n[participant]\nkind = "display"\ngaze = "none"\n[display]\nport = {PORT}\nlanguage = "{language}"\nserved = true\nclock = true\n{settings}')
     with Console(tomcom, [session, "--code", "P01", "--out", folder / f"recordings-{os.getpid()}"]) as console:
         console.wait_for("READY|NO DISPLAY")
         page = Page(browser, f"http://127.0.0.1:{PORT}", size=size, files=PAGE if from_disk else None)
@@ -157,7 +157,7 @@ def states(scene, kitchen):
         return [content(spot) for spot in spots]
 
     def sight(stage="running", turn=0, **changed):
-        return {"stage": stage, "practice": False, "contents": contents(turn), "served": 3, "presses": [None, None], "intention": None,
+        return {"stage": stage, "practice": False, "contents": contents(turn), "served": 3, "clock": "stands" if stage in ("ready", "running", "paused", "over") else None, "presses": [None, None], "intention": None,
                 "signal": None, "cue": None, "question": None, "tutorial": None, "probe": None, "target": None, "checks": False, **changed}
 
     made = {stage: sight(stage) for stage in ("welcome", "instruction", "ready", "paused", "over", "thanks")}

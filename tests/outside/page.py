@@ -88,6 +88,12 @@ class Page:
         return self.ask("""Stage.scene().locations.map((spot, index) => [spot.kind, Stage.shown().contents[index]])
             .filter(([kind]) => kind === "order").map(([, what]) => what.dish || null)""")
 
+    def push(self, number):
+        """Pushes a button of the gamepad, and lets it go."""
+        for is_down in ("true", "false"):
+            self.ask(f"pad.buttons[{number}].pressed = {is_down}")
+            self.page.wait_for_timeout(20)
+
     def press(self, button, way):
         """Presses a button in this way, and waits until the page shows that it was taken."""
         before = self.presses()
@@ -98,9 +104,7 @@ class Page:
             # At once, as a finger does, also where a hint makes the button beat.
             self.page.locator(f'[data-button="{button}"]').tap(force=True)
         else:
-            self.ask(f"pad.buttons[{knob['gamepad']}].pressed = true")
-            self.page.wait_for_timeout(20)
-            self.ask(f"pad.buttons[{knob['gamepad']}].pressed = false")
+            self.push(knob["gamepad"])
         self.wait_for(f"Stage.shown().presses[0] && Stage.shown().presses[0].number > {before}")
         self.page.wait_for_timeout(60)
 

@@ -80,13 +80,6 @@ def session(folder, port, surface="Surface 1", more=""):
     return path
 
 
-def end_trial(console):
-    console.key("\x05")
-    console.wait_for("End the trial")
-    console.key("y")
-    console.wait_for("OVER|over")
-
-
 def trackers(recording, what):
     return [event for event in recorded(recording, "tracker") if event["what"] == what]
 
@@ -100,7 +93,7 @@ def check_trials(tomcom, folder, pupil, trials):
             console.wait_for(r"gaze +\d\d+ Hz")
             start_trial(console)
             time.sleep(1.0)
-            end_trial(console)
+            console.end()
             console.quit()
     found = capture.annotations()
     capture.kill()
@@ -129,7 +122,7 @@ def check_restart(tomcom, folder, pupil):
         capture = Modules(pupil, folder / "capture", PORT + 1)
         console.wait_for(r"gaze +\d\d+ Hz")
         time.sleep(2)
-        end_trial(console)
+        console.end()
         console.quit()
     time.sleep(0.5)
     labels = list(capture.labels().values())
@@ -148,7 +141,7 @@ def check_lab(tomcom, folder, pupil):
             if "true" in more:
                 console.wait_for("started no recording", 10)
             time.sleep(0.5)
-            end_trial(console)
+            console.end()
             console.quit()
     time.sleep(1)
     subjects = capture.subjects()
@@ -189,7 +182,7 @@ def check_clock(tomcom, folder, pupil):
             console.wait_for(f"clock was set {word} by 0[.](19|20)")
             time.sleep(4)
             offsets.append(offset())
-        end_trial(console)
+        console.end()
         console.quit()
     capture.kill()
     (recording,) = (folder / "recordings").iterdir()
@@ -224,7 +217,7 @@ def check_time_sync(tomcom, folder, pupil):
         console.wait_for("clock was set ahead by 0[.]05")
         start_trial(console)
         time.sleep(36)
-        end_trial(console)
+        console.end()
         console.quit()
     bases = capture.notes("timebase")
     capture.kill()

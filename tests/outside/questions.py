@@ -1,7 +1,9 @@
 """Questionnaires on the participant's display: every kind of item, by touch and by keys, over a reload and a kill of the program."""
 
+import csv
 import json
 import signal
+import subprocess
 import time
 from pathlib import Path
 
@@ -34,6 +36,21 @@ def events(folder):
 def given(folder):
     """The last answer to each item."""
     return {event["item"]: event["answer"] for event in events(folder) if event.get("what") == "item_answered"}
+
+
+def consent_in_tables(tomcom, folder, consent):
+    """The tables of the study, and of BIDS, say where the participant consented, when, and to which text."""
+    def row(path, dialect):
+        (found,) = csv.DictReader(path.open(), dialect=dialect)
+        return {name: found[name] for name in ("consent_on", "consent_at", "consent_digest")}
+
+    subprocess.run([tomcom, "study", folder / "recordings", "--out", folder / "study"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([tomcom, "export", folder / "recordings", "--bids", folder / "bids"], check=True, stdout=subprocess.DEVNULL)
+    told = row(folder / "study" / "participants.csv", "excel")
+    assert told == row(folder / "bids" / "participants.tsv", "excel-tab"), told
+    assert (told["consent_on"], told["consent_digest"]) == ("display", consent["digest"]), told
+    first = min((folder / "recordings").glob("*/events.jsonl"), key=lambda log: json.loads(log.open().readline())["started"])
+    assert told["consent_at"] == json.loads(first.open().readline())["started"], told
 
 
 def answers_every_kind(tomcom, browser, folder, port, language="en"):
@@ -148,9 +165,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
         time.sleep(1)
         console.key(".")
         page.stage("running")
-        console.key("\x05")
-        console.wait_for("End the trial")
-        console.key("y")
+        console.end()
         page.stage("over")
         time.sleep(1)
         console.key(".")
@@ -181,6 +196,7 @@ def answers_every_kind(tomcom, browser, folder, port, language="en"):
                      "cooking": 3, "robots": 2, "eye_tracking": 1, "mental": 75, "physical": 40}, found
     (consent,) = [event for event in events(folder) if event.get("what") == "consent_given"]
     assert consent["on"] == "display" and consent["text"] == CONSENT and len(consent["digest"]) == 16, consent
+    consent_in_tables(tomcom, folder, consent)
     skipped = [event["item"] for event in events(folder) if event.get("what") == "item_skipped"]
     assert skipped == ["colour_vision"], skipped
     print("questionnaires: every kind of item by touch and keys, over a reload and a kill", flush=True)

@@ -1,4 +1,5 @@
-"""The participant's tutorial on the display: the real program, a real browser, all pages by keys and by touch, in both languages.
+"""The participant's tutorial on the display: the real program, a real browser, all pages by keys, by touch and by a gamepad, in both languages, on
+the wall and on a telephone.
 
     tests/outside/tutorial.py TOMCOM FOLDER
 """
@@ -43,6 +44,9 @@ def go_on(page, way, step):
     page.wait_for(f"Stage.shown().tutorial && Stage.shown().tutorial.step === {json.dumps(step)} && Stage.shown().tutorial.done")
     if way == "touch":
         page.page.locator(".lesson .next").tap()
+    elif way == "gamepad":
+        # The cross, or the button that goes on.
+        page.push(15 if len(step) % 2 else 0)
     else:
         page.page.keyboard.press("ArrowRight")
 
@@ -50,6 +54,11 @@ def go_on(page, way, step):
 def answer(page, way, choice):
     if way == "touch":
         page.page.locator(f'[data-choose="{choice}"]').tap()
+    elif way == "gamepad":
+        while page.ask("Number(document.querySelector('[data-choose].at')?.dataset.choose ?? 0)") != choice:
+            at = page.ask("Number(document.querySelector('[data-choose].at')?.dataset.choose ?? 0)")
+            page.push(13 if at < choice else 12)
+        page.push(0)
     else:
         page.page.keyboard.press(str(choice))
 
@@ -67,6 +76,11 @@ def plays(tomcom, chromium, folder, language, way, size):
             page.wait_for(f"Stage.shown().tutorial && Stage.shown().tutorial.step === {json.dumps(name)}")
             page.page.wait_for_timeout(250)
             page.screenshot(folder / f"{number:02}-{name}.png")
+            if way == "gamepad" and number == 2:
+                page.push(14)
+                page.wait_for("Stage.shown().tutorial.number === 1")
+                page.push(15)
+                page.wait_for("Stage.shown().tutorial.number === 2")
             assert not overflows(page), (name, overflows(page))
             for button in step.get("presses", []):
                 page.press(button, way)
@@ -98,8 +112,9 @@ def main():
     parser.add_argument("folder", type=Path)
     arguments = parser.parse_args()
     with browser() as chromium:
-        for language, way, size in (("en", "keyboard", (1920, 1080)), ("de", "touch", (1280, 800))):
-            plays(arguments.tomcom, chromium, arguments.folder / f"{language}-{way}", language, way, size)
+        for language, way, size in (("en", "keyboard", (1920, 1080)), ("de", "touch", (1280, 800)), ("en", "gamepad", (1280, 800)),
+                                    ("en", "touch", (390, 844)), ("de", "touch", (390, 844))):
+            plays(arguments.tomcom, chromium, arguments.folder / f"{language}-{way}-{size[0]}", language, way, size)
 
 
 if __name__ == "__main__":

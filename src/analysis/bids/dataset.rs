@@ -21,12 +21,20 @@ const KINDS: &[(&str, &str)] = &[
     ("display", "A person at the participant's display"),
 ];
 
-const COLUMNS: [BidsColumn; 5] = [
+const CONSENTS: &[(&str, &str)] = &[
+    ("console", "Told to the wizard, who confirmed it on the console"),
+    ("display", "The participant held a button on the display"),
+];
+
+const COLUMNS: [BidsColumn; 8] = [
     BidsColumn::new("participant_id", "The participant: sub- and the letters and digits of the code"),
     BidsColumn::new(CODE_COLUMN, "The participant's code in the recordings"),
     BidsColumn::of_levels("kind", KINDS, "Who took part"),
     BidsColumn::new("group", "Starting group of the plan: the order of conditions"),
     BidsColumn::new("recordings", "Number of recordings"),
+    BidsColumn::of_levels("consent_on", CONSENTS, "Where consent was given"),
+    BidsColumn::new("consent_at", "Wall clock time (UTC) at which the recording that begins with the consent began"),
+    BidsColumn::new("consent_digest", "Digest of the text that was agreed to"),
 ];
 
 /// A participant of a BIDS data set.
@@ -42,6 +50,8 @@ pub struct BidsParticipant {
     pub group: Option<String>,
     /// Number of the participant's recordings.
     pub recordings: usize,
+    /// Where consent was given, when, and the digest of its text, as far as a recording says it.
+    pub consent: [Option<String>; 3],
 }
 
 /// The files at the root of the data set: its description, the table of participants, a README. `plans`: the names of
@@ -61,7 +71,8 @@ pub fn dataset_files(plans: &[String], participants: &[BidsParticipant], with_wo
     let row = |one: &BidsParticipant| {
         let label = format!("sub-{}", one.label);
         let group = or_nothing(one.group.as_deref());
-        tsv::line([label, one.code.clone(), one.kind.clone(), group, one.recordings.to_string()])
+        let [on, at, digest] = one.consent.each_ref().map(|cell| or_nothing(cell.as_deref()));
+        tsv::line([label, one.code.clone(), one.kind.clone(), group, one.recordings.to_string(), on, at, digest])
     };
     let rows: String = participants.iter().map(row).collect();
     vec![

@@ -86,8 +86,9 @@ impl Talk {
             };
             match self.message(message)? {
                 None => {}
-                Some(FromPage::Hello { page, width, height, code, waits }) => {
-                    (self.page, self.size.width_px, self.size.height_px) = (page, width, height);
+                Some(FromPage::Hello { page, width, height, upright, code, waits }) => {
+                    self.page = page;
+                    self.note_size(width, height, upright);
                     if !self.hub.has_code() {
                         return Some(waits);
                     }
@@ -102,9 +103,7 @@ impl Talk {
                 }
                 // A page that shows the form for the pairing code also sends pings.
                 Some(FromPage::Ping { t, hidden, .. }) if has_said => self.pong(t, hidden).await?,
-                Some(FromPage::Size { width, height }) if has_said => {
-                    (self.size.width_px, self.size.height_px) = (width, height);
-                }
+                Some(FromPage::Size { width, height, upright }) if has_said => self.note_size(width, height, upright),
                 Some(_) => self.fault()?,
             }
         }
@@ -189,12 +188,17 @@ impl Talk {
         took
     }
 
+    /// Keeps the size of the page in pixels, and whether it shows the layout of upright screens.
+    fn note_size(&mut self, width_px: u32, height_px: u32, upright: bool) {
+        self.size = ActivePage { width_px, height_px, upright, ..self.size };
+    }
+
     /// Reports to the session that a page takes part, with the page's size.
     async fn tell_size(&mut self) -> Option<()> {
-        let ActivePage { width_px, height_px, .. } = self.size;
+        let ActivePage { width_px, height_px, upright, .. } = self.size;
         self.hub.status.page(|page| {
             let page = page.get_or_insert_default();
-            (page.width_px, page.height_px) = (width_px, height_px);
+            (page.width_px, page.height_px, page.upright) = (width_px, height_px, upright);
         });
         self.hub.inputs.send(PageInput::Connected { width_px, height_px }).await.ok()
     }
@@ -277,8 +281,8 @@ impl Talk {
                 }
                 self.pong(t, hidden).await
             }
-            Some(FromPage::Size { width, height }) => {
-                (self.size.width_px, self.size.height_px) = (width, height);
+            Some(FromPage::Size { width, height, upright }) => {
+                self.note_size(width, height, upright);
                 if self.acts() { self.tell_size().await } else { Some(()) }
             }
             Some(FromPage::TakePart) => {

@@ -33,6 +33,9 @@ pub enum FromPage {
         width: u32,
         /// Height of the participant's page in pixels.
         height: u32,
+        /// The page shows the layout of upright screens.
+        #[serde(default)]
+        upright: bool,
         /// Pairing code that was typed into the page.
         code: Option<String>,
         /// Whether the page only watched before it was reconnected, so that it leaves taking part to another page.
@@ -45,6 +48,9 @@ pub enum FromPage {
         width: u32,
         /// Height of the participant's page in pixels.
         height: u32,
+        /// The page shows the layout of upright screens.
+        #[serde(default)]
+        upright: bool,
     },
     /// A watching page asks to take part.
     TakePart,
@@ -121,7 +127,7 @@ pub fn read(text: &str) -> Option<FromPage> {
         FromPage::Reply(reply) => is_reply(reply),
         FromPage::Drawn { at, .. } => is_time(at),
         FromPage::Redrawn { took } => (0.0..1e6).contains(took),
-        FromPage::Size { width, height } => is_size(*width, *height),
+        FromPage::Size { width, height, .. } => is_size(*width, *height),
         FromPage::TakePart => true,
     };
     is_fine.then_some(message)
@@ -170,8 +176,8 @@ pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
     text(&Message { kind: "scene", scene })
 }
 
-/// The message with the state that the display shows; during a freeze probe, also with the remaining seconds and the
-/// server time of that number.
+/// The message with the present sight; during a probe, or with the trial's clock, also the seconds that are left, and when that was on the
+/// server's clock.
 pub(super) fn sight(sight: &DisplayUpdate, left: Option<(f64, f64)>) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
@@ -209,6 +215,7 @@ mod tests {
     fn what_is_no_message_is_refused() {
         assert!(read(r#"{"kind": "press", "number": 1, "button": "cut", "at": 12.5}"#).is_some());
         assert!(read(r#"{"kind": "confirm"}"#).is_some());
+        assert!(read(r#"{"kind": "size", "width": 1170, "height": 2532, "upright": true}"#).is_some());
         assert!(read(r#"{"kind": "answer", "item": "age", "answer": 31}"#).is_some());
         assert!(read(r#"{"kind": "answer", "item": "remarks", "answer": "Too fast."}"#).is_some());
         assert!(read(r#"{"kind": "answer", "item": "aids", "answer": ["glasses"]}"#).is_some());

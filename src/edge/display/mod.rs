@@ -115,7 +115,7 @@ impl PageConnection {
         self.scene.send_replace(message::scene(scene));
     }
 
-    /// Sends the present state of the kitchen to the pages, with the remaining seconds of a freeze probe.
+    /// Sends the present sight to the pages, with the time in seconds that a probe or the trial still has.
     pub fn show(&self, sight: &DisplayUpdate, left_s: Option<f64>) {
         let at_ms = self.began.elapsed().as_secs_f64() * 1000.0;
         self.sight.send_replace(message::sight(sight, left_s.map(|left_s| (at_ms, left_s))));

@@ -41,12 +41,15 @@ const AGAIN: Duration = Duration::from_millis(100);
 const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
 /// Files of the participant's page: path, content type, content.
-const FILES: [(&str, &str, &str); 11] = [
+const FILES: [(&str, &str, &str); 14] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
     ("/display.js", "text/javascript; charset=utf-8", include_str!("page/display.js")),
+    ("/sound.js", "text/javascript; charset=utf-8", include_str!("page/sound.js")),
+    ("/status.js", "text/javascript; charset=utf-8", include_str!("page/status.js")),
     ("/robot.js", "text/javascript; charset=utf-8", include_str!("page/robot.js")),
     ("/room.js", "text/javascript; charset=utf-8", include_str!("page/room.js")),
+    ("/upright.js", "text/javascript; charset=utf-8", include_str!("page/upright.js")),
     ("/stage.js", "text/javascript; charset=utf-8", include_str!("page/stage.js")),
     ("/tutorial.js", "text/javascript; charset=utf-8", include_str!("page/tutorial.js")),
     ("/probe.js", "text/javascript; charset=utf-8", include_str!("page/probe.js")),

@@ -10,6 +10,8 @@ pub struct ActivePage {
     pub width_px: u32,
     /// Height of the participant's page in pixels.
     pub height_px: u32,
+    /// It shows the layout of upright screens, on which gaze is not mapped.
+    pub upright: bool,
     /// Last measured round-trip time between page and server, in milliseconds.
     pub round_trip_ms: Option<f64>,
     /// Time from the last press until its effect was drawn, in milliseconds.

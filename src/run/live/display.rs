@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::base::time::SessionTime;
 use crate::console::display_status::DisplayHealth;
 use crate::console::notice::NoticeLevel;
-use crate::display::{DisplayUpdate, RobotHand, RobotPose, choice_made_of, probe_left, scene, sight};
+use crate::display::{DisplayUpdate, RobotHand, RobotPose, choice_made_of, scene, sight, time_left};
 use crate::edge::display::{Display, PageConnection, PageReply};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
@@ -62,7 +62,7 @@ impl ParticipantDisplay {
     pub fn show(&mut self, session: &Session, now: SessionTime) {
         let seen = sight(session);
         if self.shown.as_ref() != Some(&seen) {
-            self.screen.show(&seen, probe_left(session, now).map(SessionTime::as_secs_f64));
+            self.screen.show(&seen, time_left(session, now).map(SessionTime::as_secs_f64));
             self.shown = Some(seen);
         }
     }
@@ -71,6 +71,7 @@ impl ParticipantDisplay {
     pub fn examine(&self, health: &mut DisplayHealth) {
         let counts = self.screen.counts();
         health.page = counts.page.map(|page| [page.width_px, page.height_px]);
+        health.upright = counts.page.is_some_and(|page| page.upright);
         health.round_trip_ms = counts.page.and_then(|page| page.round_trip_ms);
         health.redraw_ms = counts.page.and_then(|page| page.redraw_ms);
         (health.watching, health.malformed, health.refused) = (counts.watching, counts.malformed, counts.refused);

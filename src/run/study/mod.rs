@@ -19,8 +19,8 @@ use std::sync::Arc;
 
 use self::reading::AnalysisScope;
 pub use self::tell::{describe, describe_arms};
-use super::parallel;
 use super::replay::SameKitchen;
+use super::{consents, parallel};
 use crate::edge::export::{ExportError, ExportFolder};
 use crate::edge::file_error::FileError;
 use crate::edge::frozen_file::read_frozen;
@@ -159,13 +159,13 @@ fn analyse(
 ) -> Result<(AnalysedRecording, [Vec<u8>; 5]), StudyError> {
     let log = LogReader::open(path)?;
     let plan = recorded_plan(&log.header.session);
-    let tutorial = tutorials::read(log, name)?;
+    let (tutorial, consent) = (tutorials::read(log, name)?, consents::read(path)?);
     let (mut trial, mut rows) = (None, Default::default());
     if let Some((own, read)) = reading::read(path, name, analysis.extent, analysis.raters.as_ref())? {
         same_kitchen(first, (path, &own))?;
         (trial, rows) = (Some((read.trial, read.facts)), read.rows);
     }
-    Ok((AnalysedRecording { recording: name.clone(), plan, tutorial, trial }, rows))
+    Ok((AnalysedRecording { recording: name.clone(), plan, consent, tutorial, trial }, rows))
 }
 
 /// The plan that a recording with these settings belongs to.
@@ -193,9 +193,10 @@ fn conclude(
     frozen: Option<(String, FrozenPlan)>,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
     let (mut trials, mut facts, mut kept) = (Vec::new(), Facts::default(), Vec::new());
-    let (mut plans, mut tutorials) = (Vec::new(), Vec::new());
+    let (mut plans, mut consents, mut tutorials) = (Vec::new(), Vec::new(), Vec::new());
     for (index, recording) in analysed {
         plans.push(recording.plan);
+        consents.extend(recording.consent);
         tutorials.extend(recording.tutorial);
         if let Some((trial, own)) = recording.trial {
             kept.push(index);
@@ -205,6 +206,7 @@ fn conclude(
     }
     arrange(&mut trials);
     let practice = (plans.len() - trials.len()) as u64;
+    consents.sort_by(|a, b| a.started.cmp(&b.started));
     // The order of a tutorial's questions stays.
     tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
     let preregistration = frozen.map(|(digest, frozen)| Preregistration::new(digest, &frozen, &plans));
@@ -214,7 +216,7 @@ fn conclude(
         kept.clear();
     }
     let mut filled = export.tables_of_events(&kept)?;
-    filled.extend(export.table::<ParticipantRow>(participants(&trials))?);
+    filled.extend(export.table::<ParticipantRow>(participants(&trials, &consents))?);
     filled.extend(export.table::<Trial>(&trials)?);
     filled.extend(export.table::<AnswerRow>(trials.iter().flat_map(answers))?);
     filled.extend(export.table::<TutorialAnswer>(&tutorials)?);

@@ -2,16 +2,22 @@
 
 use crate::study::column::{Column, Table, TableRow};
 use crate::study::effect::{StudyMeasure, TrialPair, pairs};
+use crate::study::recorded_consent::RecordedConsent;
 use crate::study::tables::trials::{HEADLINE, measures};
 use crate::study::trial_statistics::Trial;
 
-/// Row of the table of participants: a participant's trials, at least one.
+/// A participant with its trials, at least one, and the first consent that it gave, if one is recorded.
 #[derive(Clone, Copy, Debug)]
-pub struct ParticipantRow<'a>(&'a [Trial]);
+pub struct ParticipantRow<'a>(&'a [Trial], Option<&'a RecordedConsent>);
 
-/// One row per participant of these trials, which must be ordered by participant.
-pub fn participants(trials: &[Trial]) -> impl Iterator<Item = ParticipantRow<'_>> {
-    trials.chunk_by(|a, b| a.participant == b.participant).map(ParticipantRow)
+/// Participants of these trials, which must be ordered by participant, with their consents, which must be ordered by time.
+pub fn participants<'a>(
+    trials: &'a [Trial],
+    consents: &'a [RecordedConsent],
+) -> impl Iterator<Item = ParticipantRow<'a>> {
+    trials.chunk_by(|a, b| a.participant == b.participant).map(|of_one| {
+        ParticipantRow(of_one, consents.iter().find(|consent| consent.participant == of_one[0].participant))
+    })
 }
 
 impl ParticipantRow<'_> {
@@ -51,6 +57,14 @@ impl TableRow for ParticipantRow<'_> {
                 }));
             }
         }
+        let on = "where consent was given: held on the display, or confirmed by the wizard on the console; empty: not recorded";
+        let at = "wall clock time (UTC) at which the recording that begins with the consent began";
+        let digest = "digest of the text that was agreed to, as the recording has it beside the text";
+        columns.extend([
+            Self::column("consent_on", "", on, |row| row.1.and_then(RecordedConsent::place).into()),
+            Self::column("consent_at", "", at, |row| row.1.and_then(|consent| consent.started.as_ref()).into()),
+            Self::column("consent_digest", "", digest, |row| row.1.and_then(|consent| consent.digest.as_ref()).into()),
+        ]);
         columns
     }
 }

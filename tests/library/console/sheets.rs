@@ -10,9 +10,10 @@ use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
 use tomcom::session::Session;
 use tomcom::session::event::{EndReason, Event};
-use tomcom::session::plan::{QuestionnaireSpec, WantedRecording};
+use tomcom::session::plan::{QuestionnaireSpec, TutorialStepKind, WantedRecording};
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::ParticipantKind;
+use tomcom::session::tutorial::{TutorialEvent, TutorialReader};
 
 use super::{SIZES, Stage, kitchen};
 use crate::check_snapshot;
@@ -219,6 +220,46 @@ fn look_at(stage: &mut Stage, name: &str) {
     for size in SIZES {
         stage.model.size = size;
         check_snapshot("console", format!("{name}_{}x{}", size.0, size.1), stage.screen(size));
+    }
+}
+
+#[test]
+fn the_sheet_of_the_tutorial_tells_where_the_participant_is() {
+    for size in SIZES {
+        let study = read_session(Path::new("sessions/study.toml")).expect("the study").study().expect("a plan");
+        let mut stage = Stage::new("sushi", ParticipantKind::Display);
+        let spec = study.tutorial_alone("P07").expect("a tutorial");
+        stage.session = Session::new(kitchen("sushi"), spec, 0);
+        stage.next_phase();
+        let mut now_s = 0.0;
+        let mut give = |stage: &mut Stage, event| {
+            now_s += 1.0;
+            stage.at(now_s, Event::Protocol(ProtocolEvent::Tutorial(event)));
+        };
+        while let Some((step, state)) = stage.session.tutorial_step() {
+            let (step, index) = (step.clone(), state.step);
+            if step.kind == TutorialStepKind::Question {
+                // Wrong at first.
+                let right = step.right.expect("a right choice");
+                let wrong = right % step.choices.len() as u8 + 1;
+                for choice in [wrong, right] {
+                    give(&mut stage, TutorialEvent::Answered { step: step.id.clone(), choice });
+                }
+                break;
+            }
+            for button in &step.presses {
+                give(&mut stage, TutorialEvent::Pressed { button: button.clone() });
+            }
+            let (tutorial, _) = stage.session.tutorial().expect("a tutorial");
+            let next = tutorial.steps[index + 1].id.clone();
+            give(&mut stage, TutorialEvent::Shown { step: next, by: TutorialReader::Wizard });
+        }
+        stage.model.size = size;
+        let screen = stage.screen(size);
+        for text in ["TUTORIAL OF THE PARTICIPANT", "wrong answers: 1", "0 skips the rest"] {
+            assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
+        }
+        check_snapshot("console", format!("tutorial_{}x{}", size.0, size.1), screen);
     }
 }
 

@@ -3,6 +3,7 @@
 use crossterm::event::KeyCode;
 use tomcom::console::ConsoleCommand;
 use tomcom::console::console_model::Dialog;
+use tomcom::console::display_status::DisplayHealth;
 use tomcom::session::Phase;
 use tomcom::session::event::Event;
 use tomcom::session::preflight_checks::PreflightVerdict;
@@ -124,4 +125,17 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
         stage.key(KeyCode::Char('.')),
         Some(ConsoleCommand::Start(Event::Preflight { overridden: false, .. }))
     ));
+}
+
+#[test]
+fn an_upright_page_has_no_gaze_and_the_checks_say_so() {
+    let check = |upright, gaze| {
+        let page = Some(if upright { [1170, 2532] } else { [2532, 1170] });
+        DisplayHealth { page, upright, ..DisplayHealth::default() }.check(gaze)
+    };
+    let mouse = check(true, GazeSource::Mouse);
+    assert_eq!((mouse.verdict, mouse.found.as_str()), (PreflightVerdict::Warning, "1170x2532 upright"));
+    assert!(mouse.remedy.is_some_and(|remedy| remedy.contains("turn the screen")), "on an upright page");
+    assert_eq!(check(true, GazeSource::None).verdict, PreflightVerdict::Ok);
+    assert_eq!(check(false, GazeSource::Mouse).verdict, PreflightVerdict::Ok);
 }

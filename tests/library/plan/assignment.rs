@@ -143,7 +143,7 @@ fn the_trials_of_a_participant_ask_for_the_same_dishes_in_another_order() {
 fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
     let digest = |change: fn(&mut SessionFiles)| study(change).digest;
     let original = digest(|_| ());
-    let others: [NamedChange; 13] = [
+    let others: [NamedChange; 16] = [
         ("presses", |files| files.spec.trial.presses += 1),
         ("arm", |files| files.spec.robot.arm = ArmKind::Timed),
         ("signals", |files| files.spec.signals.shown_s += 1.0),
@@ -152,6 +152,9 @@ fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
         ("human model", |files| files.spec.human.decision.tau += 0.1),
         ("display", |files| files.spec.display.intention = true),
         ("reasons of presses without effect", |files| files.spec.display.reasons = Some(false)),
+        ("sounds of the display", |files| files.spec.display.sound = true),
+        ("the clock on the display", |files| files.spec.display.clock = true),
+        ("the count on the display", |files| files.spec.display.served = Some(true)),
         ("the robot on the display", |files| files.spec.display.arm = Some(DisplayedArm::Arm)),
         ("seed", |files| files.spec.seed += 1),
         ("aims", |files| files.spec.plan.as_mut().expect("a plan").aims.margin += 0.1),

@@ -23,7 +23,7 @@ const PUBLISHED: [(Table, &str); 10] = [
         "participant kind group trials trials_counted assisted_second error_rate_human_1 error_rate_human_2 error_rate_1 \
          error_rate_2 sequence_length_1 sequence_length_2 recovery_s_1 recovery_s_2 order_s_1 order_s_2 presses_per_order_1 \
          presses_per_order_2 press_s_1 press_s_2 additional_presses_per_order_1 additional_presses_per_order_2 errors_1 \
-         errors_2",
+         errors_2 consent_on consent_at consent_digest",
     ),
     (
         Table::Trials,
@@ -133,7 +133,7 @@ fn columns_have_names_of_their_own_that_need_no_quotes() {
 #[test]
 fn statistics_stand_in_both_tables_with_the_same_values() {
     let trials = pair().map(|trial| Trial { probes: Some(one_right_answer(trial.condition)), ..trial });
-    let rows: Vec<_> = participants(&trials).collect();
+    let rows: Vec<_> = participants(&trials, &[]).collect();
     let [participant] = &rows[..] else { panic!("one participant") };
     assert_eq!(cell(participant, "assisted_second"), TableCell::Flag(true));
     assert_eq!(measures()[0], HEADLINE);

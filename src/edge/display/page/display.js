@@ -67,14 +67,12 @@
     }
   }
 
-  /**
-   * Handles a message with the state to show. A freeze probe had `left_s` seconds left at the server time `toldAt`; a
-   * new page may receive the message later.
-   */
+  /** What is seen now. Probe or trial had so many seconds left at a time of the program's clock, which a new page learns a moment later. */
   function see({ sight, at: toldAt, left_s }) {
     const before = Stage.shown(), count = (one) => (one && one.presses[0] ? one.presses[0].number : 0);
     const isAnswer = before && count(sight) > count(before);
-    Stage.show(sight, () => (left_s || 0) - (trips.length ? Math.max(0, serverTime(performance.now()) - toldAt) / 1000 : 0));
+    const since = () => (trips.length && sight.clock !== "stands" ? Math.max(0, serverTime(performance.now()) - toldAt) / 1000 : 0);
+    Stage.show(sight, () => (left_s || 0) - since());
     const isNew = before && sight.cue !== null && sight.cue !== cue;
     cue = sight.cue;
     if (isNew) Stage.flash();
@@ -96,7 +94,7 @@
 
   const size = () => {
     const pixels = (length) => Math.max(1, Math.round(length * devicePixelRatio));
-    return { width: pixels(window.innerWidth), height: pixels(window.innerHeight) };
+    return { width: pixels(window.innerWidth), height: pixels(window.innerHeight), upright: Stage.isUpright() };
   };
 
   function hello() {
@@ -132,7 +130,8 @@
 
   function point(x, y) {
     const now = performance.now(), scene = Stage.scene();
-    if (!scene || !scene.pointer || !acts) return;
+    // Places of an upright layout are not those of the kitchen's file, by which gaze is understood.
+    if (!scene || !scene.pointer || !acts || Stage.isUpright()) return;
     pointed = Stage.point(x, y).map((value) => Math.min(2, Math.max(-1, Number(value.toFixed(5)))));
     if (now - (point.at || 0) < POINTER_MS) return;
     point.at = now;
@@ -142,7 +141,7 @@
   // A resting pointer is sent repeatedly, as an eye tracker goes on sending while the eyes rest.
   setInterval(() => {
     const scene = Stage.scene();
-    if (pointed && scene && scene.pointer && acts && performance.now() - (point.at || 0) >= POINTER_MS) {
+    if (pointed && scene && scene.pointer && acts && !Stage.isUpright() && performance.now() - (point.at || 0) >= POINTER_MS) {
       point.at = performance.now();
       say({ kind: "pointer", x: pointed[0], y: pointed[1] });
     }
@@ -151,6 +150,7 @@
   for (const kind of ["pointerdown", "keydown"]) window.addEventListener(kind, () => acts === false && isFree && say({ kind: "take_part" }));
   let resized = 0, idle = 0;
   window.addEventListener("resize", () => {
+    Stage.resize();
     clearTimeout(resized);
     resized = setTimeout(() => say({ kind: "size", ...size() }), RESIZED_MS);
   });

@@ -4,7 +4,7 @@
 const Hands = (() => {
   // Presses of one button within this time are contact bounce.
   const BOUNCE_MS = 50, PUSHED_MS = 8;
-  // Buttons of a standard gamepad, with the keys that mean the same during a freeze probe.
+  // Buttons of a standard gamepad, by the keys that mean the same in a probe and in the tutorial.
   const PAD = { 0: "Enter", 12: "ArrowUp", 13: "ArrowDown", 14: "ArrowLeft", 15: "ArrowRight" };
   const down = new Set(), pads = new Map(), last = new Map();
   let tell = () => {};
@@ -86,6 +86,8 @@ const Hands = (() => {
       now.forEach((isDown, number) => {
         if (!isDown || before[number] || !scene) return;
         if (Stage.shown() && Stage.shown().probe) return Probe.press(PAD[number], false);
+        const lesson = Stage.shown() && Stage.shown().tutorial;
+        if (lesson && PAD[number] && Tutorial.pad(PAD[number], lesson)) return;
         const button = scene.buttons.find(({ gamepad }) => gamepad === number);
         if (button) press(button.name, timeOf(pad.timestamp));
       });

@@ -5,20 +5,21 @@
 const Robot = (() => {
   // Lengths of the arm's two links and position of its base, in heights of the stage; the arm reaches every place.
   const LINK = 0.68, BASE = [-0.02, 0.5];
-  let made = null, ratio = 1, holds = "";
+  let made = null, room = null, ratio = 1, holds = "", last = null;
 
   const svg = (inside) => `<svg viewBox="0 0 100 100" aria-hidden="true">${inside}</svg>`;
   const GRIPPER = svg(`<g fill="#d9e4f0" stroke="#33557d" stroke-width="3" stroke-linejoin="round">
     <rect x="20" y="4" width="13" height="46" rx="6"/><rect x="67" y="4" width="13" height="46" rx="6"/>
     <path d="M14 46 h72 q8 0 8 9 v14 q0 27 -44 27 q-44 0 -44 -27 v-14 q0 -9 8 -9 z"/></g><circle cx="50" cy="72" r="9" fill="#4f7fb5"/>`);
 
-  /** Builds the hand for a scene; nothing if the robot is not shown. */
-  function build(scene, element) {
-    [made, holds, ratio] = [null, "", scene.display_m[0] / scene.display_m[1]];
+  /** Builds the hand for a scene in a layout; nothing, where the robot is not shown. */
+  function build(scene, layout, element) {
+    [made, room, holds, ratio] = [null, layout, "", scene.display_m[0] / scene.display_m[1]];
     if (scene.arm === "none") return [];
     const item = element("div", "item"), hand = element("div", "robot-hand", GRIPPER);
     hand.append(item);
-    const links = scene.arm === "arm" ? element("div", "robot-arm", `<svg viewBox="0 0 ${ratio} 1" aria-hidden="true"><path class="under"/><path class="over"/><circle r="0.028"/></svg>`) : null;
+    // On an upright screen places do not lie as they do around a real arm.
+    const links = scene.arm === "arm" && !room.isUpright ? element("div", "robot-arm", `<svg viewBox="0 0 ${ratio} 1" aria-hidden="true"><path class="under"/><path class="over"/><circle r="0.028"/></svg>`) : null;
     made = { hand, item, links, at: scene.locations.findIndex(({ kind }) => kind === "robot_hand") };
     return links ? [links, hand] : [hand];
   }
@@ -30,10 +31,12 @@ const Robot = (() => {
     return [BASE[0] + dx / 2 + dy * out, BASE[1] + dy / 2 - dx * out];
   }
 
-  function move({ x, y, down }) {
+  function move(pose) {
+    const { x, y, down } = pose;
+    last = pose;
     if (!made) return;
-    // One em is a hundredth of the stage's width.
-    made.hand.style.transform = `translate(${(100 * x).toFixed(2)}em, ${((100 * y) / ratio).toFixed(2)}em) scale(${(1.12 - 0.12 * down).toFixed(3)})`;
+    const [left, top] = room.moved([x, y]);
+    made.hand.style.transform = `translate(${(left / room.em[0]).toFixed(2)}em, ${(top / room.em[1]).toFixed(2)}em) scale(${(1.12 - 0.12 * down).toFixed(3)})`;
     made.hand.classList.add("there");
     made.hand.dataset.x = x;
     made.hand.dataset.y = y;
@@ -55,5 +58,8 @@ const Robot = (() => {
     [made.item.innerHTML] = contentOf(contents[made.at], false);
   }
 
-  return { build, move, hold };
+  /** The kitchen was laid out anew: the hand is where it was. */
+  const again = () => last && move(last);
+
+  return { build, move, again, hold };
 })();

@@ -105,9 +105,9 @@ const Room = (scene, fontFamily) => {
     return { area: [Math.min(at[0], 1 - w), Math.min(at[1] + at[3], 1 - h), w, h], words };
   }
 
-  /** Area of the number of served orders: at the top, as near to the middle as possible. */
-  function forServed(others) {
-    const [w, h] = [widthOf("✓ 88", 0.019), 0.06], y = 0.02, step = 0.01;
+  /** Where clock and number of served orders stand, one below the other: on top, as near to the middle as there is room. */
+  function forStatus(others) {
+    const lines = Number(scene.clock) + Number(scene.served), [w, h] = [widthOf("88:88", 0.02), 0.05 * lines], y = 0.02, step = 0.01;
     const tries = Array.from({ length: Math.floor((1 - w) / step) }, (_, index) => [index * step, y, w, h]);
     const free = tries.filter((rect) => !others.some((other) => overlaps(rect, other)));
     const off = ([x]) => Math.abs(x + w / 2 - 0.5);
@@ -143,5 +143,10 @@ const Room = (scene, fontFamily) => {
     return [left, order ? y : y + (h - high) / 2, wide, high];
   }
 
-  return { widthOf, nameSize, sides, table, taken, forPill, forServed, forRecipe };
+  return {
+    isUpright: false, placed: scene, em: [0.01, 0.01 * ratio], moved: (point) => point,
+    widthOf, nameSize: (spot) => 100 * nameSize(spot), sides, table, taken, forPill, forStatus, forRecipe,
+    // A page of the tutorial stands where most room is, and beside the recipe that it explains.
+    forLesson: (others, recipe) => forRecipe(recipe ? [...others, recipe] : others),
+  };
 };

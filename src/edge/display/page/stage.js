@@ -4,7 +4,9 @@
 
 const Stage = (() => {
   const root = document.getElementById("stage");
-  let scene = null, room = null, shown = null, parts = null, words = {};
+  // Higher than wide by so much, the screen shows the layout of upright screens, which is between so wide and so wide for its height.
+  const UPRIGHT = 1.2, NARROW = 0.42, WIDE = 0.5625;
+  let told = null, scene = null, room = null, shown = null, parts = null, words = {}, timeLeft = () => 0;
   let marks = { lost: false, acts: true, free: false };
 
   function element(kind, className, inside = "") {
@@ -61,9 +63,9 @@ const Stage = (() => {
     if (spot.kind !== "order") {
       // A highlighted place is framed together with its name.
       const name = text("div", "name", spot.label), size = room.nameSize(spot);
-      const over = Math.max(0, room.widthOf(spot.label, size) - w) / 2;
-      made.style.setProperty("--side", `${(100 * over + 1.2).toFixed(2)}em`);
-      name.style.fontSize = `${100 * size}em`;
+      const over = Math.max(0, room.widthOf(spot.label, size) - w / room.em[0]) / 2;
+      made.style.setProperty("--side", `${(over + 1.2).toFixed(2)}em`);
+      name.style.fontSize = `${size.toFixed(3)}em`;
       made.append(element("div", "furniture", Art.place(shape, wide)), name);
     }
     const content = element("div", "content");
@@ -81,7 +83,7 @@ const Stage = (() => {
     made.append(element("div", "content", Art.item(scene, shelf.item)), element("div", "ring"));
     if (scene.names !== "none") {
       const name = text("div", "name", shelf.label);
-      name.style.fontSize = `${100 * room.nameSize(shelf)}em`;
+      name.style.fontSize = `${room.nameSize(shelf).toFixed(3)}em`;
       made.append(name);
     }
     if (shelf.agent === "human") {
@@ -109,37 +111,65 @@ const Stage = (() => {
     return scene.buttons.filter(({ does }) => ["process", "trash", "serve"].includes(does)).map(makePill);
   }
 
+  const isUpright = () => window.innerHeight > UPRIGHT * window.innerWidth;
+  const uprightRatio = () => Math.min(WIDE, Math.max(NARROW, window.innerWidth / window.innerHeight));
+
+  /** The layout for the window as it is. */
+  function roomFor(next) {
+    const fontFamily = getComputedStyle(root).fontFamily;
+    return isUpright() ? Upright(next, fontFamily, uprightRatio()) : Room(next, fontFamily);
+  }
+
+  /** Gives the stage the shape of its layout; before a kitchen is there, too. */
+  function shape() {
+    const [wide, high] = told ? told.display_m : [16, 9];
+    root.classList.toggle("upright", isUpright());
+    root.style.setProperty("--ratio", isUpright() ? uprightRatio() : wide / high);
+  }
+
+  /** The window has another size: an upright layout is one for this size, and goes when the screen is turned. */
+  function resize() {
+    if (!scene) return shape();
+    if (!isUpright() && !room.isUpright) return undefined;
+    const last = shown;
+    build(told);
+    Robot.again();
+    return last && show(last, timeLeft);
+  }
+
   function build(next) {
-    scene = next;
+    told = next;
+    room = roomFor(next);
+    scene = room.placed;
     shown = null;
     document.documentElement.lang = scene.language;
     document.title = scene.title;
     root.replaceChildren();
-    root.style.setProperty("--ratio", scene.display_m[0] / scene.display_m[1]);
+    shape();
+    Sound.build(scene);
     const kitchen = element("div", "kitchen");
-    room = Room(scene, getComputedStyle(root).fontFamily);
     const [robot, human] = room.sides();
     kitchen.append(buildZone("robot", robot, scene.words.robot), buildZone("human", human, scene.words.human));
     kitchen.append(put(element("section", "zone table"), room.table()));
     const locations = scene.locations.map(buildLocation), storages = scene.storages.map(buildStorage);
     const others = room.taken();
     kitchen.append(...locations.map((l) => l.made), ...storages.map((s) => s.made), ...buildPills(others));
-    const tally = room.forServed(others), all = [...others, tally];
+    const tally = room.forStatus(others), all = [...others, tally];
     // A recipe opens near its order; the instruction opens in the largest free area.
     const free = room.forRecipe(all), cards = scene.locations.map(({ kind, area }) => (kind === "order" ? room.forRecipe(all, area) : free));
     const recipe = put(element("div", "recipe"), free);
     const why = element("div", "why");
     why.setAttribute("role", "status");
-    const hand = Robot.build(scene, element);
+    const hand = Robot.build(scene, room, element);
     kitchen.append(...hand, recipe, why);
-    const sheet = element("div", "sheet"), toast = element("div", "toast"), served = put(element("div", "served"), tally), target = element("div", "target", "<i></i>");
-    root.append(kitchen, served, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
+    const sheet = element("div", "sheet"), toast = element("div", "toast"), status = put(Status.build(element), tally), target = element("div", "target", "<i></i>");
+    root.append(kitchen, status, sheet, toast, target, ...scene.tags.map((tag) => put(element("div", "tag", Art.tag(tag.rows)), tag.area)));
     const flash = element("div", "flash");
     if (scene.flash) {
       const tag = scene.tags[2] ? scene.tags[2].area : [0.99, 0.98, 0, 0];
       root.append(put(flash, [tag[0] - 0.033, 1 - 0.0267 * Number(scene.display_m[0] / scene.display_m[1]) * 0.9375 - 0.004, 0.025, 0.025 * (scene.display_m[0] / scene.display_m[1])]));
     }
-    parts = { kitchen, locations, storages, recipe, why, sheet, toast, served, flash, target, free, cards, all };
+    parts = { kitchen, locations, storages, recipe, why, sheet, toast, flash, target, free, cards, all };
     mark({});
   }
 
@@ -186,8 +216,12 @@ const Stage = (() => {
       const { made } = partOf(now.at);
       made.querySelector(".ring").className = `ring ${agent} ${now.effective ? "works" : "fails"}`;
       replay(made.querySelector(".ring"), "pulse");
-      if (!now.effective && agent === "human") replay(made, "shakes");
-      if (agent === "human") drawReason(now, made);
+      if (agent === "robot") return;
+      if (!now.effective) {
+        replay(made, "shakes");
+        Sound.play("effectless");
+      }
+      drawReason(now, made);
     });
   }
 
@@ -197,10 +231,12 @@ const Stage = (() => {
     parts.why.replaceChildren(text("span", "", said));
     if (!said) return parts.why.classList.remove("says");
     const [box, stage] = [made.getBoundingClientRect(), parts.kitchen.getBoundingClientRect()];
-    const wide = room.widthOf(said, 0.016) + 0.03, middle = (box.left + box.width / 2 - stage.left) / stage.width;
-    const low = (box.bottom - stage.top) / stage.height, high = (box.top - stage.top) / stage.height;
-    const top = low < 0.9 ? low + 0.005 : high - 0.055;
-    put(parts.why, [Math.min(0.994 - wide, Math.max(0.006, middle - wide / 2)), top, wide, 0.05]);
+    // Its words are smaller where the stage is narrower than the line.
+    const [em, line] = [room.em[0], 2.8 * room.em[1]], most = 0.988, natural = room.widthOf(said, 1.6 * em) + 3 * em, wide = Math.min(most, natural);
+    const middle = (box.left + box.width / 2 - stage.left) / stage.width, low = (box.bottom - stage.top) / stage.height, high = (box.top - stage.top) / stage.height;
+    const top = low < 0.9 ? low + 0.1 * line : high - 1.1 * line;
+    parts.why.style.setProperty("--words", (wide - 3 * em) / (natural - 3 * em));
+    put(parts.why, [Math.min(0.994 - wide, Math.max(0.006, middle - wide / 2)), top, wide, line]);
     replay(parts.why, "says");
   }
 
@@ -256,7 +292,7 @@ const Stage = (() => {
     const fits = (said) => said.scrollWidth <= said.clientWidth && said.scrollHeight <= said.parentNode.clientHeight;
     for (let size = 1; size > 0.5; size -= 0.05) {
       made.style.setProperty("--words", size);
-      if ([...made.querySelectorAll("figcaption, .dish, h1, p")].every(fits) && made.scrollHeight <= made.clientHeight) return;
+      if ([...made.querySelectorAll("figcaption, .dish, h1, h2, p")].every(fits) && made.scrollHeight <= made.clientHeight) return;
     }
   }
 
@@ -276,10 +312,8 @@ const Stage = (() => {
     parts.sheet.className = `sheet ${stage === "running" ? "" : "open"} ${BIG.includes(stage) ? "big" : ""} ${stage}`;
     if (stage === "questionnaire" && sight.question) return Questions.draw(parts.sheet, sight.question, scene.words, { element, text });
     if (sight.tutorial) {
-      // A tutorial page is placed beside the recipe that it explains.
-      const recipe = sight.signal && sight.signal.recipe;
-      const free = recipe ? room.forRecipe([...parts.all, parts.cards[recipe.order]]) : parts.free;
-      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, free, element, text, put, partOf });
+      const recipe = sight.signal && sight.signal.recipe, free = room.forLesson(parts.all, recipe && parts.cards[recipe.order], sight.tutorial.frames);
+      return Tutorial.draw(parts.sheet, sight.tutorial, { scene, free, element, text, put, partOf, fitWords });
     }
     Tutorial.end();
     if (sight.probe) return Probe.draw(parts.sheet, sight.probe, left, { scene, element, text, contentOf });
@@ -304,9 +338,14 @@ const Stage = (() => {
     parts.target.dataset.is = is;
   }
 
-  /** Shows a state; `left` returns the remaining seconds of a freeze probe. */
+  /** Whether a signal is new: sent just now, or explained by another page of the tutorial. */
+  const isNewSignal = (sight) => shown && sight.signal && (sight.cue !== shown.cue || (sight.tutorial && JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)));
+
+  /** `left` tells the seconds that a probe or the trial still has. */
   function show(sight, left = () => 0) {
     if (!scene) return;
+    timeLeft = left;
+    if (isNewSignal(sight)) Sound.play("signal");
     // During a freeze probe the program sends no contents; afterwards the kitchen is as it was.
     sight.contents.forEach((what, index) => drawLocation(index, what));
     drawPresses(sight.presses);
@@ -315,7 +354,7 @@ const Stage = (() => {
     if (!shown || JSON.stringify(shown.signal) !== JSON.stringify(sight.signal)) drawSignal(sight.signal, sight.contents);
     if (!shown || JSON.stringify([shown.stage, shown.practice, shown.question, shown.tutorial, shown.probe]) !== JSON.stringify([sight.stage, sight.practice, sight.question, sight.tutorial, sight.probe])) drawSheet(sight, left);
     drawTarget(sight);
-    parts.served.textContent = sight.served ? `✓ ${sight.served}` : "";
+    Status.draw(sight, left);
     shown = sight;
   }
 
@@ -339,6 +378,7 @@ const Stage = (() => {
   function greet(next) {
     words = next;
     if (scene) return;
+    shape();
     const card = element("div", "card");
     card.append(text("h1", "", words.welcome), text("p", "", words["welcome text"]));
     root.replaceChildren(element("div", "sheet open big", card));
@@ -350,7 +390,8 @@ const Stage = (() => {
    */
   function askCode(why, waitS, then) {
     const typed = why === "code" && root.querySelector("form input")?.value;
-    scene = shown = parts = null;
+    told = scene = shown = parts = null;
+    shape();
     const card = element("form", "card");
     const field = element("input", "");
     Object.assign(field, { maxLength: 12, autocomplete: "off", spellcheck: false, autofocus: true, value: typed || "" });
@@ -376,5 +417,5 @@ const Stage = (() => {
     return [(x - box.left) / box.width, (y - box.top) / box.height];
   }
 
-  return { build, show, flash, mark, greet, askCode, point, scene: () => scene, shown: () => shown };
+  return { build, show, resize, flash, mark, greet, askCode, point, isUpright, scene: () => scene, shown: () => shown };
 })();

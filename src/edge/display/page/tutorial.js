@@ -2,6 +2,8 @@
 /** The tutorial: one card per step, frames around what the step explains, and a mark at the button to be pressed. */
 const Tutorial = (() => {
   let timer = 0, hinter = 0, shownStep = "", endsAt = 0, told = () => {}, marked = [];
+  // The choice that arrows or a gamepad are at, counted from 1; 0: none yet.
+  let at = 0;
 
   function clearMarks() {
     for (const made of marked) made.classList.remove("framed", "hinted");
@@ -64,6 +66,7 @@ const Tutorial = (() => {
       const made = element("button", state);
       made.append(text("b", "", index + 1), text("span", "", choice));
       made.dataset.choose = index + 1;
+      made.classList.toggle("at", right === null && at === index + 1);
       all.append(made);
     });
     const made = element("div", "", all);
@@ -72,8 +75,9 @@ const Tutorial = (() => {
     return made;
   }
 
-  /** Draws the step's card: in a free area of the kitchen, or large where the kitchen does not matter. */
-  function draw(sheet, page, { scene, free, element, text, put, partOf }) {
+  /** Draws the card of the step: in the free place of the kitchen, or large where the kitchen does not matter. */
+  function draw(sheet, page, { scene, free, element, text, put, partOf, fitWords }) {
+    if (shownStep !== page.step) at = 0;
     const words = scene.words, isLarge = page.kind === "recipes" || page.kind === "question";
     const card = element("div", `card lesson ${isLarge ? "large" : ""}`), bar = element("div", "left");
     card.append(text("p", "count", `${page.number} / ${page.of}`), text("h2", "", page.title), text("p", "says", page.text));
@@ -100,18 +104,10 @@ const Tutorial = (() => {
     sheet.classList.toggle("shaded", isLarge);
     if (!isLarge) put(card, free);
     sheet.replaceChildren(card);
-    if (!isLarge) fit(card);
+    fitWords(card);
     count(page, bar);
     point(page, partOf);
     shownStep = page.step;
-  }
-
-  /** Makes the card's words smaller until they fit. */
-  function fit(card) {
-    for (let size = 1; size > 0.5; size -= 0.04) {
-      card.style.fontSize = `${size}em`;
-      if (card.scrollHeight <= card.clientHeight + 1 && card.scrollWidth <= card.clientWidth + 1) return;
-    }
   }
 
   function end() {
@@ -121,25 +117,39 @@ const Tutorial = (() => {
     shownStep = "";
   }
 
-  /** The message to the program that a key means during the tutorial; null if it means nothing. */
+  const isOpen = ({ question }) => question && question.right === null;
+
+  /** What a key means here: the page's message, if it means anything. */
   function meant(key, page) {
-    const choice = page.question && /^[1-9]$/.test(key) ? Number(key) : 0;
-    if (choice && choice <= page.question.choices.length && page.question.right === null) return { kind: "choose", step: page.step, choice };
+    const choice = !isOpen(page) ? 0 : /^[1-9]$/.test(key) ? Number(key) : key === "Enter" ? at : 0;
+    if (choice && choice <= page.question.choices.length) return { kind: "choose", step: page.step, choice };
     if (["ArrowRight", "Enter"].includes(key) && page.done) return { kind: "turn", step: page.step, forward: true };
     if (["ArrowLeft", "Backspace"].includes(key) && page.number > 1) return { kind: "turn", step: page.step, forward: false };
     return null;
   }
 
-  /** Handles a key of the tutorial; it is sent once, however long it is held. Returns whether it means something. */
+  /** Goes to the choice above or below. */
+  function go(by, { question }) {
+    at = at ? Math.min(question.choices.length, Math.max(1, at + by)) : 1;
+    document.querySelectorAll("[data-choose]").forEach((made, index) => made.classList.toggle("at", at === index + 1));
+    return true;
+  }
+
+  /** Whether a key means something here; it is told once, however long it is held. */
   function key(pressed, page, isHeld) {
+    const by = { ArrowUp: -1, ArrowDown: 1 }[pressed];
+    if (by && isOpen(page)) return go(by, page);
     const message = meant(pressed, page);
     if (message && !isHeld) told(message);
     return Boolean(message);
   }
 
+  /** The same for a button of a gamepad. As long as presses are asked for, all its buttons are those of the kitchen. */
+  const pad = (pressed, page) => (!page.presses || page.done) && key(pressed, page, false);
+
   function touch({ choose, turn }, page) {
     told(choose ? { kind: "choose", step: page.step, choice: Number(choose) } : { kind: "turn", step: page.step, forward: turn === "next" });
   }
 
-  return { draw, end, key, touch, begin: (tell) => { told = tell; } };
+  return { draw, end, key, pad, touch, begin: (tell) => { told = tell; } };
 })();

@@ -1,0 +1,40 @@
+//! The trial's clock on the display. The page counts down by itself: it is told whether the clock goes, and the time that is left.
+
+use serde::Serialize;
+
+use super::probe_page::probe_left;
+use super::sight::DisplayStage;
+use crate::base::time::SessionTime;
+use crate::session::Session;
+
+/// The trial's clock.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DisplayedClock {
+    /// It goes.
+    Goes,
+    /// It stands still: before the trial, in a pause, and at the end.
+    Stands,
+}
+
+/// The clock, if the session shows it and there is a trial. A probe shows the time that it has itself instead.
+pub(super) fn clock(session: &Session, stage: DisplayStage) -> Option<DisplayedClock> {
+    if !session.spec.display.clock {
+        return None;
+    }
+    match stage {
+        DisplayStage::Running => Some(DisplayedClock::Goes),
+        DisplayStage::Ready | DisplayStage::Paused | DisplayStage::Over => Some(DisplayedClock::Stands),
+        _ => None,
+    }
+}
+
+/// The time that the page shows at `now`: of an open probe what that still has, or else of the trial, if its clock is shown.
+pub fn time_left(session: &Session, now: SessionTime) -> Option<SessionTime> {
+    let of_trial = || {
+        let limit = SessionTime::from_secs_f64(session.spec.trial.seconds);
+        let passed = session.trial_clock(now);
+        session.spec.display.clock.then(|| SessionTime(limit.0.saturating_sub(passed.0)))
+    };
+    probe_left(session, now).or_else(of_trial)
+}

@@ -1,0 +1,148 @@
+"use strict";
+// The layout of upright screens, such as a phone in the hand: the areas of the kitchen below one another in reading order, all that the
+// person touches at least 44 pixels high on a width of 390. Orders on top, below them room for recipes and texts, the robot's side small,
+// the shared places, the person's side. It answers the same questions as Room. Lengths are in em: the stage is 48 wide.
+
+const Upright = (wall, fontFamily, ratio) => {
+  const WIDE = 48, BETWEEN = 0.8, EDGE = 0.8;
+  // Height of a name above its place; sizes of names and words; least and most height of what is touched; least height for recipes and texts.
+  const NAME = 1.9, WORDS = 1.45, TOUCH = [6.2, 8.4], TEXTS = 15;
+  // Width and height of what the robot has, room below what is touched, height of the title of the robot's side.
+  const SMALL = 4.8, INNER = 0.7, TITLE = 2.2;
+  const scene = { ...wall, display_m: [ratio, 1], tags: [] }, high = WIDE / ratio;
+  const measure = Room(scene, fontFamily).widthOf;
+  const of = (kind) => scene.locations.flatMap((spot, index) => (spot.kind === kind ? [index] : []));
+  const places = of("place").sort((a, b) => scene.locations[a].area[1] - scene.locations[b].area[1] || scene.locations[a].area[0] - scene.locations[b].area[0]);
+  const shelves = (agent) => scene.storages.flatMap((shelf, index) => (shelf.agent === agent ? [index] : []));
+  const knobsAt = (index) => scene.buttons.filter((knob) => knob.at === index && ["process", "trash"].includes(knob.does));
+  const chunks = (all, size) => Array.from({ length: Math.ceil(all.length / size) }, (_, row) => all.slice(row * size, (row + 1) * size));
+  const rows = { places: chunks(places, 2), mine: chunks(shelves("human"), 5), theirs: chunks([...of("robot_hand").map((at) => ({ location: at })), ...shelves("robot").map((at) => ({ storage: at }))], 7) };
+  // What is left of the height goes to what is touched, then to recipes and texts.
+  const touched = 2 + rows.places.length + rows.mine.length, named = touched - 1;
+  const fixed = 2 * EDGE + 3 * BETWEEN + named * (NAME + INNER) + 3 * INNER + TITLE + rows.theirs.length * (NAME + SMALL + INNER) + TEXTS;
+  const touch = Math.min(TOUCH[1], Math.max(TOUCH[0], (high - fixed) / touched));
+  const texts = Math.max(TEXTS, high - (fixed - TEXTS) - touched * touch);
+
+  const areas = { locations: [], storages: [], knobs: new Map(), limits: new Map() };
+  const rect = (x, y, w, h) => [x / WIDE, y / high, w / WIDE, h / high];
+  const spread = (count, from, wide, gap) => Array.from({ length: count }, (_, index) => [from + (index * (wide + gap)) / count, (wide + gap) / count - gap]);
+
+  /** Orders side by side, each with its button; returns where they end. */
+  function putOrders(top) {
+    const orders = of("order");
+    spread(orders.length, EDGE, WIDE - 2 * EDGE, BETWEEN).forEach(([x, wide], at) => {
+      const knob = scene.buttons.find(({ does, at: where }) => does === "serve" && where === orders[at]), pill = knob ? Math.min(9, wide / 3) : 0;
+      areas.locations[orders[at]] = rect(x, top, wide - pill - (knob ? 1 : 0), touch);
+      if (knob) areas.knobs.set(knob.name, rect(x + wide - pill, top, pill, touch));
+    });
+    return top + touch;
+  }
+
+  function putTheirs(top) {
+    let y = top + TITLE;
+    for (const row of rows.theirs) {
+      // Each as wide as its name; a hand's frame goes around its name, and needs more room.
+      const spots = row.map(({ location, storage }) => (storage === undefined ? scene.locations[location] : scene.storages[storage]));
+      const air = row.map(({ storage }) => (storage === undefined ? 2.6 : 0.9)), wanted = spots.map(({ label }, at) => Math.max(SMALL, measure(label, WORDS)) + air[at]);
+      const scale = (WIDE - 2 * EDGE) / wanted.reduce((sum, width) => sum + width, 0);
+      let x = EDGE;
+      row.forEach(({ location, storage }, at) => {
+        const wide = wanted[at] * scale, area = rect(x + (wide - SMALL) / 2, y + NAME, SMALL, SMALL);
+        areas[storage === undefined ? "locations" : "storages"][storage === undefined ? location : storage] = area;
+        areas.limits.set(area, wide - air[at]);
+        x += wide;
+      });
+      y += NAME + SMALL + INNER;
+    }
+    return y;
+  }
+
+  /** Places in two columns, as on the wall: the buttons of a place stand beside it. */
+  function putPlaces(top) {
+    let y = top + INNER / 2;
+    const wide = 9.6, column = (WIDE - 2 * EDGE) / 2;
+    for (const row of rows.places) {
+      row.forEach((index, at) => {
+        const left = EDGE + at * column, knobs = knobsAt(index), x = left + (knobs.length ? 2.4 : (column - wide) / 2);
+        areas.locations[index] = rect(x, y + NAME, wide, touch);
+        areas.limits.set(areas.locations[index], knobs.length ? wide + 4 : column - 1);
+        const free = [x + wide + 1.9, left + column - 0.7 - x - wide - 1.9];
+        spread(knobs.length, free[0], free[1], 0.5).forEach(([from, width], one) => areas.knobs.set(knobs[one].name, rect(from, y + NAME, width, touch)));
+      });
+      y += NAME + touch + INNER;
+    }
+    return y + INNER / 2;
+  }
+
+  /** The hand with what is done in it, below it the storages. */
+  function putMine(top) {
+    let y = top + INNER / 2;
+    const [hand] = of("human_hand"), knobs = knobsAt(hand);
+    areas.locations[hand] = rect(EDGE + 8, y + NAME, 9.6, touch);
+    areas.limits.set(areas.locations[hand], 14);
+    const from = EDGE + 20, wide = WIDE - EDGE - 0.8 - from;
+    spread(knobs.length, from, wide, 1).forEach(([x, width], at) => areas.knobs.set(knobs[at].name, rect(x, y + NAME, width, touch)));
+    y += NAME + touch + INNER;
+    for (const row of rows.mine) {
+      spread(row.length, EDGE + 0.8, WIDE - 2 * EDGE - 1.6, 1).forEach(([x, width], at) => {
+        areas.storages[row[at]] = rect(x + Math.max(0, width - 11) / 2, y + NAME, Math.min(11, width), touch);
+        areas.limits.set(areas.storages[row[at]], width + 0.8);
+      });
+      y += NAME + touch + INNER;
+    }
+    return y;
+  }
+
+  const top = { orders: EDGE };
+  top.texts = putOrders(top.orders) + BETWEEN;
+  top.theirs = top.texts + texts;
+  top.places = putTheirs(top.theirs) + BETWEEN;
+  top.mine = putPlaces(top.places) + BETWEEN;
+  const end = putMine(top.mine), zone = (from, to) => rect(EDGE, from, WIDE - 2 * EDGE, to - from);
+  const zones = { theirs: zone(top.theirs, top.places - BETWEEN), places: zone(top.places, top.mine - BETWEEN), mine: zone(top.mine, Math.min(end + 0.3, high - 0.3)) };
+  const free = rect(EDGE, top.texts, WIDE - 2 * EDGE, texts - BETWEEN);
+
+  const placed = {
+    ...scene,
+    locations: scene.locations.map((spot, index) => ({ ...spot, area: areas.locations[index] })),
+    storages: scene.storages.map((shelf, index) => ({ ...shelf, area: areas.storages[index] })),
+  };
+
+  /** The size of a place's name, in em: smaller where it would meet its neighbour's. */
+  function nameSize({ label, area }) {
+    return Math.min(WORDS, (areas.limits.get(area) ?? WIDE) / Math.max(0.01, measure(label, 1)));
+  }
+
+  /** Where a button of an action stands, and how large its words are. */
+  function forPill({ name, label }) {
+    const area = areas.knobs.get(name);
+    return { area, words: Math.min(1, (area[2] * WIDE - 1.2) / measure(label, 1.6)) };
+  }
+
+  /** Where a text of the tutorial stands: below the orders, unless a recipe is open there. The robot's side is hidden unless the text is about it. */
+  function forLesson(_, recipe, frames) {
+    const isTheirs = ({ area, place }) => area === "robot" || (place && ("storage" in place ? scene.storages[place.storage].agent === "robot" : scene.locations[place.location].kind === "robot_hand"));
+    if (recipe) return zones.places;
+    if (frames.some(isTheirs)) return frames.some(({ place }) => place && !isTheirs({ place })) ? free : zones.places;
+    return [free[0], free[1], free[2], zones.theirs[1] + zones.theirs[3] - free[1]];
+  }
+
+  /** A point of the wall's display here: each place is where it is here, and between places lies what lies between them there. */
+  function moved([x, y]) {
+    let weights = 0, at = [0, 0];
+    const pairs = [...scene.locations, ...scene.storages].map((spot, index) => [spot.area, [...placed.locations, ...placed.storages][index].area]);
+    for (const [[ax, ay, aw, ah], [bx, by, bw, bh]] of pairs) {
+      const away = Math.hypot(((ax + aw / 2 - x) * wall.display_m[0]) / wall.display_m[1], ay + ah / 2 - y), weight = 1 / Math.max(1e-6, away) ** 4;
+      weights += weight;
+      at = [at[0] + weight * (bx + bw / 2), at[1] + weight * (by + bh / 2)];
+    }
+    return [at[0] / weights, at[1] / weights];
+  }
+
+  return {
+    isUpright: true, placed, em: [1 / WIDE, 1 / high], moved, nameSize, forPill, forLesson,
+    widthOf: (said, size) => measure(said, size),
+    sides: () => [zones.theirs, zones.mine], table: () => zones.places, taken: () => [],
+    forStatus: () => rect(WIDE - EDGE - 18, top.mine + 0.3, 17, NAME), forRecipe: () => free,
+  };
+};

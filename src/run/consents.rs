@@ -1,0 +1,32 @@
+//! Reads the consents that recordings begin with, also those of practice, which are not analysed as trials.
+
+use std::path::Path;
+
+use crate::edge::file_error::FileResult;
+use crate::edge::log::LogReader;
+use crate::session::Event;
+use crate::session::protocol::ProtocolEvent;
+use crate::study::recorded_consent::RecordedConsent;
+
+/// The consent that the recording begins with; none if it begins without. Of several parts that is the first one's.
+///
+/// # Errors
+/// The recording cannot be read.
+pub(super) fn read(recording: &Path) -> FileResult<Option<RecordedConsent>> {
+    let mut log = LogReader::open(recording)?;
+    if let [first, _, ..] = &log.logs()[..] {
+        log = LogReader::open(first)?;
+    }
+    while let Some(line) = log.next_line()? {
+        match line.stamped.event {
+            Event::Protocol(ProtocolEvent::ConsentGiven { on, digest, .. }) => {
+                let participant = log.header.session.participant.code.clone();
+                return Ok(Some(RecordedConsent { participant, on, started: log.header.started.clone(), digest }));
+            }
+            // It is given before the first phase, or not at all.
+            Event::Protocol(ProtocolEvent::PhaseStarted { .. }) | Event::TrialStarted => return Ok(None),
+            _ => {}
+        }
+    }
+    Ok(None)
+}

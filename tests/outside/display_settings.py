@@ -1,0 +1,161 @@
+"""Settings of the participant's page in a real browser: sound, clock, number of served orders; and upright screens.
+
+    tests/outside/display_settings.py TOMCOM FOLDER
+"""
+
+import argparse
+import os
+import sys
+import time
+from pathlib import Path
+
+from display import operate, presses_for, recorded, seed_of, session_file, start, url, verify
+from page import Page, browser, plain
+
+# Counts what the page makes to be heard.
+LISTEN = """() => {
+window.tones = [], window.contexts = 0;
+const make = AudioContext.prototype.createOscillator, Made = AudioContext;
+AudioContext.prototype.createOscillator = function () { const tone = make.call(this); tones.push(tone); return tone; };
+window.AudioContext = class extends Made { constructor(...all) { super(...all); contexts += 1; } };
+}"""
+UPRIGHT = (390, 844)
+
+
+def heard(page):
+    """The tones so far, as frequencies in Hz."""
+    return page.ask("tones.map((tone) => tone.frequency.value)")
+
+
+def sounds(tomcom, chromium, folder, seed, is_on):
+    session = session_file(folder, "sushi", seed)
+    if not is_on:
+        session.write_text(session.read_text().replace("sound = true\n", ""))
+    with operate(tomcom, session, folder) as console:
+        page = Page(chromium, url())
+        page.ask(LISTEN)
+        start(console, page)
+        # The first key lets the page sound; it has an effect, and is not heard.
+        page.press("take rice", "keyboard")
+        page.page.wait_for_timeout(300)
+        assert heard(page) == [] and page.ask("contexts") == int(is_on), heard(page)
+        page.press("cook", "keyboard")
+        page.page.wait_for_timeout(100)
+        assert heard(page) == ([185] if is_on else []), heard(page)
+        console.key("q")
+        page.wait_for("document.querySelector('.recipe').classList.contains('open')")
+        page.page.wait_for_timeout(100)
+        wanted = [185, 659, 880] if is_on else []
+        assert heard(page) == wanted, heard(page)
+        # What is not new is not heard: the robot, the end of the signal, the page that is drawn anew.
+        console.key("\x7f")
+        page.page.wait_for_timeout(500)
+        page.press("cooking_pot", "keyboard")
+        assert heard(page) == wanted, heard(page)
+        page.close()
+        console.quit()
+    recording, _ = recorded(folder)
+    verify(tomcom, recording)
+    print(f"sound {'on: a tone for a press without effect, another one for a signal, none for anything else' if is_on else 'off: nothing is heard'}", flush=True)
+
+
+def counts(tomcom, chromium, folder, seed):
+    """The clock goes, stands in a pause, and is the same on a page that is loaded again."""
+    def left():
+        minutes, seconds = page.ask("document.querySelector('.clock').textContent").split(":")
+        return 60 * int(minutes) + int(seconds)
+
+    with operate(tomcom, session_file(folder, "sushi", seed), folder) as console:
+        page = Page(chromium, url())
+        start(console, page)
+        page.wait_for("document.querySelector('.clock').textContent < '15:00'")
+        began, at = time.monotonic(), left()
+        page.page.wait_for_timeout(4000)
+        assert abs((at - left()) - (time.monotonic() - began)) < 1.2, (at, left())
+        console.key(".")
+        page.stage("paused")
+        stands = left()
+        page.page.wait_for_timeout(2500)
+        assert left() == stands
+        page.page.reload()
+        page.stage("paused")
+        page.page.wait_for_timeout(1500)
+        assert abs(left() - stands) <= 1, (left(), stands)
+        console.key(".")
+        page.stage("running")
+        page.wait_for(f"document.querySelector('.clock').textContent !== '{stands // 60}:{stands % 60:02}'")
+        assert page.ask("document.querySelector('.served').textContent") == ""
+        page.close()
+        console.quit()
+    plain_session = session_file(folder / "plain", "sushi", seed)
+    plain_session.write_text(plain_session.read_text().replace("served = true\nclock = true\n", ""))
+    with operate(tomcom, plain_session, folder / "plain") as console:
+        page = Page(chromium, url())
+        start(console, page)
+        assert page.ask("[Stage.shown().served, Stage.shown().clock, document.querySelector('.status').innerText.trim()]") == [None, None, ""]
+        page.close()
+        console.quit()
+    print("clock: it goes, stands in a pause, and is told to a page that is loaded again; without the settings nothing is told", flush=True)
+
+
+def upright(tomcom, chromium, folder, kitchen, seed):
+    """An order on a telephone by touch: no gaze is sent until the screen is turned, and the check says why."""
+    with operate(tomcom, session_file(folder, kitchen, seed), folder) as console:
+        page = Page(chromium, url(), size=UPRIGHT, touch=True)
+        page.stage("welcome")
+        page.page.mouse.move(200, 500)
+        console.key("\x10")
+        console.wait_for("ROBOT HELD")
+        time.sleep(1.5)
+        console.key(".")
+        console.wait_for("Before the trial")
+        assert "turn the screen" in plain(console.text()), console.text()
+        console.key("o")
+        page.stage("running")
+        page.wait_for("Stage.shown().contents.some((what) => what.dish)")
+        presses = presses_for(kitchen, page.orders()[0], 1)
+        page.page.wait_for_timeout(500)
+        page.screenshot(folder / "running.png")
+        for button in presses[:-1]:
+            page.press(button, "touch")
+            page.page.mouse.move(100 + len(button), 300)
+        console.key("q")
+        page.wait_for("document.querySelector('.recipe').classList.contains('open')")
+        page.page.wait_for_timeout(300)
+        page.screenshot(folder / "recipe.png")
+        assert not [message for message in page.said if message["kind"] == "pointer"], "gaze from an upright page"
+        before = page.ask("JSON.stringify(Stage.shown().contents)")
+        page.page.set_viewport_size({"width": UPRIGHT[1], "height": UPRIGHT[0]})
+        page.page.wait_for_timeout(700)
+        assert page.ask("[document.getElementById('stage').classList.contains('upright'), JSON.stringify(Stage.shown().contents)]") == [False, before]
+        page.page.mouse.move(300, 200)
+        page.page.wait_for_timeout(200)
+        assert [message for message in page.said if message["kind"] == "pointer"], "no gaze from the turned page"
+        page.press(presses[-1], "touch")
+        page.wait_for("Stage.shown().served === 1")
+        page.close()
+        console.quit()
+    recording, _ = recorded(folder)
+    verify(tomcom, recording)
+    print(f"upright: an order of the {kitchen} kitchen by touch at {UPRIGHT[0]}x{UPRIGHT[1]}; no gaze until the screen is turned", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tomcom")
+    parser.add_argument("folder", type=Path)
+    arguments = parser.parse_args()
+    tomcom, folder = arguments.tomcom, arguments.folder
+    with browser() as chromium:
+        seeds = {kitchen: seed_of(tomcom, folder / kitchen, kitchen) for kitchen in ("sushi", "burger")}
+        for is_on in (True, False):
+            sounds(tomcom, chromium, folder / f"sound-{is_on}", seeds["sushi"], is_on)
+        counts(tomcom, chromium, folder / "counts", seeds["sushi"])
+        for kitchen, seed in seeds.items():
+            upright(tomcom, chromium, folder / f"upright-{kitchen}", kitchen, seed)
+
+
+if __name__ == "__main__":
+    main()
+    sys.stdout.flush()
+    os._exit(0)

@@ -1,0 +1,69 @@
+"""The participant's page in Firefox: a first order by keys, in both kitchens, with pictures of it.
+
+    tests/outside/firefox.py TOMCOM FOLDER
+"""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from PIL import Image
+
+import bidi
+from display import operate, presses_for, recorded, seed_of, session_file, url, verify
+
+SIZE = (1280, 800)
+
+
+def serves_an_order(tomcom, folder, kitchen):
+    seed = seed_of(tomcom, folder, kitchen)
+    with operate(tomcom, session_file(folder, kitchen, seed), folder) as console, bidi.Firefox(SIZE) as firefox:
+        firefox.open(url())
+        firefox.wait_for("document.getElementById('stage').dataset.stage === 'welcome'")
+        console.key("\x10")
+        console.wait_for("ROBOT HELD")
+        # Nothing moves the pointer here: the trial starts without gaze.
+        console.key(".")
+        console.wait_for("Before the trial")
+        console.key("o")
+        firefox.wait_for("Stage.shown() && Stage.shown().stage === 'running' && Stage.shown().contents.some((what) => what.dish)")
+        dish = firefox.ask("Stage.shown().contents.find((what) => what.dish).dish")
+        presses = presses_for(kitchen, dish, 1)
+        firefox.screenshot(folder / "running.png")
+        keys = firefox.ask("Object.fromEntries(Stage.scene().buttons.map(({ name, key }) => [name, key]))")
+        for number, button in enumerate(presses, 1):
+            firefox.key(keys[button])
+            firefox.wait_for(f"Stage.shown().presses[0] && Stage.shown().presses[0].number === {number}")
+        firefox.wait_for("Stage.shown().served === 1 && document.querySelector('.served').textContent === '✓ 1'")
+        firefox.screenshot(folder / "served.png")
+        assert firefox.ask("document.documentElement.scrollHeight <= window.innerHeight && document.documentElement.scrollWidth <= window.innerWidth")
+        version = firefox.version
+        console.quit()
+    for name in ("running.png", "served.png"):
+        picture = Image.open(folder / name).convert("RGB")
+        colours = len(picture.getcolors(1 << 24))
+        assert picture.size == SIZE and colours > 500, f"{name}: {picture.size}, {colours} colours"
+    recording, events = recorded(folder)
+    told = [event["button"] for event in events if event["kind"] == "press" and event["agent"] == "human"]
+    assert told == presses, told
+    verify(tomcom, recording)
+    print(f"Firefox {version}: {dish} served with {len(presses)} keys in the {kitchen} kitchen; the recording verifies", flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tomcom")
+    parser.add_argument("folder", type=Path)
+    arguments = parser.parse_args()
+    if not bidi.is_there():
+        return print(f"Firefox: not looked at, since {bidi.PROGRAM} is not on this machine", flush=True)
+    for kitchen in ("sushi", "burger"):
+        serves_an_order(arguments.tomcom, arguments.folder / kitchen, kitchen)
+    return None
+
+
+if __name__ == "__main__":
+    main()
+    sys.stdout.flush()
+    os._exit(0)

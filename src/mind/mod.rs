@@ -11,6 +11,7 @@ pub mod model;
 pub mod observation;
 pub mod recorded_estimate;
 pub mod reference;
+pub mod signal_model;
 
 use std::collections::BTreeMap;
 

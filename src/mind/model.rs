@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::choice_parameters::DecisionModel;
+use super::signal_model::SignalModel;
 
 /// All parameters of the human model, and the sample sizes of its inference.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -112,7 +113,12 @@ impl PerceptionModel {
 
     /// The rate of reading as a function of distance and confidence.
     pub fn reading_rate(&self) -> ReadingRate {
-        ReadingRate { full_hz: self.reading_rate_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
+        self.rate_of(self.reading_rate_hz)
+    }
+
+    /// The rate of reading something that is read `full_hz` times a second at distance 0.
+    pub fn rate_of(&self, full_hz: f64) -> ReadingRate {
+        ReadingRate { full_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
     }
 }
 
@@ -172,31 +178,6 @@ pub struct TransitionModel {
 impl Default for TransitionModel {
     fn default() -> Self {
         TransitionModel { recipe_half_life_s: 200.0, foresight: 0.2 }
-    }
-}
-
-/// The effect of a signal on the human.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SignalModel {
-    /// Probability that a signal is noticed; a noticed signal is believed.
-    pub noticed: f64,
-    /// Probability that the human presses what the display proposes because it is proposed. Nobody has measured it; the default stands for
-    /// a person who notices most proposals and makes most of those.
-    #[serde(skip_serializing_if = "is_usual_following")]
-    pub follows: f64,
-}
-
-/// The default of [`SignalModel::follows`]. Files and headers leave it out.
-const FOLLOWS: f64 = 0.7;
-
-fn is_usual_following(follows: &f64) -> bool {
-    *follows == FOLLOWS
-}
-
-impl Default for SignalModel {
-    fn default() -> Self {
-        SignalModel { noticed: 1.0, follows: FOLLOWS }
     }
 }
 

@@ -74,6 +74,8 @@ pub enum Observed {
         /// The location that the signal is about.
         location: LocationId,
     },
+    /// The signal leaves the display. Where signals take no time, it makes no difference.
+    SignalOver,
     /// The display proposes presses. That says nothing about contents and recipes; it matters for what the next presses say about beliefs.
     Proposed(ProposedPresses),
     /// The human has not pressed for longer than usual.

@@ -54,7 +54,7 @@ pub struct Sampler {
     counts: Vec<Vec<f64>>,
     /// Weight of each belief sample before and after multiplication with its likelihood p(a | belief).
     pub(super) priors: Vec<f64>,
-    posteriors: Vec<f64>,
+    pub(super) posteriors: Vec<f64>,
     /// Weight of each belief sample before, where waiting is evidence times the chance that a press is made.
     pressing: Vec<f64>,
     pub(super) worlds: DistinctWorlds,
@@ -69,7 +69,7 @@ pub struct Sampler {
     /// What each belief sample has learned from looks that nobody saw, where there were such looks.
     pub(super) looks: Vec<SampleLooks>,
     pub(super) news: Vec<LookNews>,
-    /// Systematic sampling of readings: by location, sum of the probabilities so far.
+    /// Systematic sampling of readings: by location, and last of the signal, sum of the probabilities so far.
     pub(super) read_sums: Vec<f64>,
 }
 
@@ -142,7 +142,7 @@ impl Sampler {
         random: &mut Stream,
     ) -> Evidence {
         let states = model.inference.states;
-        self.begin(model, belief, looks.is_some(), random);
+        self.begin(model, belief, looks, random);
         let mut wanted = model.inference.beliefs;
         loop {
             let old = self.samples.len();
@@ -166,7 +166,13 @@ impl Sampler {
     }
 
     /// Prepares urns and buffers for samples of this belief.
-    pub(super) fn begin(&mut self, model: &EvidenceModel, belief: &DirichletBelief, looks: bool, random: &mut Stream) {
+    pub(super) fn begin(
+        &mut self,
+        model: &EvidenceModel,
+        belief: &DirichletBelief,
+        looks: Option<&UnseenLooks>,
+        random: &mut Stream,
+    ) {
         let InferenceModel { states, beliefs, max_beliefs, .. } = *model.inference;
         self.urns.resize(belief.aspects.len(), Urn::default());
         self.counts.clear();
@@ -185,11 +191,12 @@ impl Sampler {
         self.looks.clear();
         self.news.clear();
         self.read_sums.clear();
-        if looks {
-            self.read_sums.extend(model.kitchen.locations.iter().map(|_| random.random::<f64>()));
+        if let Some(looks) = looks {
+            let read = model.kitchen.locations.len() + usize::from(looks.signal.is_some());
+            self.read_sums.extend((0..read).map(|_| random.random::<f64>()));
         }
         // A look gives a belief sample other worlds.
-        self.worlds.clear(states * beliefs.max(max_beliefs) * (1 + usize::from(looks)));
+        self.worlds.clear(states * beliefs.max(max_beliefs) * (1 + usize::from(looks.is_some())));
     }
 
     /// Draws belief samples until there are `wanted`.

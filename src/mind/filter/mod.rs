@@ -15,6 +15,7 @@ mod own_press;
 mod perception;
 mod robot_press;
 mod serving;
+pub mod standing_signal;
 mod unknown_gaze;
 mod unseen_looks;
 pub mod urn;
@@ -22,7 +23,7 @@ pub mod urn;
 use std::sync::Arc;
 
 use super::choice::ChoiceModel;
-use super::dirichlet::{Dirichlet, DirichletBelief};
+use super::dirichlet::DirichletBelief;
 use super::gaze_presence::GazePresence;
 use super::model::{HumanModel, LookingModel};
 use super::observation::{Observation, Observed, ProposedPresses};
@@ -31,9 +32,7 @@ use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::State;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{
-    Agent, AspectId, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent,
-};
+use crate::kitchen::{Agent, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, OrderContent};
 pub use evidence::Evidence;
 use evidence::{EvidenceModel, Sampler};
 use exchange::Exchange;
@@ -41,6 +40,7 @@ use human_act::{HumanAct, PressMixture};
 use look_news::UnseenLooks;
 use perception::GazeReader;
 use serving::Serving;
+use standing_signal::SignalsSoFar;
 use unknown_gaze::UnknownStretch;
 
 /// Update rule of a button: from one location, or from several that jointly determine the effect of the press.
@@ -82,6 +82,8 @@ pub struct BeliefFilter {
     frozen: Option<SessionTime>,
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
+    /// Signals that take time to be read.
+    signals: SignalsSoFar,
     evidence: Option<Evidence>,
 }
 
@@ -108,6 +110,7 @@ impl BeliefFilter {
             forgot: None,
             frozen: None,
             proposed: ProposedPresses::default(),
+            signals: SignalsSoFar::default(),
             evidence: None,
             kitchen,
             model,
@@ -135,7 +138,10 @@ impl BeliefFilter {
         match observation.what {
             Observed::Frozen => return self.frozen = Some(now),
             Observed::Thawed { by, asked, teaches } => return self.thaw(by, asked, teaches),
-            Observed::Proposed(presses) => return self.proposed = presses,
+            Observed::Proposed(presses) => {
+                self.replace_signal(now, cost);
+                return self.proposed = presses;
+            }
             _ => {}
         }
         if let Observed::Gaze { sample, taken } = observation.what {
@@ -162,6 +168,7 @@ impl BeliefFilter {
                 self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
                 self.belief.clone_from(&self.prior);
                 self.proposed = ProposedPresses::default();
+                self.signals = SignalsSoFar::default();
                 self.forgot = Some(now);
                 self.presence.rest(now);
                 self.show(now, state);
@@ -187,7 +194,8 @@ impl BeliefFilter {
                 self.show(now, state);
             }
             Observed::Waited { longer } => self.weigh_waiting(longer, cost),
-            Observed::Told { location } => self.told(location),
+            Observed::Told { location } => self.told(now, location),
+            Observed::SignalOver => self.signals.end(),
             Observed::Paused => self.forgot = None,
             Observed::Resumed => {
                 self.forgot = Some(now);
@@ -202,7 +210,7 @@ impl BeliefFilter {
         let now = self.frozen.unwrap_or(now);
         if self.forgot.is_some() {
             let unknown_s = self.presence.pass(now);
-            self.pass_unknown(unknown_s, cost);
+            self.pass_unknown(unknown_s, now, cost);
         }
     }
 
@@ -222,6 +230,7 @@ impl BeliefFilter {
         self.forgot = self.forgot.map(|at| at + by);
         self.presence.postpone(by);
         self.reader.postpone(by);
+        self.signals.postpone(by);
         if teaches <= 0.0 {
             return;
         }
@@ -239,17 +248,18 @@ impl BeliefFilter {
     fn take_sample(&mut self, sample: &GazeSample, taken: SessionTime, cost: &mut CostToGo) {
         let known = self.model.perception.known_share(sample.confidence);
         let time = self.presence.sample(sample, known, taken);
-        self.pass_unknown(time.unknown_before_s, cost);
+        self.pass_unknown(time.unknown_before_s, taken - SessionTime::from_secs_f64(time.covers_s), cost);
         if time.known > 0.0 {
             self.stretch = None;
             let known_s = time.known * time.covers_s;
             self.reader.read(&self.kitchen, &self.model.perception, &mut self.belief, sample, taken, known_s);
-            self.pass_unknown((1.0 - time.known) * time.covers_s, cost);
+            self.read_signal_by_gaze(sample, taken, known_s);
+            self.pass_unknown((1.0 - time.known) * time.covers_s, taken, cost);
         }
     }
 
-    /// Marginalises over looks in `seconds` of unknown gaze.
-    fn pass_unknown(&mut self, seconds: f64, cost: &mut CostToGo) {
+    /// Marginalises over looks in `seconds` of unknown gaze that end at `until`.
+    fn pass_unknown(&mut self, seconds: f64, until: SessionTime, cost: &mut CostToGo) {
         if seconds <= 0.0 {
             return;
         }
@@ -264,8 +274,9 @@ impl BeliefFilter {
         }
         let needs = self.needs.as_deref().unwrap_or_default();
         let stretch = self.stretch.get_or_insert_with(|| UnknownStretch {
-            before: self.belief.aspects[..locations].to_vec(),
+            before: self.belief.aspects.clone(),
             hazards: vec![[0.0; 2]; locations],
+            signal_hazard: 0.0,
         });
         self.reader.settle();
         for (index, need) in needs.iter().enumerate() {
@@ -276,6 +287,10 @@ impl BeliefFilter {
             if looked > 0.0 && !reading.is_empty() {
                 self.belief.aspects[index].learn(looked, reading.iter().copied());
             }
+        }
+        let hazard = self.read_signal_unseen(seconds, until);
+        if let Some(stretch) = &mut self.stretch {
+            stretch.signal_hazard += hazard;
         }
     }
 
@@ -306,16 +321,24 @@ impl BeliefFilter {
     /// Updates the belief by the likelihood of a press, with the looks of the unknown time before it.
     fn weigh_press(&mut self, press: PressMixture, cost: &mut CostToGo, random: &mut Stream) -> Evidence {
         let stretch = self.stretch.take();
+        let signal = stretch.as_ref().and_then(|stretch| self.unseen_signal(stretch.signal_hazard));
+        let has_signal = signal.is_some();
         let looks = stretch.as_ref().map(|stretch| {
             let reading = |index| self.reader.reading(&self.kitchen, LocationId(index as u8), self.shown);
-            UnseenLooks { hazards: &stretch.hazards, readings: (0..stretch.hazards.len()).map(reading).collect() }
+            let readings = (0..stretch.hazards.len()).map(reading).collect();
+            UnseenLooks { hazards: &stretch.hazards, readings, signal }
         });
         if let Some(stretch) = &stretch {
-            self.belief.aspects[..stretch.before.len()].clone_from_slice(&stretch.before);
+            self.belief.aspects.clone_from_slice(&stretch.before);
         }
         let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
         let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
-        self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Presses(press), looks.as_ref(), random)
+        let evidence =
+            self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Presses(press), looks.as_ref(), random);
+        if let Some(UnknownStretch { signal_hazard, .. }) = stretch.filter(|_| has_signal) {
+            self.correct_reading(signal_hazard, self.sampler.signal_read());
+        }
+        evidence
     }
 
     /// Updates the belief by the likelihood of having waited.
@@ -339,6 +362,9 @@ impl BeliefFilter {
         for index in 0..self.kitchen.aspects.len() {
             if matches!(self.kitchen.aspects[index].kind, AspectKind::Recipe(_)) {
                 self.belief.aspects[index].mix(lost, &self.prior.aspects[index]);
+                if let Some(stretch) = &mut self.stretch {
+                    stretch.before[index].mix(lost, &self.prior.aspects[index]);
+                }
             }
         }
     }
@@ -369,23 +395,6 @@ impl BeliefFilter {
             if let (Some(served), Some(none)) = (served, none) {
                 self.belief.aspects[order.index()].shift(served, none);
             }
-        }
-    }
-
-    /// Makes the aspects that a signal shows certain, with the probability that the signal is noticed.
-    fn told(&mut self, location: LocationId) {
-        let kitchen = self.kitchen.clone();
-        let mut aspects = vec![AspectId::of_location(location)];
-        if let (LocationKind::Order, OrderContent::Dish(dish)) =
-            (kitchen.location(location).kind, self.shown.order(location))
-        {
-            aspects.push(kitchen.aspect_of_dish(dish));
-        }
-        for aspect in aspects {
-            let truth = kitchen.true_value(self.shown, aspect);
-            let of_aspect: &mut Dirichlet = &mut self.belief.aspects[aspect.index()];
-            let values = of_aspect.mean().len();
-            of_aspect.learn(self.model.signal.noticed, (0..values).map(|value| f64::from(value == truth)));
         }
     }
 }

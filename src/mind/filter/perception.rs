@@ -18,7 +18,7 @@ use crate::mind::model::{PerceptionModel, ReadingRate};
 /// The gaze counts as elsewhere where the reading rate is below this share of the full rate.
 const ELSEWHERE: f64 = 0.1;
 /// Readings with a smaller probability are ignored.
-const NEGLIGIBLE: f64 = 1e-9;
+pub const NEGLIGIBLE: f64 = 1e-9;
 
 /// A look at a location.
 #[derive(Clone, Copy, Debug)]

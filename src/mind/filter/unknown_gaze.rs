@@ -12,10 +12,12 @@ use crate::mind::dirichlet::Dirichlet;
 /// Unknown time since the last event or known gaze.
 #[derive(Clone, Debug)]
 pub struct UnknownStretch {
-    /// Beliefs about the locations at its beginning.
+    /// Beliefs about all aspects at its beginning, apart from what has been forgotten since.
     pub before: Vec<Dirichlet>,
     /// By location: expected looks without need, and the further ones where the next press needs it for certain.
     pub hazards: Vec<[f64; 2]>,
+    /// Hazard of having read the signal on the display.
+    pub signal_hazard: f64,
 }
 
 /// By button of the human, the bit set of locations that it looks at before the press, without its own hand.

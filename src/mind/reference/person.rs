@@ -28,6 +28,8 @@ pub struct Particle {
     pub of: Vec<Vec<f64>>,
     /// Whether each location has been read in the present look.
     pub read: Vec<bool>,
+    /// Whether it has read the signal on the display.
+    pub read_signal: bool,
 }
 
 /// A world with its probability.
@@ -45,7 +47,7 @@ impl Particle {
     /// A belief drawn from an estimate, every component by a gamma draw.
     pub fn draw(kitchen: &Kitchen, estimate: &DirichletBelief, random: &mut Stream) -> Particle {
         let of = estimate.aspects.iter().map(|dirichlet| draw(dirichlet, random)).collect();
-        Particle { of, read: vec![false; kitchen.locations.len()] }
+        Particle { of, read: vec![false; kitchen.locations.len()], read_signal: false }
     }
 
     /// Applies a gaze sample: a location not yet read in this look is read with its probability, and the belief becomes certain of

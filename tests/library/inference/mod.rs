@@ -12,6 +12,7 @@ mod observed;
 mod particles;
 mod proposals;
 mod recorded;
+mod signals;
 mod unknown_gaze;
 mod waiting;
 mod world;

@@ -7,6 +7,7 @@ pub mod dirichlet;
 pub mod filter;
 pub mod fitting;
 pub mod gaze_presence;
+pub mod lapse_posterior;
 pub mod model;
 pub mod observation;
 pub mod recorded_estimate;

@@ -24,8 +24,26 @@ pub struct HumanModel {
     pub decision: DecisionModel,
     /// How signals are noticed and read.
     pub signal: SignalModel,
+    /// What the estimate learns about the person in a trial.
+    #[serde(skip_serializing_if = "AdaptModel::is_off")]
+    pub adapt: AdaptModel,
     /// How the belief is inferred: no property of people.
     pub inference: InferenceModel,
+}
+
+/// Which parameters the estimate adapts to the person in a trial, press by press.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AdaptModel {
+    /// Whether it learns how often the person slips.
+    pub lapse: bool,
+}
+
+impl AdaptModel {
+    /// Whether nothing is adapted. Files and headers leave it out then.
+    fn is_off(&self) -> bool {
+        *self == AdaptModel::default()
+    }
 }
 
 /// The human's belief at the start of a trial.

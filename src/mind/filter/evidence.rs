@@ -13,6 +13,7 @@ use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, World};
 use crate::mind::choice::ChoiceModel;
 use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::lapse_posterior::PressParts;
 use crate::mind::model::InferenceModel;
 
 use super::distinct::DistinctWorlds;
@@ -55,6 +56,8 @@ pub struct Sampler {
     /// Weight of each belief sample before and after multiplication with its likelihood p(a | belief).
     pub(super) priors: Vec<f64>,
     pub(super) posteriors: Vec<f64>,
+    /// Parts of each belief sample's likelihood of the press, where the lapse is learned.
+    parts: Vec<PressParts>,
     /// Weight of each belief sample before, where waiting is evidence times the chance that a press is made.
     pressing: Vec<f64>,
     pub(super) worlds: DistinctWorlds,
@@ -123,6 +126,8 @@ pub struct EvidenceModel<'a> {
     pub inference: &'a InferenceModel,
     /// By button of the human, the bit set of locations that it looks at before the press.
     pub watched: &'a [u32],
+    /// The expected lapse of this person; `None` where it is that of the choice model.
+    pub lapse: Option<f64>,
 }
 
 impl Sampler {
@@ -293,6 +298,7 @@ impl Sampler {
     fn weigh_samples(&mut self, model: &EvidenceModel, act: HumanAct, from: usize) {
         self.posteriors.truncate(from);
         self.pressing.truncate(from);
+        self.parts.truncate(from);
         for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
             let sums = self.sum_costs(sample, &mut sums, model);
@@ -300,7 +306,15 @@ impl Sampler {
             let (pressing, likelihood) = match act {
                 HumanAct::Presses(press) => {
                     let presses = if model.inference.waiting { 1.0 - waits() } else { 1.0 };
-                    (prior * presses, press.likelihood(model.choice.press_likelihood(sums, press.button)))
+                    let choice = match model.lapse {
+                        None => model.choice.press_likelihood(sums, press.button),
+                        Some(lapse) => {
+                            let parts = model.choice.press_parts(sums, press.button);
+                            self.parts.push(parts);
+                            parts.likelihood(lapse)
+                        }
+                    };
+                    (prior * presses, press.likelihood(choice))
                 }
                 HumanAct::Waits { longer } => (*prior, longer + (1.0 - longer) * waits()),
             };
@@ -346,6 +360,15 @@ impl Sampler {
         }
         let sum = self.posteriors.iter().sum::<f64>() * states as f64;
         self.worlds.rate_again(cost, &self.world_weights, sum)
+    }
+
+    /// Expected parts of the last press's likelihood, under the estimate before it.
+    pub fn expected_parts(&self) -> PressParts {
+        let before: f64 = self.pressing.iter().sum();
+        let mean = |part: fn(&PressParts) -> f64| {
+            self.parts.iter().zip(&self.pressing).map(|(parts, weight)| part(parts) * weight).sum::<f64>() / before
+        };
+        PressParts { chosen: mean(|parts| parts.chosen), slipped: mean(|parts| parts.slipped) }
     }
 
     fn evidence(&self) -> Evidence {

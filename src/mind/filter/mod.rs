@@ -25,6 +25,7 @@ use std::sync::Arc;
 use super::choice::ChoiceModel;
 use super::dirichlet::DirichletBelief;
 use super::gaze_presence::GazePresence;
+use super::lapse_posterior::LapsePosterior;
 use super::model::{HumanModel, LookingModel};
 use super::observation::{Observation, Observed, ProposedPresses};
 use crate::base::rng::{Stream, stream};
@@ -84,6 +85,8 @@ pub struct BeliefFilter {
     proposed: ProposedPresses,
     /// Signals that take time to be read.
     signals: SignalsSoFar,
+    /// How often the person slips, where that is learned.
+    lapse: LapsePosterior,
     evidence: Option<Evidence>,
 }
 
@@ -111,6 +114,7 @@ impl BeliefFilter {
             frozen: None,
             proposed: ProposedPresses::default(),
             signals: SignalsSoFar::default(),
+            lapse: LapsePosterior::around(model.decision.lapse),
             evidence: None,
             kitchen,
             model,
@@ -130,6 +134,11 @@ impl BeliefFilter {
     /// Likelihood and effective sample size of the human's last press.
     pub fn evidence(&self) -> Option<Evidence> {
         self.evidence
+    }
+
+    /// The share of presses that slip: as far as it has been learned in this trial, or the human model's.
+    pub fn lapse(&self) -> f64 {
+        if self.model.adapt.lapse { self.lapse.expected() } else { self.model.decision.lapse }
     }
 
     /// Updates the estimate with one observation. The random stream depends on the seed and the number of presses only.
@@ -169,6 +178,7 @@ impl BeliefFilter {
                 self.belief.clone_from(&self.prior);
                 self.proposed = ProposedPresses::default();
                 self.signals = SignalsSoFar::default();
+                self.lapse = LapsePosterior::around(self.model.decision.lapse);
                 self.forgot = Some(now);
                 self.presence.rest(now);
                 self.show(now, state);
@@ -297,8 +307,8 @@ impl BeliefFilter {
     /// The chance that the next press needs each location, under the present belief.
     fn needs_now(&mut self, cost: &mut CostToGo) -> Vec<f64> {
         let mut random = stream(self.seed, "needs", self.presses);
-        let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
-        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
+        let (kitchen, choice, watched, lapse) = (&*self.kitchen, &self.choice, &self.watched[..], None);
+        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
         self.sampler.needs(&model, cost, &self.belief, &mut random)
     }
 
@@ -332,9 +342,14 @@ impl BeliefFilter {
             self.belief.aspects.clone_from_slice(&stretch.before);
         }
         let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
-        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
+        let lapse = self.model.adapt.lapse.then(|| self.lapse.expected());
+        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
         let evidence =
             self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Presses(press), looks.as_ref(), random);
+        if lapse.is_some() {
+            let parts = self.sampler.expected_parts();
+            self.lapse.learn(|lapse| press.likelihood(parts.likelihood(lapse)));
+        }
         if let Some(UnknownStretch { signal_hazard, .. }) = stretch.filter(|_| has_signal) {
             self.correct_reading(signal_hazard, self.sampler.signal_read());
         }
@@ -344,8 +359,8 @@ impl BeliefFilter {
     /// Updates the belief by the likelihood of having waited.
     fn weigh_waiting(&mut self, longer: f64, cost: &mut CostToGo) {
         let mut random = stream(self.seed, "waiting", self.presses);
-        let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
-        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
+        let (kitchen, choice, watched, lapse) = (&*self.kitchen, &self.choice, &self.watched[..], None);
+        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
         self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Waits { longer }, None, &mut random);
     }
 

@@ -14,8 +14,10 @@ use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::mind::choice_parameters::DecisionModel;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::gaze_presence::GazePresence;
+use crate::mind::lapse_posterior::{LAPSES, MOST_LAPSE};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::{Observation, Observed, ProposedPresses};
 
@@ -43,6 +45,8 @@ pub struct Particles {
     proposed: ProposedPresses,
     /// Signals that take time to be read.
     signals: PlainSignals,
+    /// Lapses of this person with their probabilities.
+    pub lapses: Vec<(f64, f64)>,
 }
 
 impl Particles {
@@ -52,7 +56,7 @@ impl Particles {
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
         let (doubt, sight, presence) = (prior.clone(), GazeFollower::default(), GazePresence::new(&model));
         let (of, pressing, unseen, forgot) = (Vec::new(), Vec::new(), None, None);
-        let (proposed, signals) = (ProposedPresses::default(), PlainSignals::default());
+        let (proposed, signals, lapses) = (ProposedPresses::default(), PlainSignals::default(), lapses(&model));
         Particles {
             kitchen,
             model,
@@ -67,6 +71,7 @@ impl Particles {
             forgot,
             proposed,
             signals,
+            lapses,
         }
     }
 
@@ -80,6 +85,7 @@ impl Particles {
         self.unseen = None;
         self.proposed = ProposedPresses::default();
         self.signals = PlainSignals::default();
+        self.lapses = lapses(&self.model);
         self.show(now, state);
     }
 
@@ -245,13 +251,25 @@ impl Particles {
         self.proposed.pressed(button);
         let mut weights = Vec::with_capacity(self.of.len());
         self.pressing.clear();
+        let mut likelihoods = vec![0.0; self.lapses.len()];
         for person in &mut self.of {
+            let mut weight = 0.0;
             let (here, after) = person.prospects(&self.kitchen, cost, inference.states, random);
             let presses = if inference.waiting { 1.0 - wait_chance(decision, here, &after) } else { 1.0 };
             self.pressing.push(presses);
-            weights
-                .push(presses * (proposed + chosen * press_chances(&self.kitchen, decision, &after)[button.index()]));
+            // p(a | b) for each lapse, alone the human model's where it is not learned.
+            for ((lapse, p), likelihood) in self.lapses.iter().zip(&mut likelihoods) {
+                let decision = DecisionModel { lapse: *lapse, ..decision.clone() };
+                let pressed = proposed + chosen * press_chances(&self.kitchen, &decision, &after)[button.index()];
+                *likelihood += presses * pressed;
+                weight += p * presses * pressed;
+            }
+            weights.push(weight);
             person.pressed(&self.kitchen, &doubt, button, effective);
+        }
+        let total: f64 = self.lapses.iter().zip(&likelihoods).map(|((_, p), likelihood)| p * likelihood).sum();
+        for ((_, p), likelihood) in self.lapses.iter_mut().zip(&likelihoods) {
+            *p *= likelihood / total;
         }
         weights
     }
@@ -317,5 +335,14 @@ impl Particles {
     pub fn share_with_signal(&self, weights: &[f64]) -> f64 {
         let read = self.of.iter().zip(weights).filter(|(person, _)| person.read_signal);
         read.map(|(_, weight)| weight).sum::<f64>() / weights.iter().sum::<f64>()
+    }
+}
+
+/// The lapses that a person may have, with their probabilities before the first press.
+fn lapses(model: &HumanModel) -> Vec<(f64, f64)> {
+    let own = model.decision.lapse;
+    match model.adapt.lapse {
+        true => LAPSES.iter().map(|(times, p)| ((times * own).min(MOST_LAPSE), *p)).collect(),
+        false => vec![(own, 1.0)],
     }
 }

@@ -69,6 +69,11 @@ impl ReferenceFilter {
         self.log_p
     }
 
+    /// The expected share of presses that slip.
+    pub fn lapse(&self) -> f64 {
+        self.people.lapses.iter().map(|(lapse, p)| lapse * p).sum()
+    }
+
     /// Updates the estimate with one observation. The random stream depends on the seed and the number of observations only.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
         self.observed += 1;

@@ -1,6 +1,7 @@
 //! Inference of the human's belief against exact computation, against humans who are simulated from the model itself, against
 //! its own plain reference, and under whatever may come.
 
+mod adaptation;
 mod calibration;
 mod drop_outs;
 mod exact;

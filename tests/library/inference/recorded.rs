@@ -40,6 +40,13 @@ fn they_agree_where_waiting_is_evidence() {
     agree(model, |_| true, with_waits);
 }
 
+#[test]
+fn they_agree_where_the_lapse_is_learned() {
+    let mut model = HumanModel::default();
+    model.adapt.lapse = true;
+    agree(model, |_| true, |same| same);
+}
+
 /// A human who reads signals in time.
 fn reads_in_time() -> HumanModel {
     let signal = SignalModel {

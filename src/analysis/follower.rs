@@ -13,7 +13,7 @@ use crate::measures::errors::PressJudge;
 use crate::measures::sequences::Episodes;
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::filter::standing_signal::SignalOver;
+use crate::mind::filter::signals_so_far::SignalOver;
 use crate::mind::filter::{BeliefFilter, Evidence};
 use crate::mind::observation::{Observation, Observed, ProposedPresses};
 use crate::mind::recorded_estimate::EstimateWitness;

@@ -15,7 +15,8 @@ mod own_press;
 mod perception;
 mod robot_press;
 mod serving;
-pub mod standing_signal;
+pub mod signals_so_far;
+mod standing_signal;
 mod unknown_gaze;
 mod unseen_looks;
 pub mod urn;
@@ -41,7 +42,7 @@ use human_act::{HumanAct, PressMixture};
 use look_news::UnseenLooks;
 use perception::GazeReader;
 use serving::Serving;
-use standing_signal::SignalsSoFar;
+use signals_so_far::SignalsSoFar;
 use unknown_gaze::UnknownStretch;
 
 /// Update rule of a button: from one location, or from several that jointly determine the effect of the press.

@@ -1,7 +1,7 @@
 //! The signal that stands on the display: whether it has been read is a part of the estimate.
 //!
 //! While the gaze is known, the signal is read as a location is: at a rate that falls with the distance of the gaze from its place. While the
-//! gaze is unknown, it draws the eye with a hazard that over all time gives the probability that it is noticed (see [`SignalModel`]). So a
+//! gaze is unknown, it draws the eye with a hazard that over all time gives the probability that it is noticed (see [`crate::mind::signal_model::SignalModel`]). So a
 //! known gaze elsewhere for all of the signal's time is evidence that it was missed. Reading it makes its aspects certain; to read it
 //! once more changes nothing. A press of the human draws the readings in the unknown time since the last event anew, see
 //! [`super::unseen_looks`].
@@ -11,77 +11,15 @@
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::kitchen::{AspectId, LocationId, LocationKind, OrderContent};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::HumanModel;
-use crate::mind::signal_model::{SignalForecast, SignalModel};
+use crate::mind::signal_model::SignalForecast;
 
 use super::BeliefFilter;
 use super::look_news::UnseenSignal;
 use super::perception::NEGLIGIBLE;
-
-/// A signal on the display.
-#[derive(Clone, Debug)]
-struct StandingSignal {
-    location: LocationId,
-    /// The aspects that it makes certain once it is read.
-    aspects: Vec<AspectId>,
-    since: SessionTime,
-    /// Probability that it is noticed.
-    noticed: f64,
-    /// Probability that it has not been read yet.
-    unread: f64,
-}
-
-impl StandingSignal {
-    /// Makes its aspects certain with the probability `share`.
-    fn teach(&self, kitchen: &Kitchen, shown: State, model: &SignalModel, share: f64, belief: &mut DirichletBelief) {
-        for &aspect in &self.aspects {
-            let of_aspect = &mut belief.aspects[aspect.index()];
-            let values = of_aspect.mean().len();
-            of_aspect.learn(share, model.understood(kitchen.true_value(shown, aspect), values));
-        }
-    }
-}
-
-/// A signal that has left the display.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SignalOver {
-    /// The location that it was about.
-    pub location: LocationId,
-    /// Probability that it was read.
-    pub read: f64,
-}
-
-/// The signals of a trial, as far as they take time to be read.
-#[derive(Clone, Debug, Default)]
-pub struct SignalsSoFar {
-    standing: Option<StandingSignal>,
-    over: Option<SignalOver>,
-    /// Expected number of signals that were read, and number of signals that are over.
-    read: f64,
-    shown: f64,
-}
-
-impl SignalsSoFar {
-    /// Moves all times on, because the task stood still.
-    pub fn postpone(&mut self, by: SessionTime) {
-        self.standing.iter_mut().for_each(|standing| standing.since = standing.since + by);
-    }
-
-    /// The signal leaves the display.
-    pub fn end(&mut self) {
-        if let Some(StandingSignal { location, unread, .. }) = self.standing.take() {
-            (self.read, self.shown) = (self.read + 1.0 - unread, self.shown + 1.0);
-            self.over = Some(SignalOver { location, read: 1.0 - unread });
-        }
-    }
-
-    /// Expected probability that this person notices a signal about a location of this kind.
-    fn noticed(&self, model: &SignalModel, kind: LocationKind) -> f64 {
-        model.expected_noticed(kind, self.read, self.shown)
-    }
-}
+use super::signals_so_far::{SignalOver, StandingSignal};
 
 impl BeliefFilter {
     /// The signal that has left the display since the last call, if one has.

@@ -81,7 +81,7 @@ impl SignalBench {
 }
 
 /// Forgetting takes a little from all that was learned.
-const FORGOTTEN: f64 = 0.02;
+const FORGOTTEN: f64 = 0.03;
 
 #[test]
 fn a_known_look_at_the_signal_reads_it() {
@@ -158,7 +158,8 @@ fn a_press_by_the_look_alike_recipe_is_evidence_that_it_was_missed() {
     println!(
         "read with {right:.3} before the right press (P(truth) {knows:.3}), {wrong:.3} before the wrong one ({errs:.3})"
     );
-    assert!(wrong < 0.3 && right > 0.6 && errs < 0.3 && knows > 0.9);
+    // Before the press, 1 - 0.2^(1 - exp(-1.5)) = 0.71.
+    assert!(wrong < 0.5 && right > 0.75 && errs < 0.7 && knows > 0.95);
 }
 
 #[test]

@@ -75,7 +75,7 @@ fn with_signals(observations: Vec<Observation>) -> Vec<Observation> {
     let is_own = |what: &Observed| matches!(what, Observed::Pressed(Press { agent: Agent::Human, .. }));
     let own = observations.iter().filter(|one| is_own(&one.what)).step_by(3);
     let signals = own.enumerate().flat_map(|(number, one)| {
-        let location = LocationId([0, 5, 1, 6, 0, 7][number % 6]);
+        let location = LocationId([0, 5, 1, 6, 0, 4][number % 6]);
         let after = |seconds: f64| one.time + SessionTime::from_secs_f64(seconds);
         [
             Observation { time: after(0.1), what: Observed::Told { location } },

@@ -11,6 +11,7 @@ use crate::communication::situation::{RobotIntent, Situation};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{AspectId, State};
 use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::signal_model::SignalForecast;
 use crate::session::Session;
 
 /// A request for advice: the session after an event and all its immediate consequences.
@@ -26,6 +27,7 @@ pub struct AdviceRequest {
     changed: Vec<AspectId>,
     robot: RobotIntent,
     robot_press_s: f64,
+    forecast: SignalForecast,
     /// The signals that can be sent at that time.
     signals: Vec<Signal>,
     /// Sequence number of the human's last press, if that press was an error.
@@ -50,7 +52,8 @@ impl AdviceRequest {
         let error = follower.judged.last().filter(|press| press.verdict.error).map(|press| press.seq);
         let changed = session.changed_at(time).map(AspectId::of_location).collect();
         let presses = session.all_presses();
-        AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, signals, error }
+        let forecast = follower.filter.forecast();
+        AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, forecast, signals, error }
     }
 
     /// The request in the form in which a communication concept receives it.
@@ -64,10 +67,11 @@ impl AdviceRequest {
             ref changed,
             robot,
             robot_press_s,
+            forecast,
             ref signals,
             error,
         } = *self;
-        let situation = Situation { state, belief, changed, robot, robot_press_s };
+        let situation = Situation { state, belief, changed, robot, robot_press_s, forecast };
         DecisionPoint { seq, time, presses, situation, signals, error }
     }
 

@@ -13,6 +13,7 @@ use crate::measures::errors::PressJudge;
 use crate::measures::sequences::Episodes;
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::filter::signals_so_far::SignalOver;
 use crate::mind::filter::{BeliefFilter, Evidence};
 use crate::mind::observation::{Observation, Observed, ProposedPresses};
 use crate::mind::recorded_estimate::EstimateWitness;
@@ -142,13 +143,14 @@ impl Follower {
         self.filter.at(now, &mut self.cost)
     }
 
-    /// The belief estimate from which a request for advice at `now` starts; it includes unknown gaze unless an event
-    /// has just updated it.
+    /// The estimate from which a request for advice at `now` starts: once the signal on the display has been read, as far as that is to be
+    /// expected. Most requests follow an event that has just updated the estimate.
     pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
-        match self.updated_at {
+        let belief = match self.updated_at {
             Some(updated) if updated >= now => self.filter.belief().clone(),
             _ => self.belief_at(now),
-        }
+        };
+        self.filter.foreseen(now, belief)
     }
 
     /// The state aspect of which the human seems unaware since the last gaze sample, if the assistant was not asked
@@ -249,6 +251,9 @@ impl Follower {
     /// Updates which signals were sent lately. Gaze samples are skipped, since no advice is requested after them.
     fn remember(&mut self, stamped: &Stamped) {
         let (kitchen, state) = (&self.session.kitchen, self.session.state);
+        if let Some(SignalOver { location, read }) = self.filter.take_signal_over() {
+            self.repeats.over(location, read);
+        }
         match &stamped.event {
             Event::Gaze(_) | Event::Probe(_) => return,
             Event::TrialStarted => self.repeats = Repeats::default(),
@@ -302,6 +307,7 @@ impl Follower {
                 Some(Observed::Proposed(ProposedPresses::new(presses.iter().filter_map(button))))
             }
             Event::SignalShown { .. } => Some(Observed::Told { location: self.session.shown.as_ref()?.location? }),
+            Event::SignalEnded { .. } if self.session.spec.human.signal.takes_time() => Some(Observed::SignalOver),
             _ => None,
         }
     }

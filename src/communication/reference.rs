@@ -51,9 +51,20 @@ struct Future {
     errand: Option<(ButtonId, f64, bool)>,
     now_s: f64,
     presses: u32,
+    /// The aspects of the signal, and the time at which it is read, until then.
+    signal: Option<(Vec<AspectId>, f64)>,
 }
 
 impl Future {
+    /// The human reads the signal, if that is due at `now_s`.
+    fn read_by(&mut self, kitchen: &Kitchen, now_s: f64) {
+        if let Some((aspects, _)) = self.signal.take_if(|(_, read_s)| *read_s <= now_s) {
+            for aspect in aspects {
+                self.person.settle(aspect, kitchen.true_value(self.state, aspect));
+            }
+        }
+    }
+
     /// The human sees the contents of the locations for which `is_seen` holds.
     fn see(&mut self, kitchen: &Kitchen, is_seen: impl Fn(LocationId) -> bool) {
         for place in (0..kitchen.locations.len()).map(|index| LocationId(index as u8)).filter(|place| is_seen(*place)) {
@@ -80,7 +91,10 @@ impl ReferencePlanner {
         for rollout in 0..self.spec.rollout.rollouts as u64 {
             let silent = self.roll_out(cost, moment, None, rollout);
             for (signal, saved) in signals.iter().zip(&mut saved) {
-                saved.push(silent - self.roll_out(cost, moment, Some(signal), rollout));
+                // Whoever misses the signal goes on as without it.
+                let kind = signal.location(&self.kitchen).map(|location| self.kitchen.location(location).kind);
+                let is_read = kind.map_or(1.0, |kind| situation.forecast.probability(kind));
+                saved.push(is_read * (silent - self.roll_out(cost, moment, Some(signal), rollout)));
             }
         }
         let worth = |(signal, saved): (&&Signal, &Vec<f64>)| {
@@ -105,9 +119,8 @@ impl ReferencePlanner {
         let mut person = Particle::draw(&self.kitchen, situation.belief, &mut random);
         let first_s = random.random::<f64>() * self.spec.rollout.human_press_s;
         let sees = random.random::<f64>() < self.human.looking.capture;
-        for aspect in signal.map_or(Vec::new(), |signal| aspects_told(&self.kitchen, situation.state, signal)) {
-            person.settle(aspect, self.kitchen.true_value(situation.state, aspect));
-        }
+        let signal =
+            signal.map(|signal| (aspects_told(&self.kitchen, situation.state, signal), situation.forecast.delay_s));
         for &aspect in situation.changed.iter().filter(|_| sees) {
             person.settle(aspect, self.kitchen.true_value(situation.state, aspect));
         }
@@ -115,13 +128,15 @@ impl ReferencePlanner {
             RobotIntent::Busy { button, remaining_s, driven } => Some((button, remaining_s, driven)),
             RobotIntent::Free | RobotIntent::Still => None,
         };
-        let mut future = Future { state: situation.state, person, errand, now_s: 0.0, presses: 0 };
+        let mut future = Future { state: situation.state, person, errand, now_s: 0.0, presses: 0, signal };
+        future.read_by(&self.kitchen, 0.0);
         for step in 0..self.spec.rollout.horizon {
             let until_s = first_s + step as f64 * self.spec.rollout.human_press_s;
             if situation.robot != RobotIntent::Still {
                 let mut random = self.chance("plain robot", presses, rollout, step as u64);
                 self.robot_until(cost, &mut future, until_s, situation.robot_press_s, &mut random);
             }
+            future.read_by(&self.kitchen, until_s);
             future.now_s = until_s;
             let mut random = self.chance("plain decision", presses, rollout, step as u64);
             self.decide(cost, &mut future, &mut random);
@@ -141,6 +156,7 @@ impl ReferencePlanner {
                 }
             }
             let Some((button, due_s, driven)) = future.errand.filter(|(_, due_s, _)| *due_s <= until_s) else { return };
+            future.read_by(kitchen, due_s);
             (future.now_s, future.errand) = (due_s, None);
             if driven || policy::best_presses(kitchen, cost, Fidelity::Exact, future.state, &recipes).contains(&button)
             {

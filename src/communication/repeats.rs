@@ -1,4 +1,5 @@
-//! The repeat rule: a signal is not sent again before the human may have forgotten its content.
+//! The repeat rule: a signal that was read is not repeated before its content can have been forgotten, and one that was probably missed
+//! not before it has left the display.
 
 use super::recommendation::aspects_told;
 use super::signal::{Signal, signals};
@@ -8,9 +9,13 @@ use crate::mind::dirichlet::DirichletBelief;
 
 /// Expected P(truth) above which the human is assumed to know the content of a signal.
 const KNOWN: f64 = 0.9;
+/// A signal with a smaller probability of having been read was probably missed.
+const PROBABLY_READ: f64 = 0.5;
 
-/// The repeat rule's memory: signals that must not be sent again yet. A signal may be repeated once P(truth) of its
-/// aspects has passed 0.9 and fallen again, or the truth has changed.
+/// The signals that must not be repeated yet. A signal may be repeated once P(truth) of its aspects has passed 0.9 and fallen
+/// again, or the truth has changed. Where signals can be missed, one may also be repeated that has left the display, if it was probably not read or
+/// P(truth) has not passed 0.9 until then. How often somebody is told in vain who notices nothing is bounded by the planner, since the
+/// expected probability of being noticed falls with each missed signal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Repeats {
     /// The last signal about each location.
@@ -23,19 +28,28 @@ struct Told {
     /// Code of the location's content when the signal was shown.
     code: u8,
     was_known: bool,
+    /// It has left the display, and was read with this probability.
+    read: Option<f64>,
 }
 
 impl Repeats {
     /// Records that the display showed a signal.
     pub fn shown(&mut self, kitchen: &Kitchen, state: State, signal: &Signal) {
         if let Some(location) = signal.location(kitchen) {
-            self.told[location.index()] = Some(Told { code: state.code(location), was_known: false });
+            self.told[location.index()] = Some(Told { code: state.code(location), was_known: false, read: None });
         }
     }
 
     /// Forgets the last signal about the location, because it was not shown after all.
     pub fn not_shown(&mut self, location: LocationId) {
         self.told[location.index()] = None;
+    }
+
+    /// Notes that the signal about a location has left the display, and with which probability it was read.
+    pub fn over(&mut self, location: LocationId, read: f64) {
+        if let Some(told) = &mut self.told[location.index()] {
+            told.read = Some(read);
+        }
     }
 
     /// Applies the repeat rule after a change of the estimate or of the true state.
@@ -45,10 +59,11 @@ impl Repeats {
             let Some(told) = slot else { continue };
             let p_truth = |aspect: AspectId| belief.p_truth(kitchen, state, aspect);
             let known = aspects_told(kitchen, state, &signal).into_iter().map(p_truth).fold(1.0, f64::min) > KNOWN;
-            if told.code != state.code(location) || told.was_known && !known {
+            let is_forgotten = told.was_known && !known;
+            told.was_known |= known;
+            let is_missed = told.read.is_some_and(|read| read < PROBABLY_READ || !told.was_known);
+            if told.code != state.code(location) || is_forgotten || is_missed {
                 *slot = None;
-            } else {
-                told.was_known |= known;
             }
         }
     }

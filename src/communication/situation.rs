@@ -2,6 +2,7 @@
 
 use crate::kitchen::{AspectId, ButtonId, State};
 use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::signal_model::SignalForecast;
 
 /// A situation of a trial as the assistant knows it.
 #[derive(Clone, Copy, Debug)]
@@ -16,12 +17,16 @@ pub struct Situation<'a> {
     pub robot: RobotIntent,
     /// Duration of a robot press, in seconds.
     pub robot_press_s: f64,
+    /// How a signal that is shown now will be read.
+    pub forecast: SignalForecast,
 }
 
 impl<'a> Situation<'a> {
-    /// A situation in which nothing has just changed and the robot follows its policy, with a press every 2.4 s.
+    /// A situation in which nothing has just changed, the robot follows its policy, with a press every 2.4 s, and a signal is believed at
+    /// once.
     pub fn new(state: State, belief: &'a DirichletBelief) -> Situation<'a> {
-        Situation { state, belief, changed: &[], robot: RobotIntent::Free, robot_press_s: 2.4 }
+        let forecast = SignalForecast::default();
+        Situation { state, belief, changed: &[], robot: RobotIntent::Free, robot_press_s: 2.4, forecast }
     }
 }
 

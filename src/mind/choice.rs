@@ -7,6 +7,7 @@
 //! planner implement the same model a second time, so that tests can compare the two.
 
 use super::choice_parameters::DecisionModel;
+use super::lapse_posterior::PressParts;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, ButtonId, Kitchen, WeightedWorlds};
 
@@ -152,6 +153,20 @@ impl ChoiceModel {
         let intended = (1.0 - self.parameters.lapse) * weight(sums[button.index()]);
         let pressed = slips.fold(intended, |pressed, slipped| pressed + slipped);
         pressed / total + self.anywhere
+    }
+
+    /// The parts of p(a | b) without and with a slip, from the same sums as [`ChoiceModel::press_likelihood`], which is their sum weighted
+    /// by the lapse.
+    #[inline]
+    pub fn press_parts(&self, sums: &[u32], button: ButtonId) -> PressParts {
+        let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
+        let least = sums.iter().copied().min().unwrap_or(0);
+        let weight = |sum: u32| weights.get((sum - least) as usize).copied().unwrap_or(0.0);
+        let total: f64 = sums.iter().map(|&sum| weight(sum)).sum();
+        let slips: f64 =
+            self.slips_from[button.index()].iter().map(|&(from, chance)| chance * weight(sums[from])).sum();
+        let slipped = (slips / total + self.anywhere) / self.parameters.lapse;
+        PressParts { chosen: weight(sums[button.index()]) / total, slipped }
     }
 
     /// p(wait | b), from the same sums as [`ChoiceModel::press_likelihood`] and the cost to go of the present state,

@@ -9,10 +9,12 @@ pub mod filter;
 pub mod fitted_people;
 pub mod fitting;
 pub mod gaze_presence;
+pub mod lapse_posterior;
 pub mod model;
 pub mod observation;
 pub mod recorded_estimate;
 pub mod reference;
+pub mod signal_model;
 
 use std::collections::BTreeMap;
 

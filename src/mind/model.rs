@@ -7,6 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::choice_parameters::DecisionModel;
+use super::signal_model::SignalModel;
 
 /// All parameters of the human model, and the sample sizes of its inference.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -24,8 +25,26 @@ pub struct HumanModel {
     pub decision: DecisionModel,
     /// How the human notices and reads signals.
     pub signal: SignalModel,
+    /// What the estimate learns about the person in a trial.
+    #[serde(skip_serializing_if = "AdaptModel::is_off")]
+    pub adapt: AdaptModel,
     /// How the belief is inferred: settings of the computation, not properties of people.
     pub inference: InferenceModel,
+}
+
+/// Which parameters the estimate adapts to the person in a trial, press by press.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AdaptModel {
+    /// Whether it learns how often the person slips.
+    pub lapse: bool,
+}
+
+impl AdaptModel {
+    /// Whether nothing is adapted. Files and headers leave it out then.
+    fn is_off(&self) -> bool {
+        *self == AdaptModel::default()
+    }
 }
 
 /// The human's belief at the start of a trial.
@@ -117,7 +136,12 @@ impl PerceptionModel {
 
     /// The rate of reading a location, as a function of distance and confidence.
     pub fn reading_rate(&self) -> ReadingRate {
-        ReadingRate { full_hz: self.reading_rate_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
+        self.rate_of(self.reading_rate_hz)
+    }
+
+    /// The rate of reading something that is read `full_hz` times a second at distance 0.
+    pub fn rate_of(&self, full_hz: f64) -> ReadingRate {
+        ReadingRate { full_hz, spread_m2: 2.0 * self.radius_m() * self.radius_m() }
     }
 }
 
@@ -180,31 +204,6 @@ pub struct TransitionModel {
 impl Default for TransitionModel {
     fn default() -> Self {
         TransitionModel { recipe_half_life_s: 200.0, foresight: 0.2 }
-    }
-}
-
-/// The effect of a signal on the human.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SignalModel {
-    /// Probability that a signal is noticed; a noticed signal is believed.
-    pub noticed: f64,
-    /// Probability that the human presses a button because the display proposes it. It has not been measured; the
-    /// default stands for a person who notices most proposals and makes most of those.
-    #[serde(skip_serializing_if = "is_usual_following")]
-    pub follows: f64,
-}
-
-/// The default of [`SignalModel::follows`]. Files and headers leave it out.
-const FOLLOWS: f64 = 0.7;
-
-fn is_usual_following(follows: &f64) -> bool {
-    *follows == FOLLOWS
-}
-
-impl Default for SignalModel {
-    fn default() -> Self {
-        SignalModel { noticed: 1.0, follows: FOLLOWS }
     }
 }
 

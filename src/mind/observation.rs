@@ -74,6 +74,8 @@ pub enum Observed {
         /// The location that the signal is about.
         location: LocationId,
     },
+    /// The signal leaves the display. Where signals take no time, it makes no difference.
+    SignalOver,
     /// The display proposes presses. A proposal reveals nothing about contents and recipes; it changes what the next
     /// presses reveal about beliefs.
     Proposed(ProposedPresses),

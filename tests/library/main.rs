@@ -22,6 +22,7 @@ mod lsl_streams;
 mod malformed_requests;
 mod mcap_export;
 mod measures;
+mod missed_signals;
 mod oracle;
 mod participant;
 mod participant_codes;

@@ -139,8 +139,7 @@ impl Scenario {
         let kitchen = self.kitchen();
         let state = self.state(&kitchen);
         let belief = self.belief(&kitchen, state);
-        let situation =
-            Situation { state, belief: &belief, changed: &[], robot: self.outlook(&kitchen), robot_press_s: 2.4 };
+        let situation = Situation { robot: self.outlook(&kitchen), ..Situation::new(state, &belief) };
         let signals: Vec<Signal> = signals(&kitchen, false).into_iter().map(|(_, signal)| signal).collect();
         concept.advise(&mut CostToGo::new(kitchen), &DecisionPoint { error, ..moment(situation, &signals) })
     }
@@ -246,7 +245,7 @@ fn an_answer_depends_on_nothing_that_was_asked_before() {
         let state = scenario.state(&kitchen);
         let belief = scenario.belief(&kitchen, state);
         let robot = scenario.outlook(&kitchen);
-        let situation = Situation { state, belief: &belief, changed: &[], robot, robot_press_s: 2.4 };
+        let situation = Situation { robot, ..Situation::new(state, &belief) };
         if scenario.cost.is_none() {
             assert_eq!(
                 planner.advise(&mut cost, &moment(situation, &signals)),
@@ -270,8 +269,7 @@ fn what_will_be_seen_anyway_is_not_worth_saying() {
         let mut spec = AssistantSpec::default();
         (spec.rollout.other_looks_hz, spec.rollout.capture) = (Some(other_looks_hz), Some(capture));
         let mut planner = Planner::new(kitchen.clone(), &HumanModel::default(), spec, 1);
-        let situation =
-            Situation { state, belief: &belief, changed, robot: scenario.outlook(&kitchen), robot_press_s: 2.4 };
+        let situation = Situation { changed, robot: scenario.outlook(&kitchen), ..Situation::new(state, &belief) };
         let mut cost = CostToGo::new(kitchen.clone());
         let answer = planner.advise(&mut cost, &moment(situation, &signals));
         let option = answer.options.iter().find(|option| option.signal.target() == Some("cooking_pot"));

@@ -1,9 +1,10 @@
 //! ToM-Com: sends the signal whose expected saving exceeds its cost (paper, section "Planning communication").
 //!
-//! For every signal there are rollouts over a few decisions of the human, each paired with a baseline rollout without
-//! the signal: the same sample of the belief, the same random numbers. The expected saving of a signal is the mean
-//! difference between baseline and rollout in presses of both agents plus the cost to go at the horizon. A signal that
-//! changes none of a sample's worlds saves exactly nothing in its rollout, which is skipped.
+//! For every signal there are rollouts over a few decisions of the human, each paired with a baseline rollout without the
+//! signal: the same sample of the belief, the same random numbers. The expected saving of a signal is the mean difference
+//! between baseline and rollout in presses of both agents plus the cost to go at the horizon. A signal that changes none of
+//! a sample's worlds saves exactly nothing in its rollout, which is skipped. Where signals take time, a rollout reads its signal after the
+//! mean delay, and counts by the probability that the signal is read: whoever misses it goes on like the baseline.
 
 mod lattice;
 mod rollout;
@@ -15,7 +16,7 @@ mod tally;
 use std::sync::Arc;
 
 use self::lattice::{Lattice, PER_DECISION};
-use self::rollout::{BaselineRollout, Rollout, RolloutContext, RolloutDraws, RolloutState};
+use self::rollout::{BaselineRollout, Rollout, RolloutContext, RolloutDraws, RolloutState, UnreadSignal};
 use self::rollout_robot::RobotPolicy;
 use self::sample::BeliefSamples;
 use self::tally::PairedDifferences;
@@ -64,6 +65,8 @@ pub struct Planner {
 struct Candidate {
     signal: Signal,
     aspects: Vec<AspectId>,
+    /// Probability that it is read and understood.
+    probability: f64,
     tally: PairedDifferences,
     is_decided: bool,
 }
@@ -98,6 +101,9 @@ impl Planner {
         let candidate = |signal: &Signal| Candidate {
             signal: signal.clone(),
             aspects: aspects_told(&self.kitchen, situation.state, signal),
+            probability: signal
+                .location(&self.kitchen)
+                .map_or(1.0, |location| situation.forecast.probability(self.kitchen.location(location).kind)),
             tally: PairedDifferences::default(),
             is_decided: false,
         };
@@ -154,9 +160,14 @@ impl Planner {
                 rollout.baseline(&mut self.state, &mut self.baseline);
                 is_baseline_known = true;
             }
-            self.state.begin(&self.kitchen, situation, &self.signalled, sees);
-            let outcome = rollout.with_signal(&mut self.state, &self.baseline);
-            candidate.tally.add(f64::from(self.baseline.value - outcome.value), outcome.diverged);
+            let unread = (situation.forecast.delay_s > 0.0)
+                .then_some(UnreadSignal { aspects: &candidate.aspects, read_s: situation.forecast.delay_s });
+            let worlds = if unread.is_some() { &self.believed } else { &self.signalled };
+            self.state.begin(&self.kitchen, situation, worlds, sees);
+            let outcome = rollout.with_signal(&mut self.state, unread, &self.baseline);
+            // Whoever misses the signal saves exactly nothing by it.
+            let saved = candidate.probability * f64::from(self.baseline.value - outcome.value);
+            candidate.tally.add(saved, outcome.diverged);
         }
     }
 

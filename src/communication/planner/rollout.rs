@@ -148,6 +148,15 @@ impl RolloutState {
     }
 }
 
+/// A signal that will be read.
+#[derive(Clone, Copy, Debug)]
+pub struct UnreadSignal<'a> {
+    /// The aspects that it makes certain.
+    pub aspects: &'a [AspectId],
+    /// Time at which it is read, in seconds since the start of the rollout.
+    pub read_s: f64,
+}
+
 /// One rollout with its models, caches and random numbers.
 pub struct Rollout<'a> {
     /// The data that all rollouts of the recommendation share.
@@ -167,7 +176,7 @@ impl Rollout<'_> {
     pub fn baseline(&mut self, state: &mut RolloutState, baseline: &mut BaselineRollout) {
         baseline.choices.clear();
         for step in 0..self.draws.len() {
-            self.until_decision(state, step);
+            self.until_decision(state, step, &mut None);
             if baseline.states.len() == step {
                 baseline.states.push(RolloutState::default());
             }
@@ -178,13 +187,19 @@ impl Rollout<'_> {
         baseline.value = self.value(state);
     }
 
-    /// Runs the rollout with a signal, paired with the baseline; it stops once both are in the same state.
-    pub fn with_signal(&mut self, state: &mut RolloutState, baseline: &BaselineRollout) -> RolloutOutcome {
-        let mut diverged = None;
+    /// Runs the rollout with a signal, which is in the state's worlds or still `unread`, paired with the baseline; it stops once the signal is read
+    /// and both are in the same state.
+    pub fn with_signal(
+        &mut self,
+        state: &mut RolloutState,
+        unread: Option<UnreadSignal>,
+        baseline: &BaselineRollout,
+    ) -> RolloutOutcome {
+        let (mut unread, mut diverged) = (unread, None);
         for step in 0..self.draws.len() {
-            self.until_decision(state, step);
+            self.until_decision(state, step, &mut unread);
             let unsignalled = &baseline.states[step];
-            if state.continues_like(unsignalled) {
+            if unread.is_none() && state.continues_like(unsignalled) {
                 return RolloutOutcome { value: baseline.value + state.presses - unsignalled.presses, diverged };
             }
             let choice = self.decide(state, step);
@@ -200,17 +215,28 @@ impl Rollout<'_> {
         state.presses + self.cost.all_orders(state.kitchen, &self.context.recipes) as i32
     }
 
-    /// Lets the robot act until the human's next decision.
-    fn until_decision(&mut self, state: &mut RolloutState, step: usize) {
+    /// The human reads a signal that is due by `now_s`.
+    fn read_by(&self, now_s: f64, state: &mut RolloutState, unread: &mut Option<UnreadSignal>) {
+        if let Some(signal) = unread.take_if(|signal| signal.read_s <= now_s) {
+            for &aspect in signal.aspects {
+                state.worlds.learn(self.context.kitchen, aspect, state.kitchen);
+            }
+        }
+    }
+
+    /// Runs the robot until the human's next decision; a signal may be read meanwhile.
+    fn until_decision(&mut self, state: &mut RolloutState, step: usize, unread: &mut Option<UnreadSignal>) {
         let until_s = self.first_s + step as f64 * self.context.model.human_press_s;
         let mut presses = 0;
         if state.is_still {
+            self.read_by(until_s, state, unread);
             state.now_s = until_s;
             return;
         }
         loop {
             self.set_out(state, step, presses);
             let Some(ongoing) = state.ongoing.filter(|press| press.due_s <= until_s) else { break };
+            self.read_by(ongoing.due_s, state, unread);
             state.now_s = ongoing.due_s;
             state.ongoing = None;
             let choices = self.choices(state.kitchen);
@@ -230,6 +256,7 @@ impl Rollout<'_> {
                 presses += 1;
             }
         }
+        self.read_by(until_s, state, unread);
         state.now_s = until_s;
     }
 

@@ -14,6 +14,7 @@ use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, World};
 use crate::mind::choice::ChoiceModel;
 use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::lapse_posterior::PressParts;
 use crate::mind::model::InferenceModel;
 
 use super::distinct::DistinctWorlds;
@@ -57,7 +58,9 @@ pub struct Sampler {
     counts: Vec<Vec<f64>>,
     /// Weight of each belief sample before and after multiplication with its likelihood p(a | belief).
     pub(super) priors: Vec<f64>,
-    posteriors: Vec<f64>,
+    pub(super) posteriors: Vec<f64>,
+    /// Parts of each belief sample's likelihood of the press, where the lapse is learned.
+    parts: Vec<PressParts>,
     /// Prior weight of each belief sample, where waiting is evidence multiplied by the probability that the human
     /// presses at all.
     pressing: Vec<f64>,
@@ -73,7 +76,7 @@ pub struct Sampler {
     /// What each belief sample has learned from looks at times of unknown gaze, if there were any.
     pub(super) looks: Vec<SampleLooks>,
     pub(super) news: Vec<LookNews>,
-    /// Systematic sampling of readings: by location, sum of the probabilities so far.
+    /// Systematic sampling of readings: by location, and last of the signal, sum of the probabilities so far.
     pub(super) read_sums: Vec<f64>,
 }
 
@@ -127,6 +130,8 @@ pub struct EvidenceModel<'a> {
     pub inference: &'a InferenceModel,
     /// For each button of the human, the bit set of locations at which the human looks before the press.
     pub watched: &'a [u32],
+    /// The expected lapse of this person; `None` where it is that of the choice model.
+    pub lapse: Option<f64>,
 }
 
 impl Sampler {
@@ -147,7 +152,7 @@ impl Sampler {
         random: &mut Stream,
     ) -> Evidence {
         let states = model.inference.states;
-        self.begin(model, belief, looks.is_some(), random);
+        self.begin(model, belief, looks, random);
         let mut wanted = model.inference.beliefs;
         loop {
             let old = self.samples.len();
@@ -171,7 +176,13 @@ impl Sampler {
     }
 
     /// Prepares urns and buffers for samples of this belief.
-    pub(super) fn begin(&mut self, model: &EvidenceModel, belief: &DirichletBelief, looks: bool, random: &mut Stream) {
+    pub(super) fn begin(
+        &mut self,
+        model: &EvidenceModel,
+        belief: &DirichletBelief,
+        looks: Option<&UnseenLooks>,
+        random: &mut Stream,
+    ) {
         let InferenceModel { states, beliefs, max_beliefs, .. } = *model.inference;
         self.urns.resize(belief.aspects.len(), Urn::default());
         self.counts.clear();
@@ -190,11 +201,12 @@ impl Sampler {
         self.looks.clear();
         self.news.clear();
         self.read_sums.clear();
-        if looks {
-            self.read_sums.extend(model.kitchen.locations.iter().map(|_| random.random::<f64>()));
+        if let Some(looks) = looks {
+            let read = model.kitchen.locations.len() + usize::from(looks.signal.is_some());
+            self.read_sums.extend((0..read).map(|_| random.random::<f64>()));
         }
         // A look can give each belief sample additional worlds.
-        self.worlds.clear(states * beliefs.max(max_beliefs) * (1 + usize::from(looks)));
+        self.worlds.clear(states * beliefs.max(max_beliefs) * (1 + usize::from(looks.is_some())));
     }
 
     /// Draws belief samples until there are `wanted` of them.
@@ -291,6 +303,7 @@ impl Sampler {
     fn weigh_samples(&mut self, model: &EvidenceModel, act: HumanAct, from: usize) {
         self.posteriors.truncate(from);
         self.pressing.truncate(from);
+        self.parts.truncate(from);
         for (sample, prior) in self.samples.iter().zip(&self.priors).skip(from) {
             let mut sums = [0u32; MAX_BUTTONS];
             let sums = self.sum_costs(sample, &mut sums, model);
@@ -298,7 +311,15 @@ impl Sampler {
             let (pressing, likelihood) = match act {
                 HumanAct::Presses(press) => {
                     let presses = if model.inference.waiting { 1.0 - waits() } else { 1.0 };
-                    (prior * presses, press.likelihood(model.choice.press_likelihood(sums, press.button)))
+                    let choice = match model.lapse {
+                        None => model.choice.press_likelihood(sums, press.button),
+                        Some(lapse) => {
+                            let parts = model.choice.press_parts(sums, press.button);
+                            self.parts.push(parts);
+                            parts.likelihood(lapse)
+                        }
+                    };
+                    (prior * presses, press.likelihood(choice))
                 }
                 HumanAct::Waits { longer } => (*prior, longer + (1.0 - longer) * waits()),
             };
@@ -345,6 +366,15 @@ impl Sampler {
         }
         let sum = self.posteriors.iter().sum::<f64>() * states as f64;
         self.worlds.rate_again(cost, &self.world_weights, sum)
+    }
+
+    /// Expected parts of the last press's likelihood, under the estimate before it.
+    pub fn expected_parts(&self) -> PressParts {
+        let before: f64 = self.pressing.iter().sum();
+        let mean = |part: fn(&PressParts) -> f64| {
+            self.parts.iter().zip(&self.pressing).map(|(parts, weight)| part(parts) * weight).sum::<f64>() / before
+        };
+        PressParts { chosen: mean(|parts| parts.chosen), slipped: mean(|parts| parts.slipped) }
     }
 
     fn evidence(&self) -> Evidence {

@@ -10,6 +10,17 @@ pub struct UnseenLooks<'a> {
     pub hazards: &'a [[f64; 2]],
     /// By location, the distribution of the value read; empty where nothing can be read.
     pub readings: Vec<&'a [f64]>,
+    /// The signal on the display, if it may have been read.
+    pub signal: Option<UnseenSignal>,
+}
+
+/// A signal that may have been read while nobody saw it.
+#[derive(Clone, Debug)]
+pub struct UnseenSignal {
+    /// Probability that it was read.
+    pub chance: f64,
+    /// Index of each aspect that it tells, with the distribution of the value that it is taken for.
+    pub readings: Vec<(usize, Vec<f64>)>,
 }
 
 /// What a belief sample has learned from looks at times of unknown gaze.
@@ -19,6 +30,8 @@ pub struct SampleLooks {
     pub changed: u32,
     /// Range of the sample's entries in `Sampler::news`.
     pub news: [usize; 2],
+    /// Whether it has read the signal on the display.
+    pub read_signal: bool,
 }
 
 /// A value that a belief sample holds since a look at a time of unknown gaze.

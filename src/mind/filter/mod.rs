@@ -16,6 +16,8 @@ mod own_press;
 mod perception;
 mod robot_press;
 mod serving;
+pub mod signals_so_far;
+mod standing_signal;
 mod unknown_gaze;
 mod unseen_looks;
 pub mod urn;
@@ -23,8 +25,9 @@ pub mod urn;
 use std::sync::Arc;
 
 use super::choice::ChoiceModel;
-use super::dirichlet::{Dirichlet, DirichletBelief};
+use super::dirichlet::DirichletBelief;
 use super::gaze_presence::GazePresence;
+use super::lapse_posterior::LapsePosterior;
 use super::model::{HumanModel, LookingModel};
 use super::observation::{Observation, Observed, ProposedPresses};
 use crate::base::rng::{Stream, stream};
@@ -32,9 +35,7 @@ use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::State;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{
-    Agent, AspectId, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, LocationKind, OrderContent,
-};
+use crate::kitchen::{Agent, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, OrderContent};
 pub use evidence::Evidence;
 use evidence::{EvidenceModel, Sampler};
 use exchange::Exchange;
@@ -42,6 +43,7 @@ use human_act::{HumanAct, PressMixture};
 use look_news::UnseenLooks;
 use perception::GazeReader;
 use serving::Serving;
+use signals_so_far::SignalsSoFar;
 use unknown_gaze::UnknownStretch;
 
 /// How the human's press of a button changes the belief: it involves one location, or several that jointly determine
@@ -84,6 +86,10 @@ pub struct BeliefFilter {
     frozen: Option<SessionTime>,
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
+    /// Signals that take time to be read.
+    signals: SignalsSoFar,
+    /// How often the person slips, where that is learned.
+    lapse: LapsePosterior,
     evidence: Option<Evidence>,
 }
 
@@ -110,6 +116,8 @@ impl BeliefFilter {
             forgot: None,
             frozen: None,
             proposed: ProposedPresses::default(),
+            signals: SignalsSoFar::default(),
+            lapse: LapsePosterior::around(model.decision.lapse),
             evidence: None,
             kitchen,
             model,
@@ -131,13 +139,21 @@ impl BeliefFilter {
         self.evidence
     }
 
+    /// The share of presses that slip: as far as it has been learned in this trial, or the human model's.
+    pub fn lapse(&self) -> f64 {
+        if self.model.adapt.lapse { self.lapse.expected() } else { self.model.decision.lapse }
+    }
+
     /// Updates the estimate with one observation. The random stream depends on the seed and the number of presses only.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
         let now = self.frozen.unwrap_or(observation.time);
         match observation.what {
             Observed::Frozen => return self.frozen = Some(now),
             Observed::Thawed { by, asked, teaches } => return self.thaw(by, asked, teaches),
-            Observed::Proposed(presses) => return self.proposed = presses,
+            Observed::Proposed(presses) => {
+                self.replace_signal(now, cost);
+                return self.proposed = presses;
+            }
             _ => {}
         }
         if let Observed::Gaze { sample, taken } = observation.what {
@@ -164,6 +180,8 @@ impl BeliefFilter {
                 self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
                 self.belief.clone_from(&self.prior);
                 self.proposed = ProposedPresses::default();
+                self.signals = SignalsSoFar::default();
+                self.lapse = LapsePosterior::around(self.model.decision.lapse);
                 self.forgot = Some(now);
                 self.presence.rest(now);
                 self.show(now, state);
@@ -189,7 +207,8 @@ impl BeliefFilter {
                 self.show(now, state);
             }
             Observed::Waited { longer } => self.weigh_waiting(longer, cost),
-            Observed::Told { location } => self.told(location),
+            Observed::Told { location } => self.told(now, location),
+            Observed::SignalOver => self.signals.end(),
             Observed::Paused => self.forgot = None,
             Observed::Resumed => {
                 self.forgot = Some(now);
@@ -204,7 +223,7 @@ impl BeliefFilter {
         let now = self.frozen.unwrap_or(now);
         if self.forgot.is_some() {
             let unknown_s = self.presence.pass(now);
-            self.pass_unknown(unknown_s, cost);
+            self.pass_unknown(unknown_s, now, cost);
         }
     }
 
@@ -225,6 +244,7 @@ impl BeliefFilter {
         self.forgot = self.forgot.map(|at| at + by);
         self.presence.postpone(by);
         self.reader.postpone(by);
+        self.signals.postpone(by);
         if teaches <= 0.0 {
             return;
         }
@@ -242,17 +262,18 @@ impl BeliefFilter {
     fn take_sample(&mut self, sample: &GazeSample, taken: SessionTime, cost: &mut CostToGo) {
         let known = self.model.perception.known_share(sample.confidence);
         let time = self.presence.sample(sample, known, taken);
-        self.pass_unknown(time.unknown_before_s, cost);
+        self.pass_unknown(time.unknown_before_s, taken - SessionTime::from_secs_f64(time.covers_s), cost);
         if time.known > 0.0 {
             self.stretch = None;
             let known_s = time.known * time.covers_s;
             self.reader.read(&self.kitchen, &self.model.perception, &mut self.belief, sample, taken, known_s);
-            self.pass_unknown((1.0 - time.known) * time.covers_s, cost);
+            self.read_signal_by_gaze(sample, taken, known_s);
+            self.pass_unknown((1.0 - time.known) * time.covers_s, taken, cost);
         }
     }
 
-    /// Marginalises over looks in `seconds` of unknown gaze.
-    fn pass_unknown(&mut self, seconds: f64, cost: &mut CostToGo) {
+    /// Marginalises over looks in `seconds` of unknown gaze that end at `until`.
+    fn pass_unknown(&mut self, seconds: f64, until: SessionTime, cost: &mut CostToGo) {
         if seconds <= 0.0 {
             return;
         }
@@ -267,8 +288,9 @@ impl BeliefFilter {
         }
         let needs = self.needs.as_deref().unwrap_or_default();
         let stretch = self.stretch.get_or_insert_with(|| UnknownStretch {
-            before: self.belief.aspects[..locations].to_vec(),
+            before: self.belief.aspects.clone(),
             hazards: vec![[0.0; 2]; locations],
+            signal_hazard: 0.0,
         });
         self.reader.settle();
         for (index, need) in needs.iter().enumerate() {
@@ -280,13 +302,17 @@ impl BeliefFilter {
                 self.belief.aspects[index].learn(looked, reading.iter().copied());
             }
         }
+        let hazard = self.read_signal_unseen(seconds, until);
+        if let Some(stretch) = &mut self.stretch {
+            stretch.signal_hazard += hazard;
+        }
     }
 
     /// The probability that the next press needs each location, under the present estimate.
     fn needs_now(&mut self, cost: &mut CostToGo) -> Vec<f64> {
         let mut random = stream(self.seed, "needs", self.presses);
-        let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
-        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
+        let (kitchen, choice, watched, lapse) = (&*self.kitchen, &self.choice, &self.watched[..], None);
+        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
         self.sampler.needs(&model, cost, &self.belief, &mut random)
     }
 
@@ -310,23 +336,36 @@ impl BeliefFilter {
     /// it.
     fn weigh_press(&mut self, press: PressMixture, cost: &mut CostToGo, random: &mut Stream) -> Evidence {
         let stretch = self.stretch.take();
+        let signal = stretch.as_ref().and_then(|stretch| self.unseen_signal(stretch.signal_hazard));
+        let has_signal = signal.is_some();
         let looks = stretch.as_ref().map(|stretch| {
             let reading = |index| self.reader.reading(&self.kitchen, LocationId(index as u8), self.shown);
-            UnseenLooks { hazards: &stretch.hazards, readings: (0..stretch.hazards.len()).map(reading).collect() }
+            let readings = (0..stretch.hazards.len()).map(reading).collect();
+            UnseenLooks { hazards: &stretch.hazards, readings, signal }
         });
         if let Some(stretch) = &stretch {
-            self.belief.aspects[..stretch.before.len()].clone_from_slice(&stretch.before);
+            self.belief.aspects.clone_from_slice(&stretch.before);
         }
         let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
-        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
-        self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Presses(press), looks.as_ref(), random)
+        let lapse = self.model.adapt.lapse.then(|| self.lapse.expected());
+        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
+        let evidence =
+            self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Presses(press), looks.as_ref(), random);
+        if lapse.is_some() {
+            let parts = self.sampler.expected_parts();
+            self.lapse.learn(|lapse| press.likelihood(parts.likelihood(lapse)));
+        }
+        if let Some(UnknownStretch { signal_hazard, .. }) = stretch.filter(|_| has_signal) {
+            self.correct_reading(signal_hazard, self.sampler.signal_read());
+        }
+        evidence
     }
 
     /// Updates the estimate by the likelihood of having waited.
     fn weigh_waiting(&mut self, longer: f64, cost: &mut CostToGo) {
         let mut random = stream(self.seed, "waiting", self.presses);
-        let (kitchen, choice, watched) = (&*self.kitchen, &self.choice, &self.watched[..]);
-        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched };
+        let (kitchen, choice, watched, lapse) = (&*self.kitchen, &self.choice, &self.watched[..], None);
+        let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
         self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Waits { longer }, None, &mut random);
     }
 
@@ -343,6 +382,9 @@ impl BeliefFilter {
         for index in 0..self.kitchen.aspects.len() {
             if matches!(self.kitchen.aspects[index].kind, AspectKind::Recipe(_)) {
                 self.belief.aspects[index].mix(lost, &self.prior.aspects[index]);
+                if let Some(stretch) = &mut self.stretch {
+                    stretch.before[index].mix(lost, &self.prior.aspects[index]);
+                }
             }
         }
     }
@@ -373,23 +415,6 @@ impl BeliefFilter {
             if let (Some(served), Some(none)) = (served, none) {
                 self.belief.aspects[order.index()].shift(served, none);
             }
-        }
-    }
-
-    /// Makes the aspects that a signal shows certain, with the probability that the human notices the signal.
-    fn told(&mut self, location: LocationId) {
-        let kitchen = self.kitchen.clone();
-        let mut aspects = vec![AspectId::of_location(location)];
-        if let (LocationKind::Order, OrderContent::Dish(dish)) =
-            (kitchen.location(location).kind, self.shown.order(location))
-        {
-            aspects.push(kitchen.aspect_of_dish(dish));
-        }
-        for aspect in aspects {
-            let truth = kitchen.true_value(self.shown, aspect);
-            let of_aspect: &mut Dirichlet = &mut self.belief.aspects[aspect.index()];
-            let values = of_aspect.mean().len();
-            of_aspect.learn(self.model.signal.noticed, (0..values).map(|value| f64::from(value == truth)));
         }
     }
 }

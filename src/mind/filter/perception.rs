@@ -19,7 +19,7 @@ use crate::mind::model::{PerceptionModel, ReadingRate};
 /// The gaze counts as being elsewhere where the reading rate of a location is below this share of the full rate.
 const ELSEWHERE: f64 = 0.1;
 /// Contents that are read with a smaller probability are ignored.
-const NEGLIGIBLE: f64 = 1e-9;
+pub const NEGLIGIBLE: f64 = 1e-9;
 
 /// A look at a location: consecutive gaze samples near it.
 #[derive(Clone, Copy, Debug)]

@@ -14,11 +14,13 @@ use crate::mind::dirichlet::Dirichlet;
 /// A time of unknown gaze since the last event or known gaze.
 #[derive(Clone, Debug)]
 pub struct UnknownStretch {
-    /// Estimates of the locations at the beginning of the unknown time.
+    /// Beliefs about all aspects at its beginning, apart from what has been forgotten since.
     pub before: Vec<Dirichlet>,
     /// By location: expected number of looks without need, and the additional number if the next press certainly needs
     /// the location.
     pub hazards: Vec<[f64; 2]>,
+    /// Hazard of having read the signal on the display.
+    pub signal_hazard: f64,
 }
 
 /// For each button of the human, the bit set of locations at which the human looks before the press, without the own

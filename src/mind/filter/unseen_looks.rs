@@ -14,7 +14,7 @@ use crate::mind::dirichlet::DirichletBelief;
 use rand::RngExt;
 
 use super::evidence::{EvidenceModel, Sampler, UNDRAWN};
-use super::look_news::{LookNews, SampleLooks, UnseenLooks};
+use super::look_news::{LookNews, SampleLooks, UnseenLooks, UnseenSignal};
 
 impl Sampler {
     /// The probability that the human looks at each location before its next press, averaged over belief samples.
@@ -25,7 +25,7 @@ impl Sampler {
         belief: &DirichletBelief,
         random: &mut Stream,
     ) -> Vec<f64> {
-        self.begin(model, belief, false, random);
+        self.begin(model, belief, None, random);
         self.draw(model, cost, model.inference.beliefs, random);
         let mut sums = [0.0; MAX_LOCATIONS];
         for index in 0..self.samples.len() {
@@ -54,31 +54,56 @@ impl Sampler {
         for index in from..self.samples.len() {
             let begin = self.news.len();
             let needs = self.needs_of(model, index);
+            let read_signal = looks.signal.as_ref().is_some_and(|signal| self.hear(signal, random));
             for (location, (&[base, extra], reading)) in looks.hazards.iter().zip(&looks.readings).enumerate() {
-                let before = self.read_sums[location];
-                self.read_sums[location] -= (-(base + extra * needs[location])).exp_m1();
-                // Systematic sampling: over all samples the number of readings differs from its expectation by less
-                // than 1.
-                if self.read_sums[location].floor() > before.floor() && !reading.is_empty() {
+                let chance = -(-(base + extra * needs[location])).exp_m1();
+                if self.is_read(location, chance) && !reading.is_empty() {
                     let value = value_at(reading, random.random::<f64>());
-                    self.news.push(LookNews { aspect: location, value, is_read: true });
+                    // What the signal has told is certain already.
+                    if self.news[begin..].iter().all(|news| news.aspect != location) {
+                        self.news.push(LookNews { aspect: location, value, is_read: true });
+                    }
                 }
             }
             let wanted = self.news[begin..]
                 .iter()
                 .filter_map(|news| self.wants.get(news.aspect).map(|wants| wants[usize::from(news.value)]));
-            let wanted = wanted.fold(0, |all, wants| all | wants);
+            let told = self.news[begin..].iter().fold(0, |told, news| told | 1 << news.aspect);
+            let wanted = wanted.fold(0, |all, wants| all | wants) & !told;
             for aspect in ones(wanted).filter(|aspect| self.firsts[index * aspects + aspect] == UNDRAWN) {
                 let value = self.urns[aspect].draw(random);
                 self.news.push(LookNews { aspect, value, is_read: false });
             }
             let news = [begin, self.news.len()];
             let changed = self.news[begin..].iter().fold(0, |changed, news| changed | 1 << news.aspect);
-            self.looks.push(SampleLooks { changed, news });
+            self.looks.push(SampleLooks { changed, news, read_signal });
             if changed != 0 {
                 self.believe_news(model, index, news);
             }
         }
+    }
+
+    /// Whether the next belief sample has read a location, or the signal, of this probability. Systematic sampling: over all samples
+    /// the number of readings differs from its expectation by less than 1.
+    fn is_read(&mut self, what: usize, chance: f64) -> bool {
+        let before = self.read_sums[what];
+        self.read_sums[what] += chance;
+        self.read_sums[what].floor() > before.floor()
+    }
+
+    /// Lets the next belief sample read the signal on the display, or miss it; returns whether it has read it.
+    fn hear(&mut self, signal: &UnseenSignal, random: &mut Stream) -> bool {
+        let is_read = self.is_read(self.read_sums.len() - 1, signal.chance);
+        for (aspect, reading) in signal.readings.iter().filter(|_| is_read) {
+            self.news.push(LookNews { aspect: *aspect, value: value_at(reading, random.random::<f64>()), is_read });
+        }
+        is_read
+    }
+
+    /// Posterior probability that the signal on the display was read in the unknown time.
+    pub fn signal_read(&self) -> f64 {
+        let read = self.posteriors.iter().zip(&self.looks).filter(|(_, looks)| looks.read_signal);
+        read.map(|(weight, _)| weight).sum::<f64>() / self.posteriors.iter().sum::<f64>()
     }
 
     /// Replaces the worlds of a belief sample by those with the values that looks have taught it.

@@ -8,13 +8,16 @@ use rand::RngExt;
 use super::person::{Particle, press_chances, wait_chance};
 use super::plausible_looks::{self, PlausibleLooks};
 use super::reading_effect::GazeFollower;
+use super::signal_reading::PlainSignals;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State};
+use crate::mind::choice_parameters::DecisionModel;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::mind::gaze_presence::GazePresence;
+use crate::mind::lapse_posterior::{LAPSES, MOST_LAPSE};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::{Observation, Observed, ProposedPresses};
 
@@ -41,6 +44,10 @@ pub struct Particles {
     forgot: Option<SessionTime>,
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
+    /// Signals that take time to be read.
+    signals: PlainSignals,
+    /// Lapses of this person with their probabilities.
+    pub lapses: Vec<(f64, f64)>,
 }
 
 impl Particles {
@@ -50,8 +57,23 @@ impl Particles {
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
         let (doubt, sight, presence) = (prior.clone(), GazeFollower::default(), GazePresence::new(&model));
         let (of, pressing, unseen, forgot) = (Vec::new(), Vec::new(), None, None);
-        let proposed = ProposedPresses::default();
-        Particles { kitchen, model, prior, doubt, of, sight, presence, pressing, unseen, shown, forgot, proposed }
+        let (proposed, signals, lapses) = (ProposedPresses::default(), PlainSignals::default(), lapses(&model));
+        Particles {
+            kitchen,
+            model,
+            prior,
+            doubt,
+            of,
+            sight,
+            presence,
+            pressing,
+            unseen,
+            shown,
+            forgot,
+            proposed,
+            signals,
+            lapses,
+        }
     }
 
     /// Starts the trial in `state` with `count` beliefs drawn from the prior.
@@ -63,6 +85,8 @@ impl Particles {
         self.presence.rest(now);
         self.unseen = None;
         self.proposed = ProposedPresses::default();
+        self.signals = PlainSignals::default();
+        self.lapses = lapses(&self.model);
         self.show(now, state);
     }
 
@@ -75,11 +99,11 @@ impl Particles {
     pub fn advance(&mut self, now: SessionTime, cost: &mut CostToGo, random: &mut Stream) {
         if self.forgot.is_some() {
             let seconds = self.presence.pass(now);
-            self.look_unseen(seconds, cost, random);
+            self.look_unseen(seconds, now, cost, random);
         }
     }
 
-    fn look_unseen(&mut self, seconds: f64, cost: &mut CostToGo, random: &mut Stream) {
+    fn look_unseen(&mut self, seconds: f64, until: SessionTime, cost: &mut CostToGo, random: &mut Stream) {
         if seconds <= 0.0 {
             return;
         }
@@ -91,17 +115,23 @@ impl Particles {
         };
         let unseen = self.unseen.get_or_insert_with(|| PlausibleLooks::before(kitchen, model, &self.of, cost, random));
         unseen.look(kitchen, model, &mut self.of, self.shown, rates_hz.map(|hz| hz * seconds), random);
+        if self.presence.display_in_view {
+            self.signals.look_unseen(kitchen, model, &mut self.of, (seconds, until), self.shown, random);
+        }
     }
 
     fn gaze(&mut self, sample: &GazeSample, taken: SessionTime, cost: &mut CostToGo, random: &mut Stream) {
         let perception = &self.model.perception;
         let time = self.presence.sample(sample, perception.known_share(sample.confidence), taken);
-        self.look_unseen(time.unknown_before_s, cost, random);
+        let begin = taken - SessionTime::from_secs_f64(time.covers_s);
+        self.look_unseen(time.unknown_before_s, begin, cost, random);
         let known_s = time.known * time.covers_s;
         let glances = self.sight.glances(&self.kitchen, &self.model.perception, sample, taken, known_s);
         self.of.iter_mut().for_each(|person| person.look(&glances, random));
         if time.known > 0.0 {
-            self.look_unseen((1.0 - time.known) * time.covers_s, cost, random);
+            let (kitchen, model, looks) = (&self.kitchen, &self.model, (sample, taken, known_s));
+            self.signals.look(kitchen, model, &mut self.of, looks, self.shown, random);
+            self.look_unseen((1.0 - time.known) * time.covers_s, taken, cost, random);
         }
     }
 
@@ -124,6 +154,8 @@ impl Particles {
             return vec![1.0; self.of.len()];
         }
         if let Observed::Proposed(presses) = observation.what {
+            self.advance(now, cost, random);
+            self.end_signal();
             self.proposed = presses;
             return vec![1.0; self.of.len()];
         }
@@ -157,7 +189,8 @@ impl Particles {
                 self.show(now, state);
             }
             Observed::Waited { longer } => return self.human_waited(longer, cost, random),
-            Observed::Told { location } => self.told(location, random),
+            Observed::Told { location } => self.told(now, location, random),
+            Observed::SignalOver => self.end_signal(),
             Observed::Paused | Observed::Frozen => self.forgot = None,
             Observed::Resumed => self.go_on(now),
             Observed::Thawed { asked, teaches, .. } => {
@@ -220,13 +253,25 @@ impl Particles {
         self.proposed.pressed(button);
         let mut weights = Vec::with_capacity(self.of.len());
         self.pressing.clear();
+        let mut likelihoods = vec![0.0; self.lapses.len()];
         for person in &mut self.of {
+            let mut weight = 0.0;
             let (here, after) = person.prospects(&self.kitchen, cost, inference.states, random);
             let presses = if inference.waiting { 1.0 - wait_chance(decision, here, &after) } else { 1.0 };
             self.pressing.push(presses);
-            weights
-                .push(presses * (proposed + chosen * press_chances(&self.kitchen, decision, &after)[button.index()]));
+            // p(a | b) for each lapse, alone the human model's where it is not learned.
+            for ((lapse, p), likelihood) in self.lapses.iter().zip(&mut likelihoods) {
+                let decision = DecisionModel { lapse: *lapse, ..decision.clone() };
+                let pressed = proposed + chosen * press_chances(&self.kitchen, &decision, &after)[button.index()];
+                *likelihood += presses * pressed;
+                weight += p * presses * pressed;
+            }
+            weights.push(weight);
             person.pressed(&self.kitchen, &doubt, button, effective);
+        }
+        let total: f64 = self.lapses.iter().zip(&likelihoods).map(|((_, p), likelihood)| p * likelihood).sum();
+        for ((_, p), likelihood) in self.lapses.iter_mut().zip(&likelihoods) {
+            *p *= likelihood / total;
         }
         weights
     }
@@ -259,13 +304,18 @@ impl Particles {
         }
     }
 
-    fn told(&mut self, location: LocationId, random: &mut Stream) {
-        let kitchen = &self.kitchen;
+    fn told(&mut self, now: SessionTime, location: LocationId, random: &mut Stream) {
+        let kitchen = self.kitchen.clone();
         let mut aspects = vec![AspectId::of_location(location)];
         if let (LocationKind::Order, OrderContent::Dish(dish)) =
             (kitchen.location(location).kind, self.shown.order(location))
         {
             aspects.push(kitchen.aspect_of_dish(dish));
+        }
+        if self.model.signal.takes_time() {
+            let read = self.share_with_signal(&vec![1.0; self.of.len()]);
+            self.of.iter_mut().for_each(|person| person.read_signal = false);
+            return self.signals.show(&kitchen, &self.model, now, (location, aspects), read);
         }
         for person in &mut self.of {
             for &aspect in &aspects {
@@ -274,5 +324,27 @@ impl Particles {
                 }
             }
         }
+    }
+
+    /// The signal leaves the display.
+    fn end_signal(&mut self) {
+        let read = self.share_with_signal(&vec![1.0; self.of.len()]);
+        self.signals.end(read);
+        self.of.iter_mut().for_each(|person| person.read_signal = false);
+    }
+
+    /// Share of the weighted beliefs that have read the signal on the display.
+    pub fn share_with_signal(&self, weights: &[f64]) -> f64 {
+        let read = self.of.iter().zip(weights).filter(|(person, _)| person.read_signal);
+        read.map(|(_, weight)| weight).sum::<f64>() / weights.iter().sum::<f64>()
+    }
+}
+
+/// The lapses that a person may have, with their probabilities before the first press.
+fn lapses(model: &HumanModel) -> Vec<(f64, f64)> {
+    let own = model.decision.lapse;
+    match model.adapt.lapse {
+        true => LAPSES.iter().map(|(times, p)| ((times * own).min(MOST_LAPSE), *p)).collect(),
+        false => vec![(own, 1.0)],
     }
 }

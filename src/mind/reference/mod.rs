@@ -11,6 +11,7 @@ pub mod belief_set;
 pub mod person;
 pub mod plausible_looks;
 pub mod reading_effect;
+pub mod signal_reading;
 
 use std::sync::Arc;
 
@@ -68,6 +69,11 @@ impl ReferenceFilter {
         self.log_p
     }
 
+    /// The expected share of presses that slip.
+    pub fn lapse(&self) -> f64 {
+        self.people.lapses.iter().map(|(lapse, p)| lapse * p).sum()
+    }
+
     /// Updates the estimate with one observation. The random stream depends on the seed and the number of observations
     /// only.
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
@@ -95,20 +101,21 @@ impl ReferenceFilter {
     fn project(&mut self, weights: &[f64], random: &mut Stream) {
         if !self.people.of.is_empty() {
             let estimate = self.people.projected(weights);
-            self.draw(&estimate, random);
+            self.draw(&estimate, self.people.share_with_signal(weights), random);
             self.people.doubt = estimate;
         }
     }
 
-    /// Draws all explicit beliefs anew; the number of beliefs that have read each location in the present look is
-    /// preserved.
-    fn draw(&mut self, estimate: &DirichletBelief, random: &mut Stream) {
+    /// Draws all explicit beliefs anew; the number of beliefs that have read each location in the present look is preserved, and the share that
+    /// has read the signal on the display.
+    fn draw(&mut self, estimate: &DirichletBelief, with_signal: f64, random: &mut Stream) {
         let count = self.people.of.len() as f64;
         let read = |index: usize| self.people.of.iter().filter(|person| person.read[index]).count() as f64 / count;
         let read: Vec<f64> = (0..self.kitchen.locations.len()).map(read).collect();
         let person = |random: &mut Stream| {
             let mut person = Particle::draw(&self.kitchen, estimate, random);
             person.read = read.iter().map(|&share| random.random::<f64>() < share).collect();
+            person.read_signal = with_signal > 0.0 && random.random::<f64>() < with_signal;
             person
         };
         let people = (0..self.beliefs).map(|_| person(random)).collect();

@@ -29,6 +29,8 @@ pub struct Particle {
     pub of: Vec<Vec<f64>>,
     /// Whether each location has been read in the present look.
     pub read: Vec<bool>,
+    /// Whether it has read the signal on the display.
+    pub read_signal: bool,
 }
 
 /// A hypothesis of kitchen state and recipes, with its probability.
@@ -46,7 +48,7 @@ impl Particle {
     /// A belief drawn from an estimate, every component by a gamma variate.
     pub fn draw(kitchen: &Kitchen, estimate: &DirichletBelief, random: &mut Stream) -> Particle {
         let of = estimate.aspects.iter().map(|dirichlet| draw(dirichlet, random)).collect();
-        Particle { of, read: vec![false; kitchen.locations.len()] }
+        Particle { of, read: vec![false; kitchen.locations.len()], read_signal: false }
     }
 
     /// Applies a gaze sample: a location that has not been read in this look is read with a probability, and the belief

@@ -16,7 +16,7 @@ const UNSURE: &str = "certainty could not be corrected by any observation";
 const PRECISION: &str = "less is no belief, more a certain one";
 const DRAWS: &str = "more take seconds to minutes a press";
 
-pub(super) const RANGES: [NumberRange; 33] = [
+pub(super) const RANGES: [NumberRange; 38] = [
     NumberRange::real("human.prior.location_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
     NumberRange::real("human.prior.location_precision", [0.01, 10_000.0], "", PRECISION).recorded(ABOVE_0),
     NumberRange::real("human.prior.recipe_truth", [0.001, 0.9999], "", UNSURE).recorded(INSIDE_0_AND_1),
@@ -95,6 +95,26 @@ pub(super) const RANGES: [NumberRange; 33] = [
         .recorded(NOT_NEGATIVE),
     NumberRange::whole("human.decision.cases", [1.0, 4_096.0], "worlds", DRAWS).recorded(TO_65536),
     NumberRange::real("human.signal.noticed", [0.0, 1.0], "", CHANCE),
+    NumberRange::real("human.signal.highlight_noticed", [0.0, 1.0], "", CHANCE),
+    NumberRange::real(
+        "human.signal.delay_s",
+        [0.0, 60.0],
+        "s",
+        "a signal is read within seconds; 0: it is believed at once",
+    ),
+    NumberRange::real(
+        "human.signal.reading_rate_hz",
+        [0.01, 1_000.0],
+        "per second",
+        "less reads nothing, more everything at once",
+    ),
+    NumberRange::real("human.signal.misread", [0.0, 1.0], "", CHANCE),
+    NumberRange::real(
+        "human.signal.noticed_precision",
+        [0.0, 10_000.0],
+        "signals",
+        "with the most, nothing is learned in a trial; 0: nothing at all",
+    ),
     NumberRange::real("human.signal.follows", [0.0, 0.999], "", "with 1, no press would have another reason"),
     NumberRange::whole("human.inference.beliefs", [1.0, 2_048.0], "samples", DRAWS).recorded(TO_65536),
     NumberRange::whole("human.inference.states", [1.0, 128.0], "states", DRAWS).recorded([1.0, 256.0]),

@@ -158,7 +158,11 @@ fn grid(kitchen: &Kitchen, belief: &DirichletBelief) -> (Vec<Particle>, Vec<f64>
                     axis.nodes[at].0
                 })
                 .collect();
-            people.push(Particle { of: broken(&mean, &supports, &shares), read: vec![false; kitchen.locations.len()] });
+            people.push(Particle {
+                of: broken(&mean, &supports, &shares),
+                read: vec![false; kitchen.locations.len()],
+                read_signal: false,
+            });
             weights.push(weight);
         }
     }

@@ -1,6 +1,7 @@
 //! Inference of the human's belief against exact computation, against humans who are simulated from the model itself, against
 //! its own plain reference, and under whatever may come.
 
+mod adaptation;
 mod calibration;
 mod drop_outs;
 mod exact;
@@ -13,6 +14,7 @@ mod observed;
 mod particles;
 mod proposals;
 mod recorded;
+mod signals;
 mod unknown_gaze;
 mod waiting;
 mod world;

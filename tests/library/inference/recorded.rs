@@ -2,12 +2,13 @@
 
 use tomcom::base::time::SessionTime;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::kitchen::{Agent, Press};
+use tomcom::kitchen::{Agent, LocationId, Press};
 use tomcom::mind::dirichlet::DirichletBelief;
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::{Observation, Observed};
 use tomcom::mind::reference::ReferenceFilter;
+use tomcom::mind::signal_model::SignalModel;
 
 use super::observed::recorded;
 use super::world::{distance, kitchen};
@@ -24,17 +25,66 @@ fn mean_distance(one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
 
 #[test]
 fn the_fast_filter_and_the_reference_agree_on_recorded_steps() {
-    agree(false, |_| true);
+    agree(HumanModel::default(), |_| true, |same| same);
 }
 
 #[test]
 fn they_agree_without_gaze() {
-    agree(false, |what| !matches!(what, Observed::Gaze { .. }));
+    agree(HumanModel::default(), |what| !matches!(what, Observed::Gaze { .. }), |same| same);
 }
 
 #[test]
 fn they_agree_where_waiting_is_evidence() {
-    agree(true, |_| true);
+    let mut model = HumanModel::default();
+    model.inference.waiting = true;
+    agree(model, |_| true, with_waits);
+}
+
+#[test]
+fn they_agree_where_the_lapse_is_learned() {
+    let mut model = HumanModel::default();
+    model.adapt.lapse = true;
+    agree(model, |_| true, |same| same);
+}
+
+/// A human who reads signals in time.
+fn reads_in_time() -> HumanModel {
+    let signal = SignalModel {
+        noticed: 0.8,
+        highlight_noticed: Some(0.6),
+        delay_s: 1.0,
+        misread: 0.05,
+        noticed_precision: 4.0,
+        ..SignalModel::default()
+    };
+    HumanModel { signal, ..HumanModel::default() }
+}
+
+#[test]
+fn they_agree_where_signals_take_time() {
+    agree(reads_in_time(), |_| true, with_signals);
+}
+
+#[test]
+fn they_agree_without_gaze_where_signals_take_time() {
+    agree(reads_in_time(), |what| !matches!(what, Observed::Gaze { .. }), with_signals);
+}
+
+/// After every third press of the human a signal is shown for up to four seconds: about an order, a place, in turn.
+fn with_signals(observations: Vec<Observation>) -> Vec<Observation> {
+    let is_own = |what: &Observed| matches!(what, Observed::Pressed(Press { agent: Agent::Human, .. }));
+    let own = observations.iter().filter(|one| is_own(&one.what)).step_by(3);
+    let signals = own.enumerate().flat_map(|(number, one)| {
+        let location = LocationId([0, 5, 1, 6, 0, 4][number % 6]);
+        let after = |seconds: f64| one.time + SessionTime::from_secs_f64(seconds);
+        [
+            Observation { time: after(0.1), what: Observed::Told { location } },
+            Observation { time: after(4.1), what: Observed::SignalOver },
+        ]
+    });
+    let mut all = [observations.clone(), signals.collect()].concat();
+    all.sort_by_key(|one| one.time);
+    all
 }
 
 /// After every third press of the human, a second later, it has waited for longer than usual.
@@ -52,20 +102,17 @@ fn with_waits(observations: Vec<Observation>) -> Vec<Observation> {
     all
 }
 
-/// Holds the two against each other on recorded steps, as far as they are `kept`.
-fn agree(waiting: bool, kept: impl Fn(&Observed) -> bool) {
+/// Holds the two against each other on recorded steps, as far as they are `kept` and with what is `added`.
+fn agree(model: HumanModel, kept: impl Fn(&Observed) -> bool, added: impl Fn(Vec<Observation>) -> Vec<Observation>) {
     for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
         let kitchen = kitchen(layout);
         let mut observations = recorded(&kitchen, 21, 45);
         observations.retain(|observation| kept(&observation.what));
-        if waiting {
-            observations = with_waits(observations);
-        }
+        let observations = added(observations);
         let mut cost = CostToGo::new(kitchen.clone());
         // Many samples, so that the two are compared and not their chances.
-        let mut model = HumanModel::default();
+        let mut model = model.clone();
         (model.inference.beliefs, model.inference.predictions) = (1024, 256);
-        model.inference.waiting = waiting;
         let mut fast = BeliefFilter::new(kitchen.clone(), model.clone(), 1);
         let mut reference = ReferenceFilter::new(kitchen.clone(), model, 1);
         let (mut sum, mut most, mut steps) = (0.0, 0.0_f64, 0);

@@ -46,6 +46,11 @@ fn every_setting() -> toml::Table {
         follows_proposal = { median = 0.5, sigma = 0.4 }
         [human.signal]
         follows = 0.5
+        highlight_noticed = 0.5
+        delay_s = 0.5
+        reading_rate_hz = 2.0
+        misread = 0.1
+        noticed_precision = 2.0
         [probes]
         per_trial = 0
         least_questions = 1

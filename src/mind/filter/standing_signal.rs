@@ -1,0 +1,136 @@
+//! The signal that stands on the display: whether it has been read is a part of the estimate.
+//!
+//! While the gaze is known, the signal is read as a location is: at a rate that falls with the distance of the gaze from its place. While the
+//! gaze is unknown, it draws the eye with a hazard that over all time gives the probability that it is noticed (see [`crate::mind::signal_model::SignalModel`]). So a
+//! known gaze elsewhere for all of the signal's time is evidence that it was missed. Reading it makes its aspects certain; to read it
+//! once more changes nothing. A press of the human draws the readings in the unknown time since the last event anew, see
+//! [`super::unseen_looks`].
+//!
+//! What was read and what was missed tells how often this person notices signals: the counts of a Beta distribution.
+
+use crate::base::time::SessionTime;
+use crate::gaze::GazeSample;
+use crate::kitchen::cost_to_go::CostToGo;
+use crate::kitchen::{AspectId, LocationId, LocationKind, OrderContent};
+use crate::mind::dirichlet::DirichletBelief;
+use crate::mind::model::HumanModel;
+use crate::mind::signal_model::SignalForecast;
+
+use super::BeliefFilter;
+use super::look_news::UnseenSignal;
+use super::perception::NEGLIGIBLE;
+use super::signals_so_far::{SignalOver, StandingSignal};
+
+impl BeliefFilter {
+    /// The signal that has left the display since the last call, if one has.
+    pub fn take_signal_over(&mut self) -> Option<SignalOver> {
+        self.signals.over.take()
+    }
+
+    /// How a signal that is shown now will be read.
+    pub fn forecast(&self) -> SignalForecast {
+        let model = &self.model.signal;
+        if !model.takes_time() {
+            return SignalForecast::default();
+        }
+        let understood = |kind| (1.0 - model.misread) * self.signals.noticed(model, kind);
+        let (recipe, highlight) = (understood(LocationKind::Order), understood(LocationKind::Place));
+        SignalForecast { recipe, highlight, delay_s: model.delay_s }
+    }
+
+    /// An estimate in which the signal on the display has been read as far as it is to be expected: advice must not be given twice because
+    /// the first has not been read yet.
+    pub fn foreseen(&self, now: SessionTime, mut belief: DirichletBelief) -> DirichletBelief {
+        if let Some(standing) = &self.signals.standing {
+            let passed_s = now.secs_since(standing.since);
+            let hazard = self.model.signal.reading_hazard(standing.noticed, passed_s, f64::INFINITY);
+            standing.teach(&self.kitchen, self.shown, &self.model.signal, -(-hazard).exp_m1(), &mut belief);
+        }
+        belief
+    }
+
+    /// A signal is shown. Where signals take no time, it makes its aspects certain with the probability that it is noticed.
+    pub(super) fn told(&mut self, now: SessionTime, location: LocationId) {
+        let kind = self.kitchen.location(location).kind;
+        let mut aspects = vec![AspectId::of_location(location)];
+        if let (LocationKind::Order, OrderContent::Dish(dish)) = (kind, self.shown.order(location)) {
+            aspects.push(self.kitchen.aspect_of_dish(dish));
+        }
+        self.signals.end();
+        let noticed = self.signals.noticed(&self.model.signal, kind);
+        let standing = StandingSignal { location, aspects, since: now, noticed, unread: 1.0 };
+        if self.model.signal.takes_time() {
+            self.signals.standing = Some(standing);
+            return;
+        }
+        standing.teach(&self.kitchen, self.shown, &self.model.signal, noticed, &mut self.belief);
+    }
+
+    /// Proposed presses take the place of the signal on the display.
+    pub(super) fn replace_signal(&mut self, now: SessionTime, cost: &mut CostToGo) {
+        if self.signals.standing.is_some() {
+            self.advance(now, cost);
+            self.stretch = None;
+            self.signals.end();
+        }
+    }
+
+    /// The signal on the display is read with the probability `chance`.
+    fn read_signal(&mut self, chance: f64) {
+        if let Some(standing) = &mut self.signals.standing {
+            standing.unread *= 1.0 - chance;
+            standing.teach(&self.kitchen, self.shown, &self.model.signal, chance, &mut self.belief);
+        }
+    }
+
+    /// Reads the signal on the display in a sample whose gaze is known for `known_s` seconds.
+    pub(super) fn read_signal_by_gaze(&mut self, sample: &GazeSample, taken: SessionTime, known_s: f64) {
+        let Some(standing) = &self.signals.standing else { return };
+        let HumanModel { perception, signal, .. } = &self.model;
+        // NaN fails these comparisons.
+        let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
+        if !on_display || taken < standing.since {
+            return;
+        }
+        let area = self.kitchen.location(standing.location).display;
+        let distance_m = area.distance_m([sample.x, sample.y], self.kitchen.display_m);
+        let rate_hz = perception.rate_of(signal.reading_rate_hz).at(distance_m, sample.confidence.min(1.0));
+        let chance = -(-rate_hz * known_s).exp_m1();
+        if chance >= NEGLIGIBLE {
+            self.reader.settle();
+            self.read_signal(chance);
+        }
+    }
+
+    /// The signal on the display may draw the eye in `seconds` of unknown gaze that end at `until`. Returns the hazard.
+    pub(super) fn read_signal_unseen(&mut self, seconds: f64, until: SessionTime) -> f64 {
+        let Some(standing) = self.signals.standing.as_ref().filter(|_| self.presence.display_in_view) else {
+            return 0.0;
+        };
+        let until_s = until.secs_since(standing.since);
+        let hazard = self.model.signal.reading_hazard(standing.noticed, until_s - seconds, until_s);
+        if hazard > 0.0 {
+            self.read_signal(-(-hazard).exp_m1());
+        }
+        hazard
+    }
+
+    /// The signal on the display as a belief sample may have read it in unknown time with this hazard.
+    pub(super) fn unseen_signal(&self, hazard: f64) -> Option<UnseenSignal> {
+        let standing = self.signals.standing.as_ref().filter(|_| hazard > 0.0)?;
+        let reading = |aspect: &AspectId| {
+            let values = self.kitchen.aspects[aspect.index()].values.len();
+            let truth = self.kitchen.true_value(self.shown, *aspect);
+            (aspect.index(), self.model.signal.understood(truth, values).collect())
+        };
+        let readings = standing.aspects.iter().map(reading).collect();
+        Some(UnseenSignal { chance: -(-hazard).exp_m1(), readings })
+    }
+
+    /// Corrects the probability that the signal on the display was read in unknown time with this hazard: `read` is what a press says.
+    pub(super) fn correct_reading(&mut self, hazard: f64, read: f64) {
+        if let Some(standing) = &mut self.signals.standing {
+            standing.unread *= hazard.exp() * (1.0 - read);
+        }
+    }
+}

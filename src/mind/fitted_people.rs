@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::choice_parameters::DecisionModel;
 use super::fitting::Parameter;
 use super::model::{
-    HumanModel, InferenceModel, LookingModel, PerceptionModel, PriorModel, SignalModel, TransitionModel,
+    AdaptModel, HumanModel, InferenceModel, LookingModel, PerceptionModel, PriorModel, TransitionModel,
 };
+use super::signal_model::SignalModel;
 
 /// Parameters of persons by their codes; what a person's table leaves out is as in the population.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -40,6 +41,8 @@ pub struct HumanModelFile {
     transition: TransitionModel,
     decision: DecisionModel,
     signal: SignalModel,
+    #[serde(skip_serializing_if = "AdaptModel::is_off")]
+    adapt: AdaptModel,
     inference: InferenceModel,
     /// Parameters of persons, if the file has any.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -49,13 +52,14 @@ pub struct HumanModelFile {
 impl HumanModelFile {
     /// A file with these parameters of the population and of persons.
     pub fn new(population: HumanModel, people: Option<FittedPeople>) -> HumanModelFile {
-        let HumanModel { prior, perception, looking, transition, decision, signal, inference } = population;
-        HumanModelFile { prior, perception, looking, transition, decision, signal, inference, people }
+        let HumanModel { prior, perception, looking, transition, decision, signal, adapt, inference } = population;
+        HumanModelFile { prior, perception, looking, transition, decision, signal, adapt, inference, people }
     }
 
     /// The parameters of the population, which are everybody's in a file without persons.
     pub fn population(&self) -> HumanModel {
-        let HumanModelFile { prior, perception, looking, transition, decision, signal, inference, .. } = self.clone();
-        HumanModel { prior, perception, looking, transition, decision, signal, inference }
+        let HumanModelFile { prior, perception, looking, transition, decision, signal, adapt, inference, .. } =
+            self.clone();
+        HumanModel { prior, perception, looking, transition, decision, signal, adapt, inference }
     }
 }

@@ -42,7 +42,7 @@ pub struct AdaptModel {
 
 impl AdaptModel {
     /// Whether nothing is adapted. Files and headers leave it out then.
-    fn is_off(&self) -> bool {
+    pub(super) fn is_off(&self) -> bool {
         *self == AdaptModel::default()
     }
 }

@@ -1,10 +1,10 @@
 //! The update of the estimate by the likelihood of the human's action: a press, or waiting.
 //!
 //! p(a | b) is a softmax over expected costs to go, so the posterior has no closed form. Belief samples represent the
-//! prior, each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of Dir(alpha
-//! + n_j) with the weights w_j, collapsed by its mean and second moment. As a control variate, the moments under equal
-//! weights are subtracted and the prior's exact moments are added, so that an uninformative press leaves the estimate
-//! unchanged.
+//! prior, each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of
+//! Dir(alpha + n_j) with the weights w_j, collapsed by its mean and second moment. As a control variate, the moments
+//! under equal weights are subtracted and the prior's exact moments are added, so that an uninformative press leaves the
+//! estimate unchanged.
 
 use rand::RngExt;
 

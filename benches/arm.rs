@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use nalgebra::Point3;
-use tomcom::arm::controller::PhysicalArm;
+use tomcom::arm::controller::ArmController;
 use tomcom::arm::physics::CYCLE_S;
 use tomcom::arm::physics::hand_body::HandPose;
 use tomcom::edge::files::read_kitchen;
@@ -19,7 +19,7 @@ fn main() {
     let kitchen = read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen;
     let hand = HandPose { at_m: Point3::new(0.72, 0.1, 0.1), elbow_m: Point3::new(1.0, 0.1, 0.1) };
     for (what, hand) in [("alone", None), ("with a hand near", Some(hand))] {
-        let mut arm = PhysicalArm::new(&kitchen);
+        let mut arm = ArmController::new(&kitchen);
         let buttons = kitchen.buttons[Agent::Robot.index()].len();
         let (began, mut presses) = (Instant::now(), 0);
         for _ in 0..(SIMULATED_S / CYCLE_S) as usize {

@@ -13,10 +13,10 @@ use ratatui::{Terminal, TerminalOptions, Viewport};
 use tomcom::base::time::SessionTime;
 use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleModel, KeyBindings, KeyMap, view};
+use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
 use tomcom::history::belief_track::BeliefSnapshot;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
 use tomcom::session::Event;
 
@@ -43,7 +43,7 @@ impl Write for Count {
 
 /// A session that runs, with its console.
 struct Stage {
-    engine: Engine,
+    engine: SessionEngine,
     model: ConsoleModel,
     judged: usize,
 }
@@ -52,11 +52,11 @@ impl Stage {
     fn new(size: (u16, u16)) -> Stage {
         let files = session_or_default(None).expect("the default session");
         let kitchen = Arc::new(files.kitchen.kitchen);
-        let keys = KeyBindings::live(&kitchen, &files.spec, &KeyMap::default()).expect("the keys are free");
+        let keys = KeyBindings::live(&kitchen, &files.spec, &KeyFileBindings::default()).expect("the keys are free");
         let mut model =
             ConsoleModel::new(keys, Theme { colour: true, unicode: true, ground: TerminalBackground::Dark }, size);
         model.recording = RecordingStatus::On("sessions/2026-03-14-P01-1".to_string());
-        let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+        let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
         let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
         Stage { engine, model, judged: 0 }
     }

@@ -12,10 +12,10 @@ use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::{CostToGo, DecisionCosts, MAX_BUTTONS};
 use tomcom::kitchen::{Agent, AspectKind, ButtonId, Kitchen, Recipes, State};
-use tomcom::mind::BeliefWitness;
-use tomcom::run::engine::Engine;
+use tomcom::mind::RecordedBelief;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
-use tomcom::session::{Event, Phase};
+use tomcom::session::{Event, TrialPhase};
 
 /// Belief samples a press, and states a sample: the least that counts as the algorithm.
 const BELIEFS: usize = 256;
@@ -31,7 +31,7 @@ const HORIZON: usize = 8;
 /// A moment before a press of the human: the truth, and what the participant believed.
 struct Moment {
     state: State,
-    belief: BeliefWitness,
+    belief: RecordedBelief,
 }
 
 /// The categorical distributions of one belief, by aspect.
@@ -41,10 +41,10 @@ fn moments(layout: &str, trial: u64) -> (Arc<Kitchen>, Vec<Moment>) {
     let kitchen = Arc::new(read_kitchen(Path::new(layout)).expect("the layout loads").kitchen);
     let mut spec = session_or_default(None).expect("the default session").spec;
     spec.seed = 7;
-    let mut engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen.clone()));
+    let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen.clone()));
     let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
     let mut moments = Vec::new();
-    while engine.session().phase == Phase::Running {
+    while engine.session().phase == TrialPhase::Running {
         let state = engine.session().state;
         for stamped in engine.fire() {
             if let Event::ParticipantBelieves(belief) = stamped.event {
@@ -58,7 +58,7 @@ fn moments(layout: &str, trial: u64) -> (Arc<Kitchen>, Vec<Moment>) {
 /// Draws a belief around what the participant believed: a Dirichlet for every aspect.
 fn draw_belief(kitchen: &Kitchen, moment: &Moment, random: &mut Stream) -> Belief {
     let aspects = kitchen.aspects.iter().zip(&moment.belief.aspects);
-    let one = |(aspect, held): (&tomcom::kitchen::Aspect, &tomcom::mind::AspectBelief)| {
+    let one = |(aspect, held): (&tomcom::kitchen::StateAspect, &tomcom::mind::AspectBelief)| {
         let (truth, precision) = match aspect.kind {
             AspectKind::Location(location) => (moment.state.code(location), PRECISION[0]),
             AspectKind::Recipe(_) => (aspect.values[0], PRECISION[1]),

@@ -9,7 +9,7 @@ use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::ReferenceFilter;
 
 #[path = "../tests/library/inference/observed.rs"]
@@ -31,8 +31,8 @@ struct Times {
 impl Times {
     fn add(&mut self, observation: &Observation, took: Duration) {
         match observation.what {
-            Observed::Gaze { .. } => self.gaze.push(took),
-            Observed::Pressed(_) => self.press.push(took),
+            ObservedEvidence::Gaze { .. } => self.gaze.push(took),
+            ObservedEvidence::Pressed(_) => self.press.push(took),
             _ => {}
         }
     }

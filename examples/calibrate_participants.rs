@@ -16,15 +16,15 @@ use std::sync::Arc;
 
 use rand::RngExt;
 use tomcom::base::rng::stream;
-use tomcom::communication::settings::Shadow;
+use tomcom::communication::settings::ShadowMode;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::layout::LayoutSpec;
 use tomcom::kitchen::{Agent, Kitchen};
 use tomcom::measures::JudgedPress;
-use tomcom::measures::attribution::Cause;
+use tomcom::measures::attribution::ErrorCause;
 use tomcom::measures::sequences::{sequences, sequences_any_aspect};
 use tomcom::participant::population::Population;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::session::SessionSpec;
 use tomcom::session::plan::Study;
@@ -66,16 +66,16 @@ struct Rates {
 }
 
 impl Rates {
-    fn add(&mut self, engine: &Engine) {
+    fn add(&mut self, engine: &SessionEngine) {
         let (session, judged) = (engine.session(), engine.judged());
         let errors = || judged.iter().filter(|press| press.verdict.error);
         let count = |is: fn(&&JudgedPress) -> bool| errors().filter(is).count() as f64;
         self.human += judged.len() as f64;
         self.both += f64::from(session.presses[Agent::Human.index()] + session.presses[Agent::Robot.index()]);
         self.errors += count(|_| true);
-        self.beliefs += count(|press| matches!(press.cause, Some(Cause::Belief { .. })));
-        self.planning += count(|press| press.cause == Some(Cause::Planning));
-        self.slips += count(|press| press.cause == Some(Cause::Slip));
+        self.beliefs += count(|press| matches!(press.cause, Some(ErrorCause::Belief { .. })));
+        self.planning += count(|press| press.cause == Some(ErrorCause::Planning));
+        self.slips += count(|press| press.cause == Some(ErrorCause::Slip));
         for (sums, all) in [(&mut self.related, sequences(judged)), (&mut self.any, sequences_any_aspect(judged))] {
             sums[0] += all.len() as f64;
             sums[1] += all.iter().map(|one| f64::from(one.length())).sum::<f64>();
@@ -164,7 +164,7 @@ impl Setting {
         let inference = &mut spec.human.inference;
         (inference.beliefs, inference.states, inference.max_beliefs, inference.predictions) = (1, 1, 1, 1);
         inference.min_effective = 1.0;
-        spec.assistant.shadow = Shadow::Off;
+        spec.assistant.shadow = ShadowMode::Off;
         let cost = CostToGo::new(kitchen.clone());
         Ok(Setting { spec, kitchen, texts, cost })
     }
@@ -183,7 +183,7 @@ impl Setting {
         for participant in 0..study.plan.codes().len() {
             for period in 1..=study.plan.conditions.len() as u32 {
                 let (spec, trial) = study.simulated(participant, period);
-                let mut engine = Engine::new(self.kitchen.clone(), spec, trial, self.cost.clone());
+                let mut engine = SessionEngine::new(self.kitchen.clone(), spec, trial, self.cost.clone());
                 headless::run(&mut engine, |_| Ok::<(), Infallible>(())).unwrap_or_else(|never| match never {});
                 rates.add(&engine);
             }

@@ -20,14 +20,14 @@ use tomcom::base::time::SessionTime;
 use tomcom::communication::Signal;
 use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleModel, KeyBindings, KeyMap, view};
+use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
 use tomcom::history::belief_track::BeliefSnapshot;
 use tomcom::kitchen::AspectId;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::mind::BeliefWitness;
-use tomcom::run::engine::Engine;
+use tomcom::mind::RecordedBelief;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
-use tomcom::session::{Event, Session, Stamped};
+use tomcom::session::{Event, Session, TimestampedEvent};
 
 const SIZES: [(u16, u16); 2] = [(80, 24), (120, 40)];
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
@@ -52,7 +52,7 @@ enum Kind {
 
 /// A trial that runs, with the console of its wizard.
 struct Stage {
-    engine: Engine,
+    engine: SessionEngine,
     model: ConsoleModel,
     judged: usize,
     /// The recommended signal, and since when.
@@ -138,17 +138,17 @@ impl Stage {
         let mut files = session_or_default(Some(session))?;
         files.spec.seed = seed;
         let kitchen = Arc::new(files.kitchen.kitchen);
-        let keys = KeyBindings::live(&kitchen, &files.spec, &KeyMap::default())?;
+        let keys = KeyBindings::live(&kitchen, &files.spec, &KeyFileBindings::default())?;
         let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
         let mut model = ConsoleModel::new(keys, theme, SIZES[0]);
         model.recording = RecordingStatus::On("recordings/P01-1".to_string());
         model.free_bytes = Some(1 << 40);
-        let engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen)).without_causes();
+        let engine = SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen)).without_causes();
         Ok(Stage { engine, model, judged: 0, best: (None, SessionTime::ZERO) })
     }
 
     /// Tells the console what has happened, as a live session does.
-    fn follow(&mut self, events: &[Stamped]) {
+    fn follow(&mut self, events: &[TimestampedEvent]) {
         for stamped in events {
             if let Event::Gaze(sample) = stamped.event {
                 self.model.see(stamped.time, sample);
@@ -185,7 +185,7 @@ impl Stage {
         Some(if unsure { Kind::Distractor } else { Kind::Silent })
     }
 
-    fn situation(&self, session: &Session, kind: Kind, witness: &BeliefWitness) -> Result<Situation, Box<dyn Error>> {
+    fn situation(&self, session: &Session, kind: Kind, witness: &RecordedBelief) -> Result<Situation, Box<dyn Error>> {
         let kitchen = &session.kitchen;
         let mut frames = Vec::new();
         for size in SIZES {

@@ -11,7 +11,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, Kitchen, OrderContent};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::observation::{Observation, ObservedEvidence};
 
 /// Runs the example.
 pub fn main() -> Result<(), Box<dyn Error>> {
@@ -27,15 +27,15 @@ pub fn main() -> Result<(), Box<dyn Error>> {
 
     // The trial starts, and the display shows an order that the person has not read yet.
     let mut state = kitchen.empty_state();
-    filter.observe(&Observation { time: SessionTime::ZERO, what: Observed::Started { state } }, &mut cost);
+    filter.observe(&Observation { time: SessionTime::ZERO, what: ObservedEvidence::Started { state } }, &mut cost);
     state.set_order(order, OrderContent::Dish(dish));
-    let shown = Observation { time: SessionTime::from_secs_f64(1.0), what: Observed::Displayed { state } };
+    let shown = Observation { time: SessionTime::from_secs_f64(1.0), what: ObservedEvidence::Displayed { state } };
     filter.observe(&shown, &mut cost);
     print_belief("an order appears", &kitchen, &filter, aspect);
 
     // The person takes a shrimp, which the order does not need: the order was not read, or misread.
     let press = kitchen.try_press(state, Agent::Human, take_shrimp);
-    let pressed = Observed::Pressed(press);
+    let pressed = ObservedEvidence::Pressed(press);
     filter.observe(&Observation { time: SessionTime::from_secs_f64(3.0), what: pressed }, &mut cost);
     print_belief("the person takes a shrimp", &kitchen, &filter, aspect);
     let misread = filter.belief().p_truth(&kitchen, state, aspect);
@@ -44,7 +44,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let [x, y] = kitchen.location(order).display.centre();
     for sample in 0..30 {
         let time = SessionTime::from_secs_f64(4.0 + f64::from(sample) / 60.0);
-        let looks = Observed::Gaze { sample: GazeSample::new(x, y, 1.0), taken: time };
+        let looks = ObservedEvidence::Gaze { sample: GazeSample::new(x, y, 1.0), taken: time };
         filter.observe(&Observation { time, what: looks }, &mut cost);
     }
     print_belief("the person looks at the order", &kitchen, &filter, aspect);

@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen};
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
-use tomcom::session::{Event, SessionSpec, Stamped};
+use tomcom::session::{Event, SessionSpec, TimestampedEvent};
 
 const SETTINGS: &str = r#"
 layout = "sushi.toml"
@@ -26,11 +26,11 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         (std::fs::read_to_string("layouts/sushi.toml")?, std::fs::read_to_string("recipes/sushi.toml")?);
     let kitchen = Arc::new(Kitchen::from_toml(&layout, &recipes)?);
     let spec = SessionSpec::from_toml(SETTINGS)?;
-    let mut engine = Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen.clone()));
+    let mut engine = SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen.clone()));
 
     // Every event of the session, stamped with its time: the same events that a recording has.
     let mut samples = 0;
-    headless::run(&mut engine, |stamped: &Stamped| {
+    headless::run(&mut engine, |stamped: &TimestampedEvent| {
         match &stamped.event {
             Event::Gaze(_) => samples += 1,
             Event::Press { agent, button, .. } => println!("{:>7.2} s {agent:?}: {button}", stamped.time.as_secs_f64()),

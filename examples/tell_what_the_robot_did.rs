@@ -10,7 +10,7 @@ use tomcom::communication::settings::AssistantSpec;
 use tomcom::communication::{available, planner::Planner, situation::Situation};
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::{Agent, AspectId, Kitchen, OrderContent, cost_to_go::CostToGo};
-use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::{filter::BeliefFilter, model::HumanModel};
 
 /// What the robot does, one press a second.
@@ -25,7 +25,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     // The human looks at what the next press needs, and at nothing else: what is seen anyway needs no signal.
     (human.looking.other_looks_hz, human.looking.capture) = (0.0, 0.0);
     let mut filter = BeliefFilter::new(kitchen.clone(), human.clone(), 1);
-    let mut observe = |seconds: f64, what: Observed, cost: &mut CostToGo| {
+    let mut observe = |seconds: f64, what: ObservedEvidence, cost: &mut CostToGo| {
         filter.observe(&Observation { time: SessionTime::from_secs_f64(seconds), what }, cost);
     };
 
@@ -33,22 +33,22 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let order = kitchen.location_named("order_1").ok_or("no order")?;
     let dish = kitchen.dish_named("salmon nigiri").ok_or("no dish")?;
     let mut state = kitchen.empty_state();
-    observe(0.0, Observed::Started { state }, &mut cost);
+    observe(0.0, ObservedEvidence::Started { state }, &mut cost);
     state.set_order(order, OrderContent::Dish(dish));
-    observe(1.0, Observed::Displayed { state }, &mut cost);
-    observe(2.0, Observed::Told { location: order }, &mut cost);
+    observe(1.0, ObservedEvidence::Displayed { state }, &mut cost);
+    observe(2.0, ObservedEvidence::Told { location: order }, &mut cost);
     let [x, y] = kitchen.location(order).display.centre();
     let mut seconds = 2.0;
     for name in ROBOT {
         for _ in 0..GAZE_HZ {
             seconds += 1.0 / GAZE_HZ as f64;
             let taken = SessionTime::from_secs_f64(seconds);
-            observe(seconds, Observed::Gaze { sample: GazeSample::new(x, y, 1.0), taken }, &mut cost);
+            observe(seconds, ObservedEvidence::Gaze { sample: GazeSample::new(x, y, 1.0), taken }, &mut cost);
         }
         let button = kitchen.button_named(Agent::Robot, name).ok_or("no such button")?;
         let press = kitchen.try_press(state, Agent::Robot, button);
         state = press.result().ok_or("a press without effect")?;
-        observe(seconds, Observed::Pressed(press), &mut cost);
+        observe(seconds, ObservedEvidence::Pressed(press), &mut cost);
     }
 
     let board = kitchen.location_named("assembly_board").ok_or("no board")?;

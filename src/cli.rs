@@ -49,7 +49,7 @@ use crate::edge::files;
 use crate::edge::key_file;
 use crate::edge::log::{self, LogEnding, LogReader};
 use crate::run::plan::{self, StudyPlanSummary};
-use crate::run::replay::Replay;
+use crate::run::replay::RecordingReplay;
 use crate::run::review_console as console_over;
 use crate::run::{options, standing, timing, verify};
 
@@ -168,7 +168,7 @@ fn replay(args: &ReplayArgs) -> Result<(), Failure> {
     if args.format == OutputFormat::Text && std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
         return Ok(console_over::review(recording, args.follow, None)?);
     }
-    let mut replay = Replay::open(recording)?;
+    let mut replay = RecordingReplay::open(recording)?;
     let mut events = 0;
     if args.format == OutputFormat::Text {
         put(&format!("{}\n", event_lines::HEADING))?;

@@ -18,7 +18,7 @@
 //!   any. The **planner** ([`communication::planner::Planner`]) compares paired rollouts with and without each signal:
 //!   a signal is worth sending if it saves more presses than it costs.
 //! - A **session** ([`session::Session`]) is its event log. [`session::apply()`] is the only way to change one. The
-//!   **engine** ([`run::engine::Engine`]) raises the events of robot, simulated participant and clock; its caller
+//!   **engine** ([`run::engine::SessionEngine`]) raises the events of robot, simulated participant and clock; its caller
 //!   passes the time.
 //!
 //! # The modules
@@ -55,7 +55,7 @@
 //! use tomcom::communication::settings::AssistantSpec;
 //! use tomcom::communication::{available, planner::Planner, situation::Situation};
 //! use tomcom::kitchen::{Agent, AspectId, Kitchen, OrderContent, cost_to_go::CostToGo};
-//! use tomcom::mind::observation::{Observation, Observed};
+//! use tomcom::mind::observation::{Observation, ObservedEvidence};
 //! use tomcom::mind::{filter::BeliefFilter, model::HumanModel};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -71,9 +71,9 @@
 //! before.set_order(order, OrderContent::Dish(dish));
 //! let press = kitchen.try_press(before, Agent::Human, button);
 //! let events = [
-//!     (0.0, Observed::Started { state: kitchen.empty_state() }),
-//!     (1.0, Observed::Displayed { state: before }),
-//!     (3.0, Observed::Pressed(press)),
+//!     (0.0, ObservedEvidence::Started { state: kitchen.empty_state() }),
+//!     (1.0, ObservedEvidence::Displayed { state: before }),
+//!     (3.0, ObservedEvidence::Pressed(press)),
 //! ];
 //!
 //! // What the person believes now.

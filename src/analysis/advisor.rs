@@ -1,7 +1,7 @@
 //! The assistant of a session: answers a request for advice after every press and every order change, and at the other
 //! moments that the session's settings name.
 
-use super::follower::Follower;
+use super::follower::SessionFollower;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::communication::concept::{Concept, ConceptName, DecisionPoint};
@@ -36,7 +36,7 @@ pub struct AdviceRequest {
 
 impl AdviceRequest {
     /// A request for advice after the event with this sequence number and time.
-    pub fn from_follower(follower: &mut Follower, seq: u64, time: SessionTime) -> AdviceRequest {
+    pub fn from_follower(follower: &mut SessionFollower, seq: u64, time: SessionTime) -> AdviceRequest {
         let belief = follower.belief_for_advice(time);
         let session = &follower.session;
         let robot = match session.robot.intention {

@@ -5,23 +5,23 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::likelihood::LogLikelihood;
-use super::probe_figures::ProbeFigures;
+use super::likelihood::PressLogLikelihood;
+use super::probe_figures::ProbeSummary;
 use super::probe_lines;
-use super::seen_contents::SeenContents;
+use super::seen_contents::LastSeenContents;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Change, Kitchen, LocationId, Press};
+use crate::kitchen::{Kitchen, KitchenChange, LocationId, Press};
 use crate::measures::JudgedPress;
-use crate::measures::attribution::Cause;
-use crate::measures::belief_basis::BeliefBasis;
-use crate::measures::belief_detection::{Detection, EstimateView, PressView, TrialView};
-use crate::measures::flags::{MOST_FALSE_FLAGS, ThresholdSource, Thresholds};
+use crate::measures::attribution::ErrorCause;
+use crate::measures::belief_basis::BeliefSource;
+use crate::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialView};
+use crate::measures::flags::{FlagThresholds, MOST_FALSE_FLAGS, ThresholdSource};
 use crate::mind::belief::Belief;
-use crate::mind::choice_parameters::DecisionModel;
-use crate::session::{Event, Session, Stamped};
+use crate::mind::choice_parameters::ChoiceParameters;
+use crate::session::{Event, Session, TimestampedEvent};
 
 /// Seed of the bootstrap's random numbers: the same recordings give the same interval.
 const SEED: u64 = 1;
@@ -34,15 +34,15 @@ pub struct BeliefCheck {
     /// Number of the human's presses in the trials.
     pub human_actions: u64,
     /// Source of what participants believed: recorded beliefs, or answers to probes; null if there is neither.
-    pub beliefs_from: Option<BeliefBasis>,
+    pub beliefs_from: Option<BeliefSource>,
     /// How well the estimate of the participant's beliefs finds false ones.
     #[serde(flatten)]
-    pub detection: Detection,
+    pub detection: FalseBeliefDetection,
     /// Log likelihood of the human's presses under the model, per press, in nats.
-    pub log_likelihood: LogLikelihood,
+    pub log_likelihood: PressLogLikelihood,
     /// Answers to freeze probes, and how the estimate agrees with them; absent without answers.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub probes: Option<ProbeFigures>,
+    pub probes: Option<ProbeSummary>,
 }
 
 impl BeliefCheck {
@@ -51,22 +51,28 @@ impl BeliefCheck {
     pub fn from_trials(
         kitchen: &Arc<Kitchen>,
         trials: &[TrialView],
-        thresholds: Option<Thresholds>,
-        probes: Option<ProbeFigures>,
+        thresholds: Option<FlagThresholds>,
+        probes: Option<ProbeSummary>,
     ) -> BeliefCheck {
         let mut cost = CostToGo::new(kitchen.clone());
-        let mut detection = Detection::from_trials(kitchen, trials, thresholds);
+        let mut detection = FalseBeliefDetection::from_trials(kitchen, trials, thresholds);
         let is_recorded = trials.iter().flatten().any(|press| press.held.is_some());
         if let Some(found) = probes.as_ref().filter(|_| !is_recorded) {
             detection = found.detection.in_place_of(detection);
         }
         let by_probes = probes.as_ref().map(|found| found.beliefs_from);
         BeliefCheck {
-            beliefs_from: if is_recorded { Some(BeliefBasis::Recorded) } else { by_probes },
+            beliefs_from: if is_recorded { Some(BeliefSource::Recorded) } else { by_probes },
             recordings: trials.len() as u64,
             human_actions: trials.iter().map(Vec::len).sum::<usize>() as u64,
             detection,
-            log_likelihood: LogLikelihood::from_trials(kitchen, &mut cost, &DecisionModel::default(), trials, SEED),
+            log_likelihood: PressLogLikelihood::from_trials(
+                kitchen,
+                &mut cost,
+                &ChoiceParameters::default(),
+                trials,
+                SEED,
+            ),
             probes,
         }
     }
@@ -89,9 +95,9 @@ impl PressViews {
         &mut self,
         session: &Session,
         judged: Option<&JudgedPress>,
-        estimate: Option<EstimateView>,
-        stamped: &Stamped,
-        change: &Change,
+        estimate: Option<EstimateBeforePress>,
+        stamped: &TimestampedEvent,
+        change: &KitchenChange,
     ) {
         let kitchen = &session.kitchen;
         if let Event::ParticipantBelieves(witness) = &stamped.event {
@@ -100,7 +106,7 @@ impl PressViews {
         }
         if let (Some(judged), Some(press)) = (judged, change.human_press()) {
             let view = self.before.press(kitchen, &press, judged, stamped.time, self.held.take());
-            self.trial.push(PressView { estimate, ..view });
+            self.trial.push(BeliefsBeforePress { estimate, ..view });
         }
         self.before.notice(session, &stamped.event, change);
     }
@@ -109,14 +115,14 @@ impl PressViews {
 /// What the gaze baseline, which needs no filter, knows of a session before the next event.
 #[derive(Default)]
 struct Before {
-    seen: SeenContents,
+    seen: LastSeenContents,
     /// For each location, the time of the last change, if it was made by somebody other than the human.
     others_changed: [Option<SessionTime>; MAX_LOCATIONS],
 }
 
 impl Before {
     /// Notes changes of the kitchen and gaze in an event that has just been applied.
-    fn notice(&mut self, session: &Session, event: &Event, change: &Change) {
+    fn notice(&mut self, session: &Session, event: &Event, change: &KitchenChange) {
         self.seen.note(session, event, change);
         let is_own = change.human_press().is_some();
         for index in 0..session.kitchen.locations.len() {
@@ -135,9 +141,9 @@ impl Before {
         judged: &JudgedPress,
         now: SessionTime,
         held: Option<Vec<f64>>,
-    ) -> PressView {
+    ) -> BeliefsBeforePress {
         let since_s = |at: &Option<SessionTime>| at.map(|at| now.secs_since(at));
-        let mut press = PressView {
+        let mut press = BeliefsBeforePress {
             state: press.before,
             button: press.button,
             held,
@@ -148,7 +154,7 @@ impl Before {
             since_change_s: self.others_changed[..kitchen.locations.len()].iter().map(since_s).collect(),
             errs_about: Vec::new(),
         };
-        if let Some(Cause::Belief { target, with, .. }) = judged.cause {
+        if let Some(ErrorCause::Belief { target, with, .. }) = judged.cause {
             let targets = [Some(target), with].into_iter().flatten();
             let about = targets.flat_map(|target| target.aspects(kitchen));
             press.errs_about = about.filter(|aspect| press.is_wrong(aspect.index()) == Some(true)).collect();

@@ -7,14 +7,14 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::likelihood::LogLikelihood;
+use super::likelihood::PressLogLikelihood;
 use super::trial_bootstrap::interval;
 use super::trial_summary::TrialSummary;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::belief_detection::{Detection, TrialView, aspect_groups};
+use crate::measures::belief_detection::{FalseBeliefDetection, TrialView, aspect_groups};
 use crate::measures::flags::{MOST_FALSE_FLAGS, chosen_thresholds};
-use crate::mind::choice_parameters::DecisionModel;
+use crate::mind::choice_parameters::ChoiceParameters;
 
 /// Seed of the bootstrap's random numbers: the same trials give the same interval.
 const SEED: u64 = 1;
@@ -52,9 +52,9 @@ pub struct CohortRow {
     pub trials: u64,
     /// How well the estimate finds false beliefs of the participants in the unassisted trials.
     #[serde(flatten)]
-    pub detection: Detection,
+    pub detection: FalseBeliefDetection,
     /// Log likelihood of the human's presses in the unassisted trials, under the model and two baselines.
-    pub log_likelihood: LogLikelihood,
+    pub log_likelihood: PressLogLikelihood,
     /// Rates in the trials without signals.
     pub unassisted: CohortRates,
     /// Rates in the same trials with signals that the assistant sends by itself.
@@ -93,8 +93,14 @@ impl CohortRow {
         CohortRow {
             cohort: name.to_string(),
             trials: pairs.len() as u64,
-            detection: Detection::from_trials(kitchen, &views, thresholds),
-            log_likelihood: LogLikelihood::from_trials(kitchen, &mut cost, &DecisionModel::default(), &views, SEED),
+            detection: FalseBeliefDetection::from_trials(kitchen, &views, thresholds),
+            log_likelihood: PressLogLikelihood::from_trials(
+                kitchen,
+                &mut cost,
+                &ChoiceParameters::default(),
+                &views,
+                SEED,
+            ),
             unassisted: CohortRates::from_trials(&unassisted),
             assisted: CohortRates::from_trials(&trials.assisted),
             saved,

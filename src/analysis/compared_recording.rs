@@ -2,13 +2,13 @@
 
 use super::exclusion_status::ExclusionStatus;
 use super::offer_summary::{OfferSummary, TimedOffer};
-use super::watcher::{CompareRequest, ComparisonFollower};
+use super::watcher::{ComparisonFollower, ComparisonRequest};
 use super::wizard_log::{WizardLog, WizardSummary};
-use crate::history::comparison::LaneComparison;
+use crate::history::comparison::SenderComparison;
 use crate::kitchen::Kitchen;
 use crate::session::apply::ApplyError;
 use crate::session::settings::Condition;
-use crate::session::{Session, Stamped};
+use crate::session::{Session, TimestampedEvent};
 
 /// Compares wizard and assistants while a recording is read, event by event.
 pub struct RecordingComparer {
@@ -18,7 +18,7 @@ pub struct RecordingComparer {
 
 impl RecordingComparer {
     /// The comparer of a session before its first event.
-    pub fn new(session: Session, request: &CompareRequest) -> RecordingComparer {
+    pub fn new(session: Session, request: &ComparisonRequest) -> RecordingComparer {
         RecordingComparer { follower: ComparisonFollower::new(session, request), wizard: WizardLog::default() }
     }
 
@@ -26,7 +26,7 @@ impl RecordingComparer {
     ///
     /// # Errors
     /// The event is not possible in the session's present state.
-    pub fn add(&mut self, stamped: &Stamped) -> Result<(), ApplyError> {
+    pub fn add(&mut self, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
         self.follower.apply(stamped)?;
         self.wizard.note(stamped, &self.follower.follower.session);
         Ok(())
@@ -58,7 +58,7 @@ pub struct ComparedRecording {
     /// Whether the trial was aborted or excluded from the analysis.
     pub standing: ExclusionStatus,
     /// Comparison of the communications of wizard and assistants.
-    pub comparison: LaneComparison,
+    pub comparison: SenderComparison,
     /// Summary of the wizard's signals; `None` where nobody could send signals.
     pub wizard: Option<WizardSummary>,
     /// Statistics of the offers that a wizard could see; `None` in recordings without offers.

@@ -4,19 +4,19 @@ use serde::Serialize;
 
 use super::compared_recording::ComparedRecording;
 use super::exclusion_status::ExclusionStatus;
-use super::lesson_report::TrainingSummary;
+use super::lesson_report::WizardTrainingSummary;
 use super::offer_summary::OfferSummary;
-use super::watcher::CompareRequest;
+use super::watcher::ComparisonRequest;
 use super::wizard_log::{self, WizardSummary};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
-use crate::history::belief_track::AspectSnapshot;
+use crate::history::belief_track::AspectBeliefSnapshot;
 use crate::history::comparison::{Communication, UnmatchedCommunication};
 use crate::kitchen::AspectId;
 use crate::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
-use crate::session::wizard_screen::VisibleScreen;
+use crate::session::wizard_screen::WizardScreenContent;
 
 /// Largest number of differences of each kind that are listed as text.
 const LISTED: usize = 20;
@@ -25,16 +25,16 @@ const LISTED: usize = 20;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparisonSummary {
     /// Agreement between the signals sent and each assistant, over all recordings that count in the analysis.
-    pub pairs: Vec<LanePairSummary>,
+    pub pairs: Vec<SenderPairSummary>,
     /// Comparison in each recording.
     pub recordings: Vec<RecordingComparison>,
     /// Training of the wizard who was named on the command line.
-    pub training: Option<TrainingSummary>,
+    pub training: Option<WizardTrainingSummary>,
 }
 
 /// Agreement between two senders' communications over recordings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LanePairSummary {
+pub struct SenderPairSummary {
     /// Name of the first lane, "wizard".
     pub of: String,
     /// Name of the second lane: an assistant's concept.
@@ -58,18 +58,18 @@ pub struct RecordingComparison {
     /// Number of the human's presses in the trial.
     pub human_actions: u64,
     /// Communications of the wizard and of each assistant.
-    pub lanes: Vec<LaneSummary>,
+    pub lanes: Vec<SenderSummary>,
     /// Summary of the wizard's signals; null where nobody could send signals.
     pub wizard: Option<WizardSummary>,
     /// Statistics of the offers that a wizard could see; null in recordings without offers.
     pub offers: Option<OfferSummary>,
     /// Communications of one sender that the other did not match.
-    pub differences: Vec<UnmatchedSummary>,
+    pub differences: Vec<UnmatchedCommunicationSummary>,
 }
 
 /// Communications of one sender in a recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LaneSummary {
+pub struct SenderSummary {
     /// Name of the sender: "wizard", or an assistant's concept as "tom-com".
     pub name: String,
     /// The sender's communications, in the order of time.
@@ -89,7 +89,7 @@ pub struct CommunicationSummary {
 
 /// A communication without a match, with its context.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct UnmatchedSummary {
+pub struct UnmatchedCommunicationSummary {
     /// Number of the difference, from 1, as the option `--open` takes it.
     pub number: usize,
     /// The difference in one line of text.
@@ -118,7 +118,7 @@ pub struct ContextSummary {
     /// The assistant's recommendation at that time.
     pub advice: Option<Recommendation>,
     /// Content of the wizard's screen; null before the screen was first drawn, and without a wizard.
-    pub screen: Option<VisibleScreen>,
+    pub screen: Option<WizardScreenContent>,
 }
 
 /// Estimated belief about one state aspect, beside the truth.
@@ -139,12 +139,12 @@ impl ComparisonSummary {
     pub fn from_recordings(watched: &[ComparedRecording]) -> ComparisonSummary {
         let counting: Vec<&ComparedRecording> =
             watched.iter().filter(|one| watched.len() == 1 || one.standing.counts()).collect();
-        let mut pairs: Vec<(LanePairSummary, MatchCounts)> = Vec::new();
+        let mut pairs: Vec<(SenderPairSummary, MatchCounts)> = Vec::new();
         for one in counting {
             let said: Vec<Vec<CommunicationEvent>> = one.comparison.lanes.iter().map(|lane| lane.said()).collect();
             for (a, b) in (0..said.len()).flat_map(|a| (a + 1..said.len()).map(move |b| (a, b))) {
                 let [of, with] = [a, b].map(|lane| one.comparison.lanes[lane].name.clone());
-                let is_it = |(pair, _): &&mut (LanePairSummary, MatchCounts)| pair.of == of && pair.with == with;
+                let is_it = |(pair, _): &&mut (SenderPairSummary, MatchCounts)| pair.of == of && pair.with == with;
                 let window = one.comparison.window;
                 let add = |tally: &mut MatchCounts| tally.add(&said[a], &said[b], one.follower.presses(), window);
                 match pairs.iter_mut().find(is_it) {
@@ -153,12 +153,12 @@ impl ComparisonSummary {
                         let mut tally = MatchCounts::default();
                         add(&mut tally);
                         let similarity = Similarity::default();
-                        pairs.push((LanePairSummary { of, with, window_actions: window, similarity }, tally));
+                        pairs.push((SenderPairSummary { of, with, window_actions: window, similarity }, tally));
                     }
                 }
             }
         }
-        let pairs = pairs.into_iter().map(|(pair, tally)| LanePairSummary { similarity: tally.similarity(), ..pair });
+        let pairs = pairs.into_iter().map(|(pair, tally)| SenderPairSummary { similarity: tally.similarity(), ..pair });
         ComparisonSummary {
             pairs: pairs.collect(),
             recordings: watched.iter().map(RecordingComparison::from_recording).collect(),
@@ -183,7 +183,7 @@ impl ComparisonSummary {
 impl RecordingComparison {
     fn from_recording(watched: &ComparedRecording) -> RecordingComparison {
         let comparison = &watched.comparison;
-        let lanes = comparison.lanes.iter().map(|lane| LaneSummary {
+        let lanes = comparison.lanes.iter().map(|lane| SenderSummary {
             name: lane.name.clone(),
             communications: lane.spoken.iter().map(CommunicationSummary::from_communication).collect(),
         });
@@ -196,7 +196,7 @@ impl RecordingComparison {
             wizard: watched.wizard.clone(),
             offers: watched.offers.clone(),
             differences: differences
-                .map(|(index, one)| UnmatchedSummary::from_unmatched(watched, index, one))
+                .map(|(index, one)| UnmatchedCommunicationSummary::from_unmatched(watched, index, one))
                 .collect(),
         }
     }
@@ -209,7 +209,7 @@ impl CommunicationSummary {
     }
 }
 
-impl UnmatchedSummary {
+impl UnmatchedCommunicationSummary {
     /// Order of importance of a difference, most important lowest: differences with the first assistant come first,
     /// then those about signals that the participant saw.
     fn rank(&self) -> (usize, bool, usize) {
@@ -220,11 +220,11 @@ impl UnmatchedSummary {
         watched: &ComparedRecording,
         index: usize,
         difference: &UnmatchedCommunication,
-    ) -> UnmatchedSummary {
+    ) -> UnmatchedCommunicationSummary {
         let comparison = &watched.comparison;
         let spoken = comparison.spoken(difference);
         let knew = spoken.known.as_ref().map(|known| {
-            let held = |(index, held): (usize, &AspectSnapshot)| {
+            let held = |(index, held): (usize, &AspectBeliefSnapshot)| {
                 let aspect = &watched.kitchen().aspects[index];
                 let truth = watched.kitchen().true_value(known.state, AspectId(index as u8));
                 AspectContext {
@@ -240,7 +240,7 @@ impl UnmatchedSummary {
                 screen: known.screen.clone(),
             }
         });
-        UnmatchedSummary {
+        UnmatchedCommunicationSummary {
             number: index + 1,
             headline: comparison.headline(difference),
             by: comparison.lanes[difference.lane].name.clone(),
@@ -254,13 +254,13 @@ impl UnmatchedSummary {
 }
 
 /// The comparison as text for the terminal, with the request that led to it.
-pub fn describe(figures: &ComparisonSummary, request: &CompareRequest) -> String {
+pub fn describe(figures: &ComparisonSummary, request: &ComparisonRequest) -> String {
     let mut text = format!(
         "{:<24}{:>7}{:>8}{:>8}{:>11}{:>6}{:>7}{:>8}\n",
         "", "window", "recall", "chance", "precision", "F1", "kappa", "lead"
     );
     figures.pairs.iter().for_each(|pair| text += &describe_pair(pair));
-    text += &figures.training.as_ref().map_or(String::new(), TrainingSummary::describe);
+    text += &figures.training.as_ref().map_or(String::new(), WizardTrainingSummary::describe);
     for one in &figures.recordings {
         let presses = count(one.human_actions, "press", "presses");
         text += &format!("\n{}: {presses} of the human\n", one.recording);
@@ -286,7 +286,7 @@ pub fn describe(figures: &ComparisonSummary, request: &CompareRequest) -> String
 }
 
 /// The command-line options that ask for the same comparison again.
-fn flags(request: &CompareRequest) -> String {
+fn flags(request: &ComparisonRequest) -> String {
     let mut flags = String::new();
     if !request.with.is_empty() {
         let names: Vec<&str> = request.with.iter().map(|concept| concept.name()).collect();
@@ -299,9 +299,9 @@ fn flags(request: &CompareRequest) -> String {
 }
 
 /// The differences as text, by sender, the session's own concept first. They are numbered by time.
-fn describe_differences(differences: &[UnmatchedSummary]) -> String {
-    let mut groups: Vec<(String, Vec<&UnmatchedSummary>)> = Vec::new();
-    let mut sorted: Vec<&UnmatchedSummary> = differences.iter().collect();
+fn describe_differences(differences: &[UnmatchedCommunicationSummary]) -> String {
+    let mut groups: Vec<(String, Vec<&UnmatchedCommunicationSummary>)> = Vec::new();
+    let mut sorted: Vec<&UnmatchedCommunicationSummary> = differences.iter().collect();
     sorted.sort_by_key(|one| one.rank());
     for one in sorted {
         let who = format!("only {}, not {}", one.by, one.not_by);
@@ -328,7 +328,7 @@ fn describe_differences(differences: &[UnmatchedSummary]) -> String {
     text
 }
 
-fn describe_pair(pair: &LanePairSummary) -> String {
+fn describe_pair(pair: &SenderPairSummary) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let found = &pair.similarity;
     let lead = found.median_lead_s.map_or("-".to_string(), |lead| format!("{lead:+.1} s"));

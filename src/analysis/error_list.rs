@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::follower::Follower;
+use super::follower::SessionFollower;
 use super::wizard_log::clock_at;
 use crate::base::time::SessionTime;
 use crate::history::wording;
@@ -26,7 +26,7 @@ pub struct ListedError {
 
 impl ListedError {
     /// The errors of the human in a recording that was read to its end, in order.
-    pub fn all(follower: &Follower) -> Vec<ListedError> {
+    pub fn all(follower: &SessionFollower) -> Vec<ListedError> {
         let session = &follower.session;
         let presses = session.timeline.iter().filter_map(|entry| match entry.what {
             TimelineEvent::Press { agent: Agent::Human, button, no_effect } => Some((button, no_effect.is_none())),

@@ -1,6 +1,6 @@
 //! A recording as text, with one line for each event, for pipes and plain terminals.
 
-use super::follower::Follower;
+use super::follower::SessionFollower;
 use crate::base::printable::printable;
 use crate::base::words::count;
 use crate::communication::concept::ConceptName;
@@ -10,22 +10,22 @@ use crate::history::probe_wording;
 use crate::history::wording::{self, location as said};
 use crate::kitchen::{Agent, Kitchen};
 use crate::measures::sequences::FALSE_BELOW;
-use crate::mind::recorded_estimate::{AspectEstimate, EstimateWitness};
-use crate::mind::{AspectBelief, BeliefWitness};
+use crate::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
+use crate::mind::{AspectBelief, RecordedBelief};
 use crate::robot::IdleReason;
 use crate::robot::safety::SafetyMode;
-use crate::session::event::{EndReason, SignalEnd};
+use crate::session::event::{SignalEndReason, TrialEndReason};
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::wall_display::DisplayEvent;
-use crate::session::wizard_screen::VisibleScreen;
-use crate::session::{Event, Phase, Stamped};
+use crate::session::wizard_screen::WizardScreenContent;
+use crate::session::{Event, TimestampedEvent, TrialPhase};
 
 /// Heading above the lines of events.
 pub const HEADING: &str = " trial time  what happened";
 
 /// The line for an event that was just applied, with the time on the trial's clock; `None` for gaze samples and arm
 /// motion.
-pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
+pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<String> {
     let kitchen = &follower.session.kitchen;
     let words = match &stamped.event {
         Event::Gaze(_) | Event::SignalDrawn { .. } | Event::RobotMoves(_) => return None,
@@ -34,11 +34,11 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
         Event::TrialStarted => "trial started".to_string(),
         Event::TrialPaused => "trial paused".to_string(),
         Event::TrialResumed => "trial goes on".to_string(),
-        Event::TrialEnded { reason: EndReason::Presses } => "trial over: number of presses".to_string(),
-        Event::TrialEnded { reason: EndReason::Time } => "trial over: time".to_string(),
-        Event::TrialEnded { reason: EndReason::Orders } => "trial over: orders served".to_string(),
-        Event::TrialEnded { reason: EndReason::Wizard } => "trial ended by the wizard".to_string(),
-        Event::TrialEnded { reason: EndReason::Aborted } => "trial aborted".to_string(),
+        Event::TrialEnded { reason: TrialEndReason::Presses } => "trial over: number of presses".to_string(),
+        Event::TrialEnded { reason: TrialEndReason::Time } => "trial over: time".to_string(),
+        Event::TrialEnded { reason: TrialEndReason::Orders } => "trial over: orders served".to_string(),
+        Event::TrialEnded { reason: TrialEndReason::Wizard } => "trial ended by the wizard".to_string(),
+        Event::TrialEnded { reason: TrialEndReason::Aborted } => "trial aborted".to_string(),
         Event::TrialAborted { reason } => format!("trial aborted: {reason}"),
         Event::TrialExcluded { reason } => format!("trial excluded: {reason}"),
         Event::TrialIncluded => "trial no longer excluded".to_string(),
@@ -90,9 +90,9 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
             format!("signal: {} (the offer is taken)", wording::signal(shown))
         }
         Event::SignalShown { signal: shown, .. } => format!("signal: {}", wording::signal(shown)),
-        Event::SignalEnded { reason: SignalEnd::Elapsed } => "signal ends".to_string(),
-        Event::SignalEnded { reason: SignalEnd::TakenBack } => "signal taken back".to_string(),
-        Event::SignalEnded { reason: SignalEnd::Outdated } => "signal out of date".to_string(),
+        Event::SignalEnded { reason: SignalEndReason::Elapsed } => "signal ends".to_string(),
+        Event::SignalEnded { reason: SignalEndReason::TakenBack } => "signal taken back".to_string(),
+        Event::SignalEnded { reason: SignalEndReason::Outdated } => "signal out of date".to_string(),
         Event::Marker { note } => format!("marker: {note}"),
         Event::Probe(event) => probe_wording::event(event),
         Event::Protocol(event) => wording::protocol(event),
@@ -105,7 +105,7 @@ pub fn line(stamped: &Stamped, follower: &Follower) -> Option<String> {
     // Notes and names of devices can contain control characters, which would disturb the terminal.
     let (words, session) = (printable(&words), &follower.session);
     Some(match session.phase {
-        Phase::Ready => format!("{:>11}  {words}", "before"),
+        TrialPhase::Ready => format!("{:>11}  {words}", "before"),
         _ => format!("{:>9.3} s  {words}", session.trial_clock(stamped.time).as_secs_f64()),
     })
 }
@@ -130,13 +130,13 @@ fn on_display(event: &DisplayEvent) -> String {
     }
 }
 
-fn on_screen(screen: &VisibleScreen) -> String {
+fn on_screen(screen: &WizardScreenContent) -> String {
     let dialog = screen.dialog.as_ref().map_or(String::new(), |dialog| format!(", {dialog} open"));
     format!("the wizard sees {} ({}{dialog})", screen.panels.join(", "), screen.room)
 }
 
 /// Judgement of the human's press that was just applied, in words; empty for other events.
-fn verdict(stamped: &Stamped, follower: &Follower) -> String {
+fn verdict(stamped: &TimestampedEvent, follower: &SessionFollower) -> String {
     let judged = follower.judged.last().filter(|press| press.seq == stamped.seq);
     match (&stamped.event, judged) {
         (Event::Press { agent: Agent::Human, .. }, None) => " (does not count)".to_string(),
@@ -148,7 +148,7 @@ fn verdict(stamped: &Stamped, follower: &Follower) -> String {
     }
 }
 
-fn believes(kitchen: &Kitchen, belief: &BeliefWitness) -> String {
+fn believes(kitchen: &Kitchen, belief: &RecordedBelief) -> String {
     let wrong = belief.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
     let told = |aspect: &AspectBelief| format!("{} = {}", said(&aspect.aspect), kitchen.worded(&aspect.believes));
     let wrong: Vec<String> = wrong.map(told).collect();
@@ -173,7 +173,7 @@ fn worded_cause(kitchen: &Kitchen, cause: &str) -> String {
     cause.split(", ").map(worded).collect::<Vec<_>>().join(", ")
 }
 
-fn estimated(kitchen: &Kitchen, estimate: &EstimateWitness) -> Option<String> {
+fn estimated(kitchen: &Kitchen, estimate: &RecordedEstimate) -> Option<String> {
     let wrong = estimate.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
     let told = |aspect: &AspectEstimate| {
         format!("{} = {} (wrong {:.2})", said(&aspect.aspect), kitchen.worded(&aspect.believes), 1.0 - aspect.p_truth)

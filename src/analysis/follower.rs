@@ -3,46 +3,46 @@
 
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::aspects_told;
-use crate::communication::repeats::Repeats;
+use crate::communication::repeats::SignalRepeatRule;
 use crate::communication::{Signal, unavailable};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, Change, Kitchen, Press, State};
+use crate::kitchen::{Agent, AspectId, Kitchen, KitchenChange, Press, State};
 use crate::measures::JudgedPress;
-use crate::measures::attribution::{Attributor, Cause};
+use crate::measures::attribution::{ErrorAttributor, ErrorCause};
 use crate::measures::errors::PressJudge;
-use crate::measures::sequences::Episodes;
+use crate::measures::sequences::FalseBeliefTracker;
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::signals_so_far::SignalOver;
-use crate::mind::filter::{BeliefFilter, Evidence};
-use crate::mind::observation::{Observation, Observed, ProposedPresses};
-use crate::mind::recorded_estimate::EstimateWitness;
+use crate::mind::filter::{BeliefFilter, PressEvidence};
+use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
+use crate::mind::recorded_estimate::RecordedEstimate;
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
 use crate::session::gaze_awareness::GazeAwareness;
 use crate::session::probes::{OpenProbe, ProbeEvent, ProbeSubject};
 use crate::session::silence::USUAL_SHARE;
 use crate::session::tracker::TrackerEvent;
-use crate::session::{Applied, Event, Session, Stamped, apply};
+use crate::session::{AppliedEvent, Event, Session, TimestampedEvent, apply};
 
 /// A session with its judged presses, false belief episodes and belief estimate.
 #[derive(Clone, Debug)]
-pub struct Follower {
+pub struct SessionFollower {
     /// The session after the last event.
     pub session: Session,
     /// Every press of the human so far, with its judgement.
     pub judged: Vec<JudgedPress>,
     /// False belief episodes, as far as the participant's beliefs are known.
-    pub episodes: Episodes,
+    pub episodes: FalseBeliefTracker,
     /// The estimator of the human's belief.
     pub filter: BeliefFilter,
     /// Signals that the assistant is not to repeat yet.
-    pub repeats: Repeats,
+    pub repeats: SignalRepeatRule,
     /// Computing times of updates of the estimate, if they are measured.
     pub timing: Option<InferenceTiming>,
     pub(crate) cost: CostToGo,
     judge: PressJudge,
-    attributor: Attributor,
+    attributor: ErrorAttributor,
     /// The change of the kitchen that the human seems unaware of, judged by gaze.
     awareness: GazeAwareness,
     /// Session time of the last update of the estimate.
@@ -50,7 +50,7 @@ pub struct Follower {
     /// Recorded belief of the participant before its next press.
     belief: Option<Belief>,
     /// Cause that a simulated participant recorded in advance for its next press, in case the press is an error.
-    told_cause: Option<Cause>,
+    told_cause: Option<ErrorCause>,
     /// Whether the follower attributes errors to their causes.
     finds_causes: bool,
     /// The belief estimate before the last counted press of the human.
@@ -80,13 +80,13 @@ pub struct PressEstimate {
     /// The estimate of the human's belief before the press.
     pub belief: DirichletBelief,
     /// The evidence that the filter had received up to the press.
-    pub evidence: Evidence,
+    pub evidence: PressEvidence,
 }
 
 impl PressEstimate {
     /// The belief estimate in the form that the log records.
-    pub fn witness(&self, kitchen: &Kitchen) -> EstimateWitness {
-        EstimateWitness::new(kitchen, self.press, &self.belief, self.state, self.evidence)
+    pub fn witness(&self, kitchen: &Kitchen) -> RecordedEstimate {
+        RecordedEstimate::new(kitchen, self.press, &self.belief, self.state, self.evidence)
     }
 }
 
@@ -108,17 +108,17 @@ impl InferenceTiming {
     }
 }
 
-impl Follower {
+impl SessionFollower {
     /// The follower of a session, before the session's first event.
-    pub fn new(session: Session, cost: CostToGo) -> Follower {
+    pub fn new(session: Session, cost: CostToGo) -> SessionFollower {
         let (kitchen, spec, seed) = (session.kitchen.clone(), &session.spec, session.seed());
         let judge = PressJudge::new(kitchen.clone());
-        let attributor = Attributor::new(spec.human.decision.clone(), seed);
+        let attributor = ErrorAttributor::new(spec.human.decision.clone(), seed);
         let filter = BeliefFilter::new(kitchen, spec.human.clone(), seed);
-        let (judged, episodes) = (Vec::new(), Episodes::default());
+        let (judged, episodes) = (Vec::new(), FalseBeliefTracker::default());
         let (timing, belief, told_cause, estimated, finds_causes) = (None, None, None, None, true);
-        let repeats = Repeats::default();
-        Follower {
+        let repeats = SignalRepeatRule::default();
+        SessionFollower {
             session,
             judged,
             episodes,
@@ -163,23 +163,25 @@ impl Follower {
     ///
     /// # Errors
     /// Those of [`apply()`].
-    pub fn apply(&mut self, stamped: &Stamped) -> Result<Applied, ApplyError> {
+    pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<AppliedEvent, ApplyError> {
         let applied = apply(&mut self.session, stamped)?;
         match (&stamped.event, applied.change) {
             (Event::ParticipantBelieves(witness), _) if self.finds_causes => {
                 let session = &self.session;
                 self.belief = Belief::of_witness(&session.kitchen, session.state, witness);
-                self.told_cause = Cause::recorded(&session.kitchen, session.state, witness);
+                self.told_cause = ErrorCause::recorded(&session.kitchen, session.state, witness);
                 if let Some(belief) = &self.belief {
                     let (now, changed_at) = (stamped.time, &session.changed_at);
                     self.episodes.believed(&session.kitchen, now, session.state, belief, changed_at);
                 }
             }
-            (_, Change::Press { press, .. }) => match press.agent {
+            (_, KitchenChange::Press { press, .. }) => match press.agent {
                 Agent::Robot => self.judge.others_changed(stamped.time, press.before, press.after),
                 Agent::Human => self.human_pressed(stamped, &press),
             },
-            (_, Change::Correction { before, after, .. }) => self.judge.others_changed(stamped.time, before, after),
+            (_, KitchenChange::Correction { before, after, .. }) => {
+                self.judge.others_changed(stamped.time, before, after)
+            }
             _ => {}
         }
         match stamped.event {
@@ -223,7 +225,7 @@ impl Follower {
     }
 
     /// Updates the belief estimate by an event that has just been applied.
-    fn estimate(&mut self, stamped: &Stamped, change: &Change) {
+    fn estimate(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let Some(what) = self.observed(stamped, change) else { return };
         let observation = Observation { time: stamped.time, what };
         let human_press = change.human_press();
@@ -237,8 +239,8 @@ impl Follower {
         if let (Some(timing), Some(began)) = (&mut self.timing, began) {
             let took_ns = (timing.now_ns)().saturating_sub(began);
             match what {
-                Observed::Gaze { .. } => timing.gaze_ns.push(took_ns),
-                Observed::Pressed(_) => timing.action_ns.push(took_ns),
+                ObservedEvidence::Gaze { .. } => timing.gaze_ns.push(took_ns),
+                ObservedEvidence::Pressed(_) => timing.action_ns.push(took_ns),
                 _ => {}
             }
         }
@@ -249,14 +251,14 @@ impl Follower {
     }
 
     /// Updates which signals were sent lately. Gaze samples are skipped, since no advice is requested after them.
-    fn remember(&mut self, stamped: &Stamped) {
+    fn remember(&mut self, stamped: &TimestampedEvent) {
         let (kitchen, state) = (&self.session.kitchen, self.session.state);
         if let Some(SignalOver { location, read }) = self.filter.take_signal_over() {
             self.repeats.over(location, read);
         }
         match &stamped.event {
             Event::Gaze(_) | Event::Probe(_) => return,
-            Event::TrialStarted => self.repeats = Repeats::default(),
+            Event::TrialStarted => self.repeats = SignalRepeatRule::default(),
             Event::SignalShown { signal, .. } => self.repeats.shown(kitchen, state, signal),
             _ => {}
         }
@@ -264,22 +266,22 @@ impl Follower {
     }
 
     /// The observation that the belief filter receives for an event, if any.
-    pub fn observed(&self, stamped: &Stamped, change: &Change) -> Option<Observed> {
+    pub fn observed(&self, stamped: &TimestampedEvent, change: &KitchenChange) -> Option<ObservedEvidence> {
         match *change {
-            Change::TrialStarted { after, .. } => return Some(Observed::Started { state: after }),
-            Change::Press { press, .. } => return Some(Observed::Pressed(press)),
-            Change::Order { after, .. } | Change::Correction { after, .. } => {
-                return Some(Observed::Displayed { state: after });
+            KitchenChange::TrialStarted { after, .. } => return Some(ObservedEvidence::Started { state: after }),
+            KitchenChange::Press { press, .. } => return Some(ObservedEvidence::Pressed(press)),
+            KitchenChange::Order { after, .. } | KitchenChange::Correction { after, .. } => {
+                return Some(ObservedEvidence::Displayed { state: after });
             }
-            Change::None | Change::UncountedPress { .. } => {}
+            KitchenChange::None | KitchenChange::UncountedPress { .. } => {}
         }
         // During a freeze probe the kitchen is not on the display, and the probe's pause says nothing about the human's
         // silence.
         let is_frozen = self.session.is_frozen();
         match &stamped.event {
             Event::TrialPaused | Event::TrialResumed | Event::Gaze(_) if is_frozen => None,
-            Event::TrialPaused => Some(Observed::Paused),
-            Event::TrialResumed => Some(Observed::Resumed),
+            Event::TrialPaused => Some(ObservedEvidence::Paused),
+            Event::TrialResumed => Some(ObservedEvidence::Resumed),
             // The filter does not use gaze samples that are late, duplicate or out of order; they are recorded only.
             Event::Gaze(_) if self.session.gaze.fault.is_some() => None,
             Event::Gaze(sample) => {
@@ -287,27 +289,31 @@ impl Follower {
                 if self.session.probes.ended_at.is_some_and(|ended| taken < ended) {
                     return None;
                 }
-                Some(Observed::Gaze { sample: self.session.corrected(*sample), taken })
+                Some(ObservedEvidence::Gaze { sample: self.session.corrected(*sample), taken })
             }
-            Event::Tracker(TrackerEvent::DisplayLost) => Some(Observed::DisplayInView(false)),
+            Event::Tracker(TrackerEvent::DisplayLost) => Some(ObservedEvidence::DisplayInView(false)),
             Event::Tracker(TrackerEvent::DisplayFound | TrackerEvent::Lost { .. }) => {
-                Some(Observed::DisplayInView(true))
+                Some(ObservedEvidence::DisplayInView(true))
             }
-            Event::Probe(ProbeEvent::Begun { .. }) => Some(Observed::Frozen),
+            Event::Probe(ProbeEvent::Begun { .. }) => Some(ObservedEvidence::Frozen),
             Event::Probe(ProbeEvent::Ended { .. }) => {
                 let over = self.session.probes.over.last()?;
                 let teaches = self.session.spec.probes.as_ref().map_or(0.0, |probes| probes.teaches);
-                Some(Observed::Thawed { by: stamped.time - over.begun, asked: self.asked_about(over), teaches })
+                Some(ObservedEvidence::Thawed { by: stamped.time - over.begun, asked: self.asked_about(over), teaches })
             }
             Event::HumanWaits { .. } if self.session.spec.human.inference.waiting => {
-                Some(Observed::Waited { longer: 1.0 - USUAL_SHARE })
+                Some(ObservedEvidence::Waited { longer: 1.0 - USUAL_SHARE })
             }
             Event::SignalShown { signal: Signal::Propose(presses), .. } => {
                 let button = |name: &String| self.session.kitchen.button_named(Agent::Human, name);
-                Some(Observed::Proposed(ProposedPresses::new(presses.iter().filter_map(button))))
+                Some(ObservedEvidence::Proposed(ProposedPresses::new(presses.iter().filter_map(button))))
             }
-            Event::SignalShown { .. } => Some(Observed::Told { location: self.session.shown.as_ref()?.location? }),
-            Event::SignalEnded { .. } if self.session.spec.human.signal.takes_time() => Some(Observed::SignalOver),
+            Event::SignalShown { .. } => {
+                Some(ObservedEvidence::Told { location: self.session.shown.as_ref()?.location? })
+            }
+            Event::SignalEnded { .. } if self.session.spec.human.signal.takes_time() => {
+                Some(ObservedEvidence::SignalOver)
+            }
             _ => None,
         }
     }
@@ -323,12 +329,12 @@ impl Follower {
     }
 
     /// This follower without attribution of errors to causes, which takes too long in a running session.
-    pub fn without_causes(self) -> Follower {
-        Follower { finds_causes: false, ..self }
+    pub fn without_causes(self) -> SessionFollower {
+        SessionFollower { finds_causes: false, ..self }
     }
 
     /// Judges a press of the human that has just been applied, and attributes an error to its cause.
-    fn human_pressed(&mut self, stamped: &Stamped, press: &Press) {
+    fn human_pressed(&mut self, stamped: &TimestampedEvent, press: &Press) {
         let kitchen = self.session.kitchen.clone();
         let number = self.session.all_presses();
         let verdict = self.judge.human_pressed(&mut self.cost, stamped.time, press);

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::base::words::count;
-use crate::gaze::quality::{DropCounts, FaultCounts};
+use crate::gaze::quality::{DroppedInputCounts, GazeFaultCounts};
 use crate::session::Session;
 use crate::session::gaze_samples::faults;
 
@@ -16,10 +16,10 @@ pub struct GazeSummary {
     pub unusable: u64,
     /// Number of recorded gaze samples that the belief filter does not use, by fault.
     #[serde(flatten)]
-    pub faults: FaultCounts,
+    pub faults: GazeFaultCounts,
     /// Gaze input that was not recorded, by kind.
     #[serde(flatten)]
-    pub dropped: DropCounts,
+    pub dropped: DroppedInputCounts,
     /// Number of times that the tracker's clock was matched anew to the session's clock.
     pub clock_steps: u64,
     /// Number of fixations that the tracker found.

@@ -22,18 +22,18 @@ pub struct KitchenSummary {
     /// A shortest plan for each dish.
     pub plans: Vec<ShortestPlanSummary>,
     /// Tags in the corners of the wall display; null if there is no room for them.
-    pub tags: Option<TagsSummary>,
+    pub tags: Option<DisplayTagsSummary>,
 }
 
 /// The tags by which an eye tracker finds the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TagsSummary {
+pub struct DisplayTagsSummary {
     /// Name of the family of the tags.
     pub family: &'static str,
     /// Length of the edges of the tags' black squares, in metres.
     pub edge_m: f64,
     /// The tags, one in each corner of the display.
-    pub tags: Vec<TagSummary>,
+    pub tags: Vec<DisplayTagSummary>,
     /// Corners of the surface that the tags span: top left, top right, bottom right, bottom left, in fractions of the
     /// display.
     pub surface: [[f64; 2]; 4],
@@ -41,7 +41,7 @@ pub struct TagsSummary {
 
 /// A tag in a corner of the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TagSummary {
+pub struct DisplayTagSummary {
     /// Number of the tag in its family.
     pub id: u16,
     /// Position and size (x, y, w, h) of the tag with its white border, in fractions of the display.
@@ -53,15 +53,20 @@ pub struct TagSummary {
     pub cells: Vec<String>,
 }
 
-impl TagsSummary {
-    fn from_tags(tags: &DisplayTags) -> TagsSummary {
+impl DisplayTagsSummary {
+    fn from_tags(tags: &DisplayTags) -> DisplayTagsSummary {
         let row = |row: &[bool; CELLS]| row.iter().map(|black| if *black { '#' } else { '.' }).collect();
         let tag = |tag: &DisplayTag| {
             let area = [tag.area.x, tag.area.y, tag.area.w, tag.area.h];
-            TagSummary { id: tag.id, area, corners: tag.black_corners(), cells: tag.cells().iter().map(row).collect() }
+            DisplayTagSummary {
+                id: tag.id,
+                area,
+                corners: tag.black_corners(),
+                cells: tag.cells().iter().map(row).collect(),
+            }
         };
         let tags_drawn = tags.corners.iter().map(tag).collect();
-        TagsSummary { family: "tag36h11", edge_m: tags.edge_m, tags: tags_drawn, surface: tags.hull() }
+        DisplayTagsSummary { family: "tag36h11", edge_m: tags.edge_m, tags: tags_drawn, surface: tags.hull() }
     }
 }
 
@@ -97,7 +102,7 @@ impl KitchenSummary {
             states: kitchen.state_count().to_string(),
             aspects: aspects.collect(),
             plans: plans.collect(),
-            tags: DisplayTags::place(kitchen).ok().as_ref().map(TagsSummary::from_tags),
+            tags: DisplayTags::place(kitchen).ok().as_ref().map(DisplayTagsSummary::from_tags),
         }
     }
 }

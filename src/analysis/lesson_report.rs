@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::training_record::{JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
+use super::training_record::{JudgedFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
 use crate::base::words::count;
 use crate::communication::recommendation::{aspects_told, phrase};
 use crate::communication::{Signal, signals, unavailable};
@@ -13,7 +13,7 @@ use crate::history::wording;
 use crate::kitchen::{AspectId, Kitchen};
 use crate::measures::matching::{CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, WINDOW};
 use crate::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
-use crate::mind::BeliefWitness;
+use crate::mind::RecordedBelief;
 use crate::session::Session;
 
 /// Below this number of false beliefs that led to errors, a share of hits is too uncertain: at 10, a share of 60 % is
@@ -22,7 +22,7 @@ const TELLING: u64 = 10;
 
 /// Summary of a wizard's training so far.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TrainingSummary {
+pub struct WizardTrainingSummary {
     /// The wizard's code.
     pub wizard: String,
     /// Folder in which the training records were looked for.
@@ -37,11 +37,11 @@ pub struct TrainingSummary {
     pub met: Option<bool>,
 }
 
-impl TrainingSummary {
+impl WizardTrainingSummary {
     /// Summary of a wizard's training from the records found in this folder.
-    pub fn from_records(folder: &Path, wizard: &str, records: &[TrainingRecord]) -> TrainingSummary {
+    pub fn from_records(folder: &Path, wizard: &str, records: &[WizardTrainingRecord]) -> WizardTrainingSummary {
         let last = records.last();
-        TrainingSummary {
+        WizardTrainingSummary {
             wizard: wizard.to_string(),
             folder: folder.display().to_string(),
             times: records.len() as u64,
@@ -64,8 +64,8 @@ impl TrainingSummary {
 }
 
 /// A false belief episode before any signal about it was judged.
-pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedBelief {
-    JudgedBelief {
+pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedFalseBelief {
+    JudgedFalseBelief {
         aspect: session.kitchen.aspects[spell.aspect.index()].name.clone(),
         began_ns: spell.began,
         corrected_ns: spell.corrected.map(|(end, _)| end),
@@ -79,7 +79,7 @@ pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedBelief {
 }
 
 /// Fills in what the participant believes now, and which signal would correct it.
-pub fn hear(belief: &mut JudgedBelief, session: &Session, aspect: AspectId, witness: &BeliefWitness) {
+pub fn hear(belief: &mut JudgedFalseBelief, session: &Session, aspect: AspectId, witness: &RecordedBelief) {
     let kitchen = &session.kitchen;
     let Some(told) = witness.aspects.get(aspect.index()) else { return };
     let (values, value) = (&kitchen.aspects[aspect.index()], kitchen.true_value(session.state, aspect));
@@ -101,13 +101,13 @@ pub fn hear(belief: &mut JudgedBelief, session: &Session, aspect: AspectId, witn
 }
 
 /// A false belief in words: "recipe of tuna nigiri: believed salmon nigiri, truly tuna nigiri".
-pub fn about(belief: &JudgedBelief) -> String {
+pub fn about(belief: &JudgedFalseBelief) -> String {
     let what = belief.aspect.replace('_', " ");
     if belief.words.is_empty() { what } else { format!("{what}: {}", belief.words) }
 }
 
 /// The signal that would have corrected a false belief, in words.
-pub fn right(belief: &JudgedBelief) -> String {
+pub fn right(belief: &JudgedFalseBelief) -> String {
     belief.signal.as_ref().map_or("no signal could tell it".to_string(), |signal| {
         format!("right would have been: {}", wording::signal(signal))
     })
@@ -130,7 +130,7 @@ pub fn task(criterion: &TrainingCriterion) -> Vec<String> {
 
 /// Result of a training session as lines of text: the score beside the criterion, and each false belief that led to
 /// errors.
-pub fn lines(recordings: &[&JudgedRecording], criterion: &TrainingCriterion) -> Vec<String> {
+pub fn lines(recordings: &[&WatchedRecording], criterion: &TrainingCriterion) -> Vec<String> {
     let sum = WizardMeasures::sum(recordings.iter().map(|one| &one.measures));
     let mut lines = vec![held_against(&sum, criterion)];
     let episodes = sum.episodes.unwrap_or(0);
@@ -167,7 +167,7 @@ fn held_against(sum: &WizardMeasures, criterion: &TrainingCriterion) -> String {
 
 /// A false belief as two lines of text: when it was held, what was believed, which signal would have corrected it, and
 /// what was sent meanwhile.
-fn told(belief: &JudgedBelief, signals: &[JudgedSignal]) -> [String; 2] {
+fn told(belief: &JudgedFalseBelief, signals: &[JudgedSignal]) -> [String; 2] {
     let end = belief.corrected_ns.map_or("the end".to_string(), |end| end.to_string());
     let errors = count(belief.errors, "error", "errors");
     let head = format!("{} to {end}  {}; {errors}", belief.began_ns, about(belief));
@@ -186,7 +186,7 @@ fn told(belief: &JudgedBelief, signals: &[JudgedSignal]) -> [String; 2] {
 }
 
 /// Result of a training session as text.
-pub fn describe(record: &TrainingRecord, path: &Path) -> String {
+pub fn describe(record: &WizardTrainingRecord, path: &Path) -> String {
     let mut text = String::new();
     for one in &record.recordings {
         let measures = &one.measures;
@@ -198,7 +198,7 @@ pub fn describe(record: &TrainingRecord, path: &Path) -> String {
         let signals = count(measures.signals, "signal", "signals");
         text += &format!("{}{cut}: {signals}{latency}{kappa}\n", one.recording);
     }
-    let recordings: Vec<&JudgedRecording> = record.recordings.iter().collect();
+    let recordings: Vec<&WatchedRecording> = record.recordings.iter().collect();
     text.extend(lines(&recordings, &record.criterion).iter().map(|line| format!("{line}\n")));
     let met = if record.met { "met" } else { "not met" };
     let speed = match record.speed {
@@ -210,7 +210,7 @@ pub fn describe(record: &TrainingRecord, path: &Path) -> String {
 }
 
 /// Cohen's kappa between a wizard's signals in two passes through the same recording.
-pub fn with_oneself(kitchen: &Kitchen, one: &JudgedRecording, other: &JudgedRecording) -> Option<f64> {
+pub fn with_oneself(kitchen: &Kitchen, one: &WatchedRecording, other: &WatchedRecording) -> Option<f64> {
     let said = |signal: &JudgedSignal| {
         let kind = match signal.signal {
             Signal::ShowRecipe(_) => CommunicationKind::Recipe,

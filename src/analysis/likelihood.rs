@@ -8,9 +8,9 @@ use super::fitting::downhill_simplex::minimise;
 use super::trial_bootstrap::interval;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen, WeightedWorlds, World};
-use crate::measures::belief_detection::{PressView, TrialView};
+use crate::measures::belief_detection::{BeliefsBeforePress, TrialView};
 use crate::mind::ChoiceModel;
-use crate::mind::choice_parameters::DecisionModel;
+use crate::mind::choice_parameters::ChoiceParameters;
 
 /// Tolerance of the baseline's fit (informed human), in nats per press.
 const TOLERANCE_NATS: f64 = 1e-6;
@@ -19,7 +19,7 @@ const MOST_ITERATIONS: usize = 200;
 
 /// Mean log probability of the human's presses under the model and two baselines, in nats per press.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct LogLikelihood {
+pub struct PressLogLikelihood {
     /// Under the human model with the estimated belief before the press; null without an estimate.
     pub model: Option<f64>,
     /// Under a human who knows the true world (informed human, a baseline), fitted to these presses.
@@ -36,24 +36,24 @@ pub struct LogLikelihood {
     pub informed_lapse: Option<f64>,
 }
 
-impl LogLikelihood {
+impl PressLogLikelihood {
     /// Computes the log likelihoods of all presses of these trials. The bootstrap's random stream is seeded by `seed`.
     pub fn from_trials(
         kitchen: &Kitchen,
         cost: &mut CostToGo,
-        model: &DecisionModel,
+        model: &ChoiceParameters,
         trials: &[TrialView],
         seed: u64,
-    ) -> LogLikelihood {
+    ) -> PressLogLikelihood {
         let presses = trials.iter().map(Vec::len).sum::<usize>() as f64;
         if presses == 0.0 {
-            return LogLikelihood::default();
+            return PressLogLikelihood::default();
         }
-        let total = |informed: &DecisionModel, cost: &mut CostToGo| -> Vec<f64> {
+        let total = |informed: &ChoiceParameters, cost: &mut CostToGo| -> Vec<f64> {
             let model = ChoiceModel::new(kitchen, informed);
             trials.iter().map(|trial| trial.iter().map(|press| log_p(kitchen, cost, &model, press)).sum()).collect()
         };
-        let with = |at: &[f64]| DecisionModel { tau: at[0].exp(), lapse: logistic(at[1]), ..model.clone() };
+        let with = |at: &[f64]| ChoiceParameters { tau: at[0].exp(), lapse: logistic(at[1]), ..model.clone() };
         let start = [model.tau.ln(), logit(model.lapse)];
         let loss = |at: &[f64]| -total(&with(at), cost).iter().sum::<f64>() / presses;
         let best = with(&minimise(loss, &start, &[-0.5, 0.5], TOLERANCE_NATS, MOST_ITERATIONS).at);
@@ -66,7 +66,7 @@ impl LogLikelihood {
             let both = estimated.iter().zip(&informed).zip(trials);
             both.map(|((model, informed), trial)| (model - informed, trial.len() as f64)).collect()
         });
-        LogLikelihood {
+        PressLogLikelihood {
             model: estimated.map(|estimated| estimated.iter().sum::<f64>() / presses),
             informed: Some(informed.iter().sum::<f64>() / presses),
             uniform: Some(-(kitchen.buttons[Agent::Human.index()].len() as f64).ln()),
@@ -79,7 +79,7 @@ impl LogLikelihood {
 }
 
 /// Log probability of a press under a human who knows the true world.
-fn log_p(kitchen: &Kitchen, cost: &mut CostToGo, model: &ChoiceModel, press: &PressView) -> f64 {
+fn log_p(kitchen: &Kitchen, cost: &mut CostToGo, model: &ChoiceModel, press: &BeliefsBeforePress) -> f64 {
     let truth = WeightedWorlds::certain(World::with_true_recipes(kitchen, press.state));
     model.probabilities(cost, &truth).press[press.button.index()].ln()
 }

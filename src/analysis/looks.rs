@@ -10,11 +10,11 @@ pub const LOOK_S: f64 = 0.1;
 
 /// For each location, the time since which the gaze has been in its area without a change there.
 #[derive(Clone, Debug, Default)]
-pub struct Looks {
+pub struct LocationDwells {
     since: [Option<SessionTime>; MAX_LOCATIONS],
 }
 
-impl Looks {
+impl LocationDwells {
     /// Notes a change of a location's content: a look at the earlier content does not count for the new one.
     pub fn changed(&mut self, location: LocationId) {
         self.since[location.index()] = None;

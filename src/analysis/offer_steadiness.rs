@@ -12,7 +12,7 @@ use super::offer_summary::{OfferSummary, TimedOffer};
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
-use crate::communication::offer::{Offer, OfferEnd};
+use crate::communication::offer::{Offer, OfferCloseReason};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Signal, unavailable};
 use crate::measures::median;
@@ -27,7 +27,7 @@ const REOPENS_S: f64 = 5.0;
 
 /// Results of the scripted hand: how often its key meant the offer that it had read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct HandSummary {
+pub struct ScriptedHandSummary {
     /// Readings of an offer on the screen that were followed by the key while the trial ran.
     pub readings: u64,
     /// The key meant the offer that the hand had read.
@@ -40,7 +40,7 @@ pub struct HandSummary {
 
 /// Steadiness of offers: the output of `tomcom replay RECORDING... --offers`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct SteadinessSummary {
+pub struct OfferSteadinessSummary {
     /// Number of recordings.
     pub recordings: u64,
     /// Statistics of offers: number, durations, and how many were used.
@@ -49,7 +49,7 @@ pub struct SteadinessSummary {
     /// null without recommendations.
     pub raw_median_s: Option<f64>,
     /// How often the scripted hand's key meant the offer that the hand had read.
-    pub hand: HandSummary,
+    pub hand: ScriptedHandSummary,
     /// Closed offers, without those that the wizard used and those at the end of a trial.
     pub could_reopen: u64,
     /// Number of closed offers whose signal was offered again within 5 s.
@@ -75,11 +75,11 @@ struct Reading {
 /// Measures the steadiness of offers in one recording. [`Self::before`] is called before each event, [`Self::after`]
 /// after it.
 #[derive(Clone, Debug)]
-pub struct SteadinessTally {
+pub struct OfferSteadinessTally {
     random: Stream,
     next_reading: Option<SessionTime>,
     readings: Vec<Reading>,
-    hand: HandSummary,
+    hand: ScriptedHandSummary,
     open_s: f64,
     at_or_below_0_s: f64,
     /// The signal that the assistant recommends at present, and the time since which it has been the same.
@@ -87,14 +87,14 @@ pub struct SteadinessTally {
     raw_s: Vec<f64>,
 }
 
-impl SteadinessTally {
+impl OfferSteadinessTally {
     /// The measurement for a recording; the scripted hand's random stream is seeded by the session's seed and trial.
-    pub fn new(session: &Session) -> SteadinessTally {
-        SteadinessTally {
+    pub fn new(session: &Session) -> OfferSteadinessTally {
+        OfferSteadinessTally {
             random: stream(session.spec.seed, "reading hand", session.trial),
             next_reading: None,
             readings: Vec::new(),
-            hand: HandSummary::default(),
+            hand: ScriptedHandSummary::default(),
             open_s: 0.0,
             at_or_below_0_s: 0.0,
             raw: None,
@@ -176,16 +176,16 @@ fn is_at_or_below_0(advice: &Recommendation, offer: &Offer) -> bool {
 
 /// Statistics of offers summed over recordings.
 #[derive(Clone, Debug, Default)]
-pub struct SteadinessSums {
-    summary: SteadinessSummary,
+pub struct OfferSteadinessSums {
+    summary: OfferSteadinessSummary,
     offers: Vec<TimedOffer>,
     raw_s: Vec<f64>,
     at_or_below_0_s: f64,
 }
 
-impl SteadinessSums {
+impl OfferSteadinessSums {
     /// Adds the measurement of a recording that was read to its end.
-    pub fn add(&mut self, tally: SteadinessTally, session: &Session) {
+    pub fn add(&mut self, tally: OfferSteadinessTally, session: &Session) {
         let sums = &mut self.summary;
         sums.recordings += 1;
         sums.hand.readings += tally.hand.readings;
@@ -198,7 +198,7 @@ impl SteadinessSums {
         let offers = TimedOffer::all(session);
         for (index, one) in offers.iter().enumerate() {
             let (Some(stood_s), Some(reason)) = (one.stood_s, one.reason) else { continue };
-            if !matches!(reason, OfferEnd::Impossible | OfferEnd::Fell | OfferEnd::Replaced) {
+            if !matches!(reason, OfferCloseReason::Impossible | OfferCloseReason::Fell | OfferCloseReason::Replaced) {
                 continue;
             }
             sums.could_reopen += 1;
@@ -210,10 +210,10 @@ impl SteadinessSums {
     }
 
     /// The summary of all added recordings.
-    pub fn summary(self) -> SteadinessSummary {
-        let SteadinessSums { summary, offers, raw_s, at_or_below_0_s } = self;
+    pub fn summary(self) -> OfferSteadinessSummary {
+        let OfferSteadinessSums { summary, offers, raw_s, at_or_below_0_s } = self;
         let share = |part: f64, all: f64| (all > 0.0).then(|| part / all);
-        SteadinessSummary {
+        OfferSteadinessSummary {
             offers: OfferSummary::from_offers(&offers),
             raw_median_s: median(raw_s),
             reopened_share: share(summary.reopened as f64, summary.could_reopen as f64),
@@ -224,7 +224,7 @@ impl SteadinessSums {
 }
 
 /// The steadiness of offers as text for the terminal.
-pub fn describe(found: &SteadinessSummary) -> String {
+pub fn describe(found: &OfferSteadinessSummary) -> String {
     let seconds = |value: Option<f64>| value.map_or("-".to_string(), |s| format!("{s:.1} s"));
     let percent = |value: Option<f64>| value.map_or("-".to_string(), |share| format!("{:.1} %", 100.0 * share));
     let mut text = format!(

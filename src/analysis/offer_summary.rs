@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::wizard_log::clock_at;
 use crate::base::time::SessionTime;
-use crate::communication::offer::{Offer, OfferEnd, OfferUse};
+use crate::communication::offer::{Offer, OfferCloseReason, OfferKeyUse};
 use crate::measures::median;
 use crate::session::Session;
 
@@ -21,7 +21,7 @@ pub struct TimedOffer {
     /// Duration for which the offer stood, in seconds; `None` if the recording was cut while the offer was open.
     pub stood_s: Option<f64>,
     /// Why the offer to the wizard closed.
-    pub reason: Option<OfferEnd>,
+    pub reason: Option<OfferCloseReason>,
     /// Time at which the wizard sent the offered signal, on the trial's clock.
     pub sent: Option<SessionTime>,
     /// Reaction time from the opening of the offer to the key that sent its signal, in seconds.
@@ -31,7 +31,7 @@ pub struct TimedOffer {
 impl TimedOffer {
     /// All offers of a session so far, in order.
     pub fn all(session: &Session) -> Vec<TimedOffer> {
-        let timed = |offer: &Offer, closed: Option<(f64, OfferEnd)>| {
+        let timed = |offer: &Offer, closed: Option<(f64, OfferCloseReason)>| {
             let opened_s = clock_at(session, offer.opened).as_secs_f64();
             let sent = offer.used.map(|used| clock_at(session, used.at));
             TimedOffer {
@@ -87,7 +87,7 @@ pub struct OfferSummary {
     #[serde(flatten)]
     pub all: OfferDurations,
     /// Durations of closed offers, by the reason of closing.
-    pub by_reason: BTreeMap<OfferEnd, OfferDurations>,
+    pub by_reason: BTreeMap<OfferCloseReason, OfferDurations>,
     /// Offers whose signal was sent by the key that accepts the offer.
     pub taken: u64,
     /// Offers whose signal was sent by the signal's own key.
@@ -105,15 +105,15 @@ impl OfferSummary {
     pub fn from_offers<'a>(offers: impl IntoIterator<Item = &'a TimedOffer>) -> OfferSummary {
         let mut summary = OfferSummary::default();
         let (mut stood, mut reactions) = (Vec::new(), Vec::new());
-        let mut by_reason: BTreeMap<OfferEnd, Vec<f64>> = BTreeMap::new();
+        let mut by_reason: BTreeMap<OfferCloseReason, Vec<f64>> = BTreeMap::new();
         for one in offers {
             let (Some(stood_s), Some(reason)) = (one.stood_s, one.reason) else { continue };
             stood.push(stood_s);
             by_reason.entry(reason).or_default().push(stood_s);
             reactions.extend(one.reaction_s);
             *match one.offer.used.map(|used| used.how) {
-                Some(OfferUse::Taken) => &mut summary.taken,
-                Some(OfferUse::OwnKey) => &mut summary.by_own_key,
+                Some(OfferKeyUse::Taken) => &mut summary.taken,
+                Some(OfferKeyUse::OwnKey) => &mut summary.by_own_key,
                 None => &mut summary.not_taken,
             } += 1;
         }

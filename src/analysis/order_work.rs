@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::wizard_log::clock_at;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Change, Kitchen, LocationId};
+use crate::kitchen::{Kitchen, KitchenChange, LocationId};
 use crate::session::{Session, TimelineEvent};
 
 /// Seconds from the appearance of each served order to its serving, on the trial's clock.
@@ -41,8 +41,8 @@ impl RegretSum {
     }
 
     /// Adds the regret of the press that caused this change; other changes have no regret.
-    pub fn note(&mut self, kitchen: &Kitchen, change: &Change) {
-        let Change::Press { press, .. } = change else { return };
+    pub fn note(&mut self, kitchen: &Kitchen, change: &KitchenChange) {
+        let KitchenChange::Press { press, .. } = change else { return };
         let recipes = kitchen.true_recipes();
         self.lost += match press.before == press.after {
             true => 1,

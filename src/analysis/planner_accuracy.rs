@@ -29,7 +29,7 @@ const MATTERS: f64 = 0.3;
 
 /// The output of `tomcom replay --accuracy`. A value is null where no step contributes to it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct AccuracySummary {
+pub struct PlannerAccuracySummary {
     /// Number of steps at which the planner was compared with its converged answer.
     pub steps: u64,
     /// Number of steps at which the best option, silence included, leads by more than 0.2 presses.
@@ -62,7 +62,7 @@ pub struct AccuracySummary {
 
 /// Requests for advice that the assistant gets in a recording, one after each press.
 #[derive(Debug)]
-pub struct RecordedQuestions {
+pub struct RecordedAdviceRequests {
     /// The session before its first event.
     pub session: Session,
     /// The requests for advice, one after each press.
@@ -71,7 +71,7 @@ pub struct RecordedQuestions {
 
 /// A step of a recording: one request for advice, with the benefits that each planner computed for it.
 #[derive(Clone, Debug, Default)]
-pub struct ComparedQuestion {
+pub struct ComparedAdviceRequest {
     recording: usize,
     question: usize,
     took_s: f64,
@@ -82,26 +82,27 @@ pub struct ComparedQuestion {
 
 /// Compares planners on the requests for advice in recordings of one kitchen.
 #[derive(Debug)]
-pub struct PlannerBench {
+pub struct PlannerComparison {
     kitchen: Arc<Kitchen>,
-    asked: Vec<RecordedQuestions>,
+    asked: Vec<RecordedAdviceRequests>,
     /// The caller's monotonic clock, in nanoseconds.
     clock_ns: fn() -> u64,
 }
 
-impl PlannerBench {
+impl PlannerComparison {
     /// A comparison on the requests of these recordings; `clock_ns` is a monotonic clock in nanoseconds.
-    pub fn new(kitchen: Arc<Kitchen>, asked: Vec<RecordedQuestions>, clock_ns: fn() -> u64) -> PlannerBench {
-        PlannerBench { kitchen, asked, clock_ns }
+    pub fn new(kitchen: Arc<Kitchen>, asked: Vec<RecordedAdviceRequests>, clock_ns: fn() -> u64) -> PlannerComparison {
+        PlannerComparison { kitchen, asked, clock_ns }
     }
 
     /// At most `most` steps, spread evenly over all requests and not answered yet.
-    pub fn spread(&self, most: usize) -> Vec<ComparedQuestion> {
+    pub fn spread(&self, most: usize) -> Vec<ComparedAdviceRequest> {
         let all = self.asked.iter().enumerate().flat_map(|(recording, asked)| {
-            let step = move |question| ComparedQuestion { recording, question, ..ComparedQuestion::default() };
+            let step =
+                move |question| ComparedAdviceRequest { recording, question, ..ComparedAdviceRequest::default() };
             (0..asked.questions.len()).map(step)
         });
-        let all: Vec<ComparedQuestion> = all.collect();
+        let all: Vec<ComparedAdviceRequest> = all.collect();
         let chosen = most.min(all.len());
         (0..chosen).map(|index| all[index * all.len() / chosen].clone()).collect()
     }
@@ -111,7 +112,7 @@ impl PlannerBench {
     ///
     /// The planner answers after every press on one thread, as in a session, where its cache helps the next answer. The
     /// plain reference answers directly after it, so that the machine is equally fast for both.
-    pub fn answer(&self, steps: &mut [ComparedQuestion], reference_steps: usize, done: impl Fn()) {
+    pub fn answer(&self, steps: &mut [ComparedAdviceRequest], reference_steps: usize, done: impl Fn()) {
         let every = (reference_steps > 0).then(|| steps.len().div_ceil(reference_steps));
         let mut planner = BenchPlanner::default();
         for (index, step) in steps.iter_mut().enumerate() {
@@ -132,23 +133,23 @@ impl PlannerBench {
     }
 
     /// The step with the converged answer added. Steps can be converged in any order, by several planners in parallel.
-    pub fn converge(&self, planner: &mut BenchPlanner, step: &ComparedQuestion) -> ComparedQuestion {
+    pub fn converge(&self, planner: &mut BenchPlanner, step: &ComparedAdviceRequest) -> ComparedAdviceRequest {
         let (advisor, _) = planner.advisor(self, step.recording, CONVERGED);
-        ComparedQuestion { converged: benefits(advisor, self.question(step)), ..step.clone() }
+        ComparedAdviceRequest { converged: benefits(advisor, self.question(step)), ..step.clone() }
     }
 
     /// The accuracy over steps that were answered and converged.
-    pub fn summary(&self, steps: &[ComparedQuestion]) -> AccuracySummary {
+    pub fn summary(&self, steps: &[ComparedAdviceRequest]) -> PlannerAccuracySummary {
         let price = self.asked.first().map_or(0.0, |asked| asked.session.spec.assistant.cost_of_communication);
         figures(steps, price)
     }
 
-    fn question(&self, step: &ComparedQuestion) -> &AdviceRequest {
+    fn question(&self, step: &ComparedAdviceRequest) -> &AdviceRequest {
         &self.asked[step.recording].questions[step.question]
     }
 
     /// Computing time of the plain reference planner for a step, in seconds, and its answer.
-    fn plain(&self, step: &ComparedQuestion) -> (f64, Vec<ReferenceBenefit>) {
+    fn plain(&self, step: &ComparedAdviceRequest) -> (f64, Vec<ReferenceBenefit>) {
         let session = &self.asked[step.recording].session;
         let (human, assistant) = (session.spec.human.clone(), session.spec.assistant.clone());
         let plain = ReferencePlanner::new(self.kitchen.clone(), human, assistant, session.seed());
@@ -178,7 +179,7 @@ pub struct BenchPlanner {
 impl BenchPlanner {
     /// The planner for a recording's session, with `times` as many rollouts, and the number of requests that it has
     /// answered.
-    fn advisor(&mut self, bench: &PlannerBench, recording: usize, times: usize) -> (&mut Advisor, &mut usize) {
+    fn advisor(&mut self, bench: &PlannerComparison, recording: usize, times: usize) -> (&mut Advisor, &mut usize) {
         let made = || {
             let mut session = bench.asked[recording].session.clone();
             if times > 1 {
@@ -237,7 +238,7 @@ impl DecisionAgreement {
     }
 }
 
-fn figures(steps: &[ComparedQuestion], price: f64) -> AccuracySummary {
+fn figures(steps: &[ComparedAdviceRequest], price: f64) -> PlannerAccuracySummary {
     let (mut ours, mut plain) = (DecisionAgreement::default(), DecisionAgreement::default());
     let (mut of_errors, mut plain_s, mut ours_s, mut reference_steps) = (0.0, 0.0, 0.0, 0u64);
     for step in steps {
@@ -252,7 +253,7 @@ fn figures(steps: &[ComparedQuestion], price: f64) -> AccuracySummary {
         (plain_s, ours_s, reference_steps) = (plain_s + took_s, ours_s + step.took_s, reference_steps + 1);
     }
     let each = |total_s: f64| (reference_steps > 0).then(|| 1e3 * total_s / reference_steps as f64);
-    AccuracySummary {
+    PlannerAccuracySummary {
         steps: steps.len() as u64,
         clear_steps: ours.clear,
         same_decision: ours.same_decision(),
@@ -270,7 +271,7 @@ fn figures(steps: &[ComparedQuestion], price: f64) -> AccuracySummary {
 }
 
 /// The accuracy of the planner as text for the terminal.
-pub fn describe(figures: &AccuracySummary) -> String {
+pub fn describe(figures: &PlannerAccuracySummary) -> String {
     if figures.benefit_pairs == 0 {
         return format!(
             "{}: at none a signal was worth more than {MATTERS} presses, so nothing can be held against the answer with \

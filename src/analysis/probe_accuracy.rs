@@ -3,14 +3,14 @@
 
 use serde::Serialize;
 
-use super::probe_record::{ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial, weighted_share};
+use super::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial, weighted_share};
 use super::trial_bootstrap::interval_where_known;
 use crate::session::study_arm::StudyArm;
 
 /// The property of a question by which a table of accuracies is grouped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum AccuracyGrouping {
+pub enum ProbeAccuracyGrouping {
     /// Kind of question: orders, recipes, other locations.
     Kind,
     /// The state aspect that a question is about.
@@ -31,7 +31,7 @@ pub enum AccuracyGrouping {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeAccuracy {
     /// Property by which questions were grouped.
-    pub by: AccuracyGrouping,
+    pub by: ProbeAccuracyGrouping,
     /// Name of the group of questions.
     pub group: String,
     /// Number of questions in the group that were answered in time.
@@ -46,7 +46,7 @@ pub struct ProbeAccuracy {
 
 /// Effect of assistance on situation awareness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct AwarenessEffect {
+pub struct SituationAwarenessEffect {
     /// Number of participants with answers in assisted and in unassisted trials, who are compared.
     pub participants: u64,
     /// Mean over these participants of accuracy with assistance minus accuracy without.
@@ -64,36 +64,36 @@ const AGES: [(f64, &str); 4] = [
 ];
 
 /// The groups to which a question belongs, in the order of the table.
-fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(AccuracyGrouping, usize, String)> {
+fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(ProbeAccuracyGrouping, usize, String)> {
     let kind = match question.kind {
-        ProbedKind::Order => 0,
-        ProbedKind::Recipe => 1,
+        ProbeQuestionKind::Order => 0,
+        ProbeQuestionKind::Recipe => 1,
         _ => 2,
     };
     let choice = ["drawn without the estimate", "drawn with the estimate"][usize::from(question.uses_estimate)];
     let mut groups = vec![
-        (AccuracyGrouping::Kind, kind, question.kind.words().to_string()),
-        (AccuracyGrouping::Aspect, 0, question.aspect.clone()),
-        (AccuracyGrouping::Condition, trial.study_arm as usize, trial.study_arm.name().to_string()),
-        (AccuracyGrouping::Choice, usize::from(question.uses_estimate), choice.to_string()),
+        (ProbeAccuracyGrouping::Kind, kind, question.kind.words().to_string()),
+        (ProbeAccuracyGrouping::Aspect, 0, question.aspect.clone()),
+        (ProbeAccuracyGrouping::Condition, trial.study_arm as usize, trial.study_arm.name().to_string()),
+        (ProbeAccuracyGrouping::Choice, usize::from(question.uses_estimate), choice.to_string()),
     ];
     if let Some((frozen, changed_unseen)) =
         question.frozen.as_ref().and_then(|frozen| Some((frozen, frozen.changed_unseen?)))
     {
         groups.push(match frozen.changed_s {
-            None => (AccuracyGrouping::Age, AGES.len(), "not changed in the trial".to_string()),
+            None => (ProbeAccuracyGrouping::Age, AGES.len(), "not changed in the trial".to_string()),
             Some(s) => {
                 let age = AGES.iter().position(|(to, _)| s < *to).unwrap_or(AGES.len() - 1);
-                (AccuracyGrouping::Age, age, AGES[age].1.to_string())
+                (ProbeAccuracyGrouping::Age, age, AGES[age].1.to_string())
             }
         });
         let seen = ["not changed by others since the last look", "changed by others since the last look"];
         let index = usize::from(changed_unseen);
-        groups.push((AccuracyGrouping::Seen, index, seen[index].to_string()));
+        groups.push((ProbeAccuracyGrouping::Seen, index, seen[index].to_string()));
     }
     if let Some(confidence) = question.confidence.filter(|_| question.response != ProbeResponse::Unsure) {
         let group = format!("confidence {confidence} of 3");
-        groups.push((AccuracyGrouping::Confidence, usize::from(confidence), group));
+        groups.push((ProbeAccuracyGrouping::Confidence, usize::from(confidence), group));
     }
     groups
 }
@@ -101,7 +101,7 @@ fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(AccuracyGroupi
 /// Accuracy in each group of each grouping, over the questions of the main results; `participants` holds the trials of
 /// each participant.
 pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAccuracy> {
-    let mut all: Vec<(AccuracyGrouping, usize, String)> = participants
+    let mut all: Vec<(ProbeAccuracyGrouping, usize, String)> = participants
         .iter()
         .flatten()
         .flat_map(|trial| trial.counted().flat_map(|question| groups(trial, question)))
@@ -121,7 +121,7 @@ pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAcc
 /// Accuracy over the questions of one group.
 pub fn accuracy(
     participants: &[Vec<&ProbedTrial>],
-    (by, group): (AccuracyGrouping, &str),
+    (by, group): (ProbeAccuracyGrouping, &str),
     seed: u64,
     is_in: impl Fn(&ProbedTrial, &ProbedQuestion) -> bool,
 ) -> ProbeAccuracy {
@@ -157,7 +157,7 @@ pub fn accuracy(
 
 /// The effect of assistance on accuracy, within participants; `None` if no participant has answers in both assisted and
 /// unassisted trials.
-pub fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<AwarenessEffect> {
+pub fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<SituationAwarenessEffect> {
     let share = |trials: &[&ProbedTrial], assisted: bool| {
         let of = trials.iter().filter(|trial| (trial.study_arm != StudyArm::None) == assisted);
         let answers = of.flat_map(|trial| trial.counted());
@@ -166,7 +166,7 @@ pub fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option
     let differences: Vec<f64> =
         participants.iter().filter_map(|of| Some(share(of, true)? - share(of, false)?)).collect();
     let mean = |of: &[f64]| (!of.is_empty()).then(|| of.iter().sum::<f64>() / of.len() as f64);
-    Some(AwarenessEffect {
+    Some(SituationAwarenessEffect {
         participants: differences.len() as u64,
         difference: mean(&differences)?,
         interval: interval_where_known(&differences, seed, mean),

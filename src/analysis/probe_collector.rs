@@ -2,23 +2,27 @@
 
 use std::collections::BTreeMap;
 
-use super::follower::Follower;
-use super::probe_record::{FrozenAspect, FrozenBelief, ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial};
-use super::seen_contents::SeenContents;
+use super::follower::SessionFollower;
+use super::probe_record::{
+    AspectAtFreeze, BeliefAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial,
+};
+use super::seen_contents::LastSeenContents;
 use crate::base::incomplete_beta::regularized_incomplete_beta;
 use crate::base::time::SessionTime;
-use crate::kitchen::{Agent, AspectId, AspectKind, ButtonAction, Change, Kitchen, LocationKind, OrderContent, Press};
+use crate::kitchen::{
+    Agent, AspectId, AspectKind, ButtonAction, Kitchen, KitchenChange, LocationKind, OrderContent, Press,
+};
 use crate::measures::sequences::FALSE_BELOW;
-use crate::mind::BeliefWitness;
+use crate::mind::RecordedBelief;
 use crate::session::probes::{ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
-use crate::session::{Event, Session, Stamped};
+use crate::session::{Event, Session, TimestampedEvent};
 
 /// Collects the freeze probe questions of a recording, event by event.
 #[derive(Debug, Default)]
 pub struct ProbeCollector {
-    seen: SeenContents,
+    seen: LastSeenContents,
     /// Last recorded belief of a simulated participant, with its time.
-    belief: Option<(SessionTime, BeliefWitness)>,
+    belief: Option<(SessionTime, RecordedBelief)>,
     open: Option<OpenQuestions>,
     questions: Vec<ProbedQuestion>,
     begun: u64,
@@ -36,7 +40,7 @@ struct OpenQuestions {
 
 impl ProbeCollector {
     /// Takes note of an event that the follower has just applied.
-    pub fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower) {
+    pub fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, follower: &SessionFollower) {
         let session = &follower.session;
         self.seen.note(session, &stamped.event, change);
         match &stamped.event {
@@ -45,12 +49,12 @@ impl ProbeCollector {
             Event::Probe(event) => self.probe(stamped.time, event, follower),
             _ => {}
         }
-        if let Change::Press { press, .. } = change {
+        if let KitchenChange::Press { press, .. } = change {
             self.next(&session.kitchen, press);
         }
     }
 
-    fn probe(&mut self, now: SessionTime, event: &ProbeEvent, follower: &Follower) {
+    fn probe(&mut self, now: SessionTime, event: &ProbeEvent, follower: &SessionFollower) {
         match event {
             ProbeEvent::Begun { probe, origin, uses_estimate, questions } => {
                 self.begun += 1;
@@ -107,7 +111,7 @@ impl ProbeCollector {
     }
 
     /// A question with what was true and estimated when the trial froze.
-    fn frozen(&self, now: SessionTime, question: &ProbeQuestion, follower: &Follower) -> ProbedQuestion {
+    fn frozen(&self, now: SessionTime, question: &ProbeQuestion, follower: &SessionFollower) -> ProbedQuestion {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
         let (kind, aspect) = subject(kitchen, &question.about);
         let truth = aspect.map(|aspect| label(kitchen, aspect, kitchen.true_value(session.state, aspect)));
@@ -129,7 +133,7 @@ impl ProbeCollector {
     }
 
     /// Truth, estimate and history of a state aspect at the freeze.
-    fn aspect(&self, now: SessionTime, aspect: AspectId, follower: &Follower) -> FrozenAspect {
+    fn aspect(&self, now: SessionTime, aspect: AspectId, follower: &SessionFollower) -> AspectAtFreeze {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
         let labels = &kitchen.aspects[aspect.index()].labels;
         // The estimate at the freeze includes the time since the last event.
@@ -148,13 +152,13 @@ impl ProbeCollector {
         let of_code =
             |code: u8| label(kitchen, aspect, kitchen.aspects[aspect.index()].index_of(code).unwrap_or(truth));
         let of_location = |code: Option<u8>| code.map_or_else(|| label(kitchen, aspect, truth), of_code);
-        FrozenAspect {
+        AspectAtFreeze {
             values: labels.len(),
             estimate: label(kitchen, aspect, estimate.most_likely()),
             estimate_p: labels.iter().cloned().zip(estimate.mean().iter().copied()).collect::<BTreeMap<_, _>>(),
             estimate_p_truth,
             estimate_p_false: regularized_incomplete_beta(FALSE_BELOW, of_truth, of_others),
-            believed: believed.map(|own| FrozenBelief { believes: own.believes.clone(), p_truth: own.p_truth }),
+            believed: believed.map(|own| BeliefAtFreeze { believes: own.believes.clone(), p_truth: own.p_truth }),
             changed_s: location.and_then(|location| self.seen.changed_s(session, location)),
             changed_unseen: location.map(|location| self.seen.is_changed_unseen(location)),
             usual: of_location(location.map(|location| self.seen.usual(session, location))),
@@ -173,8 +177,8 @@ impl ProbeCollector {
         };
         for question in self.questions.iter_mut().filter(|question| question.truth.is_none()) {
             question.truth = match question.kind {
-                ProbedKind::NextOrder => served.map(|order| kitchen.location(order).name.clone()),
-                ProbedKind::NextPress if press.agent == Agent::Robot => Some(button.name.clone()),
+                ProbeQuestionKind::NextOrder => served.map(|order| kitchen.location(order).name.clone()),
+                ProbeQuestionKind::NextPress if press.agent == Agent::Robot => Some(button.name.clone()),
                 _ => None,
             };
         }
@@ -189,20 +193,20 @@ impl ProbeCollector {
 }
 
 /// Kind of a question, and the state aspect that it is about.
-fn subject(kitchen: &Kitchen, about: &ProbeSubject) -> (ProbedKind, Option<AspectId>) {
+fn subject(kitchen: &Kitchen, about: &ProbeSubject) -> (ProbeQuestionKind, Option<AspectId>) {
     match about {
         ProbeSubject::Location { location } => {
             let id = kitchen.location_named(location);
             let is_order = id.is_some_and(|id| kitchen.location(id).kind == LocationKind::Order);
-            (if is_order { ProbedKind::Order } else { ProbedKind::Place }, id.map(AspectId::of_location))
+            (if is_order { ProbeQuestionKind::Order } else { ProbeQuestionKind::Place }, id.map(AspectId::of_location))
         }
         ProbeSubject::Recipe { dish } => {
             let is_it = |kind: AspectKind| matches!(kind, AspectKind::Recipe(id) if kitchen.dish(id).name == *dish);
             let index = kitchen.aspects.iter().position(|aspect| is_it(aspect.kind));
-            (ProbedKind::Recipe, index.map(|index| AspectId(index as u8)))
+            (ProbeQuestionKind::Recipe, index.map(|index| AspectId(index as u8)))
         }
-        ProbeSubject::NextOrder => (ProbedKind::NextOrder, None),
-        ProbeSubject::NextPress => (ProbedKind::NextPress, None),
+        ProbeSubject::NextOrder => (ProbeQuestionKind::NextOrder, None),
+        ProbeSubject::NextPress => (ProbeQuestionKind::NextPress, None),
     }
 }
 

@@ -4,13 +4,13 @@
 
 use serde::Serialize;
 
-use super::probe_record::{ProbedKind, ProbedQuestion, weighted_share};
-use crate::measures::belief_detection::{CALIBRATED, CALIBRATION_BINS, Detection};
+use super::probe_record::{ProbeQuestionKind, ProbedQuestion, weighted_share};
+use crate::measures::belief_detection::{CALIBRATED, CALIBRATION_BINS, FalseBeliefDetection};
 use crate::measures::detection::{Calibration, weighted_auc};
 
 /// A probe question with its weight, and whether the belief that it asks about is false.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WeighedBelief<'a> {
+pub struct WeightedProbeBelief<'a> {
     /// The probe question.
     pub question: &'a ProbedQuestion,
     /// Whether the participant's belief is false.
@@ -19,22 +19,22 @@ pub struct WeighedBelief<'a> {
     pub weight: f64,
 }
 
-impl<'a> WeighedBelief<'a> {
+impl<'a> WeightedProbeBelief<'a> {
     /// A question of the main results, with the belief judged by the participant's answer.
-    pub fn by_answer(question: &'a ProbedQuestion) -> Option<WeighedBelief<'a>> {
+    pub fn by_answer(question: &'a ProbedQuestion) -> Option<WeightedProbeBelief<'a>> {
         question.is_counted().then_some(())?;
-        Some(WeighedBelief { question, is_wrong: question.is_wrong()?, weight: question.weight() })
+        Some(WeightedProbeBelief { question, is_wrong: question.is_wrong()?, weight: question.weight() })
     }
 
     /// This question, with the belief judged by what the simulated participant believed.
-    pub fn by_true_belief(self) -> Option<WeighedBelief<'a>> {
+    pub fn by_true_belief(self) -> Option<WeightedProbeBelief<'a>> {
         let believed = self.question.frozen.as_ref()?.believed.as_ref()?;
-        Some(WeighedBelief { is_wrong: believed.is_wrong(), ..self })
+        Some(WeightedProbeBelief { is_wrong: believed.is_wrong(), ..self })
     }
 
     /// This question with weight 1.
-    pub fn unweighted(self) -> WeighedBelief<'a> {
-        WeighedBelief { weight: 1.0, ..self }
+    pub fn unweighted(self) -> WeightedProbeBelief<'a> {
+        WeightedProbeBelief { weight: 1.0, ..self }
     }
 }
 
@@ -61,8 +61,8 @@ pub struct ProbeDetection {
 
 impl ProbeDetection {
     /// Fills a detection for which beliefs are unknown with the results from probes.
-    pub fn in_place_of(&self, unknown: Detection) -> Detection {
-        Detection {
+    pub fn in_place_of(&self, unknown: FalseBeliefDetection) -> FalseBeliefDetection {
+        FalseBeliefDetection {
             auc: self.auc,
             auc_locations: self.auc_locations,
             auc_recipes: self.auc_recipes,
@@ -74,13 +74,13 @@ impl ProbeDetection {
     }
 
     /// Compares the estimate with questions whose beliefs are judged.
-    pub fn from_beliefs(beliefs: &[WeighedBelief]) -> ProbeDetection {
-        let p_wrong = |one: &WeighedBelief| Some(1.0 - one.question.frozen.as_ref()?.estimate_p_truth);
-        let changed = |one: &WeighedBelief| {
+    pub fn from_beliefs(beliefs: &[WeightedProbeBelief]) -> ProbeDetection {
+        let p_wrong = |one: &WeightedProbeBelief| Some(1.0 - one.question.frozen.as_ref()?.estimate_p_truth);
+        let changed = |one: &WeightedProbeBelief| {
             one.question.frozen.as_ref()?.changed_unseen.map(|changed| f64::from(u8::from(changed)))
         };
-        let is_recipe = |one: &WeighedBelief| one.question.kind == ProbedKind::Recipe;
-        let area = |recipes: bool, score: &dyn Fn(&WeighedBelief) -> Option<f64>| {
+        let is_recipe = |one: &WeightedProbeBelief| one.question.kind == ProbeQuestionKind::Recipe;
+        let area = |recipes: bool, score: &dyn Fn(&WeightedProbeBelief) -> Option<f64>| {
             let of_group = beliefs.iter().filter(|one| is_recipe(one) == recipes);
             let scored: Vec<(f64, bool, f64)> =
                 of_group.filter_map(|one| Some((score(one)?, one.is_wrong, one.weight))).collect();

@@ -2,12 +2,14 @@
 
 use serde::Serialize;
 
-use super::probe_accuracy::{AccuracyGrouping, AwarenessEffect, ProbeAccuracy, accuracies, accuracy, awareness_effect};
-use super::probe_detection::{ProbeDetection, WeighedBelief};
-use super::probe_record::{ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial};
+use super::probe_accuracy::{
+    ProbeAccuracy, ProbeAccuracyGrouping, SituationAwarenessEffect, accuracies, accuracy, awareness_effect,
+};
+use super::probe_detection::{ProbeDetection, WeightedProbeBelief};
+use super::probe_record::{ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial};
 use super::probe_scores::ProbeLogScores;
 use super::trial_bootstrap::interval_where_known;
-use crate::measures::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefSource;
 use crate::session::probes::ProbeOrigin;
 
 /// Seed of the bootstrap's random numbers: the same answers give the same intervals.
@@ -16,9 +18,9 @@ const SEED: u64 = 1;
 /// Results of the freeze probes of a study. Main results are over scheduled questions about the present state (level 1)
 /// that were answered in time; questions that are left out are counted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ProbeFigures {
+pub struct ProbeSummary {
     /// Source of what participants believed: recorded beliefs or answers.
-    pub beliefs_from: BeliefBasis,
+    pub beliefs_from: BeliefSource,
     /// Number of participants with a question in the main results.
     pub participants: u64,
     /// Numbers of probes and questions, and how many of them the main results include.
@@ -40,13 +42,13 @@ pub struct ProbeFigures {
     /// Share of right answers by aspect, change of the location and condition.
     pub accuracies: Vec<ProbeAccuracy>,
     /// Effect of assistance on situation awareness; null if no participant has answers with and without assistance.
-    pub assistance: Option<AwarenessEffect>,
+    pub assistance: Option<SituationAwarenessEffect>,
     /// Share of right answers to questions about what comes next (level 2 of situation awareness), which are not in the
     /// main results.
     pub level_2: Vec<ProbeAccuracy>,
     /// For simulated participants, the accuracy of the estimate measured by what they believed, at the same questions;
     /// null for people.
-    pub by_true_beliefs: Option<TrueBeliefs>,
+    pub by_true_beliefs: Option<TrueBeliefComparison>,
 }
 
 /// Numbers of probes and questions.
@@ -79,7 +81,7 @@ pub struct ProbeCounts {
 
 /// Comparison of answers with what simulated participants believed, at the questions of the main results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TrueBeliefs {
+pub struct TrueBeliefComparison {
     /// Number of questions for which the participant's belief is recorded.
     pub n: u64,
     /// Share of these questions where answer and belief are both right or both wrong.
@@ -91,31 +93,31 @@ pub struct TrueBeliefs {
     pub by_answers: ProbeDetection,
 }
 
-impl ProbeFigures {
+impl ProbeSummary {
     /// Results of the probes of these trials, each with its participant's code; `None` if no question was shown.
-    pub fn from_trials<'a>(trials: impl IntoIterator<Item = (&'a str, &'a ProbedTrial)>) -> Option<ProbeFigures> {
+    pub fn from_trials<'a>(trials: impl IntoIterator<Item = (&'a str, &'a ProbedTrial)>) -> Option<ProbeSummary> {
         let participants = by_participant(trials);
         let counts = ProbeCounts::from_trials(participants.iter().flatten().copied());
         (counts.questions > 0).then_some(())?;
-        let beliefs: Vec<Vec<WeighedBelief>> = participants.iter().map(|trials| beliefs(trials)).collect();
-        let known: Vec<&Vec<WeighedBelief>> = beliefs.iter().filter(|of_one| !of_one.is_empty()).collect();
-        let pooled = |of: &[&Vec<WeighedBelief>]| -> ProbeDetection {
+        let beliefs: Vec<Vec<WeightedProbeBelief>> = participants.iter().map(|trials| beliefs(trials)).collect();
+        let known: Vec<&Vec<WeightedProbeBelief>> = beliefs.iter().filter(|of_one| !of_one.is_empty()).collect();
+        let pooled = |of: &[&Vec<WeightedProbeBelief>]| -> ProbeDetection {
             ProbeDetection::from_beliefs(&of.iter().flat_map(|one| one.iter().copied()).collect::<Vec<_>>())
         };
-        let all: Vec<WeighedBelief> = beliefs.iter().flatten().copied().collect();
-        let unweighted: Vec<WeighedBelief> = all.iter().map(|one| one.unweighted()).collect();
+        let all: Vec<WeightedProbeBelief> = beliefs.iter().flatten().copied().collect();
+        let unweighted: Vec<WeightedProbeBelief> = all.iter().map(|one| one.unweighted()).collect();
         let numbered: Vec<(usize, &ProbedQuestion)> = beliefs
             .iter()
             .enumerate()
             .flat_map(|(participant, of_one)| of_one.iter().map(move |one| (participant, one.question)))
             .collect();
-        let level_2 = [ProbedKind::NextOrder, ProbedKind::NextPress].into_iter().map(|kind| {
+        let level_2 = [ProbeQuestionKind::NextOrder, ProbeQuestionKind::NextPress].into_iter().map(|kind| {
             let is_it = |_: &ProbedTrial, one: &ProbedQuestion| one.kind == kind && one.origin == ProbeOrigin::Schedule;
-            accuracy(&participants, (AccuracyGrouping::Kind, kind.words()), SEED, is_it)
+            accuracy(&participants, (ProbeAccuracyGrouping::Kind, kind.words()), SEED, is_it)
         });
         let is_counted = |_: &ProbedTrial, one: &ProbedQuestion| one.is_counted();
-        Some(ProbeFigures {
-            beliefs_from: BeliefBasis::Probes,
+        Some(ProbeSummary {
+            beliefs_from: BeliefSource::Probes,
             participants: known.len() as u64,
             counts,
             detection: ProbeDetection::from_beliefs(&all),
@@ -123,11 +125,11 @@ impl ProbeFigures {
             ece_interval: interval_where_known(&known, SEED, |of| pooled(of).ece),
             auc_unweighted: ProbeDetection::from_beliefs(&unweighted).auc,
             log_scores: ProbeLogScores::from_questions(&numbered),
-            accuracy: accuracy(&participants, (AccuracyGrouping::Kind, "all"), SEED, is_counted),
+            accuracy: accuracy(&participants, (ProbeAccuracyGrouping::Kind, "all"), SEED, is_counted),
             accuracies: accuracies(&participants, SEED),
             assistance: awareness_effect(&participants, SEED),
             level_2: level_2.filter(|one| one.n > 0).collect(),
-            by_true_beliefs: TrueBeliefs::from_beliefs(&all),
+            by_true_beliefs: TrueBeliefComparison::from_beliefs(&all),
         })
     }
 }
@@ -144,8 +146,8 @@ fn by_participant<'a>(trials: impl IntoIterator<Item = (&'a str, &'a ProbedTrial
     participants.into_iter().map(|(_, of_one)| of_one).collect()
 }
 
-fn beliefs<'a>(trials: &[&'a ProbedTrial]) -> Vec<WeighedBelief<'a>> {
-    trials.iter().flat_map(|trial| trial.counted()).filter_map(WeighedBelief::by_answer).collect()
+fn beliefs<'a>(trials: &[&'a ProbedTrial]) -> Vec<WeightedProbeBelief<'a>> {
+    trials.iter().flat_map(|trial| trial.counted()).filter_map(WeightedProbeBelief::by_answer).collect()
 }
 
 impl ProbeCounts {
@@ -177,16 +179,21 @@ impl ProbeCounts {
     }
 }
 
-impl TrueBeliefs {
-    fn from_beliefs(answered: &[WeighedBelief]) -> Option<TrueBeliefs> {
-        let known: Vec<[WeighedBelief; 2]> =
+impl TrueBeliefComparison {
+    fn from_beliefs(answered: &[WeightedProbeBelief]) -> Option<TrueBeliefComparison> {
+        let known: Vec<[WeightedProbeBelief; 2]> =
             answered.iter().filter_map(|one| Some([*one, one.by_true_belief()?])).collect();
         (!known.is_empty()).then_some(())?;
         let same = known.iter().filter(|[answered, believed]| answered.is_wrong == believed.is_wrong).count();
         let [by_answers, detection] = [0, 1].map(|which| {
-            let of: Vec<WeighedBelief> = known.iter().map(|both| both[which]).collect();
+            let of: Vec<WeightedProbeBelief> = known.iter().map(|both| both[which]).collect();
             ProbeDetection::from_beliefs(&of)
         });
-        Some(TrueBeliefs { n: known.len() as u64, agreement: same as f64 / known.len() as f64, detection, by_answers })
+        Some(TrueBeliefComparison {
+            n: known.len() as u64,
+            agreement: same as f64 / known.len() as f64,
+            detection,
+            by_answers,
+        })
     }
 }

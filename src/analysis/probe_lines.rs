@@ -1,11 +1,11 @@
 //! Results of freeze probes as lines of text.
 
-use super::probe_accuracy::AccuracyGrouping;
-use super::probe_figures::ProbeFigures;
+use super::probe_accuracy::ProbeAccuracyGrouping;
+use super::probe_figures::ProbeSummary;
 use crate::base::words::count;
 
 /// The results of freeze probes as text for the terminal.
-pub fn describe(found: &ProbeFigures) -> String {
+pub fn describe(found: &ProbeSummary) -> String {
     let (counts, detection, scores) = (&found.counts, &found.detection, &found.log_scores);
     let text = format!(
         "probes: {} of {} in {}; {} count, {} of them \"I don't know\"; left out: {} without an answer in time, {} in probes of the \
@@ -44,10 +44,15 @@ pub fn describe(found: &ProbeFigures) -> String {
 
 /// Text about right answers by group, the effect of assistance, questions about what comes next, and accuracy by
 /// recorded beliefs.
-fn accuracies(found: &ProbeFigures) -> String {
+fn accuracies(found: &ProbeSummary) -> String {
     let mut text = String::new();
     // Groups by single aspect and by the way of drawing are in the JSON output only.
-    let told = [AccuracyGrouping::Kind, AccuracyGrouping::Age, AccuracyGrouping::Seen, AccuracyGrouping::Condition];
+    let told = [
+        ProbeAccuracyGrouping::Kind,
+        ProbeAccuracyGrouping::Age,
+        ProbeAccuracyGrouping::Seen,
+        ProbeAccuracyGrouping::Condition,
+    ];
     for one in found.accuracies.iter().filter(|one| told.contains(&one.by)) {
         let share = percent(one.accuracy);
         text += &format!("  {:<44}{share:>8}{} of {}\n", one.group, within(one.interval, 100.0, 1), one.n);

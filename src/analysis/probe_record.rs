@@ -11,7 +11,7 @@ use crate::session::study_arm::StudyArm;
 
 /// Kind of a probe question, by what it asks about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum ProbedKind {
+pub enum ProbeQuestionKind {
     /// The content of an order location.
     Order,
     /// The recipe of a dish.
@@ -24,32 +24,32 @@ pub enum ProbedKind {
     NextPress,
 }
 
-impl ProbedKind {
+impl ProbeQuestionKind {
     /// Name of the kind in tables.
     pub fn name(self) -> &'static str {
         match self {
-            ProbedKind::Order => "order",
-            ProbedKind::Recipe => "recipe",
-            ProbedKind::Place => "place",
-            ProbedKind::NextOrder => "next_order",
-            ProbedKind::NextPress => "next_press",
+            ProbeQuestionKind::Order => "order",
+            ProbeQuestionKind::Recipe => "recipe",
+            ProbeQuestionKind::Place => "place",
+            ProbeQuestionKind::NextOrder => "next_order",
+            ProbeQuestionKind::NextPress => "next_press",
         }
     }
 
     /// The kind of question in words, in the plural.
     pub fn words(self) -> &'static str {
         match self {
-            ProbedKind::Order => "orders",
-            ProbedKind::Recipe => "recipes",
-            ProbedKind::Place => "other places",
-            ProbedKind::NextOrder => "which order is ready next",
-            ProbedKind::NextPress => "what the robot does next",
+            ProbeQuestionKind::Order => "orders",
+            ProbeQuestionKind::Recipe => "recipes",
+            ProbeQuestionKind::Place => "other places",
+            ProbeQuestionKind::NextOrder => "which order is ready next",
+            ProbeQuestionKind::NextPress => "what the robot does next",
         }
     }
 
     /// Whether the question asks what comes next (level 2 of situation awareness and above), not what is the case now.
     pub fn is_level_2(self) -> bool {
-        matches!(self, ProbedKind::NextOrder | ProbedKind::NextPress)
+        matches!(self, ProbeQuestionKind::NextOrder | ProbeQuestionKind::NextPress)
     }
 }
 
@@ -68,7 +68,7 @@ pub enum ProbeResponse {
 
 /// State aspect of a probe question at the time the trial froze: estimate, belief and history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FrozenAspect {
+pub struct AspectAtFreeze {
     /// Number of values that the state aspect can have.
     pub values: usize,
     /// Name of the value that the participant most probably believes, in the estimate.
@@ -80,7 +80,7 @@ pub struct FrozenAspect {
     /// Estimated probability that the participant's belief is false, as in [`crate::measures::belief_detection`].
     pub estimate_p_false: f64,
     /// Belief of a simulated participant; `None` for people.
-    pub believed: Option<FrozenBelief>,
+    pub believed: Option<BeliefAtFreeze>,
     /// Time since the last change of the location, without pauses, in seconds; `None` for recipes, and for locations
     /// that have not changed in the trial.
     pub changed_s: Option<f64>,
@@ -95,14 +95,14 @@ pub struct FrozenAspect {
 
 /// Belief of a simulated participant about a state aspect when the trial froze.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FrozenBelief {
+pub struct BeliefAtFreeze {
     /// Name of the value that the participant believed most probable.
     pub believes: String,
     /// Probability that the participant gave to the true value.
     pub p_truth: f64,
 }
 
-impl FrozenBelief {
+impl BeliefAtFreeze {
     /// Whether the participant's belief is false.
     pub fn is_wrong(&self) -> bool {
         self.p_truth < FALSE_BELOW
@@ -123,7 +123,7 @@ pub struct ProbedQuestion {
     /// Whether the belief estimate took part in the choice of questions.
     pub uses_estimate: bool,
     /// Kind of the probe question.
-    pub kind: ProbedKind,
+    pub kind: ProbeQuestionKind,
     /// Name of the state aspect; for questions of level 2, name of the kind.
     pub aspect: String,
     /// Probability with which the question was drawn (inclusion probability).
@@ -137,7 +137,7 @@ pub struct ProbedQuestion {
     /// Response time from the question's appearance to the answer, in seconds.
     pub took_s: Option<f64>,
     /// The state aspect at the freeze; `None` for questions of level 2.
-    pub frozen: Option<FrozenAspect>,
+    pub frozen: Option<AspectAtFreeze>,
 }
 
 impl ProbedQuestion {

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::probe_record::{FrozenAspect, ProbedKind, ProbedQuestion};
+use super::probe_record::{AspectAtFreeze, ProbeQuestionKind, ProbedQuestion};
 use crate::mind::dirichlet::LEAST_MEAN;
 
 /// Weighted mean log probability of the answered values, in nats, for several predictors; higher is better. "I don't
@@ -33,7 +33,7 @@ struct NamedAnswer<'a> {
     weight: f64,
     answer: &'a str,
     truth: &'a str,
-    frozen: &'a FrozenAspect,
+    frozen: &'a AspectAtFreeze,
 }
 
 /// Candidate values for the share of random answers.
@@ -86,7 +86,7 @@ fn named(participant: usize, question: &ProbedQuestion) -> Option<NamedAnswer<'_
     question.is_counted().then_some(())?;
     Some(NamedAnswer {
         participant,
-        is_recipe: question.kind == ProbedKind::Recipe,
+        is_recipe: question.kind == ProbeQuestionKind::Recipe,
         weight: question.weight(),
         answer: question.answer()?,
         truth: question.truth.as_deref()?,

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::exclusion_status::ExclusionStatus;
-use super::follower::Follower;
+use super::follower::SessionFollower;
 use super::gaze_summary::{self, GazeSummary};
 use super::trial_summary::{BeliefErrorSummary, TrialSummary};
 use crate::base::words::count;
@@ -48,7 +48,7 @@ pub struct RecordingSummary {
 
 impl RecordingSummary {
     /// The summary of a session that was followed to its end, with `events` events.
-    pub fn from_follower(follower: &Follower, events: u64, standing: ExclusionStatus) -> RecordingSummary {
+    pub fn from_follower(follower: &SessionFollower, events: u64, standing: ExclusionStatus) -> RecordingSummary {
         let trial = TrialSummary::from_follower(follower);
         RecordingSummary {
             events,

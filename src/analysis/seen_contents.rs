@@ -1,11 +1,11 @@
 //! What the participant has last seen at each location, and which content was there for how long; follows from gaze,
 //! changes and own presses, without any belief estimate.
 
-use super::looks::Looks;
+use super::looks::LocationDwells;
 use crate::base::time::SessionTime;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::kitchen::state::MAX_LOCATIONS;
-use crate::kitchen::{Change, LocationId, State};
+use crate::kitchen::{KitchenChange, LocationId, State};
 use crate::session::{Event, Session};
 
 /// What was seen and what was present at one location so far.
@@ -25,16 +25,16 @@ struct SeenLocation {
 
 /// What the participant has last seen at each location of the kitchen, and what was there for how long.
 #[derive(Clone, Debug, Default)]
-pub struct SeenContents {
+pub struct LastSeenContents {
     locations: [SeenLocation; MAX_LOCATIONS],
-    looks: Looks,
+    looks: LocationDwells,
 }
 
-impl SeenContents {
+impl LastSeenContents {
     /// Takes note of an event that has just been applied to the session.
-    pub fn note(&mut self, session: &Session, event: &Event, change: &Change) {
-        if let Change::TrialStarted { after, .. } = change {
-            *self = SeenContents::default();
+    pub fn note(&mut self, session: &Session, event: &Event, change: &KitchenChange) {
+        if let KitchenChange::TrialStarted { after, .. } = change {
+            *self = LastSeenContents::default();
             for (index, location) in self.locations.iter_mut().enumerate() {
                 location.seen = after.code(LocationId(index as u8));
             }

@@ -2,7 +2,7 @@
 
 use super::wizard_log::clock_at;
 use crate::base::time::SessionTime;
-use crate::session::{Event, Session, Stamped};
+use crate::session::{Event, Session, TimestampedEvent};
 
 /// Session times at which signals appeared on the display (true) and vanished (false).
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -12,7 +12,7 @@ pub struct SignalTimes {
 
 impl SignalTimes {
     /// Takes note of the next event of a session.
-    pub fn note(&mut self, stamped: &Stamped) {
+    pub fn note(&mut self, stamped: &TimestampedEvent) {
         match stamped.event {
             Event::SignalShown { .. } => self.changes.push((stamped.time, true)),
             Event::SignalEnded { .. } => self.changes.push((stamped.time, false)),

@@ -17,7 +17,7 @@ pub struct TrialErrors {
 
 /// Row of a parameter sweep: the trials with one combination of values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SweepRow {
+pub struct ParameterSweepRow {
     /// Values of the varied settings, by name; empty in the row without signals.
     pub settings: serde_json::Map<String, serde_json::Value>,
     /// Number of trials with this combination of values.
@@ -52,7 +52,7 @@ pub struct SweepRow {
 /// The same trials under two combinations of values, in the same order.
 type PairedTrials<'a> = [&'a [TrialErrors]; 2];
 
-impl SweepRow {
+impl ParameterSweepRow {
     /// The row for these settings. `paired`: the same trials without and with signals. `with_first`: the same trials in
     /// the first row with signals, and in this row.
     pub fn new(
@@ -60,13 +60,13 @@ impl SweepRow {
         figures: &SimulationSummary,
         paired: Option<PairedTrials>,
         with_first: Option<PairedTrials>,
-    ) -> SweepRow {
+    ) -> ParameterSweepRow {
         let errors = |trial: &TrialErrors| Some(trial.errors);
         let related = |trial: &TrialErrors| trial.related;
         let (spared_per_100, spared_error) = fewer(paired, errors);
         let (fewer_than_first, fewer_error) = fewer(with_first, errors);
         let (related_fewer_than_first, related_fewer_error) = fewer(with_first, related);
-        SweepRow {
+        ParameterSweepRow {
             settings: settings.iter().map(|(name, value)| (name.to_string(), value.as_str().into())).collect(),
             trials: figures.trials,
             errors_per_100: per_100(figures.errors, figures.human_actions),

@@ -9,7 +9,7 @@ use crate::measures::wizard_performance::{TrainingCriterion, WizardMeasures};
 /// Record of one training session of a wizard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct TrainingRecord {
+pub struct WizardTrainingRecord {
     /// The wizard's code, never a name.
     pub wizard: String,
     /// Time at which the training began (UTC, RFC 3339).
@@ -24,13 +24,13 @@ pub struct TrainingRecord {
     /// Whether the wizard met the criterion over all recordings that were watched to their end.
     pub met: bool,
     /// Recordings that the wizard watched, in order.
-    pub recordings: Vec<JudgedRecording>,
+    pub recordings: Vec<WatchedRecording>,
 }
 
 /// A recording that a wizard watched in training, with the judgement of the signals.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct JudgedRecording {
+pub struct WatchedRecording {
     /// Name of the recording's folder; for one that was simulated for the training, preceded by its length.
     pub recording: String,
     /// Whether the wizard watched the recording to its end.
@@ -41,7 +41,7 @@ pub struct JudgedRecording {
     pub signals: Vec<JudgedSignal>,
     /// The false beliefs that led to errors, if they began in the part that was watched.
     #[serde(default)]
-    pub beliefs: Vec<JudgedBelief>,
+    pub beliefs: Vec<JudgedFalseBelief>,
     /// Measures of the wizard's performance: hits and wrong signals.
     pub measures: WizardMeasures,
     /// Cohen's kappa between the wizard's signals now and in the previous pass through the same recording; null without
@@ -68,7 +68,7 @@ pub struct JudgedSignal {
 /// A false belief that led to errors, and whether the wizard corrected it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct JudgedBelief {
+pub struct JudgedFalseBelief {
     /// The state aspect about which the belief was false.
     pub aspect: String,
     /// Time at which the false belief began, on the trial's clock.

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::follower::Follower;
+use super::follower::SessionFollower;
 use super::offer_summary::{OfferDurations, TimedOffer};
 use crate::base::words::count;
 use crate::kitchen::{Agent, DishId};
-use crate::measures::attribution::Cause;
-use crate::measures::sequences::{Sequence, sequences, sequences_any_aspect};
+use crate::measures::attribution::ErrorCause;
+use crate::measures::sequences::{ErrorSequence, sequences, sequences_any_aspect};
 use crate::session::TimelineEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::study_arm::StudyArm;
@@ -39,7 +39,7 @@ pub struct TrialSummary {
 
 impl TrialSummary {
     /// Summary of a trial up to the session's last event.
-    pub fn from_follower(follower: &Follower) -> TrialSummary {
+    pub fn from_follower(follower: &SessionFollower) -> TrialSummary {
         let session = &follower.session;
         let mut before = 0;
         let served = session.served.iter().map(|served| {
@@ -74,25 +74,26 @@ pub struct TrialBeliefErrors {
     /// Errors that only a pair of false beliefs explains.
     pub related_to_pairs: u64,
     /// Sequences of errors that follow from the same false belief.
-    pub sequences: Vec<Sequence>,
+    pub sequences: Vec<ErrorSequence>,
     /// Sequences of errors, whichever false beliefs they follow from.
-    pub any_aspect: Vec<Sequence>,
+    pub any_aspect: Vec<ErrorSequence>,
     /// Number of false belief episodes that caused at least one error.
     pub episodes: u64,
 }
 
 impl TrialBeliefErrors {
     /// Errors from false beliefs in a session so far; `None` unless the beliefs before every press are known.
-    fn from_follower(follower: &Follower) -> Option<TrialBeliefErrors> {
+    fn from_follower(follower: &SessionFollower) -> Option<TrialBeliefErrors> {
         let judged = &follower.judged;
         let is_simulated = follower.session.spec.participant.kind == ParticipantKind::Simulated;
         if !is_simulated || judged.iter().any(|press| !press.belief_known) {
             return None;
         }
-        let count = |is: fn(Cause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count();
+        let count =
+            |is: fn(ErrorCause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count();
         Some(TrialBeliefErrors {
-            related: count(|cause| matches!(cause, Cause::Belief { .. })) as u64,
-            related_to_pairs: count(|cause| matches!(cause, Cause::Belief { with: Some(_), .. })) as u64,
+            related: count(|cause| matches!(cause, ErrorCause::Belief { .. })) as u64,
+            related_to_pairs: count(|cause| matches!(cause, ErrorCause::Belief { with: Some(_), .. })) as u64,
             sequences: sequences(judged),
             any_aspect: sequences_any_aspect(judged),
             episodes: follower.episodes.harmful().count() as u64,
@@ -150,7 +151,7 @@ impl BeliefErrorSummary {
 
 /// Totals of the trials of one study arm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct ArmTotals {
+pub struct StudyArmTotals {
     /// Study arm of the trials, by what was done in them.
     pub arm: StudyArm,
     /// Number of trials.
@@ -202,7 +203,7 @@ pub struct SimulationSummary {
     /// anew.
     pub moved: Vec<String>,
     /// Totals of presses, errors and signals, by study arm.
-    pub arms: Vec<ArmTotals>,
+    pub arms: Vec<StudyArmTotals>,
     /// Folders of the recordings.
     pub recordings: Vec<String>,
 }
@@ -299,7 +300,7 @@ impl SimulationSums {
         sums.simulated_s += trial.seconds;
         let index = sums.arms.iter().position(|one| one.arm >= arm).unwrap_or(sums.arms.len());
         if sums.arms.get(index).is_none_or(|one| one.arm != arm) {
-            sums.arms.insert(index, ArmTotals { arm, ..ArmTotals::default() });
+            sums.arms.insert(index, StudyArmTotals { arm, ..StudyArmTotals::default() });
         }
         let one = &mut sums.arms[index];
         one.trials += 1;

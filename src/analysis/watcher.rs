@@ -11,31 +11,31 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use super::advisor::{AdviceRequest, Advisor};
-use super::follower::Follower;
+use super::follower::SessionFollower;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::Recommendation;
-use crate::communication::repeats::Repeats;
+use crate::communication::repeats::SignalRepeatRule;
 use crate::history::belief_track::BeliefSnapshot;
 use crate::history::comparison::{
-    Communication, CommunicationContent, CommunicationContext, CommunicationLane, LaneComparison,
+    Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
 };
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Change, LocationId, State};
+use crate::kitchen::{Agent, KitchenChange, LocationId, State};
 use crate::measures::matching::CommunicationEvent;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::filter::BeliefFilter;
-use crate::mind::observation::{Observation, Observed};
+use crate::mind::observation::{Observation, ObservedEvidence};
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
 use crate::session::settings::Condition;
-use crate::session::wizard_screen::VisibleScreen;
-use crate::session::{Applied, Event, Session, SessionSpec, Stamped};
+use crate::session::wizard_screen::WizardScreenContent;
+use crate::session::{AppliedEvent, Event, Session, SessionSpec, TimestampedEvent};
 
 /// Communication concepts to compare with the wizard, and the window within which communications match.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CompareRequest {
+pub struct ComparisonRequest {
     /// Communication concepts to compare in addition to the session's own.
     pub with: Vec<ConceptName>,
     /// Number of the human's presses within which communications match; the estimate leaves out signals sent within
@@ -43,7 +43,7 @@ pub struct CompareRequest {
     pub window: u32,
 }
 
-impl CompareRequest {
+impl ComparisonRequest {
     /// All concepts to compare: the session's own (ToM-Com if it has none) and those in `with`.
     pub fn concepts(&self, spec: &SessionSpec) -> Vec<ConceptName> {
         let own = match spec.assistant.concept {
@@ -68,7 +68,7 @@ struct Voice {
     /// The concept's hypothetical signals within the window: number of human presses before each, and the signal's
     /// location.
     said: Vec<(u32, LocationId)>,
-    repeats: Repeats,
+    repeats: SignalRepeatRule,
     /// Sequence number of the error after which the concept last proposed presses.
     proposed: Option<u64>,
     spoken: Vec<Communication>,
@@ -89,42 +89,42 @@ struct CounterfactualFilter {
 #[derive(Debug)]
 pub struct ComparisonFollower {
     /// The session with its belief estimate.
-    pub follower: Follower,
+    pub follower: SessionFollower,
     window: u32,
     voices: Vec<Voice>,
     /// One counterfactual filter for each signal within the window, the oldest first.
     counterfactuals: VecDeque<CounterfactualFilter>,
     /// Signals sent before the window.
-    shown: Repeats,
+    shown: SignalRepeatRule,
     sent: Vec<Communication>,
     /// The newest event after which concepts are asked for advice; they are asked once all its immediate consequences
     /// are applied.
     to_ask: Option<(u64, SessionTime)>,
     known: Option<Arc<CommunicationContext>>,
-    screen: Option<VisibleScreen>,
+    screen: Option<WizardScreenContent>,
     /// Number of times that the concepts were asked for advice.
     asked: u64,
 }
 
 impl ComparisonFollower {
     /// The comparison before the first event of a session.
-    pub fn new(session: Session, request: &CompareRequest) -> ComparisonFollower {
+    pub fn new(session: Session, request: &ComparisonRequest) -> ComparisonFollower {
         let cost = CostToGo::new(session.kitchen.clone());
         let voice = |name: ConceptName| Voice {
             name,
             advisor: Advisor::by(name, &session, cost.clone()),
             said: Vec::new(),
-            repeats: Repeats::default(),
+            repeats: SignalRepeatRule::default(),
             proposed: None,
             spoken: Vec::new(),
         };
         let voices = request.concepts(&session.spec).into_iter().map(voice).collect();
         ComparisonFollower {
-            follower: Follower::new(session, cost),
+            follower: SessionFollower::new(session, cost),
             window: request.window,
             voices,
             counterfactuals: VecDeque::new(),
-            shown: Repeats::default(),
+            shown: SignalRepeatRule::default(),
             sent: Vec::new(),
             to_ask: None,
             known: None,
@@ -141,14 +141,14 @@ impl ComparisonFollower {
     /// Applies the next event.
     ///
     /// # Errors
-    /// Those of [`Follower::apply`].
-    pub fn apply(&mut self, stamped: &Stamped) -> Result<Change, ApplyError> {
+    /// Those of [`SessionFollower::apply`].
+    pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
         if self.to_ask.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
             self.ask();
         }
         let is_sent = matches!(stamped.event, Event::SignalShown { .. });
         let filter = is_sent.then(|| self.follower.filter.clone());
-        let Applied { change, .. } = self.follower.apply(stamped)?;
+        let AppliedEvent { change, .. } = self.follower.apply(stamped)?;
         self.update_counterfactuals(stamped, &change);
         if let (Some(filter), Event::SignalShown { signal, .. }) = (filter, &stamped.event) {
             let (press, state) = (self.presses(), self.follower.session.state);
@@ -160,8 +160,8 @@ impl ComparisonFollower {
             event if event.is_sample() => return Ok(change),
             Event::Screen(screen) => self.screen = Some(screen.clone()),
             Event::TrialStarted => {
-                self.shown = Repeats::default();
-                self.voices.iter_mut().for_each(|voice| voice.repeats = Repeats::default());
+                self.shown = SignalRepeatRule::default();
+                self.voices.iter_mut().for_each(|voice| voice.repeats = SignalRepeatRule::default());
             }
             _ => {}
         }
@@ -194,7 +194,7 @@ impl ComparisonFollower {
     }
 
     /// Updates the counterfactual filters by an event, unless the event is a signal.
-    fn update_counterfactuals(&mut self, stamped: &Stamped, change: &Change) {
+    fn update_counterfactuals(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let (press, window) = (self.presses(), self.window);
         while let Some(oldest) = self.counterfactuals.pop_front_if(|oldest| press > oldest.press + window) {
             self.shown.shown(&self.follower.session.kitchen, oldest.state, &oldest.signal);
@@ -203,7 +203,7 @@ impl ComparisonFollower {
             return;
         }
         let Some(what) = self.follower.observed(stamped, change) else { return };
-        if matches!(what, Observed::Told { .. } | Observed::Proposed(_)) {
+        if matches!(what, ObservedEvidence::Told { .. } | ObservedEvidence::Proposed(_)) {
             return;
         }
         let observation = Observation { time: stamped.time, what };
@@ -288,29 +288,33 @@ impl ComparisonFollower {
     }
 
     /// The lanes of wizard and assistants so far, compared; `over` says that the session has ended.
-    pub fn comparison(&self, over: bool) -> LaneComparison {
+    pub fn comparison(&self, over: bool) -> SenderComparison {
         let sender = match self.follower.session.spec.trial.condition {
             Condition::Assistant => "assistant",
             Condition::Wizard => "wizard",
             Condition::None => "nobody",
         };
-        let mut lanes = vec![CommunicationLane { name: sender.to_string(), concept: None, spoken: self.sent.clone() }];
-        lanes.extend(self.voices.iter().map(|voice| CommunicationLane {
+        let mut lanes =
+            vec![SenderCommunications { name: sender.to_string(), concept: None, spoken: self.sent.clone() }];
+        lanes.extend(self.voices.iter().map(|voice| SenderCommunications {
             name: voice.name.name().to_string(),
             concept: Some(voice.name),
             spoken: voice.spoken.clone(),
         }));
-        LaneComparison::new(lanes, self.window, self.presses(), over)
+        SenderComparison::new(lanes, self.window, self.presses(), over)
     }
 }
 
 /// The belief estimate without the signals sent within the window.
-fn estimate<'a>(follower: &'a Follower, counterfactuals: &'a VecDeque<CounterfactualFilter>) -> &'a DirichletBelief {
+fn estimate<'a>(
+    follower: &'a SessionFollower,
+    counterfactuals: &'a VecDeque<CounterfactualFilter>,
+) -> &'a DirichletBelief {
     counterfactuals.front().map_or(follower.filter.belief(), |oldest| oldest.filter.belief())
 }
 
 /// Whether an event is an immediate consequence of the event at `time`.
-pub fn follows_at_once(stamped: &Stamped, time: SessionTime) -> bool {
+pub fn follows_at_once(stamped: &TimestampedEvent, time: SessionTime) -> bool {
     let is_new = matches!(
         stamped.event,
         Event::Gaze(_)

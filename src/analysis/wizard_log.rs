@@ -2,23 +2,23 @@
 
 use serde::Serialize;
 
-use super::follower::Follower;
+use super::follower::SessionFollower;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::Sender;
 use crate::communication::recommendation::aspects_told;
-use crate::measures::sequences::Episode;
+use crate::measures::sequences::FalseBeliefEpisode;
 use crate::measures::wizard_performance::{FalseBeliefPeriod, WizardMeasures, WizardSignal};
-use crate::session::event::SignalEnd;
+use crate::session::event::SignalEndReason;
 use crate::session::settings::ParticipantKind;
-use crate::session::wizard_screen::VisibleScreen;
-use crate::session::{Event, Session, Stamped};
+use crate::session::wizard_screen::WizardScreenContent;
+use crate::session::{Event, Session, TimestampedEvent};
 
 /// The wizard's signals, each with the content of the wizard's screen.
 #[derive(Clone, Debug, Default)]
 pub struct WizardLog {
     sent: Vec<(u64, SessionTime, WizardSignal)>,
-    screen: Option<VisibleScreen>,
+    screen: Option<WizardScreenContent>,
     seen: Vec<SignalsPerScreen>,
 }
 
@@ -26,7 +26,7 @@ pub struct WizardLog {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalsPerScreen {
     /// Content of the wizard's screen; null before it was first drawn, and without a console.
-    pub screen: Option<VisibleScreen>,
+    pub screen: Option<WizardScreenContent>,
     /// Number of signals sent with this content on the screen.
     pub signals: u64,
 }
@@ -45,7 +45,7 @@ pub struct WizardSummary {
 
 impl WizardLog {
     /// Adds an event that has just been applied to the session.
-    pub fn note(&mut self, stamped: &Stamped, session: &Session) {
+    pub fn note(&mut self, stamped: &TimestampedEvent, session: &Session) {
         match &stamped.event {
             Event::Screen(screen) => self.screen = Some(screen.clone()),
             Event::SignalShown { by: Sender::Wizard, signal, .. } => {
@@ -67,7 +67,7 @@ impl WizardLog {
                     sent.to_display_ms = Some(1000.0 * stamped.time.secs_since(*time));
                 }
             }
-            Event::SignalEnded { reason: SignalEnd::TakenBack } => {
+            Event::SignalEnded { reason: SignalEndReason::TakenBack } => {
                 if let Some((.., sent)) = self.sent.last_mut() {
                     sent.taken_back = true;
                 }
@@ -79,7 +79,7 @@ impl WizardLog {
     /// The wizard's performance measured by false belief episodes from raters' codes. Raters code errors only, so it is
     /// unknown whether other beliefs were false; signals about harmless false beliefs, wrong targets and needless
     /// signals are therefore not told apart.
-    pub fn measures_by_raters(&self, follower: &Follower, episodes: &[Episode]) -> WizardMeasures {
+    pub fn measures_by_raters(&self, follower: &SessionFollower, episodes: &[FalseBeliefEpisode]) -> WizardMeasures {
         let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
         let periods = periods(follower, episodes.iter());
         let measures = WizardMeasures::from_signals(&sent, Some(&periods));
@@ -87,7 +87,7 @@ impl WizardLog {
     }
 
     /// Summary of the wizard's performance in a session that has been followed to its end.
-    pub fn figures(&self, follower: &Follower) -> WizardSummary {
+    pub fn figures(&self, follower: &SessionFollower) -> WizardSummary {
         let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
         let measures = WizardMeasures::from_signals(&sent, spells(follower).as_deref());
         WizardSummary { measures, screens: self.seen.clone(), unblinded: follower.session.unblinded }
@@ -95,16 +95,19 @@ impl WizardLog {
 }
 
 /// Periods of false belief on the trial's clock; `None` where the participant's beliefs are not known.
-pub fn spells(follower: &Follower) -> Option<Vec<FalseBeliefPeriod>> {
+pub fn spells(follower: &SessionFollower) -> Option<Vec<FalseBeliefPeriod>> {
     let known = follower.session.spec.participant.kind == ParticipantKind::Simulated
         && follower.judged.iter().all(|press| press.belief_known);
     known.then(|| periods(follower, follower.episodes.all()))
 }
 
 /// False belief episodes as periods on the trial's clock.
-fn periods<'a>(follower: &Follower, episodes: impl Iterator<Item = &'a Episode>) -> Vec<FalseBeliefPeriod> {
+fn periods<'a>(
+    follower: &SessionFollower,
+    episodes: impl Iterator<Item = &'a FalseBeliefEpisode>,
+) -> Vec<FalseBeliefPeriod> {
     let session = &follower.session;
-    let period = |episode: &Episode| {
+    let period = |episode: &FalseBeliefEpisode| {
         let presses = |time: SessionTime| follower.judged.partition_point(|press| press.time < time) as u32;
         FalseBeliefPeriod {
             aspect: episode.aspect,

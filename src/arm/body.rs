@@ -1,9 +1,9 @@
 //! The simulated robot arm and the human's hand beside it, stepped in session time, and the events that they report.
 
-use super::controller::{ControlCycle, PhysicalArm};
+use super::controller::{ArmController, ControlCycleResult};
 use super::physics::CYCLE_S;
 use super::reaching::{ReachingBehaviour, ReachingHand};
-use super::report::{CycleNews, PressFailure};
+use super::report::{ArmCycleReport, PressFailure};
 use crate::base::rng::stream;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ButtonId, Kitchen, State};
@@ -32,9 +32,9 @@ struct Told {
 
 /// The simulated arm with the human's hand and the session time that the simulation has reached.
 #[derive(Clone, Debug)]
-pub struct SteppedArm {
+pub struct SimulatedArm {
     /// The robot arm with its controller in the physics simulation.
-    pub arm: PhysicalArm,
+    pub arm: ArmController,
     hand: ReachingHand,
     /// Session time of the last cycle of the arm's controller.
     at: SessionTime,
@@ -49,12 +49,12 @@ pub struct SteppedArm {
     on_button: bool,
 }
 
-impl SteppedArm {
+impl SimulatedArm {
     /// A robot arm at rest, beside a human's hand with this behaviour.
-    pub fn new(kitchen: &Kitchen, hand: ReachingBehaviour, seed: u64, trial: u64) -> SteppedArm {
+    pub fn new(kitchen: &Kitchen, hand: ReachingBehaviour, seed: u64, trial: u64) -> SimulatedArm {
         let hand = ReachingHand::new(kitchen, hand, stream(seed, "human's hand", trial));
-        let arm = PhysicalArm::new(kitchen);
-        SteppedArm {
+        let arm = ArmController::new(kitchen);
+        SimulatedArm {
             arm,
             hand,
             at: SessionTime::ZERO,
@@ -127,7 +127,7 @@ impl SteppedArm {
     }
 
     /// Runs the controller cycle that ends now, and returns its result with the events to record.
-    pub fn cycle(&mut self, now: SessionTime) -> CycleNews {
+    pub fn cycle(&mut self, now: SessionTime) -> ArmCycleReport {
         self.at = now;
         if self.idle && self.arm.is_out() {
             self.arm.go_home();
@@ -138,10 +138,10 @@ impl SteppedArm {
         if cycle.felt.human_n > 0.0 {
             self.hand.feels_the_arm();
         }
-        CycleNews { clicked: cycle.clicked, report: cycle.report, news: self.news(now, &cycle) }
+        ArmCycleReport { clicked: cycle.clicked, report: cycle.report, news: self.news(now, &cycle) }
     }
 
-    fn news(&mut self, now: SessionTime, cycle: &ControlCycle) -> Vec<RobotActivity> {
+    fn news(&mut self, now: SessionTime, cycle: &ControlCycleResult) -> Vec<RobotActivity> {
         self.told.force_n = self.told.force_n.max(cycle.felt.human_n).max(cycle.felt.button_n);
         let (force_n, joint) = match cycle.report {
             Some(PressFailure::Contact(force_n)) => (Some(rounded(force_n, 10.0)), None),

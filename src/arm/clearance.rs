@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Point3};
 use rapier3d::math::Vector;
 use rapier3d::parry::query::details::closest_points_segment_segment_with_locations_nD;
 
-use super::kinematics::Arm;
+use super::kinematics::SerialArm;
 use super::link::{CollisionSolid, LinkShape};
 use crate::robot::moment::{JOINTS, JointAngles};
 
@@ -87,7 +87,7 @@ pub struct ArmSurroundings {
     pub obstacles: Vec<Capsule>,
 }
 
-impl Arm {
+impl SerialArm {
     /// The capsules of all links at these joint angles, each with its link number, in the base frame.
     pub fn capsules(&self, joints: &JointAngles) -> Vec<(usize, Capsule)> {
         let places = self.forward(joints);
@@ -138,7 +138,7 @@ mod tests {
     const BENT: JointAngles = [0.0, -1.6, 1.8, -1.8, -FRAC_PI_2, 0.0];
 
     fn check(joints: JointAngles, expected: Option<Obstruction>) {
-        assert_eq!(Arm::ur5().in_the_way(&joints, &ArmSurroundings::default()), expected, "{joints:?}");
+        assert_eq!(SerialArm::ur5().in_the_way(&joints, &ArmSurroundings::default()), expected, "{joints:?}");
     }
 
     #[test]
@@ -147,10 +147,10 @@ mod tests {
         check([0.0, 0.3, 0.0, 0.0, 0.0, 0.0], Some(Obstruction::Table));
         // A pose with the forearm folded back onto the upper arm.
         check([0.0, -FRAC_PI_2, 3.1, 0.0, 0.0, 0.0], Some(Obstruction::ItsOwnLinks));
-        let at = Arm::ur5().tip(&BENT).translation.vector;
+        let at = SerialArm::ur5().tip(&BENT).translation.vector;
         let obstacles = vec![Capsule { ends_m: [Point3::from(at); 2], radius_m: 0.03 }];
         let around = ArmSurroundings { table_m: 0.0, obstacles };
-        assert_eq!(Arm::ur5().in_the_way(&BENT, &around), Some(Obstruction::Obstacle));
+        assert_eq!(SerialArm::ur5().in_the_way(&BENT, &around), Some(Obstruction::Obstacle));
     }
 
     #[test]

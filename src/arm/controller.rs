@@ -7,10 +7,10 @@
 use std::collections::VecDeque;
 
 use super::clearance::ArmSurroundings;
-use super::kinematics::Arm;
+use super::kinematics::SerialArm;
 use super::physics::hand_body::HandPose;
-use super::physics::{CYCLE_S, CycleForces, PhysicsWorld};
-use super::reach::{ButtonPoses, Unreachable, resting_pose};
+use super::physics::{CYCLE_S, ContactForces, PhysicsWorld};
+use super::reach::{ButtonPoses, UnreachableReason, resting_pose};
 use super::report::PressFailure;
 use super::separation::{MARGIN_M, mode_near, speed_limit};
 use super::touch::ContactTracker;
@@ -43,13 +43,13 @@ const FAR_M: f64 = SLOWS_M + MARGIN_M + 0.02;
 
 /// The result of one cycle of the robot arm's controller.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ControlCycle {
+pub struct ControlCycleResult {
     /// The button that clicked in this cycle. A click counts as a press even if the arm was about to abandon the press.
     pub clicked: Option<ButtonId>,
     /// Why the arm abandoned the press, if it did so in this cycle.
     pub report: Option<PressFailure>,
     /// The contact forces of this cycle.
-    pub felt: CycleForces,
+    pub felt: ContactForces,
     /// Peak force in newtons of a contact with the human, shortly after the contact began. Each contact is reported
     /// once; by then, a contact above [`SafetyMode::threshold_n`] has stopped the arm ([`PressFailure::Contact`]).
     pub touched_n: Option<f64>,
@@ -57,13 +57,13 @@ pub struct ControlCycle {
 
 /// The simulated robot arm with its controller.
 #[derive(Clone, Debug)]
-pub struct PhysicalArm {
-    arm: Arm,
+pub struct ArmController {
+    arm: SerialArm,
     world: PhysicsWorld,
     around: ArmSurroundings,
     /// Pose in which the arm waits while it has no press to make.
     home: JointAngles,
-    buttons: Vec<Result<ButtonPoses, Unreachable>>,
+    buttons: Vec<Result<ButtonPoses, UnreachableReason>>,
     way: VecDeque<TrajectoryLeg>,
     /// Progress on the present leg of the trajectory, in seconds.
     since_s: f64,
@@ -87,10 +87,10 @@ pub struct PhysicalArm {
     touch: ContactTracker,
 }
 
-impl PhysicalArm {
+impl ArmController {
     /// A robot arm at rest above the middle of its buttons.
-    pub fn new(kitchen: &Kitchen) -> PhysicalArm {
-        let arm = Arm::ur5();
+    pub fn new(kitchen: &Kitchen) -> ArmController {
+        let arm = SerialArm::ur5();
         let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
         let places: Vec<[f64; 2]> = kitchen.buttons[Agent::Robot.index()].iter().map(|button| button.at_m).collect();
         let buttons: Vec<_> = places.iter().map(|&place| arm.at_button(place, &around)).collect();
@@ -103,7 +103,7 @@ impl PhysicalArm {
         let mode = SafetyMode::default();
         let (way, since_s, rate) = (VecDeque::new(), 0.0, 0.0);
         let (goal, may_press, halts, watches_hands, waited_s, astray) = (None, false, false, true, 0.0, 0);
-        PhysicalArm {
+        ArmController {
             arm,
             world,
             around,
@@ -130,7 +130,7 @@ impl PhysicalArm {
     ///
     /// # Errors
     /// Why the arm cannot reach the button.
-    pub fn set_out(&mut self, button: ButtonId) -> Result<f64, Unreachable> {
+    pub fn set_out(&mut self, button: ButtonId) -> Result<f64, UnreachableReason> {
         self.way = self.way_to(button)?.into();
         self.goal = Some(button);
         (self.since_s, self.rate, self.waited_s, self.may_press) = (0.0, 0.0, 0.0, false);
@@ -142,12 +142,12 @@ impl PhysicalArm {
     ///
     /// # Errors
     /// Why the arm cannot reach the button.
-    pub fn takes_s(&self, button: ButtonId) -> Result<f64, Unreachable> {
+    pub fn takes_s(&self, button: ButtonId) -> Result<f64, UnreachableReason> {
         Ok(self.way_to(button)?.iter().map(|leg| leg.takes_s).sum())
     }
 
-    fn way_to(&self, button: ButtonId) -> Result<Vec<TrajectoryLeg>, Unreachable> {
-        let at = (*self.buttons.get(button.index()).unwrap_or(&Err(Unreachable::TooFar)))?;
+    fn way_to(&self, button: ButtonId) -> Result<Vec<TrajectoryLeg>, UnreachableReason> {
+        let at = (*self.buttons.get(button.index()).unwrap_or(&Err(UnreachableReason::TooFar)))?;
         way_to(&self.arm, &self.here, &at, &self.around)
     }
 
@@ -257,11 +257,11 @@ impl PhysicalArm {
 
     /// Runs one controller cycle with the human's hand in this pose, if there is one. An idle arm without a hand nearby
     /// costs no computing time.
-    pub fn cycle(&mut self, hand: Option<HandPose>) -> ControlCycle {
+    pub fn cycle(&mut self, hand: Option<HandPose>) -> ControlCycleResult {
         let hand = hand.filter(|hand| self.distance(hand) < FAR_M);
         let share = self.share_allowed(hand);
         if hand.is_none() && !self.is_busy() && self.world.hand().is_none() {
-            return ControlCycle::default();
+            return ControlCycleResult::default();
         }
         let slope = match (share < self.rate, self.mode.is_stopped()) {
             (true, true) => STOPS,
@@ -278,7 +278,7 @@ impl PhysicalArm {
         if clicked.is_some() && !self.mode.is_stopped() {
             self.give_up();
         }
-        ControlCycle { clicked, report, felt, touched_n }
+        ControlCycleResult { clicked, report, felt, touched_n }
     }
 
     /// The share of the planned speed that the distance to the hand allows (speed and separation monitoring).
@@ -352,7 +352,7 @@ impl PhysicalArm {
     }
 
     /// The failure of the press that follows from the measured forces, if any.
-    fn judge(&mut self, felt: &CycleForces) -> Option<PressFailure> {
+    fn judge(&mut self, felt: &ContactForces) -> Option<PressFailure> {
         if self.mode.is_stopped() {
             return None;
         }

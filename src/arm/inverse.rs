@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use nalgebra::{Isometry3, Matrix6, Translation3, UnitQuaternion, Vector3, Vector6};
 
-use super::kinematics::Arm;
+use super::kinematics::SerialArm;
 use crate::robot::moment::{JOINTS, JointAngles};
 
 /// The manufacturer's Denavit-Hartenberg parameters of the UR5, in metres.
@@ -30,7 +30,7 @@ const SOLVED: f64 = 1e-8;
 /// Damping factor that keeps Newton steps short where the Jacobian is nearly singular (Wampler 1986).
 const DAMPING: f64 = 1e-6;
 
-impl Arm {
+impl SerialArm {
     /// All joint angles, between -pi and pi, at which the arm's tip has this pose in the frame of the base; in a fixed
     /// order.
     pub fn inverse(&self, base_from_tip: &Isometry3<f64>) -> Vec<JointAngles> {
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn out_of_reach_there_is_none() {
-        let arm = Arm::ur5();
+        let arm = SerialArm::ur5();
         let down = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), PI);
         for at in [[1.2, 0.0, 0.1], [0.0, 0.0, 0.5], [0.03, 0.0, 0.1]] {
             assert!(arm.inverse(&Isometry3::from_parts(Translation3::from(at), down)).is_empty(), "{at:?}");
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn where_two_axes_are_aligned_there_still_are_solutions() {
-        let arm = Arm::ur5();
+        let arm = SerialArm::ur5();
         for q5 in [0.0, PI, 1e-9] {
             let target = arm.tip(&[0.4, -1.1, 1.3, -0.7, q5, 0.3]);
             let found = arm.inverse(&target);

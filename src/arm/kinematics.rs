@@ -14,23 +14,23 @@ pub const UR5: &str = include_str!("ur5.urdf");
 
 /// A serial robot arm, from its base to its tip.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Arm {
+pub struct SerialArm {
     /// The links of the arm, from the base on.
     pub links: Vec<ArmLink>,
 }
 
-impl Arm {
+impl SerialArm {
     /// The UR5 with a stick, with which it presses buttons.
-    pub fn ur5() -> Arm {
-        Arm::from_urdf(UR5).expect("our own file")
+    pub fn ur5() -> SerialArm {
+        SerialArm::from_urdf(UR5).expect("our own file")
     }
 
     /// Reads a robot arm from a URDF: one chain of links with [`crate::robot::moment::JOINTS`] revolute joints.
     ///
     /// # Errors
     /// The text is no URDF, or not of such an arm.
-    pub fn from_urdf(text: &str) -> Result<Arm, UrdfError> {
-        Ok(Arm { links: read_links(text)? })
+    pub fn from_urdf(text: &str) -> Result<SerialArm, UrdfError> {
+        Ok(SerialArm { links: read_links(text)? })
     }
 
     /// The poses of the arm's links in the frame of the base (metres).
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn the_urdf_has_the_kinematics_of_the_published_table() {
-        let arm = Arm::ur5();
+        let arm = SerialArm::ur5();
         let stick = Matrix4::new_translation(&Vector3::new(0.0, 0.0, 0.12));
         for n in 0..500 {
             let joints: JointAngles = std::array::from_fn(|joint| ((n * 37 + joint * 101) as f64 * 0.7).sin() * PI);
@@ -141,9 +141,9 @@ mod tests {
     fn what_is_no_arm_is_told() {
         let one_joint = r#"<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/>
             <child link="b"/><axis xyz="0 0 1"/><limit lower="0" upper="1" effort="1" velocity="1"/></joint></robot>"#;
-        assert_eq!(Arm::from_urdf(one_joint).unwrap_err().found, "1 joints that turn");
-        assert!(Arm::from_urdf("<robot").is_err());
+        assert_eq!(SerialArm::from_urdf(one_joint).unwrap_err().found, "1 joints that turn");
+        assert!(SerialArm::from_urdf("<robot").is_err());
         let sliding = UR5.replacen("revolute", "prismatic", 1);
-        assert!(Arm::from_urdf(&sliding).unwrap_err().found.contains("shoulder_pan"));
+        assert!(SerialArm::from_urdf(&sliding).unwrap_err().found.contains("shoulder_pan"));
     }
 }

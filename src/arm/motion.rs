@@ -3,7 +3,7 @@
 //! leg: up from the last button, across, and down on the next.
 
 use super::clearance::ArmSurroundings;
-use super::kinematics::Arm;
+use super::kinematics::SerialArm;
 use super::reach::{BENT, ButtonPoses};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, Button, ButtonId, Kitchen};
@@ -28,7 +28,7 @@ pub struct JointMotion {
 
 impl JointMotion {
     /// A timed robot arm at rest above the middle of its buttons.
-    pub fn new(kitchen: &Kitchen, arm: &Arm) -> JointMotion {
+    pub fn new(kitchen: &Kitchen, arm: &SerialArm) -> JointMotion {
         let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
         let at_button = |button: &Button| arm.at_button(button.at_m, &around).ok();
         let buttons: Vec<Option<ButtonPoses>> = kitchen.buttons[Agent::Robot.index()].iter().map(at_button).collect();

@@ -7,7 +7,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use super::clearance::{ArmSurroundings, Obstruction};
 use super::inverse::turned_towards;
-use super::kinematics::Arm;
+use super::kinematics::SerialArm;
 use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::robot::AbortReason;
 use crate::robot::moment::{JOINTS, JointAngles};
@@ -26,7 +26,7 @@ const SINGULAR: f64 = 0.03;
 
 /// Why the robot arm cannot press a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unreachable {
+pub enum UnreachableReason {
     /// No joint angles bring the arm's tip to the button.
     TooFar,
     /// A joint limit of the arm is exceeded at the button.
@@ -37,26 +37,26 @@ pub enum Unreachable {
     Blocked(Obstruction),
 }
 
-impl Unreachable {
+impl UnreachableReason {
     /// The reason in words, after "a button of the robot".
     pub fn words(self) -> &'static str {
         match self {
-            Unreachable::TooFar => "out of reach of its arm",
-            Unreachable::JointLimit => "where its arm's joints do not turn to",
-            Unreachable::Singular => "where its arm is stretched, or in line with itself (singular)",
-            Unreachable::Blocked(Obstruction::Table) => "where its arm would be on the table",
-            Unreachable::Blocked(Obstruction::ItsOwnLinks) => "where its arm would be in its own way",
-            Unreachable::Blocked(Obstruction::Obstacle) => "where something stands in its arm's way",
+            UnreachableReason::TooFar => "out of reach of its arm",
+            UnreachableReason::JointLimit => "where its arm's joints do not turn to",
+            UnreachableReason::Singular => "where its arm is stretched, or in line with itself (singular)",
+            UnreachableReason::Blocked(Obstruction::Table) => "where its arm would be on the table",
+            UnreachableReason::Blocked(Obstruction::ItsOwnLinks) => "where its arm would be in its own way",
+            UnreachableReason::Blocked(Obstruction::Obstacle) => "where something stands in its arm's way",
         }
     }
 }
 
-impl From<Unreachable> for AbortReason {
-    fn from(why: Unreachable) -> AbortReason {
+impl From<UnreachableReason> for AbortReason {
+    fn from(why: UnreachableReason) -> AbortReason {
         match why {
-            Unreachable::TooFar | Unreachable::JointLimit => AbortReason::OutOfReach,
-            Unreachable::Singular => AbortReason::Singular,
-            Unreachable::Blocked(_) => AbortReason::Obstructed,
+            UnreachableReason::TooFar | UnreachableReason::JointLimit => AbortReason::OutOfReach,
+            UnreachableReason::Singular => AbortReason::Singular,
+            UnreachableReason::Blocked(_) => AbortReason::Obstructed,
         }
     }
 }
@@ -82,7 +82,7 @@ pub(super) fn resting_pose(buttons: &[&ButtonPoses]) -> JointAngles {
     if above.is_empty() { BENT } else { std::array::from_fn(mean) }
 }
 
-impl Arm {
+impl SerialArm {
     /// Joint angles with the stick down at a position in the frame of the base (metres): of all solutions the one
     /// nearest to `like`. The last joint, which only spins the stick, stays as in `like`.
     ///
@@ -93,7 +93,7 @@ impl Arm {
         at_m: [f64; 3],
         like: &JointAngles,
         around: &ArmSurroundings,
-    ) -> Result<JointAngles, Unreachable> {
+    ) -> Result<JointAngles, UnreachableReason> {
         let spun = |joints: JointAngles| {
             let [q1, q2, q3, q4, q5, _] = turned_towards(&joints, like);
             [q1, q2, q3, q4, q5, like[JOINTS - 1]]
@@ -101,11 +101,11 @@ impl Arm {
         let mut ways: Vec<JointAngles> = self.inverse(&stick_down(at_m)).into_iter().map(spun).collect();
         let far = |joints: &JointAngles| (0..JOINTS).map(|i| (joints[i] - like[i]).powi(2)).sum::<f64>();
         ways.sort_by(|one, two| far(one).total_cmp(&far(two)));
-        let mut why = Unreachable::TooFar;
+        let mut why = UnreachableReason::TooFar;
         for way in ways {
             match self.fault(&way, around) {
                 None => return Ok(way),
-                Some(fault) if why == Unreachable::TooFar => why = fault,
+                Some(fault) if why == UnreachableReason::TooFar => why = fault,
                 Some(_) => {}
             }
         }
@@ -113,21 +113,21 @@ impl Arm {
     }
 
     /// Why the arm must not take a pose; none if it may.
-    pub fn fault(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<Unreachable> {
+    pub fn fault(&self, joints: &JointAngles, around: &ArmSurroundings) -> Option<UnreachableReason> {
         if !self.is_within_limits(joints) || joints[ELBOW].abs() > ELBOW_RAD {
-            return Some(Unreachable::JointLimit);
+            return Some(UnreachableReason::JointLimit);
         }
         if self.tip_and_jacobian(joints).1.singular_values().min() < SINGULAR {
-            return Some(Unreachable::Singular);
+            return Some(UnreachableReason::Singular);
         }
-        self.in_the_way(joints, around).map(Unreachable::Blocked)
+        self.in_the_way(joints, around).map(UnreachableReason::Blocked)
     }
 
     /// Joint angles for pressing a button at this position on a table of this height.
     ///
     /// # Errors
     /// Why the arm cannot press the button.
-    pub fn at_button(&self, [x, y]: [f64; 2], around: &ArmSurroundings) -> Result<ButtonPoses, Unreachable> {
+    pub fn at_button(&self, [x, y]: [f64; 2], around: &ArmSurroundings) -> Result<ButtonPoses, UnreachableReason> {
         let top_m = around.table_m + BUTTON_M;
         let like = [y.atan2(x), BENT[1], BENT[2], BENT[3], BENT[4], BENT[5]];
         let above = self.standing_at([x, y, top_m + ABOVE_M], &like, around)?;
@@ -136,8 +136,8 @@ impl Arm {
 }
 
 /// The first of the robot's buttons that its arm cannot press with clearance, and the reason.
-pub fn out_of_reach(kitchen: &Kitchen) -> Option<(ButtonId, Unreachable)> {
-    let arm = Arm::ur5();
+pub fn out_of_reach(kitchen: &Kitchen) -> Option<(ButtonId, UnreachableReason)> {
+    let arm = SerialArm::ur5();
     let around = ArmSurroundings { table_m: kitchen.table_height_m, obstacles: Vec::new() };
     let mut buttons = kitchen.buttons[Agent::Robot.index()].iter().enumerate();
     buttons.find_map(|(index, button)| Some((ButtonId(index as u8), arm.at_button(button.at_m, &around).err()?)))

@@ -18,7 +18,7 @@ pub enum PressFailure {
 
 /// The result of a controller cycle for the arm's press, and the events to record.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CycleNews {
+pub struct ArmCycleReport {
     /// The button that clicked. A click counts as a press even if the arm was about to abandon the press.
     pub clicked: Option<ButtonId>,
     /// Why the arm failed to press, if it did.

@@ -5,8 +5,8 @@
 //! which are the defaults of the manufacturer's commands `movej` and `movel`.
 
 use super::clearance::ArmSurroundings;
-use super::kinematics::Arm;
-use super::reach::{ABOVE_M, BUTTON_M, ButtonPoses, Unreachable};
+use super::kinematics::SerialArm;
+use super::reach::{ABOVE_M, BUTTON_M, ButtonPoses, UnreachableReason};
 use crate::robot::moment::{JOINTS, JointAngles};
 
 /// Greatest speed of a joint on a leg in joint space, in radians per second.
@@ -61,12 +61,12 @@ impl TrajectoryLeg {
 
     /// A straight leg: the arm's tip moves up or down from `from` to the height `to_m` above the base.
     fn straight(
-        arm: &Arm,
+        arm: &SerialArm,
         kind: LegKind,
         from: &JointAngles,
         to_m: f64,
         around: &ArmSurroundings,
-    ) -> Result<TrajectoryLeg, Unreachable> {
+    ) -> Result<TrajectoryLeg, UnreachableReason> {
         let at = arm.tip(from).translation.vector;
         let mut poses = [*from; 4];
         for part in 1..4 {
@@ -115,7 +115,7 @@ impl TrajectoryLeg {
     }
 
     /// The first reason for which the arm must not follow the leg.
-    fn fault(&self, arm: &Arm, around: &ArmSurroundings) -> Option<Unreachable> {
+    fn fault(&self, arm: &SerialArm, around: &ArmSurroundings) -> Option<UnreachableReason> {
         (0..=LOOKS).find_map(|look| arm.fault(&self.pose(look as f64 / LOOKS as f64), around))
     }
 }
@@ -125,11 +125,11 @@ impl TrajectoryLeg {
 /// # Errors
 /// What blocks the arm, after higher paths were tried.
 pub fn way_to(
-    arm: &Arm,
+    arm: &SerialArm,
     from: &JointAngles,
     to: &ButtonPoses,
     around: &ArmSurroundings,
-) -> Result<Vec<TrajectoryLeg>, Unreachable> {
+) -> Result<Vec<TrajectoryLeg>, UnreachableReason> {
     let mut legs = way_up(arm, from, around)?;
     let here = legs.last().map_or(*from, |leg| *leg.end());
     legs.extend(way_over(arm, &here, &to.above, around)?);
@@ -145,7 +145,11 @@ pub fn way_to(
 ///
 /// # Errors
 /// What blocks the arm.
-pub fn way_up(arm: &Arm, from: &JointAngles, around: &ArmSurroundings) -> Result<Vec<TrajectoryLeg>, Unreachable> {
+pub fn way_up(
+    arm: &SerialArm,
+    from: &JointAngles,
+    around: &ArmSurroundings,
+) -> Result<Vec<TrajectoryLeg>, UnreachableReason> {
     let free_m = around.table_m + BUTTON_M + ABOVE_M;
     if arm.tip(from).translation.z > free_m - 1e-3 {
         return Ok(Vec::new());
@@ -158,11 +162,11 @@ pub fn way_up(arm: &Arm, from: &JointAngles, around: &ArmSurroundings) -> Result
 /// # Errors
 /// What blocks every path that was tried.
 pub fn way_over(
-    arm: &Arm,
+    arm: &SerialArm,
     from: &JointAngles,
     to: &JointAngles,
     around: &ArmSurroundings,
-) -> Result<Vec<TrajectoryLeg>, Unreachable> {
+) -> Result<Vec<TrajectoryLeg>, UnreachableReason> {
     let direct = TrajectoryLeg::over(from, to);
     let Some(fault) = direct.fault(arm, around) else {
         return Ok(if from == to { Vec::new() } else { vec![direct] });

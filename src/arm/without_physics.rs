@@ -1,17 +1,17 @@
 //! Replacement for the simulated robot arm in a build without the feature `physics`: a type of which no value can be
 //! created.
 
-use super::report::CycleNews;
+use super::report::ArmCycleReport;
 use crate::base::time::SessionTime;
 use crate::kitchen::{ButtonId, State};
 use crate::robot::{AbortReason, RobotActivity};
 
 /// The simulated arm in a build without physics: no value of this type can be created.
 #[derive(Clone, Debug)]
-pub enum SteppedArm {}
+pub enum SimulatedArm {}
 
 #[allow(missing_docs, reason = "the functions of the arm that is not there")]
-impl SteppedArm {
+impl SimulatedArm {
     /// The time of the next cycle of the arm's controller.
     pub fn next_due(&self, _: bool) -> Option<SessionTime> {
         match *self {}
@@ -43,7 +43,7 @@ impl SteppedArm {
     }
 
     /// Runs the controller cycle that ends now.
-    pub fn cycle(&mut self, _: SessionTime) -> CycleNews {
+    pub fn cycle(&mut self, _: SessionTime) -> ArmCycleReport {
         match *self {}
     }
 

@@ -3,9 +3,9 @@
 
 use rand_distr::{Distribution, LogNormal};
 
-use super::body::SteppedArm;
+use super::body::SimulatedArm;
 #[cfg(feature = "physics")]
-use super::controller::PhysicalArm;
+use super::controller::ArmController;
 use super::report::PressFailure;
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
@@ -29,7 +29,7 @@ struct OngoingPress {
 
 /// The robot at work: it decides on presses and carries them out with its arm; it can be idle, held or stopped.
 #[derive(Clone, Debug)]
-pub struct Robot {
+pub struct RobotTaskExecutor {
     random: Stream,
     duration_s: LogNormal<f64>,
     busy: Option<OngoingPress>,
@@ -43,16 +43,16 @@ pub struct Robot {
     /// The last reported reason for being idle, and the state of the kitchen at the last decision.
     idle: Option<(IdleReason, State)>,
     /// The simulated arm in the physics; none for the timed arm.
-    body: Option<Box<SteppedArm>>,
+    body: Option<Box<SimulatedArm>>,
 }
 
-impl Robot {
+impl RobotTaskExecutor {
     /// A robot at rest with a timed arm. `press_s` is the median duration of a press in seconds, `spread` the standard
     /// deviation of its logarithm.
-    pub fn new(press_s: f64, spread: f64, seed: u64, trial: u64) -> Robot {
+    pub fn new(press_s: f64, spread: f64, seed: u64, trial: u64) -> RobotTaskExecutor {
         let median = press_s.max(0.05);
         let duration_s = LogNormal::new(median.ln(), spread.clamp(0.0, 2.0)).expect("a finite mean and spread");
-        Robot {
+        RobotTaskExecutor {
             random: stream(seed, "robot", trial),
             duration_s,
             busy: None,
@@ -66,13 +66,13 @@ impl Robot {
     }
 
     /// The same robot with a simulated arm, whose physics decide how long presses take.
-    pub fn with_body(self, body: SteppedArm) -> Robot {
-        Robot { body: Some(Box::new(body)), ..self }
+    pub fn with_body(self, body: SimulatedArm) -> RobotTaskExecutor {
+        RobotTaskExecutor { body: Some(Box::new(body)), ..self }
     }
 
     /// The simulated arm, for experiments with it.
     #[cfg(feature = "physics")]
-    pub fn arm(&mut self) -> Option<&mut PhysicalArm> {
+    pub fn arm(&mut self) -> Option<&mut ArmController> {
         self.body.as_mut().map(|body| &mut body.arm)
     }
 

@@ -58,8 +58,8 @@ impl Feature {
     ///
     /// # Errors
     /// This build does not contain the part.
-    pub const fn require(self) -> Result<(), NotBuilt> {
-        if self.is_built() { Ok(()) } else { Err(NotBuilt(self)) }
+    pub const fn require(self) -> Result<(), MissingFeature> {
+        if self.is_built() { Ok(()) } else { Err(MissingFeature(self)) }
     }
 }
 
@@ -78,9 +78,9 @@ impl fmt::Display for Feature {
 /// Error: this build does not contain the optional part (Cargo feature) that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("built without {0}: {lacks}", lacks = .0.lacks())]
-pub struct NotBuilt(pub Feature);
+pub struct MissingFeature(pub Feature);
 
-impl NotBuilt {
+impl MissingFeature {
     /// How to get a build that contains the missing part, in words.
     pub fn remedy(self) -> String {
         format!("cargo build --release --features {}, or a build with the default features", self.0.key())

@@ -16,9 +16,9 @@ use super::review::ReviewArgs;
 use super::study::StudyArgs;
 use super::tutorial_alone::TutorialArgs;
 use super::wizard::{CompareArgs, TrainArgs};
-use crate::mind::fitting::Parameter;
-use crate::run::simulate::Shard;
-use crate::run::sweep::SweepAxis;
+use crate::mind::fitting::HumanModelParameter;
+use crate::run::simulate::SimulationShard;
+use crate::run::sweep::ParameterSweepAxis;
 
 /// A console for Wizard-of-Oz experiments in human-robot cooperation.
 #[derive(Debug, Parser)]
@@ -153,7 +153,7 @@ pub(super) struct SimulateArgs {
     pub(super) trials: Option<u64>,
     /// Simulate one shard of the trials, such as "2/8", the second of eight disjoint shards, for job arrays.
     #[arg(long, value_name = "PART/PARTS", default_value = "1/1", hide_default_value = true)]
-    pub(super) shard: Shard,
+    pub(super) shard: SimulationShard,
     /// Seed of all random numbers; by default that of the session file.
     #[arg(long)]
     pub(super) seed: Option<u64>,
@@ -171,7 +171,7 @@ pub(super) struct SimulateArgs {
     /// waiting=on,off. Several settings make a grid. The assistant sends the signals unless --condition says otherwise.
     /// With a plan, its settings apply, and every trial has another participant.
     #[arg(long, value_name = "SETTING=VALUES", conflicts_with_all = ["shadow", "rerun"])]
-    pub(super) sweep: Vec<SweepAxis>,
+    pub(super) sweep: Vec<ParameterSweepAxis>,
     /// Compute the assistant's recommendations also in trials in which the assistant does not act, and record them. A
     /// scripted wizard reads them where the session shows recommendations; nobody else sees them.
     #[arg(long)]
@@ -255,18 +255,18 @@ impl FitParameter {
     const USUAL: &str = "tau,lapse,radius,reading,half-life";
     const OF_PERSONS: &str = "tau,lapse,reading,half-life,recipe-knowledge";
 
-    pub(super) fn parameter(self) -> Parameter {
+    pub(super) fn parameter(self) -> HumanModelParameter {
         match self {
-            FitParameter::Tau => Parameter::Tau,
-            FitParameter::Lapse => Parameter::Lapse,
-            FitParameter::Radius => Parameter::RadiusDeg,
-            FitParameter::Reading => Parameter::ReadingRateHz,
-            FitParameter::HalfLife => Parameter::RecipeHalfLifeS,
-            FitParameter::Foresight => Parameter::Foresight,
-            FitParameter::Looks => Parameter::LooksHz,
-            FitParameter::OtherLooks => Parameter::OtherLooksHz,
-            FitParameter::Capture => Parameter::Capture,
-            FitParameter::RecipeKnowledge => Parameter::RecipeTruth,
+            FitParameter::Tau => HumanModelParameter::Tau,
+            FitParameter::Lapse => HumanModelParameter::Lapse,
+            FitParameter::Radius => HumanModelParameter::RadiusDeg,
+            FitParameter::Reading => HumanModelParameter::ReadingRateHz,
+            FitParameter::HalfLife => HumanModelParameter::RecipeHalfLifeS,
+            FitParameter::Foresight => HumanModelParameter::Foresight,
+            FitParameter::Looks => HumanModelParameter::LooksHz,
+            FitParameter::OtherLooks => HumanModelParameter::OtherLooksHz,
+            FitParameter::Capture => HumanModelParameter::Capture,
+            FitParameter::RecipeKnowledge => HumanModelParameter::RecipeTruth,
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::analysis::fitting::people_summary;
 use crate::analysis::{belief_check, fitting, offer_steadiness, planner_accuracy};
 use crate::edge::files;
 use crate::mind::fitted_people::HumanModelFile;
-use crate::run::accuracy::AccuracySample;
+use crate::run::accuracy::PlannerAccuracySample;
 use crate::run::{accuracy, check_beliefs, fit, fit_people, steadiness};
 
 /// Runs the command `tomcom replay RECORDING... --check-beliefs`.
@@ -22,8 +22,10 @@ pub(super) fn check_beliefs(args: &ReplayArgs) -> Result<(), Failure> {
 
 /// Runs the command `tomcom replay RECORDING... --accuracy`.
 pub(super) fn accuracy(args: &ReplayArgs) -> Result<(), Failure> {
-    let extent =
-        AccuracySample { steps: args.steps as usize, reference_steps: args.reference_steps.min(args.steps) as usize };
+    let extent = PlannerAccuracySample {
+        steps: args.steps as usize,
+        reference_steps: args.reference_steps.min(args.steps) as usize,
+    };
     // Each step is planned twice: with the budget of a session, and with the larger one.
     let bar = progress(2 * args.steps + args.reference_steps, "answers at most");
     let found = accuracy::measure(&args.recordings, extent, || bar.inc(1))?;
@@ -54,7 +56,7 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
         files::check_fitted(path).map_err(|error| unwritable(path, error))?;
     }
     let trials = fit::FitTrials::read(&args.recordings, args.probes)?;
-    let plan = fitting::FitPlan { parameters, start, most_tries: args.tries as usize };
+    let plan = fitting::FitSettings { parameters, start, most_tries: args.tries as usize };
     let write = |file: &HumanModelFile, comment: &str| match &args.out {
         Some(path) => files::write_human_model(path, file, comment).map_err(|error| unwritable(path, error)),
         None => Ok(()),
@@ -74,7 +76,7 @@ pub(super) fn fit(args: &FitArgs) -> Result<(), Failure> {
 fn fit_people(
     args: &FitArgs,
     trials: &fit::FitTrials,
-    plan: &fitting::FitPlan,
+    plan: &fitting::FitSettings,
     write: impl Fn(&HumanModelFile, &str) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     fit_people::require_people(&args.recordings, trials)?;

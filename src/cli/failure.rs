@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::base::features::NotBuilt;
+use crate::base::features::MissingFeature;
 use crate::edge::file_error::FileError;
-use crate::edge::forget::ForgetError;
-use crate::edge::log::{ExclusionError, WriteError};
+use crate::edge::forget::ParticipantDeletionError;
+use crate::edge::log::{ExclusionError, RecordingWriteError};
 use crate::run::error::{LiveError, ReviewError, RunError};
 use crate::session::settings::SettingError;
 
@@ -22,8 +22,8 @@ pub(super) enum Failure {
     Unread,
 }
 
-impl From<NotBuilt> for Failure {
-    fn from(missing: NotBuilt) -> Failure {
+impl From<MissingFeature> for Failure {
+    fn from(missing: MissingFeature) -> Failure {
         Failure::Wrong(miette::miette!(help = missing.remedy(), "{missing}"))
     }
 }
@@ -34,8 +34,8 @@ impl From<FileError> for Failure {
     }
 }
 
-impl From<WriteError> for Failure {
-    fn from(error: WriteError) -> Failure {
+impl From<RecordingWriteError> for Failure {
+    fn from(error: RecordingWriteError) -> Failure {
         Failure::Failed(miette::Report::new(error))
     }
 }
@@ -49,8 +49,8 @@ impl From<ExclusionError> for Failure {
     }
 }
 
-impl From<ForgetError> for Failure {
-    fn from(error: ForgetError) -> Failure {
+impl From<ParticipantDeletionError> for Failure {
+    fn from(error: ParticipantDeletionError) -> Failure {
         Failure::Failed(miette::Report::new(error))
     }
 }

@@ -11,7 +11,7 @@ use crate::base::words::count;
 use crate::edge::log::LOG_NAME;
 use crate::edge::{near_path, recordings};
 use crate::run::pick_recording;
-use crate::run::recording_list::{self, ListDepth};
+use crate::run::recording_list::{self, RecordingListDetail};
 
 /// Largest number of recordings that a message names.
 const MOST_NAMED: usize = 12;
@@ -38,7 +38,7 @@ pub(super) fn list(args: &ListArgs) -> Result<(), Failure> {
     exists(&args.folder)?;
     let bar = progress(0, "recordings");
     let begun = |number: usize| bar.set_length(number as u64);
-    let (list, _) = recording_list::list(&args.folder, ListDepth::WithErrors, begun, || bar.inc(1))?;
+    let (list, _) = recording_list::list(&args.folder, RecordingListDetail::WithErrors, begun, || bar.inc(1))?;
     bar.finish_and_clear();
     print(args.format, &list, || list.describe())
 }

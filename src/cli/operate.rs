@@ -8,7 +8,7 @@ use clap::Args;
 use super::choices::{ArmArg, ConceptArg, ConditionArg, GazeArg, ParticipantArg};
 use super::failure::{Failure, wrong_setting};
 use super::output::{put, put_aside};
-use crate::analysis::watcher::CompareRequest;
+use crate::analysis::watcher::ComparisonRequest;
 use crate::base::features::Feature;
 use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileError;
@@ -89,7 +89,7 @@ pub(super) fn operate(args: &OperateArgs) -> Result<(), Failure> {
 pub(super) fn new_session(
     session: Option<&Path>,
     flags: &OperateFlags,
-    compare: Option<CompareRequest>,
+    compare: Option<ComparisonRequest>,
 ) -> Result<SeriesOutcome, Failure> {
     if flags.rerun_listen.is_some() {
         Feature::Rerun.require()?;

@@ -13,7 +13,7 @@ use crate::edge::files::{SessionFiles, read_session};
 use crate::edge::{pool_file, power_files};
 use crate::run::pool::{self, PoolRequest};
 use crate::run::power_measurement::{self, PowerRequest};
-use crate::run::simulate::Shard;
+use crate::run::simulate::SimulationShard;
 use crate::run::study::describe_arms;
 use crate::session::settings::ArmKind;
 use crate::study::drawn_study::DrawnEffect;
@@ -95,7 +95,7 @@ struct PoolArgs {
         requires = "out",
         conflicts_with = "from"
     )]
-    shard: Shard,
+    shard: SimulationShard,
     /// Read the participants from these files instead of simulating them; shards are joined.
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with = "participants")]
     from: Vec<PathBuf>,
@@ -138,8 +138,8 @@ impl PoolArgs {
         if let Some(out) = &self.out {
             pool_file::write_pool(out, &pool)?;
         }
-        if self.shard != Shard::WHOLE {
-            let (Shard { number, of }, persons) = (self.shard, pool.persons.len() as u64);
+        if self.shard != SimulationShard::WHOLE {
+            let (SimulationShard { number, of }, persons) = (self.shard, pool.persons.len() as u64);
             put_aside(&format!("part {number} of {of}: {}\n", count(persons, "participant", "participants")));
             return Ok(None);
         }
@@ -150,7 +150,7 @@ impl PoolArgs {
     fn read(&self, mut files: SessionFiles) -> Result<SimulationPool, Failure> {
         let pool = pool_file::read_pool(&self.from)?;
         files.spec.seed = pool.header.seed;
-        let (participants, shard) = (pool.header.participants, Shard::WHOLE);
+        let (participants, shard) = (pool.header.participants, SimulationShard::WHOLE);
         let request =
             PoolRequest { files, participants, shard, arms: pool.header.arms, unassisted: pool.header.unassisted };
         let wanted = request.header(&self.plan)?;
@@ -201,7 +201,7 @@ pub(super) fn arms(args: &ArmsArgs) -> Result<(), Failure> {
         let found = "a pool of unassisted trials alone".to_string();
         return Err(wrong_argument(args.pool.source(), found, "a pool made without --null"));
     }
-    let table = arm_table::ArmTable::from_pool(&pool);
+    let table = arm_table::StudyArmTable::from_pool(&pool);
     print(args.pool.format, &table, || {
         let comparisons: String = table.comparisons.iter().map(describe_arms).collect();
         arm_table::describe(&table) + "\n" + &comparisons

@@ -6,13 +6,14 @@ use super::failure::Failure;
 use super::output::put;
 use crate::base::time::SessionTime;
 use crate::run::open_viewer::{
-    OngoingRecording, RerunError, ReviewOutcome, ReviewRequest, SavedStream, review, running, save, until_asked_to_end,
+    OngoingRecording, RerunReviewOutcome, RerunReviewRequest, RerunStreamFile, RerunViewerError, review, running, save,
+    until_asked_to_end,
 };
 
-impl From<RerunError> for Failure {
-    fn from(error: RerunError) -> Failure {
+impl From<RerunViewerError> for Failure {
+    fn from(error: RerunViewerError) -> Failure {
         match error {
-            RerunError::File(error) => Failure::from(*error),
+            RerunViewerError::File(error) => Failure::from(*error),
             error => Failure::Failed(miette::Report::new(error)),
         }
     }
@@ -37,16 +38,16 @@ pub(super) fn open(
     for one in running(&recordings)? {
         put(&still_running(&one))?;
     }
-    let asked = ReviewRequest { recordings, save, web, at };
+    let asked = RerunReviewRequest { recordings, save, web, at };
     match review(&asked)? {
-        ReviewOutcome::Saved(file) => {
+        RerunReviewOutcome::Saved(file) => {
             let how = if file.made { "made from the log" } else { "is there already" };
             put(&format!("{} {how}{}\n", file.path.display(), because(&file)))?;
         }
-        ReviewOutcome::Opened(file) => {
+        RerunReviewOutcome::Opened(file) => {
             put(&format!("the viewer opens {}{}\n", file.path.display(), because(&file)))?;
         }
-        ReviewOutcome::Served { url, because, _serving } => {
+        RerunReviewOutcome::Served { url, because, _serving } => {
             put(&format!("{because}: it is served here, for a browser on this machine, until ctrl+c\n{url}\n"))?;
             if let Some(at) = at {
                 put(&format!("what comes from {at} on is marked in its time line: a click there goes to it\n"))?;
@@ -58,7 +59,7 @@ pub(super) fn open(
 }
 
 /// Why an existing stream file was rebuilt, in words.
-fn because(file: &SavedStream) -> String {
+fn because(file: &RerunStreamFile) -> String {
     file.because.map_or(String::new(), |because| format!(", anew: {because}"))
 }
 

@@ -6,7 +6,7 @@ use super::output::{print, progress, put_aside};
 use super::rerun_messages::save_all;
 use crate::base::features::Feature;
 use crate::communication::concept::ConceptName;
-use crate::communication::settings::Shadow;
+use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::FileError;
 use crate::edge::files;
 use crate::run::{simulate, sweep};
@@ -58,7 +58,7 @@ pub(super) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     files.spec.assistant.concept = args.concept.map_or(files.spec.assistant.concept, ConceptName::from);
     files.spec.robot.arm = args.arm.map_or(files.spec.robot.arm, ArmKind::from);
     files.spec.require_built().map_err(|missing| FileError::not_built(&args.session, missing))?;
-    files.spec.assistant.shadow = if args.shadow { Shadow::On } else { Shadow::Off };
+    files.spec.assistant.shadow = if args.shadow { ShadowMode::On } else { ShadowMode::Off };
     let simulation = simulate::SimulationRequest { files, trials, shard: args.shard, out: args.out.clone() };
     if !args.sweep.is_empty() {
         let bar = progress(sweep::trials(&simulation, &args.sweep), "trials");
@@ -82,7 +82,7 @@ fn tell_unused(args: &SimulateArgs, spec: &SessionSpec) {
         return;
     }
     let acts = args.condition.is_none() && spec.trial.condition == Condition::Assistant;
-    let advises = !args.shadow && spec.assistant.shadow == Shadow::On;
+    let advises = !args.shadow && spec.assistant.shadow == ShadowMode::On;
     let unused =
         [(acts, "condition = \"assistant\"", "--condition assistant"), (advises, "shadow = \"on\"", "--shadow")];
     for (_, found, option) in unused.iter().filter(|(is_unused, ..)| *is_unused) {

@@ -9,7 +9,7 @@ use super::failure::Failure;
 use super::list::exists;
 use super::output::{OutputFormat, print, progress, put_aside};
 use crate::base::words::count;
-use crate::run::simulate::Shard;
+use crate::run::simulate::SimulationShard;
 use crate::run::study::reading::AnalysisScope;
 use crate::run::study::{self, AnalysisRequest, NamedRecordings, StudyError, shards};
 use crate::study::figures::StudySummary;
@@ -40,7 +40,7 @@ pub(super) struct StudyArgs {
     /// Analyse one shard of the recordings, such as "3/8", the third of eight, for job arrays, and only write what the analysis of all needs of it
     /// to the file --out. Shards are those of tomcom simulate.
     #[arg(long, value_name = "PART/PARTS", requires = "out", conflicts_with_all = ["frozen", "format"])]
-    shard: Option<Shard>,
+    shard: Option<SimulationShard>,
     /// Join these parts, written with --shard, instead of reading recordings; the results are those of one analysis of all recordings.
     #[arg(long, value_name = "FILE", num_args = 1.., requires = "out", conflicts_with_all = ["paths", "shard", "raters", "skip"])]
     from: Vec<PathBuf>,
@@ -90,7 +90,7 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), Failure> {
         let begun = |number: usize| bar.set_length(number as u64);
         let number = shards::analyse_shard(&request, recordings, shard, begun, || bar.inc(1))?;
         bar.finish_and_clear();
-        let Shard { number: part, of } = shard;
+        let SimulationShard { number: part, of } = shard;
         put_aside(&format!("part {part} of {of}: {}\n", count(number, "recording", "recordings")));
         return Ok(());
     }

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use serde_json::Value;
 
 use super::failure::Failure;
-use crate::base::features::{Feature, NotBuilt};
+use crate::base::features::{Feature, MissingFeature};
 
 /// Refuses the export, since this build lacks MCAP.
 pub(super) fn export(_: &[PathBuf]) -> Result<(Value, String), Failure> {
-    Err(NotBuilt(Feature::Mcap).into())
+    Err(MissingFeature(Feature::Mcap).into())
 }

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use super::failure::Failure;
-use crate::base::features::{Feature, NotBuilt};
+use crate::base::features::{Feature, MissingFeature};
 use crate::base::time::SessionTime;
 
 /// Refuses to write streams, since this build lacks Rerun.
 pub(super) fn save_all(_: &[String]) -> Result<(), Failure> {
-    Err(NotBuilt(Feature::Rerun).into())
+    Err(MissingFeature(Feature::Rerun).into())
 }
 
 /// Refuses to open a viewer, since this build lacks Rerun.
@@ -18,5 +18,5 @@ pub(super) fn open(
     _: bool,
     _: Option<SessionTime>,
 ) -> Result<(), Failure> {
-    Err(NotBuilt(Feature::Rerun).into())
+    Err(MissingFeature(Feature::Rerun).into())
 }

@@ -10,8 +10,8 @@ use super::list::{chosen, each_chosen, exists};
 use super::operate::{OperateFlags, new_session};
 use super::output::{OutputFormat, print, progress, put};
 use crate::analysis::comparison_summary::{self, ComparisonSummary};
-use crate::analysis::lesson_report::{self, TrainingSummary};
-use crate::analysis::watcher::CompareRequest;
+use crate::analysis::lesson_report::{self, WizardTrainingSummary};
+use crate::analysis::watcher::ComparisonRequest;
 use crate::communication::concept::ConceptName;
 use crate::console::playback::SPEEDS;
 use crate::edge::training;
@@ -99,7 +99,7 @@ pub(super) struct TrainArgs {
 
 pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     let with: Vec<ConceptName> = args.with.iter().chain(&args.only).map(|&concept| concept.into()).collect();
-    let request = |window: u32| CompareRequest { with: with.clone(), window };
+    let request = |window: u32| ComparisonRequest { with: with.clone(), window };
     let session = match &args.paths[..] {
         [] => Some(None),
         [path] => Some(Some(path.as_path())).filter(|_| path.extension().is_some_and(|extension| extension == "toml")),
@@ -133,7 +133,7 @@ pub(super) fn compare(args: &CompareArgs) -> Result<(), Failure> {
     }
     if let Some(wizard) = &args.wizard {
         let records = training::read(&args.training, &code_of(wizard)?)?;
-        figures.training = Some(TrainingSummary::from_records(&args.training, wizard, &records));
+        figures.training = Some(WizardTrainingSummary::from_records(&args.training, wizard, &records));
     }
     bar.finish_and_clear();
     match args.open {

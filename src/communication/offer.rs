@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::concept_name::ConceptName;
-use super::recommendation::Reason;
+use super::recommendation::SignalReason;
 use super::signal::Signal;
 use crate::base::time::SessionTime;
 
@@ -25,7 +25,7 @@ pub const TAKEN_AFTER: SessionTime = SessionTime(1_300_000_000);
 /// What an offer suggests to the wizard: a signal, or presses.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum OfferedAct {
+pub enum OfferedCommunication {
     /// A signal that can be sent to the participant.
     Signal(Signal),
     /// Presses that the DEV concept proposes, by the names of their buttons. They are shown to the wizard, who cannot
@@ -49,7 +49,7 @@ pub struct OfferWorth {
 pub struct OfferedAdvice {
     /// The offered signal, or the proposed presses.
     #[serde(flatten)]
-    pub what: OfferedAct,
+    pub what: OfferedCommunication,
     /// Sequence number of the event for which the recommendation was computed.
     pub for_seq: u64,
     /// The value of the offered signal when the offer opened; `None` for proposed presses.
@@ -57,7 +57,7 @@ pub struct OfferedAdvice {
     pub worth: Option<OfferWorth>,
     /// The false belief behind the offer and the press that the signal would prevent, as far as they are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reason: Option<Reason>,
+    pub reason: Option<SignalReason>,
     /// Whether a wizard could see the offer: there is a console or a script that reads offers, and the session's
     /// settings show recommendations.
     pub visible: bool,
@@ -65,7 +65,7 @@ pub struct OfferedAdvice {
 
 /// How the wizard sent the signal of an offer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum OfferUse {
+pub enum OfferKeyUse {
     /// By the key that takes the present offer.
     Taken,
     /// By the key of this particular signal.
@@ -76,7 +76,7 @@ pub enum OfferUse {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct UsedOffer {
     /// The kind of key with which the signal was sent.
-    pub how: OfferUse,
+    pub how: OfferKeyUse,
     /// Session time at which the signal was sent.
     pub at: SessionTime,
 }
@@ -98,8 +98,8 @@ impl Offer {
     /// The offered signal; `None` for proposed presses.
     pub fn signal(&self) -> Option<&Signal> {
         match &self.advice.what {
-            OfferedAct::Signal(signal) => Some(signal),
-            OfferedAct::Presses(_) => None,
+            OfferedCommunication::Signal(signal) => Some(signal),
+            OfferedCommunication::Presses(_) => None,
         }
     }
 }
@@ -107,7 +107,7 @@ impl Offer {
 /// Why an offer to the wizard closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum OfferEnd {
+pub enum OfferCloseReason {
     /// The wizard took the offer.
     Taken,
     /// The wizard sent the offered signal by the signal's own key.
@@ -122,38 +122,38 @@ pub enum OfferEnd {
     TrialEnded,
 }
 
-impl OfferEnd {
+impl OfferCloseReason {
     /// All reasons for which an offer closes.
-    pub const ALL: [OfferEnd; 6] = [
-        OfferEnd::Taken,
-        OfferEnd::OwnKey,
-        OfferEnd::Impossible,
-        OfferEnd::Fell,
-        OfferEnd::Replaced,
-        OfferEnd::TrialEnded,
+    pub const ALL: [OfferCloseReason; 6] = [
+        OfferCloseReason::Taken,
+        OfferCloseReason::OwnKey,
+        OfferCloseReason::Impossible,
+        OfferCloseReason::Fell,
+        OfferCloseReason::Replaced,
+        OfferCloseReason::TrialEnded,
     ];
 
     /// Name of the reason in logs and tables.
     pub fn name(self) -> &'static str {
         match self {
-            OfferEnd::Taken => "taken",
-            OfferEnd::OwnKey => "own_key",
-            OfferEnd::Impossible => "impossible",
-            OfferEnd::Fell => "fell",
-            OfferEnd::Replaced => "replaced",
-            OfferEnd::TrialEnded => "trial_ended",
+            OfferCloseReason::Taken => "taken",
+            OfferCloseReason::OwnKey => "own_key",
+            OfferCloseReason::Impossible => "impossible",
+            OfferCloseReason::Fell => "fell",
+            OfferCloseReason::Replaced => "replaced",
+            OfferCloseReason::TrialEnded => "trial_ended",
         }
     }
 
     /// The reason for which an offer closed, in words.
     pub fn words(self) -> &'static str {
         match self {
-            OfferEnd::Taken => "taken",
-            OfferEnd::OwnKey => "sent by its own key",
-            OfferEnd::Impossible => "no longer possible",
-            OfferEnd::Fell => "no longer worth it",
-            OfferEnd::Replaced => "another is better",
-            OfferEnd::TrialEnded => "the trial ended",
+            OfferCloseReason::Taken => "taken",
+            OfferCloseReason::OwnKey => "sent by its own key",
+            OfferCloseReason::Impossible => "no longer possible",
+            OfferCloseReason::Fell => "no longer worth it",
+            OfferCloseReason::Replaced => "another is better",
+            OfferCloseReason::TrialEnded => "the trial ended",
         }
     }
 }
@@ -166,17 +166,17 @@ pub struct ClosedOffer {
     /// Session time at which the offer closed.
     pub closed: SessionTime,
     /// The reason for which the offer closed.
-    pub reason: OfferEnd,
+    pub reason: OfferCloseReason,
 }
 
 /// The offers of a trial: the open one, and the closed ones.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct OfferBook {
+pub struct OfferHistory {
     present: Option<Offer>,
     closed: Vec<ClosedOffer>,
 }
 
-impl OfferBook {
+impl OfferHistory {
     /// The offer on the wizard's screen: it is open, and its signal has not been sent.
     pub fn open(&self) -> Option<&Offer> {
         self.present.as_ref().filter(|offer| offer.used.is_none())
@@ -208,7 +208,7 @@ impl OfferBook {
     }
 
     /// Closes the open offer, if there is one.
-    pub fn closes(&mut self, now: SessionTime, reason: OfferEnd) {
+    pub fn closes(&mut self, now: SessionTime, reason: OfferCloseReason) {
         self.closed.extend(self.present.take().map(|offer| ClosedOffer { offer, closed: now, reason }));
     }
 

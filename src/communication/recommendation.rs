@@ -22,15 +22,15 @@ pub struct Recommendation {
     pub best: Option<Signal>,
     /// Reason for the first option if it saves presses, even if it does not exceed its cost and `best` is `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub reason: Option<Reason>,
+    pub reason: Option<SignalReason>,
     /// Proposed presses; only the concept DEV has any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub proposal: Option<Proposal>,
+    pub proposal: Option<PressProposal>,
 }
 
 /// Good presses that the DEV concept proposes after an error.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Proposal {
+pub struct PressProposal {
     /// Sequence number of the erroneous press.
     pub error: u64,
     /// Proposed next presses of the human, by the names of their buttons.
@@ -54,7 +54,7 @@ pub struct SignalOption {
 
 /// The false belief that a signal would correct, and the press that it would prevent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Reason {
+pub struct SignalReason {
     /// Name of the aspect with the false belief.
     pub aspect: String,
     /// The value that is falsely believed, as text.
@@ -107,9 +107,14 @@ pub fn phrase(label: &str) -> String {
     if label.contains(" + ") { format!("\"{label}\"") } else { label.to_string() }
 }
 
-impl Reason {
+impl SignalReason {
     /// The reason for a signal: its aspect to whose true value the estimated belief gives the lowest probability.
-    pub fn for_signal(kitchen: &Kitchen, state: State, belief: &DirichletBelief, signal: &Signal) -> Option<Reason> {
+    pub fn for_signal(
+        kitchen: &Kitchen,
+        state: State,
+        belief: &DirichletBelief,
+        signal: &Signal,
+    ) -> Option<SignalReason> {
         let p_truth = |aspect: &AspectId| belief.p_truth(kitchen, state, *aspect);
         let aspects = aspects_told(kitchen, state, signal);
         let aspect = aspects.into_iter().min_by(|a, b| p_truth(a).total_cmp(&p_truth(b)))?;
@@ -118,7 +123,7 @@ impl Reason {
         let others = (0..mean.len()).filter(|&value| value != truth);
         let believed = others.reduce(|best, value| if mean[value] > mean[best] { value } else { best })?;
         let told = &kitchen.aspects[aspect.index()];
-        Some(Reason {
+        Some(SignalReason {
             aspect: told.name.clone(),
             believes: told.labels[believed].clone(),
             truth: told.labels[truth].clone(),
@@ -130,7 +135,7 @@ impl Reason {
 
     /// The false belief in words: "takes order 1 for tuna nigiri (0.83)", or "may take" below a probability of 0.5.
     pub fn taken(&self) -> String {
-        let Reason { aspect, believes, p_believes, .. } = self;
+        let SignalReason { aspect, believes, p_believes, .. } = self;
         let takes = if *p_believes < 0.5 { "may take" } else { "takes" };
         format!("{takes} {} for {} ({p_believes:.2})", aspect.replace('_', " "), phrase(believes))
     }

@@ -17,7 +17,7 @@ const PROBABLY_READ: f64 = 0.5;
 /// P(truth) has not passed 0.9 until then. How often somebody is told in vain who notices nothing is bounded by the planner, since the
 /// expected probability of being noticed falls with each missed signal.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Repeats {
+pub struct SignalRepeatRule {
     /// The last signal about each location.
     told: [Option<Told>; MAX_LOCATIONS],
 }
@@ -32,7 +32,7 @@ struct Told {
     read: Option<f64>,
 }
 
-impl Repeats {
+impl SignalRepeatRule {
     /// Records that the display showed a signal.
     pub fn shown(&mut self, kitchen: &Kitchen, state: State, signal: &Signal) {
         if let Some(location) = signal.location(kitchen) {

@@ -10,7 +10,7 @@ use crate::mind::model::LookingModel;
 #[serde(default, deny_unknown_fields)]
 pub struct AssistantSpec {
     /// Whether the assistant computes recommendations in trials in which it does not send signals.
-    pub shadow: Shadow,
+    pub shadow: ShadowMode,
     /// The communication concept by which the assistant decides.
     pub concept: ConceptName,
     /// Cost of communication in presses: the expected saving of a signal must exceed it (1.5 in the paper).
@@ -28,13 +28,13 @@ pub struct AssistantSpec {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub asks_by_gaze: bool,
     /// Settings of the planner's rollouts.
-    pub rollout: RolloutModel,
+    pub rollout: RolloutSettings,
 }
 
 /// Whether the assistant computes recommendations in conditions in which it does not send signals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Shadow {
+pub enum ShadowMode {
     /// The assistant computes recommendations beside the wizard, who may see them.
     #[default]
     On,
@@ -45,7 +45,7 @@ pub enum Shadow {
 impl Default for AssistantSpec {
     fn default() -> Self {
         AssistantSpec {
-            shadow: Shadow::On,
+            shadow: ShadowMode::On,
             concept: ConceptName::TomCom,
             cost_of_communication: 1.5,
             // Equal to the definition of a false belief.
@@ -53,7 +53,7 @@ impl Default for AssistantSpec {
             proposed_presses: 1,
             asks_in_silence: false,
             asks_by_gaze: false,
-            rollout: RolloutModel::default(),
+            rollout: RolloutSettings::default(),
         }
     }
 }
@@ -61,7 +61,7 @@ impl Default for AssistantSpec {
 /// Settings of the planner's rollouts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct RolloutModel {
+pub struct RolloutSettings {
     /// Number of human decisions in a rollout (horizon).
     pub horizon: usize,
     /// Largest number of paired rollouts per signal.
@@ -88,9 +88,9 @@ pub struct RolloutModel {
     pub least_rollouts: usize,
 }
 
-impl Default for RolloutModel {
+impl Default for RolloutSettings {
     fn default() -> Self {
-        RolloutModel {
+        RolloutSettings {
             horizon: 8,
             rollouts: 256,
             states: 32,
@@ -104,7 +104,7 @@ impl Default for RolloutModel {
     }
 }
 
-impl RolloutModel {
+impl RolloutSettings {
     /// Where the human looks in rollouts: as the human model says, or as the settings of the rollouts say.
     pub fn looking(&self, human: &LookingModel) -> LookingModel {
         LookingModel {

@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use super::concept::{Concept, DecisionPoint};
-use super::recommendation::{Reason, Recommendation, SignalOption, aspects_told};
+use super::recommendation::{Recommendation, SignalOption, SignalReason, aspects_told};
 use super::signal::{Signal, unavailable};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -55,7 +55,8 @@ impl Concept for TomConcept {
         Recommendation {
             options: ranked.iter().map(option).collect(),
             best: best.map(|(_, signal)| (*signal).clone()),
-            reason: best.and_then(|(_, signal)| Reason::for_signal(kitchen, state, moment.situation.belief, signal)),
+            reason: best
+                .and_then(|(_, signal)| SignalReason::for_signal(kitchen, state, moment.situation.belief, signal)),
             ..Recommendation::silent(moment.seq, moment.time)
         }
     }

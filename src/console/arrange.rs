@@ -13,7 +13,7 @@ use crate::session::settings::ParticipantKind;
 
 /// An element of the kitchen map: a location or an ingredient storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MapElement {
+pub enum KitchenMapElement {
     /// Location of the kitchen, such as a hand, a board or an order.
     Location(LocationId),
     /// Ingredient storage, as an index into [`Kitchen::storages`].
@@ -22,9 +22,9 @@ pub enum MapElement {
 
 /// An element of the kitchen map with its box on the screen.
 #[derive(Clone, Debug)]
-pub struct MapBox {
+pub struct KitchenMapBox {
     /// Kitchen element (location or storage) that the box on the screen shows.
-    pub thing: MapElement,
+    pub thing: KitchenMapElement,
     /// Rectangle of terminal cells in which the element is drawn.
     pub cells: Rect,
     area: DisplayArea,
@@ -47,7 +47,7 @@ pub struct AgentZone {
 #[derive(Clone, Debug)]
 pub struct KitchenMap {
     /// Boxes of all kitchen locations and ingredient storages on the map.
-    pub spots: Vec<MapBox>,
+    pub spots: Vec<KitchenMapBox>,
     /// Zones of the two agents, whose names stand above the columns of the kitchen map.
     pub zones: Vec<AgentZone>,
 }
@@ -57,7 +57,7 @@ pub struct KitchenMap {
 struct Bounds([[f64; 2]; 2]);
 
 struct Item {
-    thing: MapElement,
+    thing: KitchenMapElement,
     area: DisplayArea,
     owner: Option<Agent>,
     min_columns: u16,
@@ -128,7 +128,7 @@ impl KitchenMap {
     fn columns(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> KitchenMap {
         let (line, cells) = split_rows(cells, 1);
         let columns = clusters(items, 0);
-        let is_store = |column: &[&Item]| column.iter().all(|item| matches!(item.thing, MapElement::Storage(_)));
+        let is_store = |column: &[&Item]| column.iter().all(|item| matches!(item.thing, KitchenMapElement::Storage(_)));
         let in_rows: Vec<&Item> = columns.iter().filter(|c| !is_store(c)).flatten().copied().collect();
         let rows = clusters(&in_rows, 1);
         let widths = widths(&columns, cells.width);
@@ -140,7 +140,7 @@ impl KitchenMap {
             let slot = Rect { x, width, ..cells };
             x += width;
             let display_x = ends(&columns, index, 0, [0.0, 1.0]);
-            let shares_rows = column.iter().all(|item| matches!(item.thing, MapElement::Location(_)))
+            let shares_rows = column.iter().all(|item| matches!(item.thing, KitchenMapElement::Location(_)))
                 && rows
                     .iter()
                     .all(|row| row.iter().filter(|item| column.iter().any(|c| c.thing == item.thing)).count() <= 1);
@@ -181,8 +181,8 @@ impl KitchenMap {
     }
 
     /// The kitchen element whose bounds contain the point, or else the nearest element.
-    fn nearest(&self, point: [f64; 2], bounds: impl Fn(&MapBox) -> Bounds) -> Option<&MapBox> {
-        let distance = |spot: &MapBox| {
+    fn nearest(&self, point: [f64; 2], bounds: impl Fn(&KitchenMapBox) -> Bounds) -> Option<&KitchenMapBox> {
+        let distance = |spot: &KitchenMapBox| {
             let outside = |axis: usize| {
                 let [low, high] = bounds(spot).0[axis];
                 (low - point[axis]).max(point[axis] - high).max(0.0)
@@ -193,7 +193,7 @@ impl KitchenMap {
     }
 }
 
-impl MapBox {
+impl KitchenMapBox {
     /// Pairs of wall display coordinate and terminal coordinate along one axis, between which coordinates are
     /// interpolated.
     fn knots(&self, axis: usize) -> [(f64, f64); 4] {
@@ -235,7 +235,7 @@ fn along(value: f64, knots: &[(f64, f64); 4], order: impl Fn((f64, f64)) -> (f64
 fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
     let location = |(index, location): (usize, &crate::kitchen::Location)| {
         let owner = if let LocationKind::Hand(agent) = location.kind { Some(agent) } else { None };
-        let thing = MapElement::Location(LocationId(index as u8));
+        let thing = KitchenMapElement::Location(LocationId(index as u8));
         // Columns beside a location's name for rule, key and gap (the participant's hand seldom has a key); orders
         // stand in a strip of their own.
         let beside = match location.kind {
@@ -247,8 +247,8 @@ fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
         let min_columns = (location.label().chars().count() as u16 + beside).max(MIN_CARD);
         Item { thing, area: location.display, owner, min_columns }
     };
-    let storage = |(index, storage): (usize, &crate::kitchen::Storage)| Item {
-        thing: MapElement::Storage(index),
+    let storage = |(index, storage): (usize, &crate::kitchen::IngredientStorage)| Item {
+        thing: KitchenMapElement::Storage(index),
         area: storage.display,
         owner: Some(storage.agent),
         // Columns for a space before the storage's name and for its key; the robot's storage keeps a gap to its right
@@ -264,8 +264,8 @@ fn items(kitchen: &Kitchen, with_keys: bool, own_hand: u16) -> Vec<Item> {
     locations.chain(kitchen.storages.iter().enumerate().map(storage)).collect()
 }
 
-fn is_order(kitchen: &Kitchen, thing: MapElement) -> bool {
-    matches!(thing, MapElement::Location(id) if kitchen.location(id).kind == LocationKind::Order)
+fn is_order(kitchen: &Kitchen, thing: KitchenMapElement) -> bool {
+    matches!(thing, KitchenMapElement::Location(id) if kitchen.location(id).kind == LocationKind::Order)
 }
 
 fn split_rows(cells: Rect, rows: u16) -> (Rect, Rect) {
@@ -318,7 +318,7 @@ fn ends(groups: &[Vec<&Item>], index: usize, axis: usize, whole: [f64; 2]) -> [f
 /// locations.
 fn widths(columns: &[Vec<&Item>], total: u16) -> Vec<u16> {
     let need: Vec<u16> = columns.iter().map(|c| c.iter().map(|item| item.min_columns).max().unwrap_or(0)).collect();
-    let grows = |column: &[&Item]| column.iter().any(|item| matches!(item.thing, MapElement::Location(_)));
+    let grows = |column: &[&Item]| column.iter().any(|item| matches!(item.thing, KitchenMapElement::Location(_)));
     let growing = columns.iter().filter(|c| grows(c)).count().max(1) as u16;
     let sum: u16 = need.iter().sum();
     let spare = total.saturating_sub(sum);
@@ -352,9 +352,9 @@ fn owner(column: &[&Item]) -> Option<Agent> {
     if column.iter().all(|item| item.owner == first) { first } else { None }
 }
 
-fn spot(item: &Item, region: Rect, display: Bounds) -> MapBox {
+fn spot(item: &Item, region: Rect, display: Bounds) -> KitchenMapBox {
     let cells = match item.thing {
-        MapElement::Location(_) => {
+        KitchenMapElement::Location(_) => {
             // Low boxes leave an empty row between them; in a tall region, the boxes grow.
             let height = match region.height {
                 rows @ 0..=4 => rows.min(3),
@@ -363,16 +363,18 @@ fn spot(item: &Item, region: Rect, display: Bounds) -> MapBox {
             let width = region.width.saturating_sub(u16::from(region.width > MIN_CARD));
             Rect { y: region.y + (region.height - height) / 2, width, height, ..region }
         }
-        MapElement::Storage(_) => Rect { y: region.y + region.height / 2, height: region.height.min(1), ..region },
+        KitchenMapElement::Storage(_) => {
+            Rect { y: region.y + region.height / 2, height: region.height.min(1), ..region }
+        }
     };
-    MapBox { thing: item.thing, cells, area: item.area, display, screen: bounds(region) }
+    KitchenMapBox { thing: item.thing, cells, area: item.area, display, screen: bounds(region) }
 }
 
 fn bounds(cells: Rect) -> Bounds {
     Bounds([[cells.x, cells.right()].map(f64::from), [cells.y, cells.bottom()].map(f64::from)])
 }
 
-fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<MapBox> {
+fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<KitchenMapBox> {
     let groups: Vec<Vec<&Item>> = {
         let mut sorted = items.to_vec();
         sorted.sort_by(|a, b| a.area.x.total_cmp(&b.area.x));
@@ -385,13 +387,13 @@ fn row_of_orders(items: &[&Item], cells: Rect, display_y: [f64; 2]) -> Vec<MapBo
         let height = region.height.min(3);
         let cells = Rect { x: region.x + (region.width - width) / 2, width, height, ..region };
         let display = Bounds([ends(&groups, index, 0, [0.0, 1.0]), display_y]);
-        MapBox { thing: group[0].thing, cells, area: group[0].area, display, screen: bounds(region) }
+        KitchenMapBox { thing: group[0].thing, cells, area: group[0].area, display, screen: bounds(region) }
     };
     groups.iter().enumerate().map(place).collect()
 }
 
 /// Extends the display region of every box so that it contains the box's own area.
-fn cover(mut spots: Vec<MapBox>) -> Vec<MapBox> {
+fn cover(mut spots: Vec<KitchenMapBox>) -> Vec<KitchenMapBox> {
     for spot in &mut spots {
         for axis in 0..2 {
             let [low, high] = spot.display.0[axis];

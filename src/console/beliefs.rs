@@ -7,15 +7,15 @@ use crate::communication::concept::ConceptName;
 use crate::communication::recommendation::aspects_told;
 use crate::history::belief_track;
 use crate::kitchen::{AspectId, AspectKind, Kitchen, LocationId};
-use crate::session::settings::Visibility;
-use crate::session::{Phase, Session};
+use crate::session::settings::WizardVisibility;
+use crate::session::{Session, TrialPhase};
 
 /// Least expected probability of a value for the console to say that the participant believes that value.
 const THINKS: f32 = 0.5;
 
 /// Whether an estimated belief of the participant is probably false, unsure or right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum BeliefStanding {
+pub enum BeliefCorrectness {
     /// The participant probably believes a wrong value.
     False,
     /// The true value is improbable and so is every other value; or the true value is probable, but a signal about the
@@ -31,7 +31,7 @@ pub struct EstimatedBelief {
     /// State aspect that the belief is about.
     pub aspect: AspectId,
     /// Whether the belief is probably false, unsure or right.
-    pub standing: BeliefStanding,
+    pub standing: BeliefCorrectness,
     /// Index of the value that the participant most probably believes.
     pub thinks: usize,
     /// Index of the state aspect's true value.
@@ -50,18 +50,18 @@ pub struct EstimatedBelief {
 /// Empty before the trial's first estimate, and where the wizard may not see the estimate.
 pub fn beliefs(session: &Session, model: &ConsoleModel) -> Vec<EstimatedBelief> {
     let moments = model.belief.until(model.now);
-    let may_see = visibility(session, model) >= Visibility::Belief && session.phase != Phase::Ready;
+    let may_see = visibility(session, model) >= WizardVisibility::Belief && session.phase != TrialPhase::Ready;
     let Some(last) = moments.last().filter(|_| may_see) else { return Vec::new() };
     let (costs, offered) = (costs(session), offered(session));
     let told = last.held.iter().enumerate().map(|(index, held)| {
         let aspect = AspectId(index as u8);
         let (thinks, truth) = (usize::from(held.believes), session.kitchen.true_value(session.state, aspect));
         let standing = match held.is_false() {
-            true if thinks != truth && held.p >= THINKS => BeliefStanding::False,
-            true => BeliefStanding::Unsure,
+            true if thinks != truth && held.p >= THINKS => BeliefCorrectness::False,
+            true => BeliefCorrectness::Unsure,
             // A belief that an offered signal is about counts as unsure even if its most probable value is true.
-            false if offered.contains(&aspect) => BeliefStanding::Unsure,
-            false => BeliefStanding::Right,
+            false if offered.contains(&aspect) => BeliefCorrectness::Unsure,
+            false => BeliefCorrectness::Right,
         };
         let since = belief_track::wrong_since(moments, index);
         EstimatedBelief { aspect, standing, thinks, truth, p: held.p, since, cost: costs[index] }
@@ -77,10 +77,10 @@ pub fn beliefs(session: &Session, model: &ConsoleModel) -> Vec<EstimatedBelief> 
 
 /// What the console may show of the assistant's estimate and advice, as the session's settings allow. A person who
 /// presses the participant's buttons at this keyboard sees neither the estimate nor offers.
-pub fn visibility(session: &Session, model: &ConsoleModel) -> Visibility {
+pub fn visibility(session: &Session, model: &ConsoleModel) -> WizardVisibility {
     match model.layer {
         KeyLayer::Wizard => session.spec.console.visibility,
-        KeyLayer::Participant => Visibility::State,
+        KeyLayer::Participant => WizardVisibility::State,
     }
 }
 
@@ -99,7 +99,7 @@ fn offered(session: &Session) -> Vec<AspectId> {
 /// Whether beliefs are ordered by the presses that a signal would save: only if the wizard sees recommendations, and
 /// the concept (TomCom) counts presses.
 pub fn are_by_cost(session: &Session) -> bool {
-    session.spec.console.visibility == Visibility::Recommendation
+    session.spec.console.visibility == WizardVisibility::Recommendation
         && session.spec.assistant.concept == ConceptName::TomCom
         && session.advice.is_some()
 }

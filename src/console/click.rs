@@ -37,7 +37,7 @@ pub struct ClickTarget {
 
 /// The question whether to send a clicked signal; the signal is sent once the wizard confirms.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SendQuestion {
+pub struct SendConfirmation {
     /// Key of the keyboard with the same action as the click.
     pub chord: KeyChord,
     /// Signal that is sent to the participant once the wizard confirms.

@@ -4,7 +4,7 @@
 use crossterm::event::KeyCode;
 
 use super::chord::KeyChord;
-use super::click::SendQuestion;
+use super::click::SendConfirmation;
 use super::console_actions::act;
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
@@ -29,7 +29,7 @@ pub(super) fn ask(model: &mut ConsoleModel, session: &Session, chord: KeyChord, 
     match asked {
         Ok((signal, offer)) => {
             model.notice = None;
-            model.dialog = Some(Dialog::Send(SendQuestion { chord, signal, offer, asked: model.clock }));
+            model.dialog = Some(Dialog::Send(SendConfirmation { chord, signal, offer, asked: model.clock }));
         }
         Err(reason) => model.say(NoticeLevel::Refused, format!("not sent: {reason}")),
     }
@@ -70,7 +70,11 @@ pub(super) fn answer(
 }
 
 /// Sends the clicked signal. After a click on an offer, nothing is sent if that offer has closed meanwhile.
-pub(super) fn confirm(model: &mut ConsoleModel, session: &Session, question: SendQuestion) -> Option<ConsoleCommand> {
+pub(super) fn confirm(
+    model: &mut ConsoleModel,
+    session: &Session,
+    question: SendConfirmation,
+) -> Option<ConsoleCommand> {
     model.dialog = None;
     let now_meant = offers::enter(session, model.now).ok().map(|(offer, _)| offer.seq);
     match question.offer {

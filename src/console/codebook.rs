@@ -3,10 +3,10 @@
 use ratatui::text::Span;
 
 use super::chord::KeyChord;
-use super::key_action::{KeyAction, KeyBinding, RaterKey};
+use super::key_action::{KeyAction, KeyBinding, RaterAction};
 use super::keys::KeyBindings;
 use crate::kitchen::Kitchen;
-use crate::measures::cause_codes::CauseKind;
+use crate::measures::cause_codes::ErrorCauseKind;
 
 /// Columns between two codebook entries in a line.
 const GAP: u16 = 2;
@@ -45,7 +45,7 @@ pub fn full(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<Codebook
             lines.push(vec![(before, CodebookEntry { key, words })]);
         }
     }
-    let belief = format!("{} ({}):", CauseKind::Belief.title(), CauseKind::Belief.definition());
+    let belief = format!("{} ({}):", ErrorCauseKind::Belief.title(), ErrorCauseKind::Belief.definition());
     lines.extend(wrap(&belief, columns).into_iter().map(|words| vec![(0, CodebookEntry::heading(words))]));
     let places = places(keys, kitchen);
     let widest = places.iter().map(CodebookEntry::columns).max().unwrap_or(0) + GAP;
@@ -60,9 +60,9 @@ pub fn full(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<Codebook
 
 /// The codebook without definitions, in as few lines of at most `columns` as possible.
 pub fn compact(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<CodebookLine> {
-    let mut beliefs = vec![CodebookEntry::heading(CauseKind::Belief.title().to_string())];
+    let mut beliefs = vec![CodebookEntry::heading(ErrorCauseKind::Belief.title().to_string())];
     beliefs.extend(places(keys, kitchen));
-    let mut lines = flow(of_kinds(keys, CauseKind::short_definition), columns);
+    let mut lines = flow(of_kinds(keys, ErrorCauseKind::short_definition), columns);
     lines.extend(flow(beliefs, columns));
     lines
 }
@@ -70,7 +70,7 @@ pub fn compact(keys: &KeyBindings, kitchen: &Kitchen, columns: u16) -> Vec<Codeb
 /// Codebook entries of the places about which a belief can be false: "q order 1".
 fn places(keys: &KeyBindings, kitchen: &Kitchen) -> Vec<CodebookEntry> {
     let entry = |line: &KeyBinding| match line.action {
-        KeyAction::Rate(RaterKey::Belief(location)) => {
+        KeyAction::Rate(RaterAction::Belief(location)) => {
             Some(CodebookEntry { key: Some(*line.chords.first()?), words: kitchen.location(location).label() })
         }
         _ => None,
@@ -79,13 +79,13 @@ fn places(keys: &KeyBindings, kitchen: &Kitchen) -> Vec<CodebookEntry> {
 }
 
 /// Codebook entries of the error causes that need no place: "1 slip: nothing was believed wrong".
-fn of_kinds(keys: &KeyBindings, definition: impl Fn(CauseKind) -> Option<&'static str>) -> Vec<CodebookEntry> {
-    let entry = |kind: CauseKind| {
-        let key = Some(keys.chord_for(&KeyAction::Rate(RaterKey::Cause(kind)))?);
+fn of_kinds(keys: &KeyBindings, definition: impl Fn(ErrorCauseKind) -> Option<&'static str>) -> Vec<CodebookEntry> {
+    let entry = |kind: ErrorCauseKind| {
+        let key = Some(keys.chord_for(&KeyAction::Rate(RaterAction::Cause(kind)))?);
         let definition = definition(kind).map_or(String::new(), |definition| format!(": {definition}"));
         Some(CodebookEntry { key, words: format!("{}{definition}", kind.title()) })
     };
-    CauseKind::ALL.into_iter().filter_map(entry).collect()
+    ErrorCauseKind::ALL.into_iter().filter_map(entry).collect()
 }
 
 fn flow(entries: Vec<CodebookEntry>, columns: u16) -> Vec<CodebookLine> {

@@ -2,35 +2,35 @@
 
 use super::console_message::ConsoleCommand;
 use super::console_model::ConsoleModel;
-use super::key_action::RaterKey;
+use super::key_action::RaterAction;
 use super::notice::NoticeLevel;
-use super::playback::ReplayKey;
-use crate::measures::cause_codes::Code;
+use super::playback::ReplayAction;
+use crate::measures::cause_codes::ErrorCauseCode;
 use crate::session::Session;
 
 /// Carries out an action of the rater's keys.
-pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterKey) -> Option<ConsoleCommand> {
+pub fn act(model: &mut ConsoleModel, session: &Session, rate: RaterAction) -> Option<ConsoleCommand> {
     let events = model.playback.as_ref().map_or(0, |playback| playback.event);
     let coding = model.coding.as_mut()?;
     let at = coding.at(events);
     let chosen = coding.chosen.take().filter(|chosen| Some(*chosen) != at);
     let code = match rate {
-        RaterKey::Next => return go(model, chosen.or(Some(at.map_or(0, |at| at + 1)))),
-        RaterKey::Last => return go(model, at.and_then(|at| at.checked_sub(1))),
-        RaterKey::ChooseLater | RaterKey::ChooseEarlier => {
+        RaterAction::Next => return go(model, chosen.or(Some(at.map_or(0, |at| at + 1)))),
+        RaterAction::Last => return go(model, at.and_then(|at| at.checked_sub(1))),
+        RaterAction::ChooseLater | RaterAction::ChooseEarlier => {
             let last = coding.errors.len().checked_sub(1)?;
             let from = chosen.or(at);
             coding.chosen = Some(match rate {
-                RaterKey::ChooseLater => from.map_or(0, |from| (from + 1).min(last)),
+                RaterAction::ChooseLater => from.map_or(0, |from| (from + 1).min(last)),
                 _ => from.map_or(0, |from| from.saturating_sub(1)),
             });
             return None;
         }
-        RaterKey::Undo => return undone(model, false),
-        RaterKey::Redo => return undone(model, true),
-        RaterKey::Belief(location) => Some(Code::Belief(session.kitchen.location(location).name.clone())),
-        RaterKey::Cause(kind) => Code::new(kind, None),
-        RaterKey::Clear => None,
+        RaterAction::Undo => return undone(model, false),
+        RaterAction::Redo => return undone(model, true),
+        RaterAction::Belief(location) => Some(ErrorCauseCode::Belief(session.kitchen.location(location).name.clone())),
+        RaterAction::Cause(kind) => ErrorCauseCode::new(kind, None),
+        RaterAction::Clear => None,
     };
     if let Some(error) = chosen.and_then(|chosen| coding.errors.get(chosen)) {
         let words = format!("not coded: error {} is only selected; enter goes to it, esc stays here", error.error);
@@ -53,7 +53,7 @@ fn go(model: &mut ConsoleModel, to: Option<usize>) -> Option<ConsoleCommand> {
         model.say(NoticeLevel::Refused, "there is no other error");
         return None;
     };
-    Some(ConsoleCommand::Move(ReplayKey::ToEvent(error.press)))
+    Some(ConsoleCommand::Move(ReplayAction::ToEvent(error.press)))
 }
 
 /// Undoes the rater's last change of a code, or redoes it.

@@ -1,10 +1,10 @@
 //! Which difference between wizard and assistant the console's comparison shows.
 
-use crate::history::comparison::{LaneComparison, UnmatchedCommunication};
+use crate::history::comparison::{SenderComparison, UnmatchedCommunication};
 
 /// Action of a key in the list of differences between wizard and assistant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ComparisonKey {
+pub enum ComparisonAction {
     /// Go to the next difference between wizard and assistant.
     Next,
     /// Go to the previous difference between wizard and assistant.
@@ -17,20 +17,20 @@ pub enum ComparisonKey {
 #[derive(Clone, Debug, Default)]
 pub struct ComparisonView {
     /// Newest comparison; `None` until the trial's first press or order.
-    pub seen: Option<LaneComparison>,
+    pub seen: Option<SenderComparison>,
     /// Selected communication that has no match; `None` selects the newest one.
     chosen: Option<UnmatchedCommunication>,
 }
 
 impl ComparisonView {
     /// Takes over the newest comparison; the selected difference stays selected if it is still one.
-    pub fn show(&mut self, newest: LaneComparison) {
+    pub fn show(&mut self, newest: SenderComparison) {
         self.chosen = self.chosen.filter(|chosen| newest.differences.contains(chosen));
         self.seen = Some(newest);
     }
 
     /// Index of the selected difference, and the comparison that contains it.
-    pub fn chosen(&self) -> Option<(usize, &LaneComparison)> {
+    pub fn chosen(&self) -> Option<(usize, &SenderComparison)> {
         let seen = self.seen.as_ref()?;
         let newest = seen.differences.len().checked_sub(1)?;
         let is_it = |chosen: UnmatchedCommunication| seen.differences.iter().position(|one| *one == chosen);
@@ -38,12 +38,12 @@ impl ComparisonView {
     }
 
     /// Selects the next or the previous difference. From the last one on, the newest difference is always selected.
-    pub fn choose(&mut self, step: ComparisonKey) {
+    pub fn choose(&mut self, step: ComparisonAction) {
         let Some((at, seen)) = self.chosen() else { return };
         let to = match step {
-            ComparisonKey::Next => at + 1,
-            ComparisonKey::Last => at.saturating_sub(1),
-            ComparisonKey::Open => at,
+            ComparisonAction::Next => at + 1,
+            ComparisonAction::Last => at.saturating_sub(1),
+            ComparisonAction::Open => at,
         };
         self.chosen = seen.differences.get(to).copied().filter(|_| to + 1 < seen.differences.len());
     }

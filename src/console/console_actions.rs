@@ -2,7 +2,7 @@
 
 use super::beliefs::{beliefs, visibility};
 use super::coding;
-use super::compared::ComparisonKey;
+use super::compared::ComparisonAction;
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form;
@@ -18,10 +18,10 @@ use super::sending::{resume_robot, send};
 use crate::communication::Sender;
 use crate::history::wording;
 use crate::kitchen::{Agent, AspectId};
-use crate::session::event::SignalEnd;
+use crate::session::event::SignalEndReason;
 use crate::session::offers;
-use crate::session::settings::Visibility;
-use crate::session::{Event, Phase, Session};
+use crate::session::settings::WizardVisibility;
+use crate::session::{Event, Session, TrialPhase};
 
 /// Sends the signal of the open offer to the participant.
 fn accept(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
@@ -63,7 +63,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         KeyAction::TakeBack => send(
             model,
             session,
-            Event::SignalEnded { reason: SignalEnd::TakenBack },
+            Event::SignalEnded { reason: SignalEndReason::TakenBack },
             NoticeLevel::Done,
             "the signal is taken back",
         ),
@@ -75,7 +75,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         KeyAction::Advance => advance(model, session),
         KeyAction::ResumeRobot => resume_robot(model, session),
         KeyAction::EndTrial => match session.phase {
-            Phase::Running | Phase::Paused => {
+            TrialPhase::Running | TrialPhase::Paused => {
                 model.dialog = Some(Dialog::EndTrial);
                 None
             }
@@ -100,7 +100,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
             panels::look(model, session, at);
             None
         }
-        KeyAction::Belief if visibility(session, model) < Visibility::Belief => {
+        KeyAction::Belief if visibility(session, model) < WizardVisibility::Belief => {
             model.say(NoticeLevel::Refused, "beliefs are not shown in this session");
             None
         }
@@ -127,7 +127,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
         }
         // A replay can be left without a question, for nothing is lost; a wizard training asks first.
         KeyAction::Quit if model.playback.is_some() && model.lesson.is_none() => Some(ConsoleCommand::Quit),
-        KeyAction::Quit if session.phase == Phase::Closed => Some(ConsoleCommand::Quit),
+        KeyAction::Quit if session.phase == TrialPhase::Closed => Some(ConsoleCommand::Quit),
         KeyAction::Quit => {
             model.dialog = Some(Dialog::Quit);
             None
@@ -137,12 +137,12 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, action: KeyAction
 }
 
 /// Selects another difference between wizard and assistant, or shows what each of them knew at the selected difference.
-pub(super) fn differ(model: &mut ConsoleModel, session: &Session, step: ComparisonKey) {
+pub(super) fn differ(model: &mut ConsoleModel, session: &Session, step: ComparisonAction) {
     let Some(compared) = &mut model.comparison else { return };
     compared.choose(step);
     match compared.chosen() {
         None => model.say(NoticeLevel::Refused, "wizard and assistant do not differ yet"),
-        Some((at, seen)) if step == ComparisonKey::Open => {
+        Some((at, seen)) if step == ComparisonAction::Open => {
             model.dialog = Some(Dialog::Difference(seen.opened(&session.kitchen, &seen.differences[at])));
         }
         Some(_) => {}
@@ -151,11 +151,11 @@ pub(super) fn differ(model: &mut ConsoleModel, session: &Session, step: Comparis
 
 fn advance(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     let (event, words) = match session.phase {
-        Phase::Ready => return preflight::start(model, session),
-        Phase::Running => (Event::TrialPaused, "paused"),
-        Phase::Paused => (Event::TrialResumed, "the trial runs"),
-        Phase::Over(_) => return form::leave(model, session),
-        Phase::Closed => {
+        TrialPhase::Ready => return preflight::start(model, session),
+        TrialPhase::Running => (Event::TrialPaused, "paused"),
+        TrialPhase::Paused => (Event::TrialResumed, "the trial runs"),
+        TrialPhase::Over(_) => return form::leave(model, session),
+        TrialPhase::Closed => {
             model.say(NoticeLevel::Refused, "the session is over");
             return None;
         }

@@ -2,7 +2,7 @@
 
 use crossterm::event::KeyEvent;
 
-use super::playback::ReplayKey;
+use super::playback::ReplayAction;
 use crate::session::Event;
 
 /// Input of the console: a key, a mouse event or a change of the terminal.
@@ -30,7 +30,7 @@ pub enum ConsoleCommand {
     /// Record the results of the preflight checks and start the trial.
     Start(Event),
     /// Move a replay to another position or change its speed.
-    Move(ReplayKey),
+    Move(ReplayAction),
     /// Save the rater's codes, and move the replay to the error whose code changed.
     Code {
         /// Sequence number of the press whose code changed.

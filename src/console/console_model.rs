@@ -5,10 +5,10 @@ use std::collections::VecDeque;
 use crossterm::event::KeyCode;
 
 use super::chord::KeyChord;
-use super::click::SendQuestion;
+use super::click::SendConfirmation;
 use super::compared::ComparisonView;
-use super::display_status::DisplayHealth;
-use super::gaze_advice::CalibrationAdvice;
+use super::display_status::ParticipantDisplayHealth;
+use super::gaze_advice::AccuracyCheckAction;
 use super::gaze_pairing::GazePairing;
 use super::key_action::KeyLayer;
 use super::keys::KeyBindings;
@@ -55,7 +55,7 @@ pub enum Dialog {
     /// List of all actions that have keys (the palette).
     Palette(ListCursor),
     /// Question whether to send the signal that was clicked.
-    Send(SendQuestion),
+    Send(SendConfirmation),
     /// List of the preflight checks.
     Preflight,
     /// Gaze accuracy check: the targets, then the result.
@@ -94,7 +94,7 @@ pub enum RecordingStatus {
 
 /// State of the stream to viewers of the Rerun program.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ViewerStreamStatus {
+pub struct RerunStreamStatus {
     /// Address to which Rerun viewers connect; `None` if the stream is only written to a file.
     pub address: Option<String>,
     /// Number of rows written to the Rerun stream.
@@ -146,7 +146,7 @@ pub struct ConsoleModel {
     /// Whether the session is recorded.
     pub recording: RecordingStatus,
     /// State of the stream to Rerun viewers, if there is one.
-    pub viewers: Option<ViewerStreamStatus>,
+    pub viewers: Option<RerunStreamStatus>,
     /// State of the streams of the Lab Streaming Layer, if there are any.
     pub lsl: Option<LslStatus>,
     /// Free disk space of the recording's folder in bytes; `None` if unknown.
@@ -173,7 +173,7 @@ pub struct ConsoleModel {
     /// Address and pairing code for gaze senders at other computers, if they may connect.
     pub gaze_pairing: Option<GazePairing>,
     /// State of the participant's display, if there is one.
-    pub display: Option<DisplayHealth>,
+    pub display: Option<ParticipantDisplayHealth>,
     /// Times of the human's errors, in order.
     pub errors: Vec<SessionTime>,
     /// Judgement of the trial's signals at the times when they were sent (hit, late or needless).
@@ -195,7 +195,7 @@ pub struct ConsoleModel {
     /// Index of the selected reason for waiving the practice criterion, until enter confirms it.
     pub waiver: Option<usize>,
     /// What the wizard has selected to do with the result of a gaze accuracy check, until enter confirms it.
-    pub gaze_choice: Option<CalibrationAdvice>,
+    pub gaze_choice: Option<AccuracyCheckAction>,
     /// Time at which enter last chose a row of a list, on [`ConsoleModel::clock`].
     pub(super) answered: Option<SessionTime>,
     /// Key that the last mouse click stood for, with the click's time on [`ConsoleModel::clock`].

@@ -6,7 +6,7 @@ use crate::session::settings::{GazeSource, ParticipantKind};
 
 /// State of the participant's display: the web page on the wall screen and its connection.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct DisplayHealth {
+pub struct ParticipantDisplayHealth {
     /// Address of the display's web page: "http://127.0.0.1:50022".
     pub url: String,
     /// Pairing code that the web page asks for; `None` if the page can only be opened at this computer.
@@ -32,7 +32,7 @@ const SMALL_PX: [u32; 2] = [1280, 720];
 /// Round-trip time above which presses at the page are noticeably delayed, in milliseconds.
 const SLOW_MS: f64 = 30.0;
 
-impl DisplayHealth {
+impl ParticipantDisplayHealth {
     /// State of the participant's display for the console's head line; `true` if all is well.
     pub fn line(&self) -> (String, bool) {
         match (self.page, self.redraw_ms.or(self.round_trip_ms)) {

@@ -12,11 +12,11 @@ use super::probe_keys;
 use super::sending::send;
 use super::sheet_key::SheetKey;
 use crate::session::answer_value::AnswerValue;
-use crate::session::plan::{ItemForm, PhaseSpec, Questionnaire, Tutorial};
+use crate::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, Tutorial};
 use crate::session::probes::OpenProbe;
-use crate::session::protocol::{Protocol, ProtocolEvent};
+use crate::session::protocol::{ProtocolEvent, StudyProtocolState};
 use crate::session::tutorial::{TutorialEvent, TutorialReader};
-use crate::session::{Event, Phase, Session};
+use crate::session::{Event, Session, TrialPhase};
 
 /// Preset reasons for waiving the practice criterion.
 pub const WAIVERS: [&str; 4] =
@@ -24,7 +24,7 @@ pub const WAIVERS: [&str; 4] =
 
 /// Content of a sheet, a form of the console at full size.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SheetContent<'a> {
+pub enum FormContent<'a> {
     /// Questions of a freeze probe, while the trial stands still.
     Probe(&'a OpenProbe),
     /// Steps of a phase of the study plan, to be ticked in order.
@@ -42,35 +42,33 @@ pub enum SheetContent<'a> {
     Failed,
 }
 
-impl SheetContent<'_> {
+impl FormContent<'_> {
     /// Name of the sheet in the log, as part of the wizard's visible screen.
     pub fn name(&self) -> &'static str {
         match self {
-            SheetContent::Probe(_) => "probe",
-            SheetContent::Steps { .. } => "steps",
-            SheetContent::Tutorial(_) => "tutorial",
-            SheetContent::Questions(_) => "questionnaire",
-            SheetContent::Failed => "criterion",
+            FormContent::Probe(_) => "probe",
+            FormContent::Steps { .. } => "steps",
+            FormContent::Tutorial(_) => "tutorial",
+            FormContent::Questions(_) => "questionnaire",
+            FormContent::Failed => "criterion",
         }
     }
 }
 
 /// The sheet of the session's present phase, if that phase has one.
-pub fn sheet(session: &Session) -> Option<SheetContent<'_>> {
-    if let Some(open) = session.probes.open.as_ref().filter(|_| session.phase == Phase::Paused) {
-        return Some(SheetContent::Probe(open));
+pub fn sheet(session: &Session) -> Option<FormContent<'_>> {
+    if let Some(open) = session.probes.open.as_ref().filter(|_| session.phase == TrialPhase::Paused) {
+        return Some(FormContent::Probe(open));
     }
     let (_, protocol) = session.step()?;
     match session.study_phase()? {
-        PhaseSpec::Instruction { steps } => {
-            Some(SheetContent::Steps { title: "Instruction of the participant", steps })
-        }
-        PhaseSpec::Tutorial { tutorial } => Some(SheetContent::Tutorial(tutorial)),
-        PhaseSpec::Debriefing { steps } => Some(SheetContent::Steps { title: "Debriefing of the wizard", steps }),
-        PhaseSpec::Questionnaire { questionnaire } => Some(SheetContent::Questions(questionnaire)),
+        PhaseSpec::Instruction { steps } => Some(FormContent::Steps { title: "Instruction of the participant", steps }),
+        PhaseSpec::Tutorial { tutorial } => Some(FormContent::Tutorial(tutorial)),
+        PhaseSpec::Debriefing { steps } => Some(FormContent::Steps { title: "Debriefing of the wizard", steps }),
+        PhaseSpec::Questionnaire { questionnaire } => Some(FormContent::Questions(questionnaire)),
         PhaseSpec::Familiarisation => {
             let failed = protocol.practice.as_ref().is_some_and(|practice| !practice.met && practice.waived.is_none());
-            failed.then_some(SheetContent::Failed)
+            failed.then_some(FormContent::Failed)
         }
         PhaseSpec::Trial => None,
     }
@@ -99,39 +97,39 @@ pub(super) fn stroke(session: &Session, code: KeyCode, advances: bool) -> Option
 /// Carries out a key of the open sheet (a form at full size).
 pub(super) fn write(model: &mut ConsoleModel, session: &Session, stroke: SheetKey) -> Option<ConsoleCommand> {
     let sheet = sheet(session)?;
-    if let SheetContent::Probe(open) = sheet {
+    if let FormContent::Probe(open) = sheet {
         return probe_keys::write(model, session, open, stroke);
     }
     let protocol = session.protocol.as_ref()?;
     match (sheet, stroke) {
-        (SheetContent::Probe(_), _) => None,
-        (SheetContent::Failed, SheetKey::Leave) => Some(ConsoleCommand::Next),
-        (SheetContent::Tutorial(tutorial), stroke) => read(model, session, tutorial, stroke),
+        (FormContent::Probe(_), _) => None,
+        (FormContent::Failed, SheetKey::Leave) => Some(ConsoleCommand::Next),
+        (FormContent::Tutorial(tutorial), stroke) => read(model, session, tutorial, stroke),
         (_, SheetKey::Leave) => leave(model, session),
-        (SheetContent::Steps { .. }, SheetKey::Confirm) => match protocol.ticks.iter().position(|done| !done) {
+        (FormContent::Steps { .. }, SheetKey::Confirm) => match protocol.ticks.iter().position(|done| !done) {
             Some(open) => tell(model, session, ProtocolEvent::Ticked { step: open + 1, done: true }),
             None => leave(model, session),
         },
-        (SheetContent::Steps { .. }, SheetKey::Undo) => {
+        (FormContent::Steps { .. }, SheetKey::Undo) => {
             let last = protocol.ticks.iter().rposition(|done| *done)?;
             tell(model, session, ProtocolEvent::Ticked { step: last + 1, done: false })
         }
-        (SheetContent::Steps { .. }, _) => refuse(model, "enter ticks the step, backspace unticks the last one"),
-        (SheetContent::Questions(_), _) if protocol.confirmed => match stroke {
+        (FormContent::Steps { .. }, _) => refuse(model, "enter ticks the step, backspace unticks the last one"),
+        (FormContent::Questions(_), _) if protocol.confirmed => match stroke {
             SheetKey::Confirm => leave(model, session),
             _ => refuse(model, "the answers are already confirmed"),
         },
-        (SheetContent::Questions(questionnaire), stroke) => ask(model, session, questionnaire, protocol, stroke),
-        (SheetContent::Failed, SheetKey::Confirm) => match model.waiver.take().and_then(|index| WAIVERS.get(index)) {
+        (FormContent::Questions(questionnaire), stroke) => ask(model, session, questionnaire, protocol, stroke),
+        (FormContent::Failed, SheetKey::Confirm) => match model.waiver.take().and_then(|index| WAIVERS.get(index)) {
             Some(reason) => tell(model, session, ProtocolEvent::CriterionWaived { reason: reason.to_string() }),
             None => Some(ConsoleCommand::Next),
         },
-        (SheetContent::Failed, SheetKey::Digit(digit)) => {
+        (FormContent::Failed, SheetKey::Digit(digit)) => {
             let chosen = usize::from(digit).checked_sub(1).filter(|index| *index < WAIVERS.len());
             model.waiver = chosen.or(model.waiver);
             None
         }
-        (SheetContent::Failed, _) => {
+        (FormContent::Failed, _) => {
             model.waiver = None;
             None
         }
@@ -165,7 +163,7 @@ fn ask(
     model: &mut ConsoleModel,
     session: &Session,
     questionnaire: &Questionnaire,
-    protocol: &Protocol,
+    protocol: &StudyProtocolState,
     stroke: SheetKey,
 ) -> Option<ConsoleCommand> {
     let id = |index: usize| questionnaire.items.get(index).map(|item| item.id.clone());
@@ -178,7 +176,7 @@ fn ask(
         (SheetKey::Digit(digit), Some(item)) => {
             let index = usize::from(digit - 1);
             let chosen = form.and_then(|form| form.choose(index, protocol.given(protocol.item)));
-            let is_choice = matches!(form, Some(ItemForm::Choice { .. }));
+            let is_choice = matches!(form, Some(AnswerFormat::Choice { .. }));
             match chosen.or((!is_choice).then(|| AnswerValue::from(digit))) {
                 Some(answer) => tell(model, session, ProtocolEvent::ItemAnswered { item, answer }),
                 None => refuse(model, "the item has no such option"),
@@ -205,13 +203,13 @@ fn ask(
 }
 
 /// Whether a questionnaire item is answered by typing text or a number, instead of by one digit key.
-fn is_typed(form: &ItemForm) -> bool {
-    matches!(form, ItemForm::Number { .. } | ItemForm::Text { .. } | ItemForm::Slider { .. })
+fn is_typed(form: &AnswerFormat) -> bool {
+    matches!(form, AnswerFormat::Number { .. } | AnswerFormat::Text { .. } | AnswerFormat::Slider { .. })
 }
 
 /// Opens the text input for an answer with its first letter. A text that was answered before is kept in it to be
 /// corrected.
-fn begin_typing(model: &mut ConsoleModel, protocol: &Protocol, letter: char) -> Option<ConsoleCommand> {
+fn begin_typing(model: &mut ConsoleModel, protocol: &StudyProtocolState, letter: char) -> Option<ConsoleCommand> {
     let mut line = match protocol.given(protocol.item) {
         Some(AnswerValue::Text(words)) => TextInput::with_text(words),
         _ => TextInput::default(),
@@ -236,7 +234,7 @@ pub(super) fn type_answer(
         KeyCode::Enter => {
             let text = line.text();
             let answer = match (&form, text.parse()) {
-                (ItemForm::Text { .. }, _) => Ok(AnswerValue::Text(text)),
+                (AnswerFormat::Text { .. }, _) => Ok(AnswerValue::Text(text)),
                 (_, Ok(number)) => Ok(AnswerValue::Number(number)),
                 (_, Err(_)) => Err("enter a whole number"),
             };

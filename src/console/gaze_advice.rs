@@ -4,7 +4,7 @@ use crate::gaze::calibration::{GazeAccuracy, USABLE_DEG};
 
 /// Action that the console proposes after a gaze accuracy check, which enter carries out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CalibrationAdvice {
+pub enum AccuracyCheckAction {
     /// Accept the gaze with its measured offset subtracted from all samples.
     Corrected,
     /// Accept the gaze samples without a correction.
@@ -13,14 +13,14 @@ pub enum CalibrationAdvice {
     Repeat,
 }
 
-impl CalibrationAdvice {
+impl AccuracyCheckAction {
     /// The proposed action for a measured gaze accuracy; `None` if the check measured none.
-    pub fn for_result(found: Option<&GazeAccuracy>) -> CalibrationAdvice {
+    pub fn for_result(found: Option<&GazeAccuracy>) -> AccuracyCheckAction {
         match found {
-            Some(found) if found.accuracy_deg.min(found.corrected_deg) > USABLE_DEG => CalibrationAdvice::Repeat,
-            Some(found) if found.corrected_deg < found.accuracy_deg => CalibrationAdvice::Corrected,
-            Some(_) => CalibrationAdvice::AsItIs,
-            None => CalibrationAdvice::Repeat,
+            Some(found) if found.accuracy_deg.min(found.corrected_deg) > USABLE_DEG => AccuracyCheckAction::Repeat,
+            Some(found) if found.corrected_deg < found.accuracy_deg => AccuracyCheckAction::Corrected,
+            Some(_) => AccuracyCheckAction::AsItIs,
+            None => AccuracyCheckAction::Repeat,
         }
     }
 }

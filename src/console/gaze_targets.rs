@@ -5,11 +5,11 @@ use crossterm::event::KeyCode;
 
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
-use super::gaze_advice::CalibrationAdvice;
+use super::gaze_advice::AccuracyCheckAction;
 use super::notice::NoticeLevel;
 use super::sending::send;
 use crate::gaze::calibration::GazeAccuracy;
-use crate::session::accuracy_check::CalibrationEvent;
+use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::{Event, Session};
 
 /// Key that selects accepting the gaze without a correction.
@@ -22,7 +22,7 @@ pub const REPEAT: char = 'r';
 /// Begins a gaze accuracy check, or begins it again.
 pub(super) fn begin(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     model.gaze_choice = None;
-    let event = Event::Calibration(CalibrationEvent::begin());
+    let event = Event::Calibration(GazeCheckEvent::begin());
     let begun =
         send(model, session, event, NoticeLevel::Done, "the participant looks at the targets; esc ends the check");
     if begun.is_some() {
@@ -32,8 +32,8 @@ pub(super) fn begin(model: &mut ConsoleModel, session: &Session) -> Option<Conso
 }
 
 /// What enter does with the check's result: the wizard's selection, or else the proposed action.
-pub fn chosen(model: &ConsoleModel, found: Option<&GazeAccuracy>) -> CalibrationAdvice {
-    let best = CalibrationAdvice::for_result(found);
+pub fn chosen(model: &ConsoleModel, found: Option<&GazeAccuracy>) -> AccuracyCheckAction {
+    let best = AccuracyCheckAction::for_result(found);
     found.and(model.gaze_choice).unwrap_or(best)
 }
 
@@ -53,24 +53,24 @@ pub(super) fn answer(
             model.dialog = None;
             None
         }
-        KeyCode::Esc => decide(model, session, CalibrationEvent::Dismissed, "the calibration stays as it was"),
+        KeyCode::Esc => decide(model, session, GazeCheckEvent::Dismissed, "the calibration stays as it was"),
         KeyCode::Char(REPEAT) if is_press && outcome.is_some() => begin(model, session),
         KeyCode::Char(CORRECTED) if found.is_some() => {
-            model.gaze_choice = Some(CalibrationAdvice::Corrected);
+            model.gaze_choice = Some(AccuracyCheckAction::Corrected);
             None
         }
         KeyCode::Char(AS_IT_IS) if found.is_some() => {
-            model.gaze_choice = Some(CalibrationAdvice::AsItIs);
+            model.gaze_choice = Some(AccuracyCheckAction::AsItIs);
             None
         }
         KeyCode::Enter if is_press && outcome.is_some() => match advice {
-            CalibrationAdvice::Repeat => begin(model, session),
-            CalibrationAdvice::Corrected => {
-                let accepted = CalibrationEvent::Accepted { corrected: true };
+            AccuracyCheckAction::Repeat => begin(model, session),
+            AccuracyCheckAction::Corrected => {
+                let accepted = GazeCheckEvent::Accepted { corrected: true };
                 decide(model, session, accepted, "accepted: the offset is taken off the gaze")
             }
-            CalibrationAdvice::AsItIs => {
-                let accepted = CalibrationEvent::Accepted { corrected: false };
+            AccuracyCheckAction::AsItIs => {
+                let accepted = GazeCheckEvent::Accepted { corrected: false };
                 decide(model, session, accepted, "accepted: the gaze stays as it is")
             }
         },
@@ -78,7 +78,7 @@ pub(super) fn answer(
     }
 }
 
-fn decide(model: &mut ConsoleModel, session: &Session, event: CalibrationEvent, words: &str) -> Option<ConsoleCommand> {
+fn decide(model: &mut ConsoleModel, session: &Session, event: GazeCheckEvent, words: &str) -> Option<ConsoleCommand> {
     model.dialog = None;
     send(model, session, Event::Calibration(event), NoticeLevel::Done, words)
 }

@@ -12,14 +12,14 @@ use crate::communication::Sender;
 use crate::history::wording;
 use crate::kitchen::Agent;
 use crate::session::probes::ProbeEvent;
-use crate::session::{Event, Phase, Session};
+use crate::session::{Event, Session, TrialPhase};
 use crossterm::event::KeyCode;
 
 /// Carries out a manual intervention of the experimenter, or opens the list that it needs.
 pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualAction) -> Option<ConsoleCommand> {
     let by = Sender::Wizard;
     match hand {
-        ManualAction::Correct if !matches!(session.phase, Phase::Running | Phase::Paused) => {
+        ManualAction::Correct if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) => {
             refuse(model, "the kitchen can be corrected only during a trial")
         }
         ManualAction::Correct => ask(model, PickerQuestion::Place),
@@ -41,16 +41,16 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
         }
         ManualAction::DriveRobot if session.robot.stopped => refuse(model, "the robot is stopped: resume it first"),
         ManualAction::DriveRobot => ask(model, PickerQuestion::Button),
-        ManualAction::Abort if !matches!(session.phase, Phase::Running | Phase::Paused) => {
+        ManualAction::Abort if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) => {
             refuse(model, "there is no trial to abort")
         }
         ManualAction::Abort => ask(model, PickerQuestion::Abort),
-        ManualAction::Preflight if session.phase != Phase::Ready => refuse(model, "the trial was started already"),
+        ManualAction::Preflight if session.phase != TrialPhase::Ready => refuse(model, "the trial was started already"),
         ManualAction::Preflight => {
             model.dialog = Some(Dialog::Preflight);
             None
         }
-        ManualAction::NoteInWords if session.phase != Phase::Paused => {
+        ManualAction::NoteInWords if session.phase != TrialPhase::Paused => {
             refuse(model, "notes can be typed only in a pause, since the space bar stops the robot")
         }
         ManualAction::NoteInWords => {
@@ -62,7 +62,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
         ManualAction::Exclude if session.excluded.is_some() => {
             send(model, session, Event::TrialIncluded, NoticeLevel::Done, "the trial is no longer excluded")
         }
-        ManualAction::Exclude if matches!(session.phase, Phase::Ready | Phase::Closed) => {
+        ManualAction::Exclude if matches!(session.phase, TrialPhase::Ready | TrialPhase::Closed) => {
             refuse(model, "there is no trial to exclude")
         }
         ManualAction::Exclude => ask(model, PickerQuestion::Exclude),
@@ -80,7 +80,7 @@ pub(super) fn act(model: &mut ConsoleModel, session: &Session, hand: ManualActio
 /// Number of the freeze probe whose remaining questions can be skipped now.
 pub(super) fn skippable(session: &Session) -> Option<u32> {
     let open = session.probes.open.as_ref()?;
-    (open.closed.is_none() && session.phase == Phase::Paused).then_some(open.number)
+    (open.closed.is_none() && session.phase == TrialPhase::Paused).then_some(open.number)
 }
 
 /// Closes the list of reasons for skipping a freeze probe once that probe is over, so that the reason does not skip the
@@ -96,8 +96,8 @@ pub fn expire(model: &mut ConsoleModel, session: &Session) {
 
 fn redo(model: &mut ConsoleModel, session: &Session) -> Option<ConsoleCommand> {
     match session.phase {
-        Phase::Over(_) if session.aborted.is_some() || session.excluded.is_some() => Some(ConsoleCommand::Redo),
-        Phase::Over(_) => refuse(model, "only an aborted or excluded trial can be repeated"),
+        TrialPhase::Over(_) if session.aborted.is_some() || session.excluded.is_some() => Some(ConsoleCommand::Redo),
+        TrialPhase::Over(_) => refuse(model, "only an aborted or excluded trial can be repeated"),
         _ => refuse(model, "abort the trial first"),
     }
 }

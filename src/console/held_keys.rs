@@ -14,7 +14,7 @@ pub(super) const ANSWER_S: f64 = 0.7;
 
 /// Meaning of a terminal's key report: newly pressed, pressed again or held, held, or released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Touch {
+pub(super) enum KeyPressKind {
     /// The key was newly pressed, according to the terminal's report.
     Press,
     /// The key was pressed a second time, or has been held since the first press and begins to repeat.
@@ -25,13 +25,13 @@ pub(super) enum Touch {
 }
 
 /// Classifies a key report of the terminal, and remembers the key for the next report.
-pub(super) fn touch(model: &mut ConsoleModel, key: &KeyEvent) -> Touch {
+pub(super) fn touch(model: &mut ConsoleModel, key: &KeyEvent) -> KeyPressKind {
     match key.kind {
-        KeyEventKind::Press if model.exact_keys => return Touch::Press,
+        KeyEventKind::Press if model.exact_keys => return KeyPressKind::Press,
         KeyEventKind::Press => {}
         kind => {
             model.exact_keys = true;
-            return if kind == KeyEventKind::Release { Touch::Release } else { Touch::Held };
+            return if kind == KeyEventKind::Release { KeyPressKind::Release } else { KeyPressKind::Held };
         }
     }
     // Only the key that was pressed last repeats. The waiting time runs from the press that counted, so that repeated
@@ -39,11 +39,11 @@ pub(super) fn touch(model: &mut ConsoleModel, key: &KeyEvent) -> Touch {
     let now = model.clock;
     let last = model.pressed.filter(|last| last.code == key.code);
     let touch = match last.map(|last| (now.secs_since(last.reported), now.secs_since(last.counted))) {
-        Some((gap_s, _)) if gap_s < REPEAT_S => Touch::Held,
-        Some((_, since_s)) if since_s < ANSWER_S => Touch::Again,
-        _ => Touch::Press,
+        Some((gap_s, _)) if gap_s < REPEAT_S => KeyPressKind::Held,
+        Some((_, since_s)) if since_s < ANSWER_S => KeyPressKind::Again,
+        _ => KeyPressKind::Press,
     };
-    let counted = last.filter(|_| touch != Touch::Press).map_or(now, |last| last.counted);
+    let counted = last.filter(|_| touch != KeyPressKind::Press).map_or(now, |last| last.counted);
     model.pressed = Some(PressedKey { code: key.code, reported: now, counted });
     touch
 }

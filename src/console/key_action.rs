@@ -4,11 +4,11 @@ use std::fmt;
 use std::ops::Range;
 
 use super::chord::KeyChord;
-use super::compared::ComparisonKey;
-use super::playback::ReplayKey;
+use super::compared::ComparisonAction;
+use super::playback::ReplayAction;
 use crate::communication::Signal;
 use crate::kitchen::{ButtonId, LocationId};
-use crate::measures::cause_codes::CauseKind;
+use crate::measures::cause_codes::ErrorCauseKind;
 
 /// Whose keys are active: the wizard's, or the buttons of a person who plays the participant at this keyboard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,15 +45,15 @@ pub enum KeyAction {
     /// Manual intervention: correct the kitchen, steer the robot, or abort the trial.
     Hand(ManualAction),
     /// Move a replay to another position or change its speed.
-    Move(ReplayKey),
+    Move(ReplayAction),
     /// Change which panels or which time the screen shows.
-    Look(PanelKey),
+    Look(ViewAction),
     /// Show the estimated belief about one state aspect over time; pressed again, the next aspect.
     Belief,
     /// Select or open a difference in the comparison of wizard and assistant.
-    Differ(ComparisonKey),
+    Differ(ComparisonAction),
     /// Action of a rater who codes errors.
-    Rate(RaterKey),
+    Rate(RaterAction),
     /// Open or close the help of the console.
     Help,
     /// Open the list of all actions (the palette).
@@ -93,7 +93,7 @@ pub enum ManualAction {
 
 /// Key that changes which panels or which time the screen shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PanelKey {
+pub enum ViewAction {
     /// Show the next panel at full size; after the last one, all panels.
     Next,
     /// Show the previous panel at full size.
@@ -112,7 +112,7 @@ pub enum PanelKey {
 
 /// Action of a rater who codes the causes of errors in a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RaterKey {
+pub enum RaterAction {
     /// Go to the next error in the recording.
     Next,
     /// Go to the previous error in the recording.
@@ -120,7 +120,7 @@ pub enum RaterKey {
     /// Code the error as a false belief about this location; for an order, about the recipe of its dish, too.
     Belief(LocationId),
     /// Code the error with another cause, such as a slip.
-    Cause(CauseKind),
+    Cause(ErrorCauseKind),
     /// Remove the code of the present error.
     Clear,
     /// Undo the last change of an error's code.
@@ -196,7 +196,7 @@ impl KeyBinding {
 
 /// Where an invalid key assignment stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum KeyPlace {
+pub enum KeyErrorSource {
     /// The invalid key stands in the key file, at this byte range.
     File(Range<usize>),
     /// The invalid key stands in the kitchen's layout file, as the key of a signal (wizard) or of a button
@@ -209,7 +209,7 @@ pub enum KeyPlace {
 #[error("{found}")]
 pub struct KeyError {
     /// Where the assignment stands: in the key file or in the layout file.
-    pub place: KeyPlace,
+    pub place: KeyErrorSource,
     /// What is wrong with the key assignment.
     pub found: String,
     /// What a valid key assignment would be.

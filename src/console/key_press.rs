@@ -5,15 +5,15 @@ use crossterm::event::{KeyCode, KeyEvent};
 
 use super::chord::KeyChord;
 use super::click_question;
-use super::compared::ComparisonKey;
+use super::compared::ComparisonAction;
 use super::console_actions::{act, differ};
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::{self, sheet};
 use super::gaze_targets;
 use super::hands;
-use super::held_keys::{Touch, may_follow_at_once, touch};
-use super::key_action::{KeyAction, KeyLayer, PanelKey};
+use super::held_keys::{KeyPressKind, may_follow_at_once, touch};
+use super::key_action::{KeyAction, KeyLayer, ViewAction};
 use super::list_cursor::{ListCursor, ListReply};
 use super::notice::NoticeLevel;
 use super::palette;
@@ -24,15 +24,15 @@ use super::probe_keys;
 use super::sending::send;
 use super::sheet_key::SheetKey;
 use super::view::dialog::{help_pages, report_rest};
-use crate::session::event::EndReason;
-use crate::session::{Event, Phase, Session};
+use crate::session::event::TrialEndReason;
+use crate::session::{Event, Session, TrialPhase};
 
 /// Handles a terminal's report about a key.
 pub(super) fn key(model: &mut ConsoleModel, session: &Session, key: &KeyEvent) -> Option<ConsoleCommand> {
     match touch(model, key) {
-        Touch::Release => None,
+        KeyPressKind::Release => None,
         touch => {
-            if touch == Touch::Press {
+            if touch == KeyPressKind::Press {
                 model.forget_notice();
             }
             press(model, session, key.code, KeyChord::from_event(key), touch)
@@ -47,12 +47,12 @@ pub(super) fn press(
     session: &Session,
     code: KeyCode,
     chord: KeyChord,
-    touch: Touch,
+    touch: KeyPressKind,
 ) -> Option<ConsoleCommand> {
     let action = model.keys.find(model.layer, chord).map(|line| line.action.clone());
     if matches!(model.dialog, Some(Dialog::Send(_))) && action != Some(KeyAction::StopRobot) {
         if matches!(chord.code, KeyCode::Enter | KeyCode::Esc) {
-            return click_question::answer(model, session, chord.code, touch == Touch::Press);
+            return click_question::answer(model, session, chord.code, touch == KeyPressKind::Press);
         }
         // Every key other than enter and esc closes the question and keeps its own meaning.
         model.dialog = None;
@@ -61,16 +61,16 @@ pub(super) fn press(
         // In text input, where the robot stands, the space bar types a space instead of stopping it.
         _ if let Some(Dialog::Note(line)) = &model.dialog => {
             let line = line.clone();
-            let counts = !chord.ctrl && (code != KeyCode::Enter || touch == Touch::Press);
+            let counts = !chord.ctrl && (code != KeyCode::Enter || touch == KeyPressKind::Press);
             if counts { hands::write(model, session, line, code) } else { None }
         }
         _ if let Some(Dialog::Answer(line)) = &model.dialog => {
             let line = line.clone();
-            let counts = !chord.ctrl && (code != KeyCode::Enter || touch == Touch::Press);
+            let counts = !chord.ctrl && (code != KeyCode::Enter || touch == KeyPressKind::Press);
             if counts { form::type_answer(model, session, line, code) } else { None }
         }
         Some(KeyAction::StopRobot) => stop_robot(model, session),
-        Some(KeyAction::Quit) if chord.ctrl && touch == Touch::Press && may_leave_for_quit(model) => {
+        Some(KeyAction::Quit) if chord.ctrl && touch == KeyPressKind::Press && may_leave_for_quit(model) => {
             act(model, session, KeyAction::Quit)
         }
         Some(KeyAction::Move(to)) if model.dialog.is_none() => Some(ConsoleCommand::Move(to)),
@@ -78,13 +78,13 @@ pub(super) fn press(
             in_list(model, session, chord, touch)
         }
         action if model.dialog == Some(Dialog::Preflight) => {
-            preflight::answer(model, session, chord.code, action, touch == Touch::Press)
+            preflight::answer(model, session, chord.code, action, touch == KeyPressKind::Press)
         }
         _ if model.dialog == Some(Dialog::Calibration) => {
-            gaze_targets::answer(model, session, chord.code, touch == Touch::Press)
+            gaze_targets::answer(model, session, chord.code, touch == KeyPressKind::Press)
         }
         // Digits of a number follow one another quickly: the number 11 is two presses, not a held key.
-        _ if touch == Touch::Held && !probe_keys::takes_digit(model, session, code) => {
+        _ if touch == KeyPressKind::Held && !probe_keys::takes_digit(model, session, code) => {
             if model.dialog.is_none() {
                 model.say(NoticeLevel::Refused, format!("\"{chord}\" is held down: it counts as one press"));
             }
@@ -94,7 +94,7 @@ pub(super) fn press(
             let code = if chord.ctrl && matches!(code, KeyCode::Char(_)) { KeyCode::Null } else { code };
             on_sheet(model, session, code, action, touch)
         }
-        Some(action) if touch == Touch::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
+        Some(action) if touch == KeyPressKind::Again && model.dialog.is_none() && !may_follow_at_once(&action) => {
             model.say(NoticeLevel::Refused, format!("\"{chord}\" may be held down: press it again"));
             None
         }
@@ -109,8 +109,13 @@ pub(super) fn press(
 
 /// Handles a key of an open list. Quick typing and held arrow keys count; a held enter key, and keys with ctrl such as
 /// the one that opened the list, do not.
-fn in_list(model: &mut ConsoleModel, session: &Session, chord: KeyChord, touch: Touch) -> Option<ConsoleCommand> {
-    if chord.ctrl || (chord.code == KeyCode::Enter && touch != Touch::Press) {
+fn in_list(
+    model: &mut ConsoleModel,
+    session: &Session,
+    chord: KeyChord,
+    touch: KeyPressKind,
+) -> Option<ConsoleCommand> {
+    if chord.ctrl || (chord.code == KeyCode::Enter && touch != KeyPressKind::Press) {
         return None;
     }
     match model.dialog.clone() {
@@ -140,7 +145,7 @@ fn choose(
             model.say(NoticeLevel::Done, format!("press {chord} to {help}: signals are not sent from a list"));
             None
         }
-        _ => press(model, session, chord.code, chord, Touch::Press),
+        _ => press(model, session, chord.code, chord, KeyPressKind::Press),
     }
 }
 
@@ -160,13 +165,13 @@ fn on_sheet(
     session: &Session,
     code: KeyCode,
     action: Option<KeyAction>,
-    touch: Touch,
+    touch: KeyPressKind,
 ) -> Option<ConsoleCommand> {
     match (form::stroke(session, code, action == Some(KeyAction::Advance)), action) {
         // A confirming key within the key repeat delay probably is still held from the previous step, and is refused.
         // Answers are always taken: a lost answer would shift the following answers to wrong items unnoticed, but an
         // additional one is seen.
-        (Some(SheetKey::Confirm | SheetKey::Leave), _) if touch == Touch::Again => {
+        (Some(SheetKey::Confirm | SheetKey::Leave), _) if touch == KeyPressKind::Again => {
             model.say(NoticeLevel::Refused, "too soon: read the text, then press the key again");
             None
         }
@@ -192,21 +197,21 @@ fn answer(
     session: &Session,
     chord: KeyChord,
     action: Option<KeyAction>,
-    touch: Touch,
+    touch: KeyPressKind,
 ) -> Option<ConsoleCommand> {
     let dialog = model.dialog.clone()?;
     if let (Dialog::Help, Some(KeyAction::Look(look))) = (&dialog, &action)
-        && *look != PanelKey::All
+        && *look != ViewAction::All
         && help_pages(model) > 0
     {
         panels::leaf(model, *look);
         return None;
     }
-    if let (Dialog::Difference(_), Some(KeyAction::Differ(step @ (ComparisonKey::Next | ComparisonKey::Last)))) =
+    if let (Dialog::Difference(_), Some(KeyAction::Differ(step @ (ComparisonAction::Next | ComparisonAction::Last)))) =
         (&dialog, &action)
     {
         differ(model, session, *step);
-        differ(model, session, ComparisonKey::Open);
+        differ(model, session, ComparisonAction::Open);
         return None;
     }
     if matches!(dialog, Dialog::Report(_)) {
@@ -219,15 +224,15 @@ fn answer(
         _ => false,
     };
     // A second press of the key that opened the question does not confirm the end of a running trial.
-    let goes_on = matches!(session.phase, Phase::Running | Phase::Paused);
-    if again && (goes_on || touch == Touch::Again) {
+    let goes_on = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
+    if again && (goes_on || touch == KeyPressKind::Again) {
         return None;
     }
     model.dialog = None;
     let yes = chord == KeyChord::char('y') || again;
     match dialog {
         Dialog::Quit if yes => Some(ConsoleCommand::Quit),
-        Dialog::EndTrial if yes => Some(ConsoleCommand::Input(Event::TrialEnded { reason: EndReason::Wizard })),
+        Dialog::EndTrial if yes => Some(ConsoleCommand::Input(Event::TrialEnded { reason: TrialEndReason::Wizard })),
         _ => None,
     }
 }
@@ -237,10 +242,10 @@ fn answer(
 fn report(model: &mut ConsoleModel, code: KeyCode, action: Option<KeyAction>) {
     match (code, action) {
         (KeyCode::Enter, _) | (_, Some(KeyAction::Quit)) => model.dialog = None,
-        (_, Some(KeyAction::Look(PanelKey::Back | PanelKey::Last | PanelKey::Earlier))) => {
+        (_, Some(KeyAction::Look(ViewAction::Back | ViewAction::Last | ViewAction::Earlier))) => {
             model.help_from = model.help_from.saturating_sub(1)
         }
-        (_, Some(KeyAction::Look(PanelKey::Forward | PanelKey::Next | PanelKey::Later))) => {
+        (_, Some(KeyAction::Look(ViewAction::Forward | ViewAction::Next | ViewAction::Later))) => {
             model.help_from = (model.help_from + 1).min(report_rest(model));
         }
         _ => {}
@@ -255,7 +260,7 @@ fn unknown(model: &mut ConsoleModel, session: &Session, code: KeyCode) {
     if model.keys.find(other, chord).is_some() {
         let whose = if other == KeyLayer::Wizard { "wizard" } else { "participant" };
         model.say(NoticeLevel::Refused, format!("\"{key}\" is a key of the {whose}: switch with tab"));
-    } else if (model.playback.is_none() || model.coding.is_some()) && session.phase != Phase::Closed {
+    } else if (model.playback.is_none() || model.coding.is_some()) && session.phase != TrialPhase::Closed {
         model.say(NoticeLevel::Refused, format!("\"{key}\" has no meaning: ? shows the keys"));
     }
 }

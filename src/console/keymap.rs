@@ -10,12 +10,12 @@ use toml::Spanned;
 
 use super::chord::KeyChord;
 use super::key_action::ManualAction;
-use super::key_action::{KeyAction, KeyBinding, KeyError, KeyPlace, KeySection};
+use super::key_action::{KeyAction, KeyBinding, KeyError, KeyErrorSource, KeySection};
 
 /// A parsed key file: for each table, action names with their keys. Actions that are not in the file keep their keys.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct KeyMap {
+pub struct KeyFileBindings {
     console: Table,
     replay: Table,
     signals: Table,
@@ -54,7 +54,7 @@ impl<'de> Deserialize<'de> for Names {
     }
 }
 
-impl KeyMap {
+impl KeyFileBindings {
     fn table(&self, section: KeySection) -> &Table {
         match section {
             KeySection::Console => &self.console,
@@ -81,7 +81,7 @@ impl KeyMap {
                 if !known().any(|line| line.name == *name.get_ref()) {
                     let names: Vec<&str> = known().map(|line| line.name.as_str()).collect();
                     return Err(KeyError {
-                        place: KeyPlace::File(name.span()),
+                        place: KeyErrorSource::File(name.span()),
                         found: format!("\"{}\", which is not a name in [{section}]", name.get_ref()),
                         remedy: format!("one of {}", names.join(", ")),
                     });
@@ -100,7 +100,7 @@ impl KeyMap {
     }
 }
 
-impl KeyMap {
+impl KeyFileBindings {
     /// Removes from the palette and from the probe actions, unless the key file assigns them keys, every key that the
     /// file assigns to another action. Key files in old recordings may not know these newer actions.
     fn spare_keys(&self, lines: &mut [KeyBinding]) {
@@ -119,7 +119,7 @@ impl KeyMap {
 /// The keys that the key file assigns to an action.
 fn chords(line: &KeyBinding, names: &Spanned<Names>) -> Result<Vec<KeyChord>, KeyError> {
     let wrong = |found: String, remedy: &str| {
-        let place = KeyPlace::File(names.span());
+        let place = KeyErrorSource::File(names.span());
         Err(KeyError { place, found: format!("{} = {found}", line.name), remedy: remedy.to_string() })
     };
     let mut chords = Vec::new();

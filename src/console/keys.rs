@@ -4,9 +4,11 @@
 //! ([`super::keymap`]) can change both. The space bar always stops the robot, in every view and layer.
 
 use super::chord::KeyChord;
-use super::key_action::{KeyAction, KeyBinding, KeyError, KeyLayer, KeyPlace, KeySection, ManualAction, RaterKey};
-use super::keymap::KeyMap;
-use super::playback::ReplayKey;
+use super::key_action::{
+    KeyAction, KeyBinding, KeyError, KeyErrorSource, KeyLayer, KeySection, ManualAction, RaterAction,
+};
+use super::keymap::KeyFileBindings;
+use super::playback::ReplayAction;
 use super::table;
 use crate::history::landmark::ReplayLandmark;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, LocationKind};
@@ -30,7 +32,7 @@ impl KeyBindings {
     ///
     /// # Errors
     /// A key has two meanings, or an entry of the key file is invalid.
-    pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<KeyBindings, KeyError> {
+    pub fn live(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyFileBindings) -> Result<KeyBindings, KeyError> {
         let Consoles { comparing, mut bindings, .. } =
             Consoles::from_bindings(lines(kitchen, map)?, KeySection::Console);
         let marks = marks(kitchen, &bindings);
@@ -58,7 +60,7 @@ impl KeyBindings {
     ///
     /// # Errors
     /// As of [`KeyBindings::live`].
-    pub fn training(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyMap) -> Result<KeyBindings, KeyError> {
+    pub fn training(kitchen: &Kitchen, spec: &SessionSpec, map: &KeyFileBindings) -> Result<KeyBindings, KeyError> {
         let mut keys = KeyBindings::live(kitchen, spec, map)?;
         keys.bindings.retain(|line| {
             matches!(
@@ -78,7 +80,7 @@ impl KeyBindings {
     ///
     /// # Errors
     /// As of [`KeyBindings::live`].
-    pub fn replay(kitchen: &Kitchen, map: &KeyMap) -> Result<KeyBindings, KeyError> {
+    pub fn replay(kitchen: &Kitchen, map: &KeyFileBindings) -> Result<KeyBindings, KeyError> {
         let Consoles { comparing, coding, mut bindings } =
             Consoles::from_bindings(lines(kitchen, map)?, KeySection::Replay);
         let marks = marks(kitchen, &bindings);
@@ -95,7 +97,7 @@ impl KeyBindings {
     /// Adds the keys of a rater: letters of signals then code false beliefs, so no letter quits the program, and the
     /// arrow keys select an error. Removes keys that would reveal estimates or sent signals to the rater.
     pub fn with_coding(mut self, kitchen: &Kitchen) -> KeyBindings {
-        use ReplayKey::{BackTo, On};
+        use ReplayAction::{BackTo, On};
         use ReplayLandmark::{FalseBelief, Signal};
         self.bindings.retain(|line| {
             let tells = matches!(line.action, KeyAction::Move(On(FalseBelief | Signal) | BackTo(FalseBelief | Signal)));
@@ -132,7 +134,7 @@ impl KeyBindings {
 
     /// The key with which a rater codes a false belief about a location.
     pub fn of_belief(&self, location: LocationId) -> Option<KeyChord> {
-        self.chord_for(&KeyAction::Rate(RaterKey::Belief(location)))
+        self.chord_for(&KeyAction::Rate(RaterAction::Belief(location)))
     }
 
     /// Key of the signal about a location as the timeline shows it, also in a replay, where no signal can be sent.
@@ -176,7 +178,7 @@ impl Consoles {
 ///
 /// # Errors
 /// A key with two meanings, or an invalid entry of the key file.
-pub fn lines(kitchen: &Kitchen, map: &KeyMap) -> Result<Vec<KeyBinding>, KeyError> {
+pub fn lines(kitchen: &Kitchen, map: &KeyFileBindings) -> Result<Vec<KeyBinding>, KeyError> {
     let mut live = table::live(kitchen);
     let mut replay = table::replay();
     map.apply(&mut live, &mut replay)?;
@@ -198,18 +200,18 @@ pub fn lines(kitchen: &Kitchen, map: &KeyMap) -> Result<Vec<KeyBinding>, KeyErro
 }
 
 /// The error about a key with two meanings, located in the key file or else in the layout file.
-fn clash(map: &KeyMap, earlier: &KeyBinding, line: &KeyBinding, chord: KeyChord) -> KeyError {
+fn clash(map: &KeyFileBindings, earlier: &KeyBinding, line: &KeyBinding, chord: KeyChord) -> KeyError {
     let (name, layer) = (chord.name(), line.layer.unwrap_or(KeyLayer::Wizard));
     let in_file = map.place(line).map(|place| (place, line, earlier));
     let in_file = in_file.or_else(|| map.place(earlier).map(|place| (place, earlier, line)));
     match in_file {
         Some((span, line, other)) => KeyError {
-            place: KeyPlace::File(span),
+            place: KeyErrorSource::File(span),
             found: format!("the key \"{name}\" for {}, which is taken by {} ({})", line.name, other.name, other.help),
             remedy: format!("another key for one of them; {} has its own in [{}]", other.name, other.section),
         },
         None => KeyError {
-            place: KeyPlace::Layout(layer, line.letter().unwrap_or(' ')),
+            place: KeyErrorSource::Layout(layer, line.letter().unwrap_or(' ')),
             found: format!("the key \"{name}\" for \"{}\", which the console has for \"{}\"", line.name, earlier.help),
             remedy: "another key, a letter for instance".to_string(),
         },

@@ -51,7 +51,7 @@ pub mod view;
 
 pub use console_message::{ConsoleCommand, ConsoleMessage};
 pub use console_model::ConsoleModel;
-pub use keymap::KeyMap;
+pub use keymap::KeyFileBindings;
 pub use keys::KeyBindings;
 pub use update::update;
 pub use view::view;

@@ -3,7 +3,7 @@
 
 use crossterm::event::KeyCode;
 
-use super::arrange::{KitchenMap, MapElement};
+use super::arrange::{KitchenMap, KitchenMapElement};
 use super::chord::KeyChord;
 use super::click::ClickAction;
 use super::click_question;
@@ -11,16 +11,16 @@ use super::coding;
 use super::console_message::ConsoleCommand;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
-use super::held_keys::{ANSWER_S, Touch};
-use super::key_action::{KeyAction, KeyLayer, RaterKey};
+use super::held_keys::{ANSWER_S, KeyPressKind};
+use super::key_action::{KeyAction, KeyLayer, RaterAction};
 use super::key_press::press;
 use super::list_cursor::ListCursor;
 use super::notice::NoticeLevel;
 use super::panel::Panel;
 use super::panels;
-use super::playback::ReplayKey;
+use super::playback::ReplayAction;
 use super::view::click_targets;
-use super::view::regions::Regions;
+use super::view::regions::PanelAreas;
 use crate::kitchen::{Agent, ButtonAction as Use, ButtonId, LocationId};
 use crate::session::Session;
 
@@ -30,11 +30,11 @@ const DOUBLE_CLICK_S: f64 = 0.25;
 
 /// Remembers the point of the wall display under the mouse pointer, which can stand for the participant's gaze.
 pub(super) fn point(model: &mut ConsoleModel, session: &Session, (column, row): (u16, u16)) {
-    let regions = Regions::showing(model.size, session, model);
+    let regions = PanelAreas::showing(model.size, session, model);
     model.pointer = Some(map(model, session, &regions).display_point(column, row));
 }
 
-fn map(model: &ConsoleModel, session: &Session, regions: &Regions) -> KitchenMap {
+fn map(model: &ConsoleModel, session: &Session, regions: &PanelAreas) -> KitchenMap {
     KitchenMap::for_session(session, model.coding.is_some(), regions.kitchen_inside())
 }
 
@@ -61,7 +61,7 @@ pub(super) fn click(model: &mut ConsoleModel, session: &Session, cell: (u16, u16
             None
         }
         Some(ClickAction::Error(index)) => coding::go_to(model, index),
-        Some(ClickAction::Seek(time)) => Some(ConsoleCommand::Move(ReplayKey::ToTime(time))),
+        Some(ClickAction::Seek(time)) => Some(ConsoleCommand::Move(ReplayAction::ToTime(time))),
         None => {
             let is_covered = model.playback.is_none() && sheet(session).is_some();
             if model.dialog.is_none() && !is_covered {
@@ -91,7 +91,7 @@ fn key(model: &mut ConsoleModel, session: &Session, chord: KeyChord) -> Option<C
     }
     let last = model.clicked.replace((chord, now));
     let is_again = last.is_some_and(|(last, at)| last == chord && now.secs_since(at) < ANSWER_S);
-    press(model, session, chord.code, chord, if is_again { Touch::Again } else { Touch::Press })
+    press(model, session, chord.code, chord, if is_again { KeyPressKind::Again } else { KeyPressKind::Press })
 }
 
 /// Moves the cursor to a row of the open list; chooses the row if the cursor was already there.
@@ -102,7 +102,7 @@ fn choose(model: &mut ConsoleModel, session: &Session, row: usize) -> Option<Con
         _ => return None,
     };
     if cursor.at == row {
-        return press(model, session, KeyCode::Enter, KeyChord::plain(KeyCode::Enter), Touch::Press);
+        return press(model, session, KeyCode::Enter, KeyChord::plain(KeyCode::Enter), KeyPressKind::Press);
     }
     cursor.at = row;
     None
@@ -110,11 +110,11 @@ fn choose(model: &mut ConsoleModel, session: &Session, row: usize) -> Option<Con
 
 /// Handles a click on the panels outside all click targets.
 fn look(model: &mut ConsoleModel, session: &Session, cell: (u16, u16)) {
-    let regions = Regions::showing(model.size, session, model);
+    let regions = PanelAreas::showing(model.size, session, model);
     if regions.kitchen_inside().contains(cell.into()) {
         let plan = map(model, session, &regions);
         let thing = plan.spots.iter().find(|spot| spot.cells.contains(cell.into())).map(|spot| spot.thing);
-        if let Some(MapElement::Location(location)) = thing {
+        if let Some(KitchenMapElement::Location(location)) = thing {
             return tell(model, session, location);
         }
     }
@@ -129,7 +129,7 @@ fn tell(model: &mut ConsoleModel, session: &Session, location: LocationId) {
     let is_main = |action| matches!(action, Use::Use(at) | Use::Serve(at) if at == location);
     let buttons = &session.kitchen.buttons[Agent::Human.index()];
     let line = model.keys.bindings.iter().find(|line| match (&line.action, model.layer) {
-        (KeyAction::Signal(about, _) | KeyAction::Rate(RaterKey::Belief(about)), KeyLayer::Wizard) => {
+        (KeyAction::Signal(about, _) | KeyAction::Rate(RaterAction::Belief(about)), KeyLayer::Wizard) => {
             *about == location
         }
         (KeyAction::Press(ButtonId(button)), KeyLayer::Participant) => is_main(buttons[usize::from(*button)].action),
@@ -149,14 +149,14 @@ pub(super) fn wheel(
 ) -> Option<ConsoleCommand> {
     if matches!(model.dialog, Some(Dialog::Pick(_) | Dialog::Palette(_) | Dialog::Report(_) | Dialog::Help)) {
         let arrow = if steps > 0 { KeyCode::Up } else { KeyCode::Down };
-        return press(model, session, arrow, KeyChord::plain(arrow), Touch::Press);
+        return press(model, session, arrow, KeyChord::plain(arrow), KeyPressKind::Press);
     }
-    let regions = Regions::showing(model.size, session, model);
+    let regions = PanelAreas::showing(model.size, session, model);
     panels::scroll(model, session, panel_at(&regions, cell), steps);
     None
 }
 
 /// The panel of the console under a screen cell.
-fn panel_at(regions: &Regions, cell: (u16, u16)) -> Option<Panel> {
+fn panel_at(regions: &PanelAreas, cell: (u16, u16)) -> Option<Panel> {
     Panel::ALL.into_iter().find(|panel| regions.panel_area(*panel).contains(cell.into()))
 }

@@ -1,6 +1,6 @@
 //! Panels of the console that can be shown alone at full size.
 
-use crate::session::settings::Visibility;
+use crate::session::settings::WizardVisibility;
 
 /// A panel of the console that can be shown alone at full size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,11 +34,11 @@ impl Panel {
     ];
 
     /// Whether the wizard may see the panel under this visibility setting.
-    pub(super) fn may_be_seen(self, visibility: Visibility, compares: bool) -> bool {
+    pub(super) fn may_be_seen(self, visibility: WizardVisibility, compares: bool) -> bool {
         match self {
             Panel::Comparison => compares,
-            Panel::Belief => visibility >= Visibility::Belief,
-            Panel::Recommendation => visibility >= Visibility::Recommendation,
+            Panel::Belief => visibility >= WizardVisibility::Belief,
+            Panel::Recommendation => visibility >= WizardVisibility::Recommendation,
             _ => true,
         }
     }

@@ -3,7 +3,7 @@
 
 use super::beliefs::visibility;
 use super::console_model::ConsoleModel;
-use super::key_action::PanelKey;
+use super::key_action::ViewAction;
 use super::panel::Panel;
 use super::view::dialog::help_pages;
 use crate::session::Session;
@@ -12,34 +12,34 @@ use crate::session::Session;
 const STEP: (u32, usize) = (5, 1);
 
 /// Carries out a key that changes which panels or which time the screen shows.
-pub fn look(model: &mut ConsoleModel, session: &Session, look: PanelKey) {
+pub fn look(model: &mut ConsoleModel, session: &Session, look: ViewAction) {
     let visibility = visibility(session, model);
     let may_be_seen = |panel: &Panel| panel.may_be_seen(visibility, model.comparison.is_some());
     let seen: Vec<Panel> = Panel::ALL.into_iter().filter(may_be_seen).collect();
     let at = model.alone.and_then(|alone| seen.iter().position(|panel| *panel == alone));
     match look {
-        PanelKey::All => {
+        ViewAction::All => {
             (model.alone, model.events_back, model.timeline_back_s) = (None, 0, 0);
             model.belief_focus = None;
             if let Some(coding) = &mut model.coding {
                 coding.chosen = None;
             }
         }
-        PanelKey::Next => model.alone = seen.get(at.map_or(0, |at| at + 1)).copied(),
-        PanelKey::Last => {
+        ViewAction::Next => model.alone = seen.get(at.map_or(0, |at| at + 1)).copied(),
+        ViewAction::Last => {
             let before = at.map_or(Some(seen.len() - 1), |at| at.checked_sub(1));
             model.alone = before.and_then(|before| seen.get(before)).copied();
         }
-        PanelKey::Back => scroll(model, session, model.alone, 1),
-        PanelKey::Forward => scroll(model, session, model.alone, -1),
-        PanelKey::Earlier => scroll(model, session, Some(Panel::Timeline), 1),
-        PanelKey::Later => scroll(model, session, Some(Panel::Timeline), -1),
+        ViewAction::Back => scroll(model, session, model.alone, 1),
+        ViewAction::Forward => scroll(model, session, model.alone, -1),
+        ViewAction::Earlier => scroll(model, session, Some(Panel::Timeline), 1),
+        ViewAction::Later => scroll(model, session, Some(Panel::Timeline), -1),
     }
 }
 
 /// Turns the pages of the help.
-pub fn leaf(model: &mut ConsoleModel, look: PanelKey) {
-    let is_forward = matches!(look, PanelKey::Next | PanelKey::Forward | PanelKey::Later);
+pub fn leaf(model: &mut ConsoleModel, look: ViewAction) {
+    let is_forward = matches!(look, ViewAction::Next | ViewAction::Forward | ViewAction::Later);
     model.help_from = match is_forward {
         true => (model.help_from + 1).min(help_pages(model)),
         false => model.help_from.saturating_sub(1),

@@ -8,7 +8,7 @@ pub const SPEEDS: [f64; 8] = [0.25, 0.5, 1.0, 2.0, 4.0, 16.0, 64.0, f64::INFINIT
 
 /// Action of a replay's keys: play, move, or change the speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReplayKey {
+pub enum ReplayAction {
     /// Play or pause the replay.
     PlayPause,
     /// Go to the next event of the recording that is not a gaze sample.

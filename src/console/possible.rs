@@ -1,22 +1,22 @@
 //! Which actions have an effect now: the line of key hints shows only those.
 
 use super::beliefs::{beliefs, visibility};
-use super::compared::ComparisonKey;
+use super::compared::ComparisonAction;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
 use super::hands::skippable;
-use super::key_action::{KeyAction, ManualAction, PanelKey, RaterKey};
-use super::playback::{Playback, ReplayKey, SPEEDS};
+use super::key_action::{KeyAction, ManualAction, RaterAction, ViewAction};
+use super::playback::{Playback, ReplayAction, SPEEDS};
 use super::preflight;
 use super::sending::refusal;
 use crate::communication::Sender;
-use crate::session::accuracy_check::CalibrationEvent;
+use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::admit::admit;
-use crate::session::event::SignalEnd;
+use crate::session::event::SignalEndReason;
 use crate::session::offers;
 use crate::session::probes::ProbeEvent;
-use crate::session::settings::Visibility;
-use crate::session::{Event, Phase, Session};
+use crate::session::settings::WizardVisibility;
+use crate::session::{Event, Session, TrialPhase};
 
 /// Whether an action would have an effect now, given the dialog or sheet that covers the console.
 pub(super) fn is_possible(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
@@ -55,7 +55,7 @@ pub(super) fn acts_on_sheet(session: &Session, action: &KeyAction) -> bool {
 
 /// Whether the trial may be repeated, since it was aborted or excluded.
 pub(super) fn can_redo(session: &Session) -> bool {
-    matches!(session.phase, Phase::Over(_)) && (session.aborted.is_some() || session.excluded.is_some())
+    matches!(session.phase, TrialPhase::Over(_)) && (session.aborted.is_some() || session.excluded.is_some())
 }
 
 /// Whether the open dialog or sheet lets the key of an action through.
@@ -66,7 +66,7 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
         None if has_sheet(session, model) => acts_on_sheet(session, action),
         None => true,
         // Enter answers the question whether to send, and esc closes it, so both keys lose their usual action.
-        Some(Dialog::Send(_)) => !matches!(action, KeyAction::Accept | KeyAction::Look(PanelKey::All)),
+        Some(Dialog::Send(_)) => !matches!(action, KeyAction::Accept | KeyAction::Look(ViewAction::All)),
         // In text input the space bar types a space instead of stopping the robot.
         Some(Dialog::Note(_) | Dialog::Answer(_) | Dialog::Report(_)) => false,
         Some(Dialog::Preflight) => match action {
@@ -85,7 +85,7 @@ fn reaches(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool 
 /// Whether an action would have an effect in the present state of session and console, apart from open dialogs.
 fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
     let admits = |event: Event| admit(session, &event).is_ok();
-    let runs = matches!(session.phase, Phase::Running | Phase::Paused);
+    let runs = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
     match action {
         KeyAction::Signal(_, signal) => {
             let (by, signal) = (Sender::Wizard, signal.clone());
@@ -93,17 +93,19 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
             refusal(session, model.now, &event).is_none()
         }
         KeyAction::Accept => offers::enter(session, model.now).is_ok(),
-        KeyAction::TakeBack => admits(Event::SignalEnded { reason: SignalEnd::TakenBack }),
+        KeyAction::TakeBack => admits(Event::SignalEnded { reason: SignalEndReason::TakenBack }),
         KeyAction::Press(_) => session.is_running(),
-        KeyAction::Note(_) => session.phase != Phase::Closed,
+        KeyAction::Note(_) => session.phase != TrialPhase::Closed,
         KeyAction::Advance => advances(session, model),
         KeyAction::EndTrial => runs,
         KeyAction::StopRobot => admits(Event::RobotStopped),
         KeyAction::ResumeRobot => admits(Event::RobotResumed),
         KeyAction::Hand(hand) => intervenes(session, *hand),
         KeyAction::Move(to) => model.playback.as_ref().is_some_and(|playback| moves(playback, *to)),
-        KeyAction::Look(PanelKey::All) => model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0,
-        KeyAction::Belief => visibility(session, model) >= Visibility::Belief && !beliefs(session, model).is_empty(),
+        KeyAction::Look(ViewAction::All) => model.alone.is_some() || model.events_back > 0 || model.timeline_back_s > 0,
+        KeyAction::Belief => {
+            visibility(session, model) >= WizardVisibility::Belief && !beliefs(session, model).is_empty()
+        }
         KeyAction::Differ(step) => differs(model, *step),
         KeyAction::Rate(rate) => rates(model, *rate),
         KeyAction::SwitchLayer | KeyAction::Look(_) | KeyAction::Help | KeyAction::Palette | KeyAction::Quit => true,
@@ -114,11 +116,13 @@ fn does(session: &Session, model: &ConsoleModel, action: &KeyAction) -> bool {
 fn advances(session: &Session, model: &ConsoleModel) -> bool {
     match session.phase {
         _ if model.lesson.is_some() => true,
-        Phase::Ready => admit(session, &Event::TrialStarted).is_ok(),
-        Phase::Running => true,
-        Phase::Paused => admit(session, &Event::TrialResumed).is_ok(),
-        Phase::Over(_) => session.protocol.is_some() && (session.aborted.is_some() || session.phase_lacks().is_none()),
-        Phase::Closed => false,
+        TrialPhase::Ready => admit(session, &Event::TrialStarted).is_ok(),
+        TrialPhase::Running => true,
+        TrialPhase::Paused => admit(session, &Event::TrialResumed).is_ok(),
+        TrialPhase::Over(_) => {
+            session.protocol.is_some() && (session.aborted.is_some() || session.phase_lacks().is_none())
+        }
+        TrialPhase::Closed => false,
     }
 }
 
@@ -126,54 +130,54 @@ fn intervenes(session: &Session, hand: ManualAction) -> bool {
     let (phase, by) = (session.phase, Sender::Wizard);
     let admits = |event: Event| admit(session, &event).is_ok();
     match hand {
-        ManualAction::Correct | ManualAction::Abort => matches!(phase, Phase::Running | Phase::Paused),
-        ManualAction::HoldRobot => phase != Phase::Closed,
+        ManualAction::Correct | ManualAction::Abort => matches!(phase, TrialPhase::Running | TrialPhase::Paused),
+        ManualAction::HoldRobot => phase != TrialPhase::Closed,
         ManualAction::SkipPress => admits(Event::RobotSkipped { by }),
         ManualAction::DriveRobot => session.is_running() && !session.robot.stopped,
         ManualAction::Redo => can_redo(session),
-        ManualAction::Preflight => phase == Phase::Ready,
-        ManualAction::Calibrate => admits(Event::Calibration(CalibrationEvent::begin())),
-        ManualAction::NoteInWords => phase == Phase::Paused,
+        ManualAction::Preflight => phase == TrialPhase::Ready,
+        ManualAction::Calibrate => admits(Event::Calibration(GazeCheckEvent::begin())),
+        ManualAction::NoteInWords => phase == TrialPhase::Paused,
         ManualAction::AskProbe => admits(Event::Probe(ProbeEvent::Requested)),
         ManualAction::SkipProbe => skippable(session).is_some(),
-        ManualAction::Exclude => !matches!(phase, Phase::Ready | Phase::Closed),
+        ManualAction::Exclude => !matches!(phase, TrialPhase::Ready | TrialPhase::Closed),
     }
 }
 
-fn moves(playback: &Playback, to: ReplayKey) -> bool {
+fn moves(playback: &Playback, to: ReplayAction) -> bool {
     let (at_start, at_end) = (playback.event == 0, playback.event == playback.events);
     match to {
-        ReplayKey::StepBack | ReplayKey::SeekBack | ReplayKey::ToStart | ReplayKey::BackTo(_) => !at_start,
+        ReplayAction::StepBack | ReplayAction::SeekBack | ReplayAction::ToStart | ReplayAction::BackTo(_) => !at_start,
         // A replay that already follows a growing recording cannot go further to its end.
-        ReplayKey::ToEnd => !playback.follows && playback.events > 0,
-        ReplayKey::StepForward | ReplayKey::SeekForward | ReplayKey::On(_) => !at_end,
-        ReplayKey::Faster => playback.speed + 1 < SPEEDS.len(),
-        ReplayKey::Slower => playback.speed > 0,
-        ReplayKey::PlayPause => playback.events > 0,
-        ReplayKey::ToEvent(_) | ReplayKey::ToTime(_) => true,
+        ReplayAction::ToEnd => !playback.follows && playback.events > 0,
+        ReplayAction::StepForward | ReplayAction::SeekForward | ReplayAction::On(_) => !at_end,
+        ReplayAction::Faster => playback.speed + 1 < SPEEDS.len(),
+        ReplayAction::Slower => playback.speed > 0,
+        ReplayAction::PlayPause => playback.events > 0,
+        ReplayAction::ToEvent(_) | ReplayAction::ToTime(_) => true,
     }
 }
 
-fn differs(model: &ConsoleModel, step: ComparisonKey) -> bool {
+fn differs(model: &ConsoleModel, step: ComparisonAction) -> bool {
     let chosen = model.comparison.as_ref().and_then(|compared| compared.chosen());
     chosen.is_some_and(|(at, seen)| match step {
-        ComparisonKey::Open => true,
-        ComparisonKey::Next => at + 1 < seen.differences.len(),
-        ComparisonKey::Last => at > 0,
+        ComparisonAction::Open => true,
+        ComparisonAction::Next => at + 1 < seen.differences.len(),
+        ComparisonAction::Last => at > 0,
     })
 }
 
-fn rates(model: &ConsoleModel, rate: RaterKey) -> bool {
+fn rates(model: &ConsoleModel, rate: RaterAction) -> bool {
     let (Some(coding), Some(playback)) = (&model.coding, &model.playback) else { return false };
     let at = coding.at(playback.event);
     match rate {
-        RaterKey::Next if coding.chosen.is_some() => true,
-        RaterKey::Next => at.map_or(0, |at| at + 1) < coding.errors.len(),
-        RaterKey::Last => at.is_some_and(|at| at > 0),
-        RaterKey::Clear => at.is_some_and(|at| coding.code(&coding.errors[at]).is_some()),
-        RaterKey::Undo => coding.can_undo(),
-        RaterKey::Redo => coding.can_redo(),
-        RaterKey::ChooseLater | RaterKey::ChooseEarlier => !coding.errors.is_empty(),
-        RaterKey::Belief(_) | RaterKey::Cause(_) => at.is_some(),
+        RaterAction::Next if coding.chosen.is_some() => true,
+        RaterAction::Next => at.map_or(0, |at| at + 1) < coding.errors.len(),
+        RaterAction::Last => at.is_some_and(|at| at > 0),
+        RaterAction::Clear => at.is_some_and(|at| coding.code(&coding.errors[at]).is_some()),
+        RaterAction::Undo => coding.can_undo(),
+        RaterAction::Redo => coding.can_redo(),
+        RaterAction::ChooseLater | RaterAction::ChooseEarlier => !coding.errors.is_empty(),
+        RaterAction::Belief(_) | RaterAction::Cause(_) => at.is_some(),
     }
 }

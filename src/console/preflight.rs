@@ -6,7 +6,7 @@ use core::net::SocketAddr;
 use crossterm::event::KeyCode;
 
 use super::console_message::ConsoleCommand;
-use super::console_model::{ConsoleModel, Dialog, LslStatus, RecordingStatus, ViewerStreamStatus};
+use super::console_model::{ConsoleModel, Dialog, LslStatus, RecordingStatus, RerunStreamStatus};
 use super::display_status::is_wanted;
 use super::key_action::KeyAction;
 use super::key_action::ManualAction;
@@ -100,8 +100,8 @@ fn recording(model: &ConsoleModel) -> PreflightCheck {
     }
 }
 
-fn viewers(viewers: &ViewerStreamStatus) -> PreflightCheck {
-    let ViewerStreamStatus { address, dropped, .. } = viewers;
+fn viewers(viewers: &RerunStreamStatus) -> PreflightCheck {
+    let RerunStreamStatus { address, dropped, .. } = viewers;
     let is_open = |address: &String| address.parse::<SocketAddr>().is_ok_and(|address| !address.ip().is_loopback());
     let found = match address {
         Some(address) if is_open(address) => format!("viewers at {address} need no password"),

@@ -9,8 +9,8 @@ use super::sending::send;
 use super::sheet_key::SheetKey;
 use crate::session::probes::{OpenProbe, ProbeEvent, ProbeOrigin};
 use crate::session::settings::ParticipantKind;
-use crate::session::wall_display::Answering;
-use crate::session::{Event, Phase, Session};
+use crate::session::wall_display::AnswerEntry;
+use crate::session::{Event, Session, TrialPhase};
 
 /// Who enters the answers to a freeze probe's questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,7 +70,7 @@ pub(super) fn takes_digit(model: &ConsoleModel, session: &Session, code: KeyCode
     is_digit
         && is_free
         && is_asked
-        && session.phase == Phase::Paused
+        && session.phase == TrialPhase::Paused
         && answerer(session, model) == ProbeAnswerer::Console
 }
 
@@ -127,7 +127,7 @@ pub(super) fn write(
             }
             Some(number) => {
                 let answer = number.checked_sub(1).and_then(|index| question.choices.get(index)).cloned();
-                let (probe, question, on) = (open.number, index as u32 + 1, Answering::Console);
+                let (probe, question, on) = (open.number, index as u32 + 1, AnswerEntry::Console);
                 let event = ProbeEvent::Answered { probe, question, answer, confidence: entry.sure, on };
                 entry.is_typed = false;
                 model.probe_entry = entry;

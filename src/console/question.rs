@@ -4,7 +4,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 /// A question to the user with numbered answers, shown before a recording begins.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct QuestionPage {
+pub struct StartQuestion {
     /// Heading of the question to the user.
     pub title: String,
     /// Text of the question, as paragraphs.
@@ -15,25 +15,25 @@ pub struct QuestionPage {
 
 /// Reply of the user to a question before a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum QuestionReply {
+pub enum StartQuestionReply {
     /// Index of the answer that the user selected.
     Answer(usize),
     /// The user quits the program.
     Leave,
 }
 
-impl QuestionPage {
+impl StartQuestion {
     /// The reply that a key gives; `None` for other keys and for key repeat.
-    pub fn reply(&self, key: &KeyEvent) -> Option<QuestionReply> {
+    pub fn reply(&self, key: &KeyEvent) -> Option<StartQuestionReply> {
         if key.kind != KeyEventKind::Press {
             return None;
         }
         match key.code {
-            KeyCode::Esc => Some(QuestionReply::Leave),
-            KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => Some(QuestionReply::Leave),
+            KeyCode::Esc => Some(StartQuestionReply::Leave),
+            KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => Some(StartQuestionReply::Leave),
             KeyCode::Char(digit @ '1'..='9') => {
                 let index = usize::from(digit as u8 - b'1');
-                (index < self.answers.len()).then_some(QuestionReply::Answer(index))
+                (index < self.answers.len()).then_some(StartQuestionReply::Answer(index))
             }
             _ => None,
         }

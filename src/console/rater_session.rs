@@ -2,20 +2,20 @@
 
 use crate::analysis::error_list::ListedError;
 use crate::history::wording;
-use crate::measures::cause_codes::{Code, Codes};
-use crate::measures::consensus::Consensus;
+use crate::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use crate::measures::consensus::RaterConsensus;
 
 /// Who codes the errors of a recording: one rater, or two raters together.
 #[derive(Clone, Debug, PartialEq)]
-pub enum CodingParty {
+pub enum CodingRaters {
     /// One rater, who has this name ("R1").
     Rater(String),
     /// Two raters who settle together the errors that they coded differently.
     Pair {
         /// Codes on which the two raters agree, and those that they settled earlier.
-        consensus: Consensus,
+        consensus: RaterConsensus,
         /// Codes that each rater gave alone, in the order of the consensus.
-        own: [Codes; 2],
+        own: [RaterCodes; 2],
     },
 }
 
@@ -23,32 +23,32 @@ pub enum CodingParty {
 #[derive(Clone, Debug, PartialEq)]
 struct CodeChange {
     press: u64,
-    before: Option<Code>,
-    after: Option<Code>,
+    before: Option<ErrorCauseCode>,
+    after: Option<ErrorCauseCode>,
 }
 
 /// State of coding the errors of a recording: the codes so far, and the steps to undo.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaterSession {
     /// Whether one rater codes, or two raters settle their differences.
-    pub party: CodingParty,
+    pub party: CodingRaters,
     /// Errors to be coded, in order of time; for two raters, only those that they have to settle.
     pub errors: Vec<ListedError>,
     /// Codes so far: the causes of errors, by the sequence number of the press.
-    pub codes: Codes,
+    pub codes: RaterCodes,
     /// Names of other raters who have coded every error of the recording.
     pub finished: Vec<String>,
     /// Row of the error list that the arrow keys have selected, while the replay does not stand at that error.
     pub chosen: Option<usize>,
     /// Codes of the errors at the time when the recording was opened.
-    opened: Codes,
+    opened: RaterCodes,
     done: Vec<CodeChange>,
     undone: Vec<CodeChange>,
 }
 
 impl RaterSession {
     /// State of coding when a recording is opened.
-    pub fn new(party: CodingParty, errors: Vec<ListedError>, codes: Codes) -> RaterSession {
+    pub fn new(party: CodingRaters, errors: Vec<ListedError>, codes: RaterCodes) -> RaterSession {
         let opened = codes.clone();
         let (done, undone) = (Vec::new(), Vec::new());
         RaterSession { party, errors, codes, finished: Vec::new(), chosen: None, opened, done, undone }
@@ -70,7 +70,7 @@ impl RaterSession {
     }
 
     /// The rater's code of an error, if there is one.
-    pub fn code(&self, error: &ListedError) -> Option<&Code> {
+    pub fn code(&self, error: &ListedError) -> Option<&ErrorCauseCode> {
         self.codes.0.get(&error.press)
     }
 
@@ -89,7 +89,7 @@ impl RaterSession {
     }
 
     /// Gives an error a rater's code, or removes the code.
-    pub fn give(&mut self, press: u64, code: Option<Code>) {
+    pub fn give(&mut self, press: u64, code: Option<ErrorCauseCode>) {
         let before = self.codes.0.get(&press).cloned();
         if before != code {
             self.done.push(CodeChange { press, before, after: code.clone() });
@@ -126,7 +126,7 @@ impl RaterSession {
         Some(press)
     }
 
-    fn set(&mut self, press: u64, code: Option<Code>) {
+    fn set(&mut self, press: u64, code: Option<ErrorCauseCode>) {
         match code {
             Some(code) => self.codes.0.insert(press, code),
             None => self.codes.0.remove(&press),
@@ -136,8 +136,8 @@ impl RaterSession {
     /// Names of the raters: "R1", "R1 and R2".
     pub fn name(&self) -> String {
         match &self.party {
-            CodingParty::Rater(rater) => rater.clone(),
-            CodingParty::Pair { consensus, .. } => consensus.raters.join(" and "),
+            CodingRaters::Rater(rater) => rater.clone(),
+            CodingRaters::Pair { consensus, .. } => consensus.raters.join(" and "),
         }
     }
 
@@ -152,15 +152,16 @@ impl RaterSession {
     }
 
     /// The rater's code of an error in words; "-" if there is none.
-    pub fn words(code: Option<&Code>) -> String {
+    pub fn words(code: Option<&ErrorCauseCode>) -> String {
         code.map_or("-".to_string(), wording::code)
     }
 
     /// The code that each of two raters gave an error alone: "R1: slip"; empty for a single rater.
     pub fn own(&self, error: &ListedError) -> Vec<String> {
-        let CodingParty::Pair { consensus, own } = &self.party else { return Vec::new() };
-        let of =
-            |(rater, codes): (&String, &Codes)| format!("{rater}: {}", RaterSession::words(codes.0.get(&error.press)));
+        let CodingRaters::Pair { consensus, own } = &self.party else { return Vec::new() };
+        let of = |(rater, codes): (&String, &RaterCodes)| {
+            format!("{rater}: {}", RaterSession::words(codes.0.get(&error.press)))
+        };
         consensus.raters.iter().zip(own).map(of).collect()
     }
 
@@ -171,12 +172,12 @@ impl RaterSession {
         }
         let number = self.errors.len();
         Some(match &self.party {
-            CodingParty::Pair { .. } if number == 0 => {
+            CodingRaters::Pair { .. } if number == 0 => {
                 "nothing to settle: both raters agree on every error".to_string()
             }
-            CodingParty::Pair { .. } => format!("all {number} settled; next: tomcom study"),
-            CodingParty::Rater(_) if number == 0 => "no error in this recording: nothing to code".to_string(),
-            CodingParty::Rater(rater) => {
+            CodingRaters::Pair { .. } => format!("all {number} settled; next: tomcom study"),
+            CodingRaters::Rater(_) if number == 0 => "no error in this recording: nothing to code".to_string(),
+            CodingRaters::Rater(rater) => {
                 let next = match self.finished.first() {
                     None => "a second rater codes independently, with --rater".to_string(),
                     Some(other) => format!("tomcom codes compares, --settle {other} {rater} settles"),
@@ -189,8 +190,8 @@ impl RaterSession {
     /// Verb for the progress: errors are "coded" by one rater, "settled" by two.
     fn verb(&self) -> &'static str {
         match self.party {
-            CodingParty::Rater(_) => "coded",
-            CodingParty::Pair { .. } => "settled",
+            CodingRaters::Rater(_) => "coded",
+            CodingRaters::Pair { .. } => "settled",
         }
     }
 }

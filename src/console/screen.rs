@@ -4,15 +4,15 @@ use super::beliefs::visibility;
 use super::console_model::{ConsoleModel, Dialog};
 use super::form::sheet;
 use super::picker::PickerQuestion;
-use super::view::regions::{LEAST, Regions, ScreenSize};
+use super::view::regions::{LEAST, PanelAreas, ScreenSize};
 use crate::session::Session;
-use crate::session::wizard_screen::VisibleScreen;
+use crate::session::wizard_screen::WizardScreenContent;
 
 /// What the wizard's screen shows now: its panels and the open dialog or sheet.
-pub fn screen(session: &Session, model: &ConsoleModel) -> VisibleScreen {
+pub fn screen(session: &Session, model: &ConsoleModel) -> WizardScreenContent {
     let visibility = visibility(session, model);
     let fits = model.size.0 >= LEAST.0 && model.size.1 >= LEAST.1;
-    let regions = Regions::showing(model.size, session, model);
+    let regions = PanelAreas::showing(model.size, session, model);
     let room = match regions.room {
         _ if !fits => "too_small",
         ScreenSize::Small => "small",
@@ -22,7 +22,7 @@ pub fn screen(session: &Session, model: &ConsoleModel) -> VisibleScreen {
     let dialog = model.dialog.as_ref().map(name);
     let sheet = sheet(session).map(|sheet| sheet.name());
     let panels = if fits { regions.panels() } else { Vec::new() };
-    VisibleScreen {
+    WizardScreenContent {
         visibility,
         room: room.to_string(),
         panels: panels.into_iter().map(str::to_string).collect(),

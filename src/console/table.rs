@@ -5,16 +5,16 @@ use crossterm::event::KeyCode::{
 };
 
 use super::chord::KeyChord;
-use super::compared::ComparisonKey;
+use super::compared::ComparisonAction;
 use super::key_action::ManualAction;
-use super::key_action::PanelKey;
-use super::key_action::RaterKey;
+use super::key_action::RaterAction;
+use super::key_action::ViewAction;
 use super::key_action::{KeyAction, KeyBinding, KeyLayer, KeySection};
-use super::playback::ReplayKey;
+use super::playback::ReplayAction;
 use crate::communication::{self, Signal};
 use crate::history::landmark::ReplayLandmark;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId};
-use crate::measures::cause_codes::CauseKind;
+use crate::measures::cause_codes::ErrorCauseKind;
 use crate::session::settings::MAX_NOTES;
 
 const SIGNALS: &str = "Signals to the participant";
@@ -170,52 +170,64 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
 /// Default key table of a replay.
 pub fn replay() -> Vec<KeyBinding> {
     let moves = [
-        ("step_forward", plain(Right), ReplayKey::StepForward, "to the next event", Some("step")),
-        ("step_back", plain(Left), ReplayKey::StepBack, "to the previous event", None),
-        ("next_error", [KeyChord::char('e')], ReplayKey::On(ReplayLandmark::Error), "to the next error", Some("error")),
-        ("last_error", [KeyChord::char('w')], ReplayKey::BackTo(ReplayLandmark::Error), "to the previous error", None),
-        ("next_signal", [KeyChord::char('s')], ReplayKey::On(ReplayLandmark::Signal), "to the next signal", None),
+        ("step_forward", plain(Right), ReplayAction::StepForward, "to the next event", Some("step")),
+        ("step_back", plain(Left), ReplayAction::StepBack, "to the previous event", None),
+        (
+            "next_error",
+            [KeyChord::char('e')],
+            ReplayAction::On(ReplayLandmark::Error),
+            "to the next error",
+            Some("error"),
+        ),
+        (
+            "last_error",
+            [KeyChord::char('w')],
+            ReplayAction::BackTo(ReplayLandmark::Error),
+            "to the previous error",
+            None,
+        ),
+        ("next_signal", [KeyChord::char('s')], ReplayAction::On(ReplayLandmark::Signal), "to the next signal", None),
         (
             "last_signal",
             [KeyChord::char('a')],
-            ReplayKey::BackTo(ReplayLandmark::Signal),
+            ReplayAction::BackTo(ReplayLandmark::Signal),
             "to the previous signal",
             None,
         ),
-        ("next_marker", [KeyChord::char('m')], ReplayKey::On(ReplayLandmark::Marker), "to the next marker", None),
+        ("next_marker", [KeyChord::char('m')], ReplayAction::On(ReplayLandmark::Marker), "to the next marker", None),
         (
             "last_marker",
             [KeyChord::char('n')],
-            ReplayKey::BackTo(ReplayLandmark::Marker),
+            ReplayAction::BackTo(ReplayLandmark::Marker),
             "to the previous marker",
             None,
         ),
         (
             "next_false_belief",
             [KeyChord::char('b')],
-            ReplayKey::On(ReplayLandmark::FalseBelief),
+            ReplayAction::On(ReplayLandmark::FalseBelief),
             "to the next false belief",
             None,
         ),
         (
             "last_false_belief",
             [KeyChord::char('v')],
-            ReplayKey::BackTo(ReplayLandmark::FalseBelief),
+            ReplayAction::BackTo(ReplayLandmark::FalseBelief),
             "to the previous false belief",
             None,
         ),
-        ("seek_forward", plain(PageDown), ReplayKey::SeekForward, "ten seconds forward", Some("10 s")),
-        ("seek_back", plain(PageUp), ReplayKey::SeekBack, "ten seconds back", None),
-        ("faster", [KeyChord::char('+')], ReplayKey::Faster, "play faster", Some("speed")),
-        ("slower", [KeyChord::char('-')], ReplayKey::Slower, "play slower", None),
-        ("to_start", plain(Home), ReplayKey::ToStart, "to the beginning", None),
-        ("to_end", plain(End), ReplayKey::ToEnd, "to the end; follows a growing recording", Some("start/end")),
+        ("seek_forward", plain(PageDown), ReplayAction::SeekForward, "ten seconds forward", Some("10 s")),
+        ("seek_back", plain(PageUp), ReplayAction::SeekBack, "ten seconds back", None),
+        ("faster", [KeyChord::char('+')], ReplayAction::Faster, "play faster", Some("speed")),
+        ("slower", [KeyChord::char('-')], ReplayAction::Slower, "play slower", None),
+        ("to_start", plain(Home), ReplayAction::ToStart, "to the beginning", None),
+        ("to_end", plain(End), ReplayAction::ToEnd, "to the end; follows a growing recording", Some("start/end")),
     ];
     let of_move =
         |name, keys: &[KeyChord], to, help, footer| line(name, keys, KeyAction::Move(to), REPLAY, help, footer);
     let quit = [KeyChord::char('q'), KeyChord::ctrl('c')];
     let mut lines = vec![
-        of_move("play_pause", &[KeyChord::char('.')], ReplayKey::PlayPause, "play, pause", Some("play/pause")),
+        of_move("play_pause", &[KeyChord::char('.')], ReplayAction::PlayPause, "play, pause", Some("play/pause")),
         line("quit", &quit, KeyAction::Quit, CONSOLE, "quit", Some("quit")),
         line("belief", &[KeyChord::ctrl('b')], KeyAction::Belief, CONSOLE, BELIEF, None),
         palette(),
@@ -232,40 +244,44 @@ pub fn replay() -> Vec<KeyBinding> {
 fn codes() -> [KeyBinding; 9] {
     let code =
         |name, keys: &[KeyChord], rate, help, footer| line(name, keys, KeyAction::Rate(rate), CODING, help, footer);
-    let cause = |name, key, kind: CauseKind| {
+    let cause = |name, key, kind: ErrorCauseKind| {
         let help = format!("{}: {}", kind.title(), kind.definition());
-        line(name, &[KeyChord::char(key)], KeyAction::Rate(RaterKey::Cause(kind)), CODING, &help, None)
+        line(name, &[KeyChord::char(key)], KeyAction::Rate(RaterAction::Cause(kind)), CODING, &help, None)
     };
     [
         code(
             "code_next",
             &plain(Enter),
-            RaterKey::Next,
+            RaterAction::Next,
             "to the next error, or to the selected one",
             Some("next error"),
         ),
-        code("code_last", &plain(Backspace), RaterKey::Last, "to the previous error", None),
-        cause("slip", '1', CauseKind::Slip),
-        cause("race", '2', CauseKind::Race),
-        cause("other_cause", '3', CauseKind::Other),
-        cause("mixed_up_buttons", '4', CauseKind::Buttons),
-        code("clear_code", &plain(Delete), RaterKey::Clear, "remove the code of the error", Some("remove code")),
+        code("code_last", &plain(Backspace), RaterAction::Last, "to the previous error", None),
+        cause("slip", '1', ErrorCauseKind::Slip),
+        cause("race", '2', ErrorCauseKind::Race),
+        cause("other_cause", '3', ErrorCauseKind::Other),
+        cause("mixed_up_buttons", '4', ErrorCauseKind::Buttons),
+        code("clear_code", &plain(Delete), RaterAction::Clear, "remove the code of the error", Some("remove code")),
         code(
             "undo_code",
             &[KeyChord::char('u'), KeyChord::ctrl('z')],
-            RaterKey::Undo,
+            RaterAction::Undo,
             "undo the last change of a code",
             Some("undo"),
         ),
-        code("redo_code", &[KeyChord::ctrl('y')], RaterKey::Redo, "redo the undone change", Some("redo")),
+        code("redo_code", &[KeyChord::ctrl('y')], RaterAction::Redo, "redo the undone change", Some("redo")),
     ]
 }
 
 /// What an arrow key does while a rater codes: it selects an error of the list.
-pub fn choosing(action: &KeyAction) -> Option<(RaterKey, &'static str)> {
+pub fn choosing(action: &KeyAction) -> Option<(RaterAction, &'static str)> {
     match action {
-        KeyAction::Look(PanelKey::Back) => Some((RaterKey::ChooseEarlier, "select the error above; enter goes there")),
-        KeyAction::Look(PanelKey::Forward) => Some((RaterKey::ChooseLater, "select the error below; enter goes there")),
+        KeyAction::Look(ViewAction::Back) => {
+            Some((RaterAction::ChooseEarlier, "select the error above; enter goes there"))
+        }
+        KeyAction::Look(ViewAction::Forward) => {
+            Some((RaterAction::ChooseLater, "select the error below; enter goes there"))
+        }
         _ => None,
     }
 }
@@ -274,8 +290,8 @@ pub fn choosing(action: &KeyAction) -> Option<(RaterKey, &'static str)> {
 pub fn causes(kitchen: &Kitchen, marks: &[Option<KeyChord>]) -> Vec<KeyBinding> {
     let cause = |(index, mark): (usize, &Option<KeyChord>)| {
         let (id, chord) = (LocationId(index as u8), (*mark)?);
-        let help = format!("{} {}", CauseKind::Belief.title(), kitchen.location(id).label());
-        Some(line(&kitchen.location(id).name, &[chord], KeyAction::Rate(RaterKey::Belief(id)), CODING, &help, None))
+        let help = format!("{} {}", ErrorCauseKind::Belief.title(), kitchen.location(id).label());
+        Some(line(&kitchen.location(id).name, &[chord], KeyAction::Rate(RaterAction::Belief(id)), CODING, &help, None))
     };
     marks.iter().enumerate().filter_map(cause).collect()
 }
@@ -289,12 +305,12 @@ fn differences() -> [KeyBinding; 3] {
         differ(
             "open_difference",
             'o',
-            ComparisonKey::Open,
+            ComparisonAction::Open,
             "show what each knew at the difference",
             Some("difference"),
         ),
-        differ("next_difference", 'g', ComparisonKey::Next, "the next difference", Some("next")),
-        differ("last_difference", 't', ComparisonKey::Last, "the previous difference", Some("previous")),
+        differ("next_difference", 'g', ComparisonAction::Next, "the next difference", Some("next")),
+        differ("last_difference", 't', ComparisonAction::Last, "the previous difference", Some("previous")),
     ]
 }
 
@@ -303,11 +319,11 @@ fn looks(next: &[KeyChord]) -> [KeyBinding; 5] {
     let look = |name, code, look, help, footer| line(name, &plain(code), KeyAction::Look(look), CONSOLE, help, footer);
     let panels = "next panel at full size";
     [
-        line("next_panel", next, KeyAction::Look(PanelKey::Next), CONSOLE, panels, Some("panels")),
-        look("last_panel", BackTab, PanelKey::Last, "previous panel at full size", None),
-        look("all_panels", Esc, PanelKey::All, "show all panels, at the present time", Some("all panels")),
-        look("back", Up, PanelKey::Back, "scroll back in events or timeline", None),
-        look("forward", Down, PanelKey::Forward, "scroll forward again", None),
+        line("next_panel", next, KeyAction::Look(ViewAction::Next), CONSOLE, panels, Some("panels")),
+        look("last_panel", BackTab, ViewAction::Last, "previous panel at full size", None),
+        look("all_panels", Esc, ViewAction::All, "show all panels, at the present time", Some("all panels")),
+        look("back", Up, ViewAction::Back, "scroll back in events or timeline", None),
+        look("forward", Down, ViewAction::Forward, "scroll forward again", None),
     ]
 }
 
@@ -316,8 +332,8 @@ fn looks(next: &[KeyChord]) -> [KeyBinding; 5] {
 fn times() -> [KeyBinding; 2] {
     let time = |name, code, look, help| line(name, &plain(code), KeyAction::Look(look), CONSOLE, help, None);
     [
-        time("earlier", Left, PanelKey::Earlier, "scroll the timeline 5 s back"),
-        time("later", Right, PanelKey::Later, "scroll the timeline 5 s forward"),
+        time("earlier", Left, ViewAction::Earlier, "scroll the timeline 5 s back"),
+        time("later", Right, ViewAction::Later, "scroll the timeline 5 s forward"),
     ]
 }
 

@@ -7,7 +7,7 @@ use super::console_model::ConsoleModel;
 use super::hands;
 use super::key_press;
 use super::mouse;
-use crate::session::{Event, Phase, Session};
+use crate::session::{Event, Session, TrialPhase};
 
 /// Handles a message to the console at the time `model.now`.
 pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessage) -> Option<ConsoleCommand> {
@@ -29,7 +29,7 @@ pub fn update(model: &mut ConsoleModel, session: &Session, message: ConsoleMessa
             let changed = std::mem::replace(&mut model.focused, focused) != focused;
             model.pressed = None;
             let event = if focused { Event::FocusRegained } else { Event::FocusLost };
-            (changed && session.phase != Phase::Closed).then_some(ConsoleCommand::Input(event))
+            (changed && session.phase != TrialPhase::Closed).then_some(ConsoleCommand::Input(event))
         }
     }
 }

@@ -1,18 +1,18 @@
 //! Position of the physical arm's tip on the table.
 
-use crate::arm::kinematics::Arm;
+use crate::arm::kinematics::SerialArm;
 use crate::robot::moment::ArmPhase;
 use crate::session::Session;
 use crate::session::settings::ArmKind;
 
 /// Kinematics of the session's physical arm, from which the tip's position follows.
 #[derive(Clone, Debug)]
-pub(super) struct ArmTip(Arm);
+pub(super) struct ArmTip(SerialArm);
 
 impl ArmTip {
     /// Kinematics of a session's arm; `None` if the session has no physical arm.
     pub fn of_session(session: &Session) -> Option<ArmTip> {
-        (session.spec.robot.arm == ArmKind::Physics).then(|| ArmTip(Arm::ur5()))
+        (session.spec.robot.arm == ArmKind::Physics).then(|| ArmTip(SerialArm::ur5()))
     }
 
     /// Position of the tip at the last recorded pose, in metres in the frame of the arm's base, and whether the tip is

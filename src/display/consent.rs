@@ -1,6 +1,6 @@
 //! Content of the participant's display while consent is asked for.
 
-use super::displayed_item::{DisplayedForm, DisplayedItem};
+use super::displayed_item::{DisplayedAnswerForm, DisplayedQuestionnaireItem};
 use super::page_language::DisplayWords;
 use super::sight::{DisplayStage, DisplayUpdate, sight};
 use crate::session::Session;
@@ -11,13 +11,13 @@ const HOLD_S: f64 = 3.0;
 /// The display's content while the participant is asked to consent to this text, before anything is recorded.
 pub fn consent_sight(session: &Session, text: &str) -> DisplayUpdate {
     let words = DisplayWords::for_display(&session.spec.display);
-    let question = DisplayedItem {
+    let question = DisplayedQuestionnaireItem {
         title: words.of_name("consent title"),
         item: Some("consent".to_string()),
         text: text.to_string(),
         number: 1,
         of: 1,
-        form: Some(DisplayedForm::Consent { hold_s: HOLD_S }),
+        form: Some(DisplayedAnswerForm::Consent { hold_s: HOLD_S }),
         answer: None,
         before: None,
         given: Vec::new(),

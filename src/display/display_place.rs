@@ -19,7 +19,7 @@ pub(super) fn spot(kitchen: &Kitchen, agent: Agent, action: ButtonAction) -> Dis
     let hand = kitchen.hands[agent.index()];
     let location = match action {
         ButtonAction::Take(item) => {
-            let is_it = |storage: &crate::kitchen::Storage| storage.agent == agent && storage.item == item;
+            let is_it = |storage: &crate::kitchen::IngredientStorage| storage.agent == agent && storage.item == item;
             return DisplayPlace::Storage(kitchen.storages.iter().position(is_it).unwrap_or_default());
         }
         ButtonAction::Use(location) => location,

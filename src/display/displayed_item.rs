@@ -5,12 +5,12 @@ use serde::Serialize;
 use super::page_language::DisplayWords;
 use crate::session::Session;
 use crate::session::answer_value::AnswerValue;
-use crate::session::plan::{ItemForm, ItemOption};
-use crate::session::wall_display::Answering;
+use crate::session::plan::{AnswerFormat, ItemOption};
+use crate::session::wall_display::AnswerEntry;
 
 /// A questionnaire item as the participant's display shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DisplayedItem {
+pub struct DisplayedQuestionnaireItem {
     /// Heading above the questionnaire's items.
     pub title: String,
     /// Name of the item; `None` when all items are answered and only their confirmation is left.
@@ -22,19 +22,19 @@ pub struct DisplayedItem {
     /// Number of items of the questionnaire.
     pub of: usize,
     /// Kind of answer that the item takes; `None` when all items are answered.
-    pub form: Option<DisplayedForm>,
+    pub form: Option<DisplayedAnswerForm>,
     /// The participant's earlier answer to this item.
     pub answer: Option<AnswerValue>,
     /// Name of the previous item, to which the participant can go back.
     pub before: Option<String>,
     /// When all items are answered: each item with its answer, if it got one.
-    pub given: Vec<GivenAnswer>,
+    pub given: Vec<DisplayedAnswer>,
 }
 
 /// Kind of answer that a questionnaire item takes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
-pub enum DisplayedForm {
+pub enum DisplayedAnswerForm {
     /// A point on a rating scale.
     Scale {
         /// Number of points of the scale.
@@ -83,32 +83,36 @@ pub enum DisplayedForm {
 
 /// A questionnaire item with the participant's answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GivenAnswer {
+pub struct DisplayedAnswer {
     /// Statement of the item.
     pub text: String,
     /// The answer in words; `None` if the participant left the item out.
     pub answer: Option<String>,
 }
 
-impl From<ItemForm<'_>> for DisplayedForm {
-    fn from(form: ItemForm) -> DisplayedForm {
+impl From<AnswerFormat<'_>> for DisplayedAnswerForm {
+    fn from(form: AnswerFormat) -> DisplayedAnswerForm {
         match form {
-            ItemForm::Scale(scale) => {
-                DisplayedForm::Scale { points: scale.points, low: scale.low.clone(), high: scale.high.clone() }
+            AnswerFormat::Scale(scale) => {
+                DisplayedAnswerForm::Scale { points: scale.points, low: scale.low.clone(), high: scale.high.clone() }
             }
-            ItemForm::Choice { options, several } => DisplayedForm::Choice { options: options.to_vec(), several },
-            ItemForm::Number { range: [min, max], unit } => DisplayedForm::Number { min, max, unit: unit.to_string() },
-            ItemForm::Text { length } => DisplayedForm::Text { length },
-            ItemForm::Slider { low, high, step } => {
-                DisplayedForm::Slider { low: low.to_string(), high: high.to_string(), step }
+            AnswerFormat::Choice { options, several } => {
+                DisplayedAnswerForm::Choice { options: options.to_vec(), several }
+            }
+            AnswerFormat::Number { range: [min, max], unit } => {
+                DisplayedAnswerForm::Number { min, max, unit: unit.to_string() }
+            }
+            AnswerFormat::Text { length } => DisplayedAnswerForm::Text { length },
+            AnswerFormat::Slider { low, high, step } => {
+                DisplayedAnswerForm::Slider { low: low.to_string(), high: high.to_string(), step }
             }
         }
     }
 }
 
 /// The item that the participant has to answer on the display now; `None` also where the wizard reads items out.
-pub(super) fn question(session: &Session) -> Option<DisplayedItem> {
-    if session.spec.display.questionnaire == Answering::Console {
+pub(super) fn question(session: &Session) -> Option<DisplayedQuestionnaireItem> {
+    if session.spec.display.questionnaire == AnswerEntry::Console {
         return None;
     }
     let (questionnaire, protocol) = (session.questionnaire()?, session.protocol.as_ref()?);
@@ -120,14 +124,14 @@ pub(super) fn question(session: &Session) -> Option<DisplayedItem> {
     let before = protocol.item.checked_sub(1).and_then(|before| questionnaire.items.get(before));
     let in_words = |index: usize| Some(questionnaire.form(index)?.words(protocol.given(index)?));
     let items = questionnaire.items.iter().enumerate().filter(|_| item.is_none());
-    let given = items.map(|(index, item)| GivenAnswer { text: item.text.clone(), answer: in_words(index) });
-    Some(DisplayedItem {
+    let given = items.map(|(index, item)| DisplayedAnswer { text: item.text.clone(), answer: in_words(index) });
+    Some(DisplayedQuestionnaireItem {
         title: questionnaire.title.clone(),
         item: item.map(|item| item.id.clone()),
         text: item.map_or_else(|| words.of_name("answers done"), |item| item.text.clone()),
         number: (protocol.item + 1).min(questionnaire.items.len()),
         of: questionnaire.items.len(),
-        form: questionnaire.form(protocol.item).map(DisplayedForm::from),
+        form: questionnaire.form(protocol.item).map(DisplayedAnswerForm::from),
         answer: protocol.given(protocol.item).cloned(),
         given: given.collect(),
         before: before.map(|item| item.id.clone()),

@@ -22,7 +22,7 @@ mod tutorial_page;
 pub use consent::consent_sight;
 pub use probe_page::{ProbeWording, choice_made_of, probe_left, probe_wording};
 pub use robot_hand::RobotHand;
-pub use robot_pose::RobotPose;
+pub use robot_pose::RobotHandPose;
 pub use scene::{DisplayScene, scene};
 pub use shown_clock::{DisplayedClock, time_left};
 pub use sight::{DisplayStage, DisplayUpdate, sight};

@@ -8,7 +8,7 @@ use super::page_language::DisplayWords;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonAction, ContentId, Kitchen, LocationId, LocationKind};
 use crate::session::probes::{OpenProbe, ProbeQuestion, ProbeSubject};
-use crate::session::{Phase, Session};
+use crate::session::{Session, TrialPhase};
 
 /// Largest number of contents that are shown as a list; with more, the participant composes a stack from its items.
 const MOST_CARDS: usize = 16;
@@ -107,7 +107,7 @@ pub(super) fn probe(session: &Session) -> Option<DisplayedProbe> {
 
 /// The open probe, unless the wizard pauses it.
 fn shown_probe(session: &Session) -> Option<&OpenProbe> {
-    session.probes.open.as_ref().filter(|open| session.phase == Phase::Paused && !open.is_paused())
+    session.probes.open.as_ref().filter(|open| session.phase == TrialPhase::Paused && !open.is_paused())
 }
 
 /// The freeze probe question that is shown now, with its index.

@@ -7,12 +7,12 @@
 
 #[cfg(feature = "physics")]
 use super::arm_tip::ArmTip;
-use super::robot_pose::RobotPose;
+use super::robot_pose::RobotHandPose;
 use super::sight::button_place;
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonId};
 use crate::session::wall_display::DisplayedArm;
-use crate::session::{Phase, Session};
+use crate::session::{Session, TrialPhase};
 
 /// Share of the timed arm's motion after which the hand is above its target and goes down.
 const ABOVE: f64 = 0.85;
@@ -40,7 +40,7 @@ struct Motion {
 /// Position of the robot's hand on the display over time.
 #[derive(Clone, Debug)]
 pub struct RobotHand {
-    pose: RobotPose,
+    pose: RobotHandPose,
     motion: Option<Motion>,
     last: SessionTime,
     #[cfg(feature = "physics")]
@@ -54,7 +54,7 @@ impl RobotHand {
         let kitchen = &session.kitchen;
         let [x, y] = kitchen.location(kitchen.hands[Agent::Robot.index()]).display.centre();
         Some(RobotHand {
-            pose: RobotPose { x, y, down: 0.0 },
+            pose: RobotHandPose { x, y, down: 0.0 },
             motion: None,
             last: SessionTime::ZERO,
             #[cfg(feature = "physics")]
@@ -63,10 +63,10 @@ impl RobotHand {
     }
 
     /// Pose of the hand at a time; calls must not go back in time.
-    pub fn at(&mut self, session: &Session, now: SessionTime) -> RobotPose {
+    pub fn at(&mut self, session: &Session, now: SessionTime) -> RobotHandPose {
         let passed_s = now.secs_since(self.last).max(0.0);
         self.last = now;
-        if session.phase == Phase::Running {
+        if session.phase == TrialPhase::Running {
             self.go(session, now);
             self.go_down(session, passed_s);
         }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// Pose of the robot's hand on the participant's display.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct RobotPose {
+pub struct RobotHandPose {
     /// Horizontal position of the hand, as a fraction of the display's width.
     pub x: f64,
     /// Vertical position of the hand, as a fraction of the display's height, downwards.
@@ -13,10 +13,10 @@ pub struct RobotPose {
     pub down: f64,
 }
 
-impl RobotPose {
+impl RobotHandPose {
     /// The pose rounded to a thousandth, which is invisible, so that a resting hand causes no messages.
-    pub(super) fn rounded(self) -> RobotPose {
+    pub(super) fn rounded(self) -> RobotHandPose {
         let to_thousandth = |value: f64| (1000.0 * value).round() / 1000.0;
-        RobotPose { x: to_thousandth(self.x), y: to_thousandth(self.y), down: to_thousandth(self.down) }
+        RobotHandPose { x: to_thousandth(self.x), y: to_thousandth(self.y), down: to_thousandth(self.down) }
     }
 }

@@ -8,7 +8,7 @@ use super::page_language::DisplayWords;
 use crate::gaze::tags::DisplayTags;
 use crate::kitchen::{Agent, Appearance, ButtonAction, ButtonColour, Kitchen, LocationKind};
 use crate::session::settings::GazeSource;
-use crate::session::wall_display::{DisplayedArm, Names};
+use crate::session::wall_display::{DisplayedArm, DisplayedNames};
 use crate::session::{Session, SessionSpec};
 
 /// Area on the display: left, top, width and height in fractions of the display's size, with the origin at the top
@@ -39,7 +39,7 @@ pub struct DisplayScene {
     /// The page's own texts in the display's language.
     pub words: BTreeMap<String, String>,
     /// Names of the kitchen's things in the display's language.
-    pub names: Names,
+    pub names: DisplayedNames,
     /// Whether the page shows the keys of the buttons.
     pub keys: bool,
     /// How the display shows the robot: "none", "hand" or "arm".
@@ -135,7 +135,7 @@ pub fn scene(session: &Session) -> DisplayScene {
         area: rect(location.display),
         look: location.look.clone(),
     };
-    let shelf = |storage: &crate::kitchen::Storage| DisplayStorage {
+    let shelf = |storage: &crate::kitchen::IngredientStorage| DisplayStorage {
         agent: storage.agent,
         item: kitchen.content(storage.item).name.clone(),
         label: words.of_name(&storage.label),
@@ -193,7 +193,7 @@ fn marks(kitchen: &Kitchen) -> Vec<TagPicture> {
 fn knobs(kitchen: &Kitchen, words: &DisplayWords) -> Vec<DisplayButton> {
     let hand = kitchen.hands[Agent::Human.index()].index();
     let shelf = |item| {
-        let is_it = |storage: &crate::kitchen::Storage| storage.agent == Agent::Human && storage.item == item;
+        let is_it = |storage: &crate::kitchen::IngredientStorage| storage.agent == Agent::Human && storage.item == item;
         kitchen.storages.iter().position(is_it).unwrap_or_default()
     };
     let knob = |button: &crate::kitchen::Button| {

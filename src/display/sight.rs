@@ -3,16 +3,16 @@
 use serde::Serialize;
 
 use super::display_place::{DisplayPlace, spot};
-use super::displayed_item::{DisplayedItem, question};
+use super::displayed_item::{DisplayedQuestionnaireItem, question};
 use super::probe_page::{DisplayedProbe, probe};
 use super::shown_clock::{DisplayedClock, clock};
 use super::tutorial_page::{DisplayedTutorial, RecipeCard, card, tutorial};
 use crate::communication::Signal;
-use crate::kitchen::no_effect::NoEffect;
+use crate::kitchen::no_effect::NoEffectReason;
 use crate::kitchen::{Agent, ButtonId, ContentId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::session::accuracy_check::RunningGazeCheck;
 use crate::session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
-use crate::session::{Phase, Session, TimelineEvent, proposals};
+use crate::session::{Session, TimelineEvent, TrialPhase, proposals};
 
 /// Everything that changes on the participant's display; each update is complete.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,7 +36,7 @@ pub struct DisplayUpdate {
     /// Number of the newest event that is marked by a flash.
     pub cue: Option<u64>,
     /// The questionnaire item that is asked, if any.
-    pub question: Option<DisplayedItem>,
+    pub question: Option<DisplayedQuestionnaireItem>,
     /// The present step of the tutorial, if any.
     pub tutorial: Option<DisplayedTutorial>,
     /// The open freeze probe, if any.
@@ -103,14 +103,14 @@ pub struct DisplayedPress {
     pub effective: bool,
     /// Why the human's press had no effect, if the session shows reasons.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub why: Option<DisplayedReason>,
+    pub why: Option<DisplayedNoEffectReason>,
 }
 
 /// Reason why a press had no effect, as the participant's display shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct DisplayedReason {
+pub struct DisplayedNoEffectReason {
     /// The reason, for which the page has a text.
-    pub reason: NoEffect,
+    pub reason: NoEffectReason,
     /// The location that the reason is about, by its index in the scene.
     pub about: usize,
 }
@@ -142,7 +142,7 @@ pub fn sight(session: &Session) -> DisplayUpdate {
     let state = practised.map_or(session.state, |(_, tutorial)| tutorial.kitchen);
     let contents = (0..kitchen.locations.len()).map(|index| shown(kitchen, state, LocationId(index as u8)));
     let probe = probe(session);
-    let is_trial = probe.is_none() && matches!(session.phase, Phase::Running | Phase::Paused);
+    let is_trial = probe.is_none() && matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
     let intention = session.robot.intention.filter(|_| session.spec.display.intention && is_trial);
     let stage = if probe.is_some() { DisplayStage::Probe } else { stage(session) };
     DisplayUpdate {
@@ -174,11 +174,11 @@ pub fn sight(session: &Session) -> DisplayUpdate {
 
 fn stage(session: &Session) -> DisplayStage {
     let trial = match session.phase {
-        Phase::Ready => DisplayStage::Ready,
-        Phase::Running => DisplayStage::Running,
-        Phase::Paused => DisplayStage::Paused,
-        Phase::Over(_) => DisplayStage::Over,
-        Phase::Closed => return DisplayStage::Thanks,
+        TrialPhase::Ready => DisplayStage::Ready,
+        TrialPhase::Running => DisplayStage::Running,
+        TrialPhase::Paused => DisplayStage::Paused,
+        TrialPhase::Over(_) => DisplayStage::Over,
+        TrialPhase::Closed => return DisplayStage::Thanks,
     };
     match (session.protocol.is_some(), session.study_phase()) {
         (false, _) if trial == DisplayStage::Ready => DisplayStage::Welcome,
@@ -226,7 +226,8 @@ fn pressed(session: &Session, agent: Agent) -> Option<DisplayedPress> {
     let at = spot(&session.kitchen, agent, session.kitchen.button(agent, button).action);
     let is_told = agent == Agent::Human && session.spec.display.reasons == Some(true);
     let effective = no_effect.is_none();
-    let why = no_effect.filter(|_| is_told).map(|(reason, about)| DisplayedReason { reason, about: about.index() });
+    let why =
+        no_effect.filter(|_| is_told).map(|(reason, about)| DisplayedNoEffectReason { reason, about: about.index() });
     Some(DisplayedPress { number: session.presses[agent.index()], at, effective, why })
 }
 
@@ -237,7 +238,7 @@ fn practised_press(session: &Session) -> Option<DisplayedPress> {
     let at = spot(&session.kitchen, Agent::Human, session.kitchen.button(Agent::Human, press.button).action);
     let is_told = session.spec.display.reasons == Some(true);
     let why = press.no_effect.filter(|_| is_told);
-    let why = why.map(|(reason, about)| DisplayedReason { reason, about: about.index() });
+    let why = why.map(|(reason, about)| DisplayedNoEffectReason { reason, about: about.index() });
     Some(DisplayedPress { number: press.number, at, effective: press.is_right, why })
 }
 

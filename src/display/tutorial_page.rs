@@ -26,7 +26,7 @@ pub struct DisplayedTutorial {
     /// Whether the step is completed, so that the participant can go on.
     pub done: bool,
     /// What the page marks with a frame.
-    pub frames: Vec<TutorialFrame>,
+    pub frames: Vec<TutorialFrameTarget>,
     /// The button that the participant has to press now.
     pub hint: Option<TutorialHint>,
     /// Number of presses made and number of presses required, if the step has presses.
@@ -38,13 +38,13 @@ pub struct DisplayedTutorial {
     /// Time for which the recipe cards are shown, in seconds; `None` until the participant goes on.
     pub seconds: Option<f64>,
     /// Comprehension question of the step, if it has one.
-    pub question: Option<DisplayedQuestion>,
+    pub question: Option<DisplayedTutorialQuestion>,
 }
 
 /// Something that the tutorial marks with a frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum TutorialFrame {
+pub enum TutorialFrameTarget {
     /// The locations and storages of an agent.
     Area(Agent),
     /// A location or storage of the kitchen.
@@ -73,7 +73,7 @@ pub struct RecipeCard {
 
 /// A question of the tutorial's check of understanding.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct DisplayedQuestion {
+pub struct DisplayedTutorialQuestion {
     /// Answers from which the participant chooses.
     pub choices: Vec<String>,
     /// Number, from 1, of the wrong answer that the participant gave last; `None` once another is given.
@@ -124,22 +124,22 @@ pub(super) fn tutorial(session: &Session) -> Option<DisplayedTutorial> {
     })
 }
 
-fn frame(kitchen: &Kitchen, target: TutorialTarget) -> TutorialFrame {
+fn frame(kitchen: &Kitchen, target: TutorialTarget) -> TutorialFrameTarget {
     match target {
-        TutorialTarget::Area(agent) => TutorialFrame::Area(agent),
-        TutorialTarget::Location(location) => TutorialFrame::Place(DisplayPlace::Location(location.index())),
+        TutorialTarget::Area(agent) => TutorialFrameTarget::Area(agent),
+        TutorialTarget::Location(location) => TutorialFrameTarget::Place(DisplayPlace::Location(location.index())),
         TutorialTarget::Button(button) => {
             let button = kitchen.button(Agent::Human, button);
             match spot(kitchen, Agent::Human, button.action) {
-                place @ DisplayPlace::Storage(_) => TutorialFrame::Place(place),
-                DisplayPlace::Location(_) => TutorialFrame::Button(button.name.clone()),
+                place @ DisplayPlace::Storage(_) => TutorialFrameTarget::Place(place),
+                DisplayPlace::Location(_) => TutorialFrameTarget::Button(button.name.clone()),
             }
         }
     }
 }
 
-fn question(step: &TutorialStep, state: &TutorialState) -> DisplayedQuestion {
-    DisplayedQuestion {
+fn question(step: &TutorialStep, state: &TutorialState) -> DisplayedTutorialQuestion {
+    DisplayedTutorialQuestion {
         choices: step.choices.clone(),
         wrong: state.wrong,
         explanation: step.explanation.clone().filter(|_| state.wrong.is_some()),

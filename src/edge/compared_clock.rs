@@ -24,7 +24,7 @@ pub(super) struct DeviceClockStep {
 /// Estimator of the other clock's offset: mean over the latest replies, without slow replies and without those from
 /// before the clock was slewed. A delay in one direction shifts a reply's offset by half of the delay.
 #[derive(Debug)]
-pub(super) struct ComparedClock {
+pub(super) struct ClockOffsetEstimator {
     anchor: Instant,
     /// For each reply, the other clock's time minus seconds since the anchor, and the round-trip time in seconds;
     /// newest last.
@@ -33,11 +33,11 @@ pub(super) struct ComparedClock {
     known_at: Instant,
 }
 
-impl ComparedClock {
+impl ClockOffsetEstimator {
     /// An estimator without any reply yet.
-    pub fn new() -> ComparedClock {
+    pub fn new() -> ClockOffsetEstimator {
         let now = Instant::now();
-        ComparedClock { anchor: now, answers: Vec::new(), known_at: now }
+        ClockOffsetEstimator { anchor: now, answers: Vec::new(), known_at: now }
     }
 
     /// Adds a reply to a time request; returns the step of the other clock, if the reply shows one.
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn the_clock_follows_the_answers_that_came_at_once_and_one_that_was_set() {
-        let mut clock = ComparedClock::new();
+        let mut clock = ClockOffsetEstimator::new();
         let at = |ms: u64| clock.anchor + Duration::from_millis(ms);
         let [anchor, later] = [at(0), at(5000)];
         let after = |ms: u64| anchor + Duration::from_millis(ms);
@@ -145,7 +145,7 @@ mod tests {
         let bases: Vec<f64> = answers.iter().map(|[.., behind_s]| *behind_s).collect();
         let slewed_s: f64 = bases.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|by| *by < SET_S).sum();
         assert!(slewed_s > 0.015, "slewed by {slewed_s} s");
-        let (mut clock, mut steps, mut wrong_s) = (ComparedClock::new(), Vec::new(), 0.0_f64);
+        let (mut clock, mut steps, mut wrong_s) = (ClockOffsetEstimator::new(), Vec::new(), 0.0_f64);
         for (index, [asked, answered, pupil_s, _]) in answers.iter().enumerate() {
             let at = |seconds: f64| clock.anchor + Duration::from_secs_f64(seconds);
             let (asked, answered) = (at(*asked), at(*answered));

@@ -60,7 +60,7 @@ pub struct ConnectionTable {
 
 /// An open connection's entry in the table; dropping it removes the entry.
 #[derive(Debug)]
-pub struct ConnectionPlace {
+pub struct ConnectionHandle {
     /// Serial number of the network connection.
     pub number: u64,
     address: IpAddr,
@@ -70,9 +70,9 @@ pub struct ConnectionPlace {
 
 /// A new connection, and whether another connection is closed to make room for it.
 #[derive(Debug)]
-pub struct Arrival {
+pub struct NewConnection {
     /// Table entry of the new network connection.
-    pub place: ConnectionPlace,
+    pub place: ConnectionHandle,
     /// Whether another connection is closed to make room.
     pub made_room: bool,
 }
@@ -86,7 +86,7 @@ impl ConnectionTable {
     /// Adds a connection from this address. Beyond a limit it replaces the connection that was silent longest: one of
     /// the same address if that address has too many, else one of the address with the most waiting connections. `None`
     /// if no connection can be replaced, so that the new one has to be refused.
-    pub fn arrive(self: &Arc<Self>, address: IpAddr, now: Instant) -> Option<Arrival> {
+    pub fn arrive(self: &Arc<Self>, address: IpAddr, now: Instant) -> Option<NewConnection> {
         let address = network_of(address);
         let mut inner = self.lock();
         let of_address = inner.entries.iter().filter(|entry| entry.address == address).count();
@@ -101,8 +101,8 @@ impl ConnectionTable {
         let (close, closing) = watch::channel(false);
         let standing = ConnectionStanding::Waiting;
         inner.entries.push(ConnectionEntry { number, address, standing, heard: now, close });
-        let place = ConnectionPlace { number, address, table: self.clone(), closing };
-        Some(Arrival { place, made_room: is_full })
+        let place = ConnectionHandle { number, address, table: self.clone(), closing };
+        Some(NewConnection { place, made_room: is_full })
     }
 
     /// Index of the connection that a new one may replace, among those of this address or among all.
@@ -136,7 +136,7 @@ impl ConnectionTable {
     }
 }
 
-impl ConnectionPlace {
+impl ConnectionHandle {
     /// Address of the connection's other end, as the limits count it; see [`network_of`].
     pub fn address(&self) -> IpAddr {
         self.address
@@ -186,7 +186,7 @@ impl ConnectionPlace {
     }
 }
 
-impl Drop for ConnectionPlace {
+impl Drop for ConnectionHandle {
     fn drop(&mut self) {
         self.table.lock().entries.retain(|entry| entry.number != self.number);
     }

@@ -11,16 +11,16 @@ pub const RELEASE: Duration = Duration::from_secs(5);
 
 /// Which address may send gaze datagrams: the first sender has exclusive use until it falls silent.
 #[derive(Clone, Copy, Debug)]
-pub struct DatagramHolder {
+pub struct ExclusiveDatagramSender {
     senders: GazeSenders,
     /// Address with exclusive use of the gaze input, and the arrival of its last sample.
     holder: Option<(IpAddr, Instant)>,
 }
 
-impl DatagramHolder {
+impl ExclusiveDatagramSender {
     /// A filter that no address uses exclusively yet.
-    pub fn new(senders: GazeSenders) -> DatagramHolder {
-        DatagramHolder { senders, holder: None }
+    pub fn new(senders: GazeSenders) -> ExclusiveDatagramSender {
+        ExclusiveDatagramSender { senders, holder: None }
     }
 
     /// Whether a gaze datagram from this address is read.

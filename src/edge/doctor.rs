@@ -217,14 +217,18 @@ fn left_out() -> impl Iterator<Item = PreflightCheck> {
 /// browser.
 #[cfg(feature = "rerun")]
 fn viewer() -> PreflightCheck {
-    use super::viewer::{REMEDY, Viewer};
-    let (verdict, found, remedy) = match Viewer::find() {
-        Viewer::Ready(path) => (PreflightVerdict::Ok, format!("{} {}", path.display(), super::rerun::VERSION), ""),
-        Viewer::NoScreen => {
+    use super::viewer::{REMEDY, ViewerAvailability};
+    let (verdict, found, remedy) = match ViewerAvailability::find() {
+        ViewerAvailability::Ready(path) => {
+            (PreflightVerdict::Ok, format!("{} {}", path.display(), super::rerun::VERSION), "")
+        }
+        ViewerAvailability::NoScreen => {
             (PreflightVerdict::Ok, "there, but no screen: tomcom review serves it for a browser".to_string(), "")
         }
-        Viewer::Other(version) => (PreflightVerdict::Warning, format!("rerun {version}: another version"), REMEDY),
-        Viewer::None => {
+        ViewerAvailability::Other(version) => {
+            (PreflightVerdict::Warning, format!("rerun {version}: another version"), REMEDY)
+        }
+        ViewerAvailability::None => {
             (PreflightVerdict::Warning, "no rerun in PATH: tomcom review serves it for a browser".to_string(), REMEDY)
         }
     };

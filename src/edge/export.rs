@@ -8,8 +8,8 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::overwrite;
-use super::written_tables::{WrittenTables, reader};
-use crate::study::column::{Table, TableRow};
+use super::written_tables::{ListedTables, reader};
+use crate::study::column::{CsvRow, CsvTable};
 use crate::study::dictionary::columns;
 use crate::study::report::page_head;
 
@@ -22,7 +22,7 @@ const PARTS_NAME: &str = ".rows";
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 #[error("{}: cannot be written: {reason}", path.display())]
 #[diagnostic(help("another folder with --out, on a disk with free space"))]
-pub struct ExportError {
+pub struct AnalysisWriteError {
     /// File or folder that cannot be written.
     pub path: PathBuf,
     /// Why the output file cannot be written.
@@ -43,7 +43,7 @@ impl Default for TableRows {
 
 impl TableRows {
     /// Adds a row to the CSV table.
-    pub fn add(&mut self, row: &impl TableRow) {
+    pub fn add(&mut self, row: &impl CsvRow) {
         self.rows.serialize(row.cells()).expect("rows are flat, and written to memory");
     }
 
@@ -55,62 +55,62 @@ impl TableRows {
 
 /// Output folder of an analysis.
 #[derive(Debug)]
-pub struct ExportFolder {
+pub struct AnalysisFolder {
     folder: PathBuf,
 }
 
-impl ExportFolder {
+impl AnalysisFolder {
     /// Creates the output folder if it does not exist.
     ///
     /// # Errors
     /// The folder cannot be created or written to, or it contains files that this program did not write and that have
     /// the names of tables or report.
-    pub fn create(folder: &Path) -> Result<ExportFolder, ExportError> {
-        let export = ExportFolder { folder: folder.to_path_buf() };
+    pub fn create(folder: &Path) -> Result<AnalysisFolder, AnalysisWriteError> {
+        let export = AnalysisFolder { folder: folder.to_path_buf() };
         export.check_replaced()?;
         let parts = export.parts();
         // Temporary files of an interrupted run are removed.
-        remove_parts(&parts).map_err(|reason| ExportError { path: parts.clone(), reason })?;
-        fs::create_dir_all(&parts).map_err(|reason| ExportError { path: parts, reason })?;
+        remove_parts(&parts).map_err(|reason| AnalysisWriteError { path: parts.clone(), reason })?;
+        fs::create_dir_all(&parts).map_err(|reason| AnalysisWriteError { path: parts, reason })?;
         Ok(export)
     }
 
     /// Checks that all files to be replaced come from an earlier analysis.
-    fn check_replaced(&self) -> Result<(), ExportError> {
-        let written =
-            WrittenTables::read(&self.folder).map_err(|reason| ExportError { path: self.folder.clone(), reason })?;
-        for table in Table::ALL {
+    fn check_replaced(&self) -> Result<(), AnalysisWriteError> {
+        let written = ListedTables::read(&self.folder)
+            .map_err(|reason| AnalysisWriteError { path: self.folder.clone(), reason })?;
+        for table in CsvTable::ALL {
             let path = self.folder.join(format!("{}.csv", table.name()));
             let is_own = |head: &[u8]| {
                 let mut header = csv::ByteRecord::new();
                 reader(head).read_byte_record(&mut header).unwrap_or(false) && written.has(table.name(), &header)
             };
             let what = format!("the table \"{}\"", table.name());
-            overwrite::check(&path, &what, is_own).map_err(|reason| ExportError { path, reason })?;
+            overwrite::check(&path, &what, is_own).map_err(|reason| AnalysisWriteError { path, reason })?;
         }
         let path = self.folder.join(REPORT_NAME);
         // Reports of earlier versions do not name their program, but have a data dictionary beside them.
         let is_own =
             |head: &[u8]| written.is_listed() || page_head::participants(&String::from_utf8_lossy(head)).is_some();
-        overwrite::check(&path, "a report", is_own).map_err(|reason| ExportError { path, reason })
+        overwrite::check(&path, "a report", is_own).map_err(|reason| AnalysisWriteError { path, reason })
     }
 
     fn parts(&self) -> PathBuf {
         self.folder.join(PARTS_NAME)
     }
 
-    fn part(&self, index: usize, table: Table) -> PathBuf {
+    fn part(&self, index: usize, table: CsvTable) -> PathBuf {
         self.parts().join(format!("{index}-{}", table.name()))
     }
 
-    /// Stores the event rows of one recording in temporary files, in the order of [`Table::OF_EVENTS`].
+    /// Stores the event rows of one recording in temporary files, in the order of [`CsvTable::OF_EVENTS`].
     ///
     /// # Errors
     /// The files cannot be written.
-    pub fn keep(&self, index: usize, rows: &[Vec<u8>; 5]) -> Result<(), ExportError> {
-        for (table, rows) in Table::OF_EVENTS.into_iter().zip(rows) {
+    pub fn keep(&self, index: usize, rows: &[Vec<u8>; 5]) -> Result<(), AnalysisWriteError> {
+        for (table, rows) in CsvTable::OF_EVENTS.into_iter().zip(rows) {
             let path = self.part(index, table);
-            fs::write(&path, rows).map_err(|reason| ExportError { path, reason })?;
+            fs::write(&path, rows).map_err(|reason| AnalysisWriteError { path, reason })?;
         }
         Ok(())
     }
@@ -119,10 +119,10 @@ impl ExportFolder {
     ///
     /// # Errors
     /// The table cannot be written.
-    pub fn table<Row: TableRow>(
+    pub fn table<Row: CsvRow>(
         &self,
         rows: impl IntoIterator<Item: Borrow<Row>>,
-    ) -> Result<Option<Table>, ExportError> {
+    ) -> Result<Option<CsvTable>, AnalysisWriteError> {
         let mut all = TableRows::default();
         rows.into_iter().for_each(|row| all.add(row.borrow()));
         let rows = all.into_bytes();
@@ -134,9 +134,9 @@ impl ExportFolder {
     ///
     /// # Errors
     /// The files cannot be written.
-    pub fn tables_of_events(&self, recordings: &[usize]) -> Result<Vec<Table>, ExportError> {
+    pub fn tables_of_events(&self, recordings: &[usize]) -> Result<Vec<CsvTable>, AnalysisWriteError> {
         let mut filled = Vec::new();
-        for table in Table::OF_EVENTS {
+        for table in CsvTable::OF_EVENTS {
             filled.extend(self.write_table(table, |out| {
                 let mut bytes = 0;
                 for &index in recordings {
@@ -145,7 +145,7 @@ impl ExportFolder {
                 Ok(bytes > 0)
             })?);
         }
-        remove_parts(&self.parts()).map_err(|reason| ExportError { path: self.parts(), reason })?;
+        remove_parts(&self.parts()).map_err(|reason| AnalysisWriteError { path: self.parts(), reason })?;
         Ok(filled)
     }
 
@@ -153,19 +153,19 @@ impl ExportFolder {
     ///
     /// # Errors
     /// The report cannot be written.
-    pub fn report(&self, page: &str) -> Result<PathBuf, ExportError> {
+    pub fn report(&self, page: &str) -> Result<PathBuf, AnalysisWriteError> {
         let path = self.folder.join(REPORT_NAME);
         match fs::write(&path, page) {
             Ok(()) => Ok(path),
-            Err(reason) => Err(ExportError { path, reason }),
+            Err(reason) => Err(AnalysisWriteError { path, reason }),
         }
     }
 
     fn write_table(
         &self,
-        table: Table,
+        table: CsvTable,
         rows: impl FnOnce(&mut BufWriter<File>) -> io::Result<bool>,
-    ) -> Result<Option<Table>, ExportError> {
+    ) -> Result<Option<CsvTable>, AnalysisWriteError> {
         let path = self.folder.join(format!("{}.csv", table.name()));
         let write = || {
             let mut out = BufWriter::new(File::create(&path)?);
@@ -174,7 +174,7 @@ impl ExportFolder {
             let has_rows = rows(&mut out)?;
             out.flush().map(|()| has_rows.then_some(table))
         };
-        write().map_err(|reason| ExportError { path: path.clone(), reason })
+        write().map_err(|reason| AnalysisWriteError { path: path.clone(), reason })
     }
 }
 
@@ -190,7 +190,7 @@ fn remove_parts(folder: &Path) -> io::Result<()> {
         let entry = entry?;
         let name = entry.file_name().to_string_lossy().into_owned();
         let is_part = name.split_once('-').is_some_and(|(index, table)| {
-            index.parse::<usize>().is_ok() && Table::OF_EVENTS.iter().any(|part| part.name() == table)
+            index.parse::<usize>().is_ok() && CsvTable::OF_EVENTS.iter().any(|part| part.name() == table)
         });
         if is_part {
             fs::remove_file(entry.path())?;

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use miette::{Diagnostic, NamedSource, SourceSpan};
 
 use super::place::place_of;
-use crate::base::features::{Feature, NotBuilt};
+use crate::base::features::{Feature, MissingFeature};
 use crate::base::printable::{printable, printable_lines};
 
 /// Result of reading a file, with an error that explains what is wrong with the file.
@@ -82,7 +82,7 @@ impl FileError {
     }
 
     /// The error about a session or a recording that needs an optional part of the program which this build lacks.
-    pub fn not_built(what: &Path, missing: NotBuilt) -> FileError {
+    pub fn not_built(what: &Path, missing: MissingFeature) -> FileError {
         let instead = if missing.0 == Feature::Physics { "; or, for a new session, --arm timed" } else { "" };
         let remedy = format!("{}{instead}", missing.remedy());
         FileError::from_finding(what, format!("a session for another build; this one is {missing}"), remedy)

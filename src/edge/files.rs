@@ -11,14 +11,14 @@ use super::parse::parse;
 use super::place::place_of;
 use crate::analysis::fitting::FITTED;
 use crate::base::number_range::OutOfRange;
-use crate::kitchen::compile::{SpecError, SpecFile};
+use crate::kitchen::compile::{KitchenFileError, KitchenFileKind};
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::recipe::RecipesSpec;
 use crate::kitchen::{Kitchen, layout_ranges};
 use crate::mind::fitted_people::{FittedPeople, HumanModelFile};
 use crate::mind::model::HumanModel;
 use crate::session::SessionSpec;
-use crate::session::header::FileText;
+use crate::session::header::RecordedFile;
 use crate::session::plan::{PlanSpec, Questionnaire, QuestionnaireSpec, Study, Tutorial};
 use crate::session::ranges;
 use crate::session::settings::{SettingError, is_code};
@@ -33,7 +33,7 @@ pub struct SessionFiles {
     /// Kitchen of the session, with its layout and recipe files.
     pub kitchen: KitchenFiles,
     /// Key file, if the settings name one.
-    pub keys: Option<FileText>,
+    pub keys: Option<RecordedFile>,
     /// Questionnaires that the study plan names, in the plan's order.
     pub questionnaires: Vec<Questionnaire>,
     /// Tutorial that the study plan names, if any.
@@ -120,14 +120,14 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
 }
 
 /// Reads the key file that the session file names, if any.
-fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Option<FileText>> {
+fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Option<RecordedFile>> {
     let Some(name) = &spec.console.keys else { return Ok(None) };
     let path = session.parent().unwrap_or(Path::new(".")).join(name);
     let keys = std::fs::read_to_string(&path).map_err(|reason| {
         let remedy = "the path of a key file, relative to the session file; tomcom keys prints one";
         missing(session, text, ("console.keys", 0, name), reason, remedy)
     })?;
-    Ok(Some(FileText { path: path.display().to_string(), text: keys }))
+    Ok(Some(RecordedFile { path: path.display().to_string(), text: keys }))
 }
 
 /// Reads the questionnaires of a study plan, in the plan's order and in the session's language.
@@ -257,9 +257,9 @@ pub struct KitchenFiles {
     /// Kitchen, compiled from its layout and recipe files.
     pub kitchen: Kitchen,
     /// Layout file of the kitchen.
-    pub layout: FileText,
+    pub layout: RecordedFile,
     /// Recipe file of the kitchen; its path is as the layout file names it.
-    pub recipes: FileText,
+    pub recipes: RecordedFile,
 }
 
 /// Reads a layout file and the recipe file that it names, and checks them with the console's default keys.
@@ -267,7 +267,7 @@ pub fn read_kitchen(layout_path: &Path) -> FileResult<KitchenFiles> {
     read_kitchen_with(layout_path, None)
 }
 
-fn read_kitchen_with(layout_path: &Path, keys: Option<&FileText>) -> FileResult<KitchenFiles> {
+fn read_kitchen_with(layout_path: &Path, keys: Option<&RecordedFile>) -> FileResult<KitchenFiles> {
     let layout_text = read_text(layout_path)?;
     let layout: LayoutSpec = parse(layout_path, &layout_text)?;
     let folder = layout_path.parent().unwrap_or(Path::new("."));
@@ -297,14 +297,14 @@ pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Fil
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
     match Kitchen::compile(&layout_spec, &recipes_spec) {
         Ok(kitchen) => {
-            let layout_text = FileText { path: layout.0.display().to_string(), text: layout.1 };
-            let recipes_text = FileText { path: layout_spec.recipes.into_inner(), text: recipes.1 };
+            let layout_text = RecordedFile { path: layout.0.display().to_string(), text: layout.1 };
+            let recipes_text = RecordedFile { path: layout_spec.recipes.into_inner(), text: recipes.1 };
             Ok(KitchenFiles { kitchen, layout: layout_text, recipes: recipes_text })
         }
-        Err(SpecError { file, span, found, remedy }) => {
+        Err(KitchenFileError { file, span, found, remedy }) => {
             let (path, text) = match file {
-                SpecFile::Layout => (layout.0, &layout.1),
-                SpecFile::Recipes => (recipes.0, &recipes.1),
+                KitchenFileKind::Layout => (layout.0, &layout.1),
+                KitchenFileKind::Recipes => (recipes.0, &recipes.1),
             };
             Err(FileError::at(path, text, span, found, remedy))
         }

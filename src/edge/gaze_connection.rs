@@ -12,9 +12,9 @@ use tokio::net::TcpStream;
 use tokio::sync::mpsc::Sender;
 use tokio::time::timeout;
 
-use super::connection_table::ConnectionPlace;
-use super::gaze_gate::{Admission, GazeGate};
-use super::gaze_input::{GazeNews, SenderRefusal};
+use super::connection_table::ConnectionHandle;
+use super::gaze_gate::{GazeAccessCheck, GazeAdmission};
+use super::gaze_input::{GazeSenderRejection, TrackerMessage};
 use super::gaze_line::{begins_object, code_in, parse};
 
 /// Longest line of a gaze connection, in bytes.
@@ -25,7 +25,7 @@ const FIRST_LINE: Duration = Duration::from_secs(10);
 const ANSWER: Duration = Duration::from_secs(1);
 
 /// The access check that all gaze connections share.
-pub(super) type SharedGate = Arc<Mutex<GazeGate>>;
+pub(super) type SharedGate = Arc<Mutex<GazeAccessCheck>>;
 
 /// A gaze connection and what is known of its sender.
 pub(super) struct GazeConnection {
@@ -34,17 +34,17 @@ pub(super) struct GazeConnection {
     /// Network address of the gaze sender.
     pub from: IpAddr,
     /// Entry of the connection in the table of connections.
-    pub place: ConnectionPlace,
+    pub place: ConnectionHandle,
     /// Access check for senders of gaze.
     pub gate: SharedGate,
     /// Channel to which the connection's messages go.
-    pub news: Sender<GazeNews>,
+    pub news: Sender<TrackerMessage>,
 }
 
 /// Reads a gaze connection until it ends, is rejected, or is replaced by another.
 pub(super) async fn attend(connection: GazeConnection) {
     let GazeConnection { stream, from, place, gate, news } = connection;
-    let is_paired = lock(&gate).admission(from) == Admission::Open;
+    let is_paired = lock(&gate).admission(from) == GazeAdmission::Open;
     let mut reader =
         SampleReader { stream, from, place: &place, gate: &gate, news: &news, lines: LineReader::default(), is_paired };
     let is_tracker = tokio::select! {
@@ -58,13 +58,13 @@ pub(super) async fn attend(connection: GazeConnection) {
 }
 
 /// Counts a rejected sender of gaze.
-pub(super) fn reject(news: &Sender<GazeNews>) {
+pub(super) fn reject(news: &Sender<TrackerMessage>) {
     // A queue that is closed or full has worse consequences than a wrong count of rejected senders.
-    let _ = news.try_send(GazeNews::Rejected(1));
+    let _ = news.try_send(TrackerMessage::Rejected(1));
 }
 
 /// Locks the shared access check; it stays usable after a panic in another thread.
-pub(super) fn lock(gate: &SharedGate) -> std::sync::MutexGuard<'_, GazeGate> {
+pub(super) fn lock(gate: &SharedGate) -> std::sync::MutexGuard<'_, GazeAccessCheck> {
     gate.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -72,7 +72,7 @@ pub(super) fn lock(gate: &SharedGate) -> std::sync::MutexGuard<'_, GazeGate> {
 enum LineContent {
     /// The first line of the connection, with a pairing code.
     Pairing(String),
-    News(GazeNews),
+    News(TrackerMessage),
 }
 
 /// Splits the bytes of a gaze connection into lines.
@@ -105,7 +105,7 @@ impl LineReader {
         let code = if self.has_line || self.is_too_long { None } else { code_in(&self.line) };
         let found = match (code, self.is_too_long) {
             (Some(code), _) => Some(LineContent::Pairing(code)),
-            (None, true) => Some(LineContent::News(GazeNews::Malformed(1))),
+            (None, true) => Some(LineContent::News(TrackerMessage::Malformed(1))),
             (None, false) => parse(&self.line, Instant::now()).map(LineContent::News),
         };
         self.line.clear();
@@ -124,9 +124,9 @@ impl LineReader {
 struct SampleReader<'a> {
     stream: TcpStream,
     from: IpAddr,
-    place: &'a ConnectionPlace,
+    place: &'a ConnectionHandle,
     gate: &'a SharedGate,
-    news: &'a Sender<GazeNews>,
+    news: &'a Sender<TrackerMessage>,
     lines: LineReader,
     /// Whether the sender is admitted, so that its lines are read.
     is_paired: bool,
@@ -181,7 +181,7 @@ impl SampleReader<'_> {
             Ok(()) => "{\"paired\": true}\n".to_string(),
             Err((why, wait)) => format!(
                 "{{\"paired\": false, \"checked\": {}, \"wait_s\": {}}}\n",
-                why == SenderRefusal::WrongCode,
+                why == GazeSenderRejection::WrongCode,
                 wait.as_secs_f64().ceil()
             ),
         };
@@ -192,12 +192,12 @@ impl SampleReader<'_> {
 
     /// Passes on the content of a line, preceded by `Began` before the first sample; returns false if the receiver is
     /// gone.
-    async fn tell(&mut self, found: GazeNews) -> bool {
-        if matches!(found, GazeNews::Sample(..)) && !self.lines.has_begun {
+    async fn tell(&mut self, found: TrackerMessage) -> bool {
+        if matches!(found, TrackerMessage::Sample(..)) && !self.lines.has_begun {
             self.lines.has_begun = true;
             // The limits never reject an admitted sender: no more connections can be open than may be admitted.
             let _ = self.place.admit();
-            if self.news.send(GazeNews::Began).await.is_err() {
+            if self.news.send(TrackerMessage::Began).await.is_err() {
                 return false;
             }
         }
@@ -231,7 +231,7 @@ mod tests {
         let (sender, mut lines) = channel(64);
         let reader = tokio::spawn(async move {
             let (stream, from) = listener.accept().await.expect("a tracker");
-            let gate = Arc::new(Mutex::new(GazeGate::new(&[], None, sender.clone())));
+            let gate = Arc::new(Mutex::new(GazeAccessCheck::new(&[], None, sender.clone())));
             let table = ConnectionTable::new(ONE);
             let place = table.arrive(from.ip(), Instant::now()).expect("a place").place;
             attend(GazeConnection { stream, from: from.ip(), place, gate, news: sender }).await;
@@ -255,14 +255,14 @@ mod tests {
             found.push(line);
         }
         let sample = |x, y, confidence, device_ns| {
-            GazeNews::Sample(GazeSample { device_ns, ..GazeSample::new(x, y, confidence) }, None)
+            TrackerMessage::Sample(GazeSample { device_ns, ..GazeSample::new(x, y, confidence) }, None)
         };
-        assert_eq!(found.remove(0), GazeNews::Began);
+        assert_eq!(found.remove(0), TrackerMessage::Began);
         let expected = [sample(0.25, 0.5, 0.9, Some(1_500_000_000)), sample(0.1, 2.0, 0.0, None)];
         assert_eq!(found[..2], expected);
-        assert_eq!(found[2..4], vec![GazeNews::Malformed(1); 2]);
+        assert_eq!(found[2..4], vec![TrackerMessage::Malformed(1); 2]);
         let milliseconds = sample(0.0, 0.0, 1.0, Some(1_764_057_600_123_500_032));
-        assert_eq!(found[4..6], [milliseconds, GazeNews::WrongTime(-3.5)]);
-        assert_eq!(found[6..], vec![GazeNews::Malformed(1); 4]);
+        assert_eq!(found[4..6], [milliseconds, TrackerMessage::WrongTime(-3.5)]);
+        assert_eq!(found[6..], vec![TrackerMessage::Malformed(1); 4]);
     }
 }

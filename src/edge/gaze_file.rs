@@ -7,7 +7,7 @@ use super::gaze_table;
 use super::log::{LOG_NAME, LogReader, at_line};
 use super::tracker_folder::{TrackerFinding, tracker_data};
 use crate::gaze::GazeSample;
-use crate::gaze::surface::SurfaceMap;
+use crate::gaze::surface::SurfaceHomography;
 use crate::session::Event;
 use crate::session::apply::apply;
 
@@ -29,7 +29,7 @@ pub struct GazeFile {
 ///
 /// # Errors
 /// The file cannot be read, has another format, or ends before `start_s`.
-pub fn read(path: &Path, map: &SurfaceMap, start_s: f64) -> FileResult<GazeFile> {
+pub fn read(path: &Path, map: &SurfaceHomography, start_s: f64) -> FileResult<GazeFile> {
     let is_log = path.extension().is_some_and(|extension| extension == "jsonl");
     let is_ours = is_log || path.join(LOG_NAME).exists();
     if !is_ours && let Some(TrackerFinding { found, remedy }) = tracker_data(path) {
@@ -47,7 +47,7 @@ pub fn read(path: &Path, map: &SurfaceMap, start_s: f64) -> FileResult<GazeFile>
     Ok(found)
 }
 
-fn of_table(path: &Path, map: &SurfaceMap) -> FileResult<GazeFile> {
+fn of_table(path: &Path, map: &SurfaceHomography) -> FileResult<GazeFile> {
     let (samples, malformed) = gaze_table::read(path, map, MAX_SAMPLES)?;
     let samples = samples.into_iter().map(|(at_ns, sample)| (at_ns as f64 / 1e9, sample)).collect();
     Ok(GazeFile { samples, malformed })

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::mpsc::Sender;
 
-use super::gaze_input::{GazeNews, SenderRefusal};
+use super::gaze_input::{GazeSenderRejection, TrackerMessage};
 use super::gaze_line::code_in;
-use super::pairing::{PairingDesk, PairingVerdict};
+use super::pairing::{PairingCodeCheck, PairingVerdict};
 
 /// Least time between two notices about rejected senders, of which there can be thousands.
 const NOTICE: Duration = Duration::from_millis(100);
@@ -18,7 +18,7 @@ const MAX_PAIRED: usize = 64;
 
 /// Condition under which gaze from an address is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Admission {
+pub(super) enum GazeAdmission {
     /// Gaze from the address is read without a condition.
     Open,
     /// Gaze from the address is read once it has sent the pairing code.
@@ -30,34 +30,34 @@ pub(super) enum Admission {
 /// Access check for senders of gaze, which also reports rejected senders. Connections and datagrams have separate
 /// instances, so that wrong codes in datagrams, whose sender addresses can be forged, lock no connection out.
 #[derive(Debug)]
-pub(super) struct GazeGate {
+pub(super) struct GazeAccessCheck {
     listed: Vec<IpAddr>,
     /// Check of pairing codes; `None` if no code is accepted.
-    desk: Option<PairingDesk>,
+    desk: Option<PairingCodeCheck>,
     /// Senders of datagrams that have sent the right code, oldest first.
     paired: VecDeque<SocketAddr>,
-    news: Sender<GazeNews>,
+    news: Sender<TrackerMessage>,
     /// Time of the last report about rejected senders, and number of senders rejected since.
     told: Option<Instant>,
     untold: u64,
 }
 
-impl GazeGate {
+impl GazeAccessCheck {
     /// An access check for listed addresses, and for senders that know this code.
-    pub fn new(listed: &[IpAddr], code: Option<&String>, news: Sender<GazeNews>) -> GazeGate {
-        let desk = code.map(|code| PairingDesk::new(code.clone()));
+    pub fn new(listed: &[IpAddr], code: Option<&String>, news: Sender<TrackerMessage>) -> GazeAccessCheck {
+        let desk = code.map(|code| PairingCodeCheck::new(code.clone()));
         let listed = listed.iter().map(IpAddr::to_canonical).collect();
-        GazeGate { listed, desk, paired: VecDeque::new(), news, told: None, untold: 0 }
+        GazeAccessCheck { listed, desk, paired: VecDeque::new(), news, told: None, untold: 0 }
     }
 
     /// Condition under which gaze from this address is read.
-    pub fn admission(&self, from: IpAddr) -> Admission {
+    pub fn admission(&self, from: IpAddr) -> GazeAdmission {
         // A socket for both IP versions reports IPv4 addresses as IPv6 addresses, which are converted back.
         let from = from.to_canonical();
         match from.is_loopback() || self.listed.contains(&from) {
-            true => Admission::Open,
-            false if self.desk.is_some() => Admission::ByCode,
-            false => Admission::Never,
+            true => GazeAdmission::Open,
+            false if self.desk.is_some() => GazeAdmission::ByCode,
+            false => GazeAdmission::Never,
         }
     }
 
@@ -65,16 +65,21 @@ impl GazeGate {
     ///
     /// # Errors
     /// Why the sender is rejected, and for how long codes of its address are not checked.
-    pub fn pair(&mut self, from: IpAddr, code: Option<&str>, now: Instant) -> Result<(), (SenderRefusal, Duration)> {
+    pub fn pair(
+        &mut self,
+        from: IpAddr,
+        code: Option<&str>,
+        now: Instant,
+    ) -> Result<(), (GazeSenderRejection, Duration)> {
         let verdict = match (&mut self.desk, code) {
             (Some(desk), Some(code)) => Some(desk.attempt(from, None, code, now)),
             _ => None,
         };
         let (why, wait) = match verdict {
             Some(PairingVerdict::Right) => return Ok(()),
-            Some(PairingVerdict::Wrong(wait)) => (SenderRefusal::WrongCode, wait),
-            Some(PairingVerdict::Locked(wait)) => (SenderRefusal::Locked, wait),
-            None => (SenderRefusal::Unpaired, Duration::ZERO),
+            Some(PairingVerdict::Wrong(wait)) => (GazeSenderRejection::WrongCode, wait),
+            Some(PairingVerdict::Locked(wait)) => (GazeSenderRejection::Locked, wait),
+            None => (GazeSenderRejection::Unpaired, Duration::ZERO),
         };
         self.refuse(from, why, now);
         Err((why, wait))
@@ -87,9 +92,9 @@ impl GazeGate {
         let code = code_in(&datagram[..first]);
         let lines = if code.is_some() { &datagram[first..] } else { datagram };
         match self.admission(from.ip()) {
-            Admission::Open => Some(lines),
-            Admission::ByCode if self.paired.contains(&from) => Some(lines),
-            Admission::ByCode => {
+            GazeAdmission::Open => Some(lines),
+            GazeAdmission::ByCode if self.paired.contains(&from) => Some(lines),
+            GazeAdmission::ByCode => {
                 self.pair(from.ip(), code.as_deref(), now).ok()?;
                 self.paired.push_back(from);
                 if self.paired.len() > MAX_PAIRED {
@@ -97,20 +102,20 @@ impl GazeGate {
                 }
                 Some(lines)
             }
-            Admission::Never => {
-                self.refuse(from.ip(), SenderRefusal::Unlisted, now);
+            GazeAdmission::Never => {
+                self.refuse(from.ip(), GazeSenderRejection::Unlisted, now);
                 None
             }
         }
     }
 
     /// Reports a rejected sender of gaze to the session.
-    pub fn refuse(&mut self, from: IpAddr, why: SenderRefusal, now: Instant) {
+    pub fn refuse(&mut self, from: IpAddr, why: GazeSenderRejection, now: Instant) {
         self.untold += 1;
         if self.told.is_some_and(|told| now.saturating_duration_since(told) < NOTICE) {
             return;
         }
-        let refused = GazeNews::Refused { from: from.to_canonical(), why, senders: self.untold };
+        let refused = TrackerMessage::Refused { from: from.to_canonical(), why, senders: self.untold };
         // A queue that is closed or full has worse consequences than a missing notice.
         if self.news.try_send(refused).is_ok() {
             (self.told, self.untold) = (Some(now), 0);
@@ -125,10 +130,10 @@ mod tests {
 
     const SAMPLE: &[u8] = b"{\"x\": 0.5, \"y\": 0.5, \"confidence\": 1}\n";
 
-    fn gate(listed: &[&str], code: Option<&str>) -> (GazeGate, Receiver<GazeNews>) {
+    fn gate(listed: &[&str], code: Option<&str>) -> (GazeAccessCheck, Receiver<TrackerMessage>) {
         let (news, told) = channel(16);
         let listed: Vec<IpAddr> = listed.iter().map(|address| address.parse().expect("an address")).collect();
-        (GazeGate::new(&listed, code.map(str::to_string).as_ref(), news), told)
+        (GazeAccessCheck::new(&listed, code.map(str::to_string).as_ref(), news), told)
     }
 
     fn sender(port: u16) -> SocketAddr {
@@ -151,10 +156,10 @@ mod tests {
         now += NOTICE;
         assert_eq!(gate.lines(sender(2), &paired, now), None, "locked");
         assert_eq!(gate.lines(sender(1), SAMPLE, now), Some(SAMPLE), "who is paired stays");
-        let refused = |why, senders| Ok(GazeNews::Refused { from: sender(0).ip(), why, senders });
-        assert_eq!(told.try_recv(), refused(SenderRefusal::Unpaired, 1));
-        assert_eq!(told.try_recv(), refused(SenderRefusal::WrongCode, 2));
-        assert_eq!(told.try_recv(), refused(SenderRefusal::Locked, 1));
+        let refused = |why, senders| Ok(TrackerMessage::Refused { from: sender(0).ip(), why, senders });
+        assert_eq!(told.try_recv(), refused(GazeSenderRejection::Unpaired, 1));
+        assert_eq!(told.try_recv(), refused(GazeSenderRejection::WrongCode, 2));
+        assert_eq!(told.try_recv(), refused(GazeSenderRejection::Locked, 1));
         assert!(told.try_recv().is_err());
         now += Duration::from_secs(1);
         assert!(gate.lines(sender(2), &paired, now).is_some());
@@ -173,10 +178,10 @@ mod tests {
             ["127.0.0.1", "192.168.1.21"].map(|address| address.parse().expect("an address"));
         assert_eq!(
             [here, mapped, other].map(|from| gate.admission(from)),
-            [Admission::Open, Admission::Open, Admission::Never]
+            [GazeAdmission::Open, GazeAdmission::Open, GazeAdmission::Never]
         );
         assert_eq!(gate.lines(SocketAddr::new(other, 1), SAMPLE, now), None);
-        let refused = GazeNews::Refused { from: other, why: SenderRefusal::Unlisted, senders: 1 };
+        let refused = TrackerMessage::Refused { from: other, why: GazeSenderRejection::Unlisted, senders: 1 };
         assert_eq!(told.try_recv(), Ok(refused));
         // A sender that needs no code may send one.
         assert_eq!(gate.lines(sender(1), b"{\"pair\": \"anything\"}\n{}", now), Some(&b"\n{}"[..]));

@@ -11,7 +11,7 @@ pub const WAITING: usize = 4096;
 
 /// A message from an eye tracker to the session. Points are in fractions of the wall display, origin at the top left.
 #[derive(Clone, Debug, PartialEq)]
-pub enum GazeNews {
+pub enum TrackerMessage {
     /// Gaze sample, with the time at which it was taken if the tracker's clock has been compared with this computer's.
     Sample(GazeSample, Option<Instant>),
     /// Number of malformed messages, lines or gaze samples.
@@ -25,7 +25,7 @@ pub enum GazeNews {
         /// Network address of the last rejected gaze sender.
         from: IpAddr,
         /// Why the last gaze sender was rejected.
-        why: SenderRefusal,
+        why: GazeSenderRejection,
         /// Number of senders rejected since the last such message.
         senders: u64,
     },
@@ -59,13 +59,13 @@ pub enum GazeNews {
         /// Confidence of the tracker in the blink, 0 to 1.
         confidence: f64,
         /// Time of the blink's onset or offset.
-        taken: SampleTime,
+        taken: TrackerTime,
     },
 }
 
 /// Why a gaze sender at another computer is not admitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SenderRefusal {
+pub enum GazeSenderRejection {
     /// The session lists addresses, and the sender's is not among them.
     Unlisted,
     /// The sender has sent something else than the pairing code.
@@ -76,21 +76,21 @@ pub enum SenderRefusal {
     Locked,
 }
 
-impl SenderRefusal {
+impl GazeSenderRejection {
     /// The reason in words, to complete "gaze from ADDRESS is rejected: …".
     pub fn words(self) -> &'static str {
         match self {
-            SenderRefusal::Unlisted => "gaze_from does not list it",
-            SenderRefusal::Unpaired => "it does not begin with the pairing code",
-            SenderRefusal::WrongCode => "the pairing code is wrong",
-            SenderRefusal::Locked => "no code is checked for a while, after wrong ones",
+            GazeSenderRejection::Unlisted => "gaze_from does not list it",
+            GazeSenderRejection::Unpaired => "it does not begin with the pairing code",
+            GazeSenderRejection::WrongCode => "the pairing code is wrong",
+            GazeSenderRejection::Locked => "no code is checked for a while, after wrong ones",
         }
     }
 }
 
 /// Time of a tracker's event, on the tracker's clock and on this computer's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SampleTime {
+pub struct TrackerTime {
     /// Time on the tracker's clock, in nanoseconds.
     pub device_ns: u64,
     /// Time on this computer's clock, if the two clocks were compared.
@@ -109,5 +109,5 @@ pub struct TrackerFixation {
     /// Confidence of the tracker in the fixation, 0 to 1.
     pub confidence: f64,
     /// Beginning of the fixation.
-    pub began: SampleTime,
+    pub began: TrackerTime,
 }

@@ -12,10 +12,10 @@ use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tokio::time::sleep;
 
 use super::connection_table::{ConnectionLimits, ConnectionTable};
-use super::datagram_holder::DatagramHolder;
+use super::datagram_holder::ExclusiveDatagramSender;
 use super::gaze_connection::{GazeConnection, SharedGate, attend, lock, reject};
-use super::gaze_gate::{Admission, GazeGate};
-use super::gaze_input::{GazeNews, SenderRefusal, WAITING};
+use super::gaze_gate::{GazeAccessCheck, GazeAdmission};
+use super::gaze_input::{GazeSenderRejection, TrackerMessage, WAITING};
 use super::gaze_line::{begins_object, parse};
 use super::outer_address::reachable;
 use super::pairing_code::pairing_code;
@@ -42,7 +42,7 @@ pub struct GazeListener {
     /// lists addresses.
     pub code: Option<String>,
     /// Messages from the senders of gaze.
-    pub news: Receiver<GazeNews>,
+    pub news: Receiver<TrackerMessage>,
 }
 
 impl GazeListener {
@@ -63,14 +63,14 @@ pub async fn listen(at: SocketAddr, senders: GazeSenders, listed: &[IpAddr]) -> 
     let socket = UdpSocket::bind(address).await?;
     let (sender, news) = channel(WAITING);
     let code = (!at.ip().is_loopback() && listed.is_empty()).then(pairing_code);
-    let gate = || GazeGate::new(listed, code.as_ref(), sender.clone());
-    tokio::spawn(take_datagrams(socket, DatagramHolder::new(senders), gate(), sender.clone()));
+    let gate = || GazeAccessCheck::new(listed, code.as_ref(), sender.clone());
+    tokio::spawn(take_datagrams(socket, ExclusiveDatagramSender::new(senders), gate(), sender.clone()));
     tokio::spawn(take_connections(listener, Arc::new(Mutex::new(gate())), sender.clone()));
     Ok(GazeListener { address, code, news })
 }
 
 /// Accepts gaze connections until the program ends.
-async fn take_connections(listener: TcpListener, gate: SharedGate, news: Sender<GazeNews>) {
+async fn take_connections(listener: TcpListener, gate: SharedGate, news: Sender<TrackerMessage>) {
     let table = ConnectionTable::new(LIMITS);
     while !news.is_closed() {
         let Ok((stream, from)) = listener.accept().await else {
@@ -79,8 +79,8 @@ async fn take_connections(listener: TcpListener, gate: SharedGate, news: Sender<
             continue;
         };
         let (from, now) = (from.ip(), Instant::now());
-        if lock(&gate).admission(from) == Admission::Never {
-            lock(&gate).refuse(from, SenderRefusal::Unlisted, now);
+        if lock(&gate).admission(from) == GazeAdmission::Never {
+            lock(&gate).refuse(from, GazeSenderRejection::Unlisted, now);
             continue;
         }
         match table.arrive(from, now) {
@@ -94,7 +94,12 @@ async fn take_connections(listener: TcpListener, gate: SharedGate, news: Sender<
 }
 
 /// Reads gaze datagrams until the program ends; samples that cannot be queued are counted as dropped.
-async fn take_datagrams(socket: UdpSocket, mut holder: DatagramHolder, mut gate: GazeGate, news: Sender<GazeNews>) {
+async fn take_datagrams(
+    socket: UdpSocket,
+    mut holder: ExclusiveDatagramSender,
+    mut gate: GazeAccessCheck,
+    news: Sender<TrackerMessage>,
+) {
     let mut buffer = vec![0; MAX_DATAGRAM];
     let (mut lost, mut tracker) = (0, None);
     while !news.is_closed() {
@@ -109,16 +114,17 @@ async fn take_datagrams(socket: UdpSocket, mut holder: DatagramHolder, mut gate:
             reject(&news);
             continue;
         }
-        let found: Vec<GazeNews> = lines.split(|&byte| byte == b'\n').filter_map(|line| parse(line, now)).collect();
+        let found: Vec<TrackerMessage> =
+            lines.split(|&byte| byte == b'\n').filter_map(|line| parse(line, now)).collect();
         let mut began = None;
-        if found.iter().any(|news| matches!(news, GazeNews::Sample(..))) {
+        if found.iter().any(|news| matches!(news, TrackerMessage::Sample(..))) {
             holder.heard(from.ip(), now);
-            began = (tracker.replace(from) != Some(from)).then_some(GazeNews::Began);
+            began = (tracker.replace(from) != Some(from)).then_some(TrackerMessage::Began);
         }
         for one in began.into_iter().chain(found) {
             lost += u64::from(news.try_send(one).is_err());
         }
-        if lost > 0 && news.try_send(GazeNews::Overrun(lost)).is_ok() {
+        if lost > 0 && news.try_send(TrackerMessage::Overrun(lost)).is_ok() {
             lost = 0;
         }
     }

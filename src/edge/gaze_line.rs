@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 
-use super::gaze_input::GazeNews;
+use super::gaze_input::TrackerMessage;
 use crate::gaze::GazeSample;
 
 /// Largest age of a sample, in seconds; a larger age is an error of the sender.
@@ -46,23 +46,23 @@ pub fn code_in(line: &[u8]) -> Option<String> {
 }
 
 /// Parses a line of the gaze input that arrived at this instant; `None` for an empty line.
-pub fn parse(line: &[u8], arrived: Instant) -> Option<GazeNews> {
+pub fn parse(line: &[u8], arrived: Instant) -> Option<TrackerMessage> {
     if line.trim_ascii().is_empty() {
         return None;
     }
-    let Ok(found) = serde_json::from_slice::<SampleLine>(line) else { return Some(GazeNews::Malformed(1)) };
+    let Ok(found) = serde_json::from_slice::<SampleLine>(line) else { return Some(TrackerMessage::Malformed(1)) };
     let has_age = found.age.is_none_or(|age_s| (0.0..=MAX_AGE_S).contains(&age_s));
     // Points outside the display are valid; a confidence outside 0 to 1 shows that the sender uses another format.
     if !(found.x.is_finite() && found.y.is_finite() && (0.0..=1.0).contains(&found.confidence) && has_age) {
-        return Some(GazeNews::Malformed(1));
+        return Some(TrackerMessage::Malformed(1));
     }
     let device_ns = match found.t.map(|t| device_ns(t).ok_or(t)).transpose() {
         Ok(device_ns) => device_ns,
-        Err(t) => return Some(GazeNews::WrongTime(t)),
+        Err(t) => return Some(TrackerMessage::WrongTime(t)),
     };
     let sample = GazeSample { device_ns, ..GazeSample::new(found.x, found.y, found.confidence) };
     let taken = found.age.and_then(|age_s| arrived.checked_sub(Duration::from_secs_f64(age_s)));
-    Some(GazeNews::Sample(sample, taken))
+    Some(TrackerMessage::Sample(sample, taken))
 }
 
 /// Converts a time stamp to nanoseconds; `None` if it is invalid. Stamps of up to ten digits are seconds of any clock.
@@ -103,11 +103,11 @@ mod tests {
             parse(line.as_bytes(), arrived).expect("a line")
         };
         let sample = GazeSample { device_ns: Some(7_000_000_000), ..GazeSample::new(0.0, 1.0, 1.0) };
-        let before = |age_s| GazeNews::Sample(sample, Some(arrived - Duration::from_secs_f64(age_s)));
+        let before = |age_s| TrackerMessage::Sample(sample, Some(arrived - Duration::from_secs_f64(age_s)));
         assert_eq!([with("0"), with("0.125"), with("60")], [before(0.0), before(0.125), before(60.0)]);
-        assert_eq!(with("null"), GazeNews::Sample(sample, None));
+        assert_eq!(with("null"), TrackerMessage::Sample(sample, None));
         for wrong in ["-0.001", "60.1", "\"1\"", "1e999"] {
-            assert_eq!(with(wrong), GazeNews::Malformed(1), "{wrong}");
+            assert_eq!(with(wrong), TrackerMessage::Malformed(1), "{wrong}");
         }
     }
 
@@ -120,6 +120,6 @@ mod tests {
             assert_eq!(code_in(other.as_bytes()), None, "{other}");
         }
         // For a parser of samples, a pairing line is malformed.
-        assert_eq!(parse(b"{\"pair\": \"ABC234\"}", Instant::now()), Some(GazeNews::Malformed(1)));
+        assert_eq!(parse(b"{\"pair\": \"ABC234\"}", Instant::now()), Some(TrackerMessage::Malformed(1)));
     }
 }

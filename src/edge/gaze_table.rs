@@ -7,7 +7,7 @@ use std::path::Path;
 
 use super::file_error::{FileError, FileResult};
 use crate::gaze::GazeSample;
-use crate::gaze::surface::SurfaceMap;
+use crate::gaze::surface::SurfaceHomography;
 
 /// Description of valid gaze files, for error messages.
 const REMEDY: &str = "gaze on the display: gaze_positions_on_surface_NAME.csv of Pupil Player or Neon Player, gaze.csv of \
@@ -52,7 +52,7 @@ enum GazeRow {
 ///
 /// # Errors
 /// The file cannot be read, is not such a table, or contains gaze of several recordings.
-pub(super) fn read(path: &Path, map: &SurfaceMap, most: usize) -> FileResult<(Vec<(i64, GazeSample)>, u64)> {
+pub(super) fn read(path: &Path, map: &SurfaceHomography, most: usize) -> FileResult<(Vec<(i64, GazeSample)>, u64)> {
     let unreadable = |reason| FileError::unreadable(path, reason, REMEDY);
     let mut input = BufReader::new(File::open(path).map_err(unreadable)?);
     let mut line = Vec::new();
@@ -134,7 +134,7 @@ fn columns(path: &Path, head: &str) -> FileResult<GazeColumns> {
 }
 
 impl GazeColumns {
-    fn row(&self, cells: &[&str], map: &SurfaceMap) -> GazeRow {
+    fn row(&self, cells: &[&str], map: &SurfaceHomography) -> GazeRow {
         let cell = |column: usize| cells.get(column).copied().unwrap_or_default();
         let number = |column: usize| cell(column).parse::<f64>().ok().filter(|number| number.is_finite());
         let read = match self.exporter {

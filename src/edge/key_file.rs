@@ -6,14 +6,14 @@ use toml::Spanned;
 
 use super::file_error::{FileError, FileResult};
 use super::parse::{FileKind, ParsedFile, parse};
-use crate::console::KeyMap;
-use crate::console::key_action::{KeyError, KeyLayer, KeyPlace};
+use crate::console::KeyFileBindings;
+use crate::console::key_action::{KeyError, KeyErrorSource, KeyLayer};
 use crate::console::keys;
 use crate::kitchen::Kitchen;
 use crate::kitchen::layout::{LayoutSpec, is_same_key};
-use crate::session::header::FileText;
+use crate::session::header::RecordedFile;
 
-impl ParsedFile for KeyMap {
+impl ParsedFile for KeyFileBindings {
     const KIND: FileKind = FileKind::Keys;
 }
 
@@ -25,15 +25,15 @@ pub(super) fn check_keys(
     (path, text): (&Path, &str),
     layout: &LayoutSpec,
     kitchen: &Kitchen,
-    keys: Option<&FileText>,
+    keys: Option<&RecordedFile>,
 ) -> FileResult<()> {
     let map = key_map(keys)?;
     let Err(KeyError { place, found, remedy }) = keys::lines(kitchen, &map) else { return Ok(()) };
     match (place, keys) {
-        (KeyPlace::File(span), Some(keys)) => {
+        (KeyErrorSource::File(span), Some(keys)) => {
             Err(FileError::at(Path::new(&keys.path), &keys.text, Some(span), found, remedy))
         }
-        (KeyPlace::Layout(layer, letter), _) => {
+        (KeyErrorSource::Layout(layer, letter), _) => {
             let is_it = |key: &&Spanned<char>| is_same_key(*key.get_ref(), letter);
             let key = match layer {
                 KeyLayer::Wizard => layout.signal_keys().map(|(_, key)| key).find(is_it),
@@ -41,7 +41,7 @@ pub(super) fn check_keys(
             };
             Err(FileError::at(path, text, key.map(Spanned::span), found, remedy))
         }
-        (KeyPlace::File(_), None) => Ok(()),
+        (KeyErrorSource::File(_), None) => Ok(()),
     }
 }
 
@@ -49,6 +49,6 @@ pub(super) fn check_keys(
 ///
 /// # Errors
 /// The text is not a key file.
-pub fn key_map(keys: Option<&FileText>) -> FileResult<KeyMap> {
-    keys.map_or(Ok(KeyMap::default()), |keys| parse(Path::new(&keys.path), &keys.text))
+pub fn key_map(keys: Option<&RecordedFile>) -> FileResult<KeyFileBindings> {
+    keys.map_or(Ok(KeyFileBindings::default()), |keys| parse(Path::new(&keys.path), &keys.text))
 }

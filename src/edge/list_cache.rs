@@ -18,7 +18,7 @@ use super::log::LOG_NAME;
 use super::replace_file;
 use crate::session::settings::Condition;
 use crate::session::study_arm::StudyArm;
-use crate::session::{Event, Stamped};
+use crate::session::{Event, TimestampedEvent};
 
 /// So many bytes at the end of a log are part of its digest.
 const TAIL: u64 = 4096;
@@ -91,7 +91,7 @@ impl LogGlance {
         let log = recording.join(LOG_NAME);
         let mut file = open_regular(&log).ok()?;
         let tail = Tail::read(&mut file).ok()?;
-        let last: Stamped = serde_json::from_slice(tail.last_line()?).ok()?;
+        let last: TimestampedEvent = serde_json::from_slice(tail.last_line()?).ok()?;
         file.seek(SeekFrom::Start(0)).ok()?;
         let mut line = Vec::new();
         BufReader::new(file).take(MAX_HEADER).read_until(b'\n', &mut line).ok()?;

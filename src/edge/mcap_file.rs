@@ -10,7 +10,7 @@ use mcap::{McapError, WriteOptions, Writer};
 
 use super::log::MCAP_NAME;
 use super::overwrite;
-use crate::analysis::foxglove::{ChannelMessage, MessageChannel};
+use crate::analysis::foxglove::{McapChannel, McapMessage};
 
 /// First bytes of every MCAP file.
 const BEGINS: &[u8] = b"\x89MCAP0\r\n";
@@ -26,7 +26,7 @@ const SCHEMA_ENCODING: &str = "jsonschema";
 pub struct McapFile {
     writer: Writer<BufWriter<File>>,
     /// For each channel, its number in the file and its number of messages so far.
-    channels: BTreeMap<MessageChannel, (u16, u32)>,
+    channels: BTreeMap<McapChannel, (u16, u32)>,
     begun: PathBuf,
     path: PathBuf,
 }
@@ -47,7 +47,7 @@ impl McapFile {
         let options = WriteOptions::new().library(format!("{LIBRARY} {}", env!("CARGO_PKG_VERSION"))).compression(None);
         let mut writer = options.create(BufWriter::new(File::create(&begun)?)).map_err(reason)?;
         let mut channels = BTreeMap::new();
-        for channel in MessageChannel::ALL {
+        for channel in McapChannel::ALL {
             let schema = format!("{:#}", channel.schema());
             let schema =
                 writer.add_schema(channel.schema_name(), SCHEMA_ENCODING, schema.as_bytes()).map_err(reason)?;
@@ -61,7 +61,7 @@ impl McapFile {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn write(&mut self, message: &ChannelMessage) -> io::Result<()> {
+    pub fn write(&mut self, message: &McapMessage) -> io::Result<()> {
         let Some((channel, sequence)) = self.channels.get_mut(&message.channel) else { return Ok(()) };
         let header = MessageHeader {
             channel_id: *channel,

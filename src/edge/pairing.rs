@@ -44,7 +44,7 @@ struct WrongCodes {
 
 /// The pairing code and the history of attempts to pair.
 #[derive(Debug)]
-pub(super) struct PairingDesk {
+pub(super) struct PairingCodeCheck {
     code: String,
     wrong: BTreeMap<IpAddr, WrongCodes>,
     /// Start of the present counting interval for wrong codes of all addresses, and their number since.
@@ -53,10 +53,10 @@ pub(super) struct PairingDesk {
     known: VecDeque<String>,
 }
 
-impl PairingDesk {
+impl PairingCodeCheck {
     /// A check of this code without any attempt so far.
-    pub fn new(code: String) -> PairingDesk {
-        PairingDesk { code, wrong: BTreeMap::new(), recent: None, known: VecDeque::new() }
+    pub fn new(code: String) -> PairingCodeCheck {
+        PairingCodeCheck { code, wrong: BTreeMap::new(), recent: None, known: VecDeque::new() }
     }
 
     /// Checks a code that came from this address or from the page with this name. A page that has paired before is
@@ -113,8 +113,8 @@ mod tests {
     const HERE: IpAddr = IpAddr::V4(std::net::Ipv4Addr::new(10, 0, 0, 7));
     const THERE: IpAddr = IpAddr::V4(std::net::Ipv4Addr::new(10, 0, 0, 8));
 
-    fn desk() -> PairingDesk {
-        PairingDesk::new("ABC234".to_string())
+    fn desk() -> PairingCodeCheck {
+        PairingCodeCheck::new("ABC234".to_string())
     }
 
     #[test]
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn addresses_that_are_made_up_buy_no_more_than_ten_guesses_a_second() {
         let (mut desk, start) = (desk(), Instant::now());
-        let guess = |desk: &mut PairingDesk, step: u32| {
+        let guess = |desk: &mut PairingCodeCheck, step: u32| {
             let now = start + Duration::from_micros(100) * step;
             matches!(desk.attempt(IpAddr::V4(step.into()), None, "WRONG2", now), PairingVerdict::Wrong(_))
         };

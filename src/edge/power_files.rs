@@ -5,12 +5,12 @@ use std::path::Path;
 
 use super::file_error::{FileError, FileResult};
 use super::{overwrite, replace_file};
-use crate::study::drawn_study::TestMethod;
-use crate::study::power_answer::{PowerSummary, SizePower, TestPower};
+use crate::study::drawn_study::SignificanceTestMethod;
+use crate::study::power_answer::{PowerSummary, SampleSizePower, TestPower};
 use crate::study::power_chart;
 
 /// A column of the table of statistical power: its name, and the function for its value in a row.
-type PowerColumn = (&'static str, fn(&SizePower, &TestPower) -> String);
+type PowerColumn = (&'static str, fn(&SampleSizePower, &TestPower) -> String);
 
 const COLUMNS: [PowerColumn; 12] = [
     ("participants", |size, _| size.participants.to_string()),
@@ -27,10 +27,10 @@ const COLUMNS: [PowerColumn; 12] = [
     ("least_ratio", |_, one| one.least_ratio.map_or(String::new(), |ratio| format!("{ratio:.4}"))),
 ];
 
-fn method(method: TestMethod) -> &'static str {
+fn method(method: SignificanceTestMethod) -> &'static str {
     match method {
-        TestMethod::MixedAnova => "mixed_anova",
-        TestMethod::LinearMixedModel => "linear_mixed_model",
+        SignificanceTestMethod::MixedAnova => "mixed_anova",
+        SignificanceTestMethod::LinearMixedModel => "linear_mixed_model",
     }
 }
 

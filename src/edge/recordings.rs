@@ -9,10 +9,10 @@ use serde::Deserialize;
 
 use super::file_error::{FileError, FileResult, open_regular};
 use super::log::{LOG_NAME, ruling};
-use crate::session::header::Continues;
+use crate::session::header::PreviousPart;
 use crate::session::plan::{PlanRecording, RecordingOutcome, StepSpec};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
-use crate::session::{Event, Header, Stamped};
+use crate::session::{Event, LogHeader, TimestampedEvent};
 
 /// Live recordings of the study plan with this name in a folder, by folder name; the parts of a continued recording
 /// count as one. Simulated recordings and other files do not count.
@@ -91,7 +91,7 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
 #[derive(Deserialize)]
 struct PartHeaderGlance {
     #[serde(default)]
-    continues: Option<Continues>,
+    continues: Option<PreviousPart>,
 }
 
 /// Content of the log of one part of a recording.
@@ -130,7 +130,7 @@ impl Part {
         if !next(&mut line)? {
             return Ok(None);
         }
-        let Ok(header) = serde_json::from_slice::<Header>(&line) else { return Ok(None) };
+        let Ok(header) = serde_json::from_slice::<LogHeader>(&line) else { return Ok(None) };
         let Some(step) = header.session.step.filter(|step| step.plan == plan && header.started.is_some()) else {
             return Ok(None);
         };
@@ -151,7 +151,7 @@ impl Part {
         };
         while next(&mut line)? {
             if !is_sample(&line)
-                && let Ok(stamped) = serde_json::from_slice::<Stamped>(&line)
+                && let Ok(stamped) = serde_json::from_slice::<TimestampedEvent>(&line)
             {
                 part.follow(&stamped.event);
             }

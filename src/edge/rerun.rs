@@ -28,7 +28,7 @@ use self::viewer_server::ViewerServer;
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::base::printable::{printable, printable_lines};
 use crate::base::time::SessionTime;
-use crate::scene::entity_content::{LogLevel, MarkShape, SceneArea, SceneDisc, ScenePoint, SceneSeries};
+use crate::scene::entity_content::{MarkShape, SceneArea, SceneDisc, SceneLogLevel, ScenePoint, SceneSeries};
 use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
 
 /// Version of Rerun that streams are written with; viewers of the same version can read them.
@@ -275,9 +275,9 @@ fn parts(shown: &EntityData) -> Vec<Part> {
         }
         EntityData::Words { level, text, colour } => {
             let level = match level {
-                LogLevel::Info => TextLogLevel::INFO,
-                LogLevel::Warning => TextLogLevel::WARN,
-                LogLevel::Error => TextLogLevel::ERROR,
+                SceneLogLevel::Info => TextLogLevel::INFO,
+                SceneLogLevel::Warning => TextLogLevel::WARN,
+                SceneLogLevel::Error => TextLogLevel::ERROR,
             };
             vec![Box::new(archetypes::TextLog::new(&*printable(text)).with_level(level).with_color(colour_of(*colour)))]
         }

@@ -30,7 +30,7 @@ pub fn mark() -> String {
 
 /// State of a Rerun file: missing, incomplete, outdated or complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RrdState {
+pub enum RerunFileState {
     /// The Rerun file does not exist.
     Missing,
     /// The Rerun file was not written to its end.
@@ -47,16 +47,16 @@ pub enum RrdState {
     Whole,
 }
 
-impl RrdState {
+impl RerunFileState {
     /// Why the Rerun file has to be made anew, in words; `None` if it is complete, or did not exist.
     pub fn reason(self) -> Option<&'static str> {
         match self {
-            RrdState::Missing | RrdState::Whole => None,
-            RrdState::Cut => Some("it was not written to its end"),
-            RrdState::Other => Some("another version wrote it, or it began in the middle of the session"),
-            RrdState::Unsealed => Some("nothing said which log it shows"),
-            RrdState::Damaged => Some("it was damaged or exchanged"),
-            RrdState::Stale => Some("it did not show the log as that is now"),
+            RerunFileState::Missing | RerunFileState::Whole => None,
+            RerunFileState::Cut => Some("it was not written to its end"),
+            RerunFileState::Other => Some("another version wrote it, or it began in the middle of the session"),
+            RerunFileState::Unsealed => Some("nothing said which log it shows"),
+            RerunFileState::Damaged => Some("it was damaged or exchanged"),
+            RerunFileState::Stale => Some("it did not show the log as that is now"),
         }
     }
 }
@@ -121,10 +121,10 @@ pub fn seal(stream: &Path, logs: &[PathBuf]) -> io::Result<()> {
 ///
 /// # Errors
 /// The file exists but cannot be read, or a log cannot be read.
-pub fn state(path: &Path, logs: &[PathBuf]) -> io::Result<RrdState> {
+pub fn state(path: &Path, logs: &[PathBuf]) -> io::Result<RerunFileState> {
     let mut file = match open_regular(path) {
         Ok(file) => file,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(RrdState::Missing),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(RerunFileState::Missing),
         Err(error) => return Err(error),
     };
     let mut head = Vec::new();
@@ -138,17 +138,17 @@ pub fn state(path: &Path, logs: &[PathBuf]) -> io::Result<RrdState> {
     let is_ours =
         head.starts_with(BEGINS) && head[BEGINS.len()..].starts_with(&version) && has(&head, mark().as_bytes());
     if !has(&tail, ENDS) {
-        return Ok(RrdState::Cut);
+        return Ok(RerunFileState::Cut);
     }
     if !is_ours {
-        return Ok(RrdState::Other);
+        return Ok(RerunFileState::Other);
     }
-    let Some(seal) = Seal::read(path) else { return Ok(RrdState::Unsealed) };
+    let Some(seal) = Seal::read(path) else { return Ok(RerunFileState::Unsealed) };
     if Sum::from_file(path)? != seal.stream {
-        return Ok(RrdState::Damaged);
+        return Ok(RerunFileState::Damaged);
     }
     let logs = logs.iter().map(|log| Sum::from_file(log)).collect::<io::Result<Vec<Sum>>>()?;
-    Ok(if logs == seal.logs { RrdState::Whole } else { RrdState::Stale })
+    Ok(if logs == seal.logs { RerunFileState::Whole } else { RerunFileState::Stale })
 }
 
 #[cfg(test)]
@@ -160,31 +160,31 @@ mod tests {
     fn a_file_says_whether_it_is_whole_and_ours_and_its_seal_whether_it_shows_this_log() {
         let folder = new_folder(&std::env::temp_dir(), &format!("tomcom-rrd-{}", std::process::id())).unwrap();
         let (path, logs) = (folder.join(RRD_NAME), [folder.join("events.jsonl")]);
-        let is = |state: RrdState| assert_eq!(super::state(&path, &logs).unwrap(), state);
+        let is = |state: RerunFileState| assert_eq!(super::state(&path, &logs).unwrap(), state);
         fs::write(&logs[0], "the log").unwrap();
-        is(RrdState::Missing);
+        is(RerunFileState::Missing);
         let whole = [b"RRF2\x00\x24\x03\x00 id ", mark().as_bytes(), &[7; 200], b"RRF2FOOT", &[0; 24]].concat();
         for (bytes, state) in [
-            (whole.clone(), RrdState::Unsealed),
-            (whole[..whole.len() - 100].to_vec(), RrdState::Cut),
-            (Vec::new(), RrdState::Cut),
-            ([b"RRF2\x00\x25\x00\x00", &whole[8..]].concat(), RrdState::Other),
-            ([&whole[..12], b"another scene", &whole[40..]].concat(), RrdState::Other),
+            (whole.clone(), RerunFileState::Unsealed),
+            (whole[..whole.len() - 100].to_vec(), RerunFileState::Cut),
+            (Vec::new(), RerunFileState::Cut),
+            ([b"RRF2\x00\x25\x00\x00", &whole[8..]].concat(), RerunFileState::Other),
+            ([&whole[..12], b"another scene", &whole[40..]].concat(), RerunFileState::Other),
         ] {
             fs::write(&path, bytes).unwrap();
             is(state);
         }
         fs::write(&path, &whole).unwrap();
         seal(&path, &logs).unwrap();
-        is(RrdState::Whole);
+        is(RerunFileState::Whole);
         let mut damaged = whole.clone();
         damaged[100] = 8;
         fs::write(&path, damaged).unwrap();
-        is(RrdState::Damaged);
+        is(RerunFileState::Damaged);
         fs::write(&path, &whole).unwrap();
-        is(RrdState::Whole);
+        is(RerunFileState::Whole);
         fs::write(&logs[0], "the lag").unwrap();
-        is(RrdState::Stale);
+        is(RerunFileState::Stale);
         fs::remove_dir_all(folder).unwrap();
     }
 }

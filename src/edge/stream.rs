@@ -142,7 +142,7 @@ mod tests {
 
     use super::*;
     use crate::base::time::SessionTime;
-    use crate::edge::rrd::{self, RRD_NAME, RrdState};
+    use crate::edge::rrd::{self, RRD_NAME, RerunFileState};
     use crate::edge::temporary::new_folder;
     use crate::scene::EntityData;
 
@@ -162,10 +162,10 @@ mod tests {
         let server = stream.server.unwrap();
         assert!(server.port() != taken.port() && server.ip() == taken.ip());
         (1..1000).for_each(|step| stream.tell(vec![moment(step)]));
-        assert_eq!(rrd::state(&path, &[]).unwrap(), RrdState::Cut, "it is not written to its end yet");
+        assert_eq!(rrd::state(&path, &[]).unwrap(), RerunFileState::Cut, "it is not written to its end yet");
         assert_eq!(stream.fares().dropped, 0);
         assert_eq!(stream.close().as_ref(), Some(&path));
-        assert_eq!(rrd::state(&path, &[]).unwrap(), RrdState::Unsealed, "it is whole, and waits for its seal");
+        assert_eq!(rrd::state(&path, &[]).unwrap(), RerunFileState::Unsealed, "it is whole, and waits for its seal");
         fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -22,14 +22,14 @@ use ratatui::backend::CrosstermBackend;
 
 use super::ask::ground;
 use super::frames::{FrameWriter, write_within};
-use crate::console::question::QuestionPage;
+use crate::console::question::StartQuestion;
 use crate::console::recording_picker::RecordingPicker;
 use crate::console::view::recordings_page::draw_recordings;
 use crate::console::view::sheet::draw_question;
 use crate::console::view::theme::{TerminalBackground, Theme};
 use crate::console::{ConsoleMessage, ConsoleModel, view};
 use crate::session::Session;
-use crate::session::settings::{ConsoleSpec, ThemeChoice};
+use crate::session::settings::{ColourTheme, ConsoleSpec};
 
 /// Writer of frames while the terminal is set up for the console.
 static TAKEN: Mutex<Option<Arc<FrameWriter>>> = Mutex::new(None);
@@ -134,7 +134,7 @@ impl TerminalScreen {
     ///
     /// # Errors
     /// The terminal's size is unknown.
-    pub fn ask(&mut self, question: &QuestionPage, theme: Theme) -> io::Result<()> {
+    pub fn ask(&mut self, question: &StartQuestion, theme: Theme) -> io::Result<()> {
         self.compose(|frame| draw_question(question, theme, frame))
     }
 
@@ -261,9 +261,9 @@ pub fn theme(console: &ConsoleSpec, ground: TerminalBackground) -> Theme {
     let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(value).map(|locale| locale.to_lowercase());
     let is_utf8 = locale.is_none_or(|locale| locale.contains("utf-8") || locale.contains("utf8"));
     let ground = match console.theme {
-        ThemeChoice::Auto => ground,
-        ThemeChoice::Dark => TerminalBackground::Dark,
-        ThemeChoice::Light => TerminalBackground::Light,
+        ColourTheme::Auto => ground,
+        ColourTheme::Dark => TerminalBackground::Dark,
+        ColourTheme::Light => TerminalBackground::Light,
     };
     Theme { colour: value("NO_COLOR").is_none(), unicode: is_utf8 && !console.ascii, ground }
 }

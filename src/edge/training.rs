@@ -5,13 +5,13 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use super::file_error::{FileError, FileResult};
-use crate::analysis::training_record::TrainingRecord;
+use crate::analysis::training_record::WizardTrainingRecord;
 
 /// Writes a training record to a new file in the folder and returns its path.
 ///
 /// # Errors
 /// The file cannot be written.
-pub fn write(folder: &Path, record: &TrainingRecord) -> io::Result<PathBuf> {
+pub fn write(folder: &Path, record: &WizardTrainingRecord) -> io::Result<PathBuf> {
     fs::create_dir_all(folder)?;
     let text = serde_json::to_string_pretty(record).map_err(io::Error::other)? + "\n";
     for number in 1.. {
@@ -33,7 +33,7 @@ pub fn write(folder: &Path, record: &TrainingRecord) -> io::Result<PathBuf> {
 ///
 /// # Errors
 /// A file cannot be read or is not a training record.
-pub fn read(folder: &Path, wizard: &str) -> FileResult<Vec<TrainingRecord>> {
+pub fn read(folder: &Path, wizard: &str) -> FileResult<Vec<WizardTrainingRecord>> {
     let remedy = "a training record of tomcom, or another folder";
     let mut records = Vec::new();
     for number in 1.. {

@@ -21,7 +21,7 @@ const ANSWER_BYTES: u64 = 1 << 16;
 
 /// Viewer program that was found on this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Viewer {
+pub enum ViewerAvailability {
     /// A viewer whose version can read this program's streams is installed; its path.
     Ready(PathBuf),
     /// A viewer of another version is installed; its version.
@@ -35,18 +35,18 @@ pub enum Viewer {
 /// How to install the Rerun viewer.
 pub const REMEDY: &str = "pip install rerun-sdk==0.36.3, or cargo install rerun-cli --locked --version 0.36.3";
 
-impl Viewer {
+impl ViewerAvailability {
     /// Looks for the viewer program in the folders of `PATH`.
-    pub fn find() -> Viewer {
+    pub fn find() -> ViewerAvailability {
         let name = format!("rerun{}", env::consts::EXE_SUFFIX);
         let folders = env::var_os("PATH").unwrap_or_default();
         let there = env::split_paths(&folders).map(|folder| folder.join(&name)).find(|path| path.is_file());
-        let Some(path) = there else { return Viewer::None };
+        let Some(path) = there else { return ViewerAvailability::None };
         match version_of(&path) {
-            Some(version) if version != VERSION => Viewer::Other(version),
-            None => Viewer::None,
-            Some(_) if !has_screen() => Viewer::NoScreen,
-            Some(_) => Viewer::Ready(path),
+            Some(version) if version != VERSION => ViewerAvailability::Other(version),
+            None => ViewerAvailability::None,
+            Some(_) if !has_screen() => ViewerAvailability::NoScreen,
+            Some(_) => ViewerAvailability::Ready(path),
         }
     }
 }

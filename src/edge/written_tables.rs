@@ -8,25 +8,25 @@ use std::path::Path;
 
 use csv::{ByteRecord, ReaderBuilder};
 
-use crate::study::column::Table;
+use crate::study::column::CsvTable;
 use crate::study::dictionary::columns;
 
 /// Tables that the data dictionary in a folder lists, with their columns.
 #[derive(Debug, Default)]
-pub struct WrittenTables {
+pub struct ListedTables {
     columns: BTreeMap<Vec<u8>, Vec<Vec<u8>>>,
 }
 
-impl WrittenTables {
+impl ListedTables {
     /// Reads the data dictionary in a folder, if there is one.
     ///
     /// # Errors
     /// The file exists but cannot be read.
-    pub fn read(folder: &Path) -> io::Result<WrittenTables> {
-        let mut tables = WrittenTables::default();
+    pub fn read(folder: &Path) -> io::Result<ListedTables> {
+        let mut tables = ListedTables::default();
         let dictionary = records(&folder.join("dictionary.csv"))?;
         if let Some((header, rows)) = dictionary.split_first()
-            && has_columns_of(header, Table::Dictionary)
+            && has_columns_of(header, CsvTable::Dictionary)
         {
             for row in rows {
                 if let (Some(table), Some(column)) = (row.get(0), row.get(1)) {
@@ -59,11 +59,11 @@ impl WrittenTables {
 }
 
 /// The kind of a study's table that has this name.
-pub fn table_named(name: &str) -> Option<Table> {
-    Table::ALL.into_iter().find(|table| table.name() == name)
+pub fn table_named(name: &str) -> Option<CsvTable> {
+    CsvTable::ALL.into_iter().find(|table| table.name() == name)
 }
 
-fn has_columns_of(header: &ByteRecord, table: Table) -> bool {
+fn has_columns_of(header: &ByteRecord, table: CsvTable) -> bool {
     header.iter().eq(columns(table).iter().map(|row| row.column.as_bytes()))
 }
 

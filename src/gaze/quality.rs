@@ -29,7 +29,7 @@ pub enum GazeFault {
 
 /// Number of gaze samples that were recorded but ignored by the belief filter, by kind of fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct FaultCounts {
+pub struct GazeFaultCounts {
     /// Number of duplicate gaze samples.
     pub duplicate: u64,
     /// Number of gaze samples that were older than [`TOO_OLD_S`] when they arrived.
@@ -38,7 +38,7 @@ pub struct FaultCounts {
     pub out_of_order: u64,
 }
 
-impl FaultCounts {
+impl GazeFaultCounts {
     /// Number of faulty samples of all kinds.
     pub fn sum(self) -> u64 {
         self.duplicate + self.too_old + self.out_of_order
@@ -48,7 +48,7 @@ impl FaultCounts {
 /// Number of inputs from an eye tracker that cannot be recorded, by kind, since the session began.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct DropCounts {
+pub struct DroppedInputCounts {
     /// Malformed messages, lines and gaze samples: truncated, of a wrong type, not a number.
     pub malformed: u64,
     /// Gaze samples above the highest accepted rate, [`MAX_HZ`].
@@ -57,7 +57,7 @@ pub struct DropCounts {
     pub overrun: u64,
 }
 
-impl DropCounts {
+impl DroppedInputCounts {
     /// Number of dropped inputs of all kinds.
     pub fn sum(self) -> u64 {
         self.malformed + self.too_frequent + self.overrun
@@ -66,15 +66,15 @@ impl DropCounts {
 
 /// Detects faults of a gaze stream, sample by sample. Only samples with a device time are checked.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SampleChecker {
+pub struct GazeFaultDetector {
     newest: Option<SessionTime>,
     recent: Vec<(Option<u64>, [u64; 2])>,
     next: usize,
     /// Number of faults found so far, by kind.
-    pub counts: FaultCounts,
+    pub counts: GazeFaultCounts,
 }
 
-impl SampleChecker {
+impl GazeFaultDetector {
     /// The fault of a gaze sample that arrived now; none if the sample can be used.
     pub fn judge(&mut self, sample: &GazeSample, arrived: SessionTime) -> Option<GazeFault> {
         let taken = sample.taken_ns?.min(arrived);

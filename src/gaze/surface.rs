@@ -8,15 +8,15 @@ const LEAST_AREA: f64 = 1e-3;
 /// An eye tracker reports gaze in fractions of a surface that it found by markers. The positions of the surface's four
 /// corners on the display are known and determine the mapping (Heckbert 1989, section 2.2.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceMap {
+pub struct SurfaceHomography {
     /// Rows of the homography from the unit square, y down, to fractions of the display.
     rows: [[f64; 3]; 3],
 }
 
-impl SurfaceMap {
+impl SurfaceHomography {
     /// The map of the surface with these corners in fractions of the display: top left, top right, bottom right, bottom
     /// left. `None` if they are not a convex quadrangle in this order.
-    pub fn new(corners: [[f64; 2]; 4]) -> Option<SurfaceMap> {
+    pub fn new(corners: [[f64; 2]; 4]) -> Option<SurfaceHomography> {
         let turn =
             |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
         let turns = (0..4).map(|i| turn(corners[i], corners[(i + 1) % 4], corners[(i + 2) % 4]));
@@ -33,7 +33,7 @@ impl SurfaceMap {
             let (a, b) = (p1[axis] - p0[axis] + g * p1[axis], p3[axis] - p0[axis] + h * p3[axis]);
             [a, b, p0[axis]]
         };
-        Some(SurfaceMap { rows: [row(0), row(1), [g, h, 1.0]] })
+        Some(SurfaceHomography { rows: [row(0), row(1), [g, h, 1.0]] })
     }
 
     /// The display point of a gaze position on the surface (`norm_pos` of Pupil: origin at the bottom left, y up). It

@@ -55,7 +55,7 @@ impl DisplayTags {
     /// A location or storage lies where the smallest tag would be.
     pub fn place(kitchen: &Kitchen) -> Result<DisplayTags, TagError> {
         let locations = kitchen.locations.iter().map(|location| (location.label(), location.display));
-        let storage = |storage: &crate::kitchen::Storage| {
+        let storage = |storage: &crate::kitchen::IngredientStorage| {
             (format!("{} of the {}", storage.label, storage.agent.name()), storage.display)
         };
         let taken: Vec<(String, DisplayArea)> = locations.chain(kitchen.storages.iter().map(storage)).collect();

@@ -18,7 +18,7 @@ pub const SHOWN_S: f64 = 60.0;
 
 /// Estimate of the participant's belief about one state aspect at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AspectSnapshot {
+pub struct AspectBeliefSnapshot {
     /// Index of the value that the participant most probably believes.
     pub believes: u8,
     /// Expected probability that the participant gives to the value most probably believed.
@@ -27,7 +27,7 @@ pub struct AspectSnapshot {
     pub p_truth: f32,
 }
 
-impl AspectSnapshot {
+impl AspectBeliefSnapshot {
     /// Whether the value that the participant most probably believes is false.
     pub fn is_false(self) -> bool {
         f64::from(self.p_truth) < FALSE_BELOW
@@ -42,7 +42,7 @@ pub struct BeliefSnapshot {
     /// Whether only gaze samples, and no other events, came since the previous snapshot.
     by_gaze: bool,
     /// Estimated belief about each state aspect.
-    pub held: Vec<AspectSnapshot>,
+    pub held: Vec<AspectBeliefSnapshot>,
     /// For each state aspect, the start of the present false belief; `None` where the belief is right.
     wrong_since: Vec<Option<SessionTime>>,
 }
@@ -59,13 +59,13 @@ impl BeliefSnapshot {
         let held = |index: usize| {
             let of_aspect = &belief.aspects[index];
             let believes = of_aspect.most_likely();
-            AspectSnapshot {
+            AspectBeliefSnapshot {
                 believes: believes as u8,
                 p: of_aspect.mean()[believes] as f32,
                 p_truth: belief.p_truth(kitchen, state, AspectId(index as u8)) as f32,
             }
         };
-        let held: Vec<AspectSnapshot> = (0..kitchen.aspects.len()).map(held).collect();
+        let held: Vec<AspectBeliefSnapshot> = (0..kitchen.aspects.len()).map(held).collect();
         let wrong_since = held.iter().map(|held| held.is_false().then_some(time)).collect();
         BeliefSnapshot { time, by_gaze, held, wrong_since }
     }

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::belief_track::AspectSnapshot;
+use super::belief_track::AspectBeliefSnapshot;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::Signal;
@@ -15,7 +15,7 @@ use crate::measures::matching::{
     CommunicationEvent, CommunicationKind, CommunicationTarget, MatchCounts, MatchCriterion, Similarity, matched,
 };
 use crate::measures::sequences::FALSE_BELOW;
-use crate::session::wizard_screen::VisibleScreen;
+use crate::session::wizard_screen::WizardScreenContent;
 
 /// A belief with a P(truth) of at least this counts as certain.
 const SURE: f64 = 0.9;
@@ -28,11 +28,11 @@ pub struct CommunicationContext {
     /// The true state of the kitchen at that event.
     pub state: State,
     /// Estimate by state aspect, without the effect of signals sent within the matching window.
-    pub held: Vec<AspectSnapshot>,
+    pub held: Vec<AspectBeliefSnapshot>,
     /// Recommendation of each assistant, in the order of the assistants' lanes.
     pub advice: Vec<Recommendation>,
     /// Content of the wizard's screen; `None` before the screen was first drawn, and without a wizard.
-    pub screen: Option<VisibleScreen>,
+    pub screen: Option<WizardScreenContent>,
 }
 
 /// What one communication says: a signal, or proposed presses.
@@ -96,7 +96,7 @@ pub struct Communication {
 
 /// All communications of one sender (the wizard or one assistant) in a trial.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CommunicationLane {
+pub struct SenderCommunications {
     /// Name of the sender: "wizard", "tom-com".
     pub name: String,
     /// Communication concept of the assistant; `None` for the signals that the participant saw.
@@ -105,7 +105,7 @@ pub struct CommunicationLane {
     pub spoken: Vec<Communication>,
 }
 
-impl CommunicationLane {
+impl SenderCommunications {
     /// Communications in the form that the matching takes, in the order of time.
     pub fn said(&self) -> Vec<CommunicationEvent> {
         self.spoken.iter().map(|spoken| spoken.said).collect()
@@ -125,7 +125,7 @@ pub struct UnmatchedCommunication {
 
 /// Comparison of the first lane, which holds the signals that the participant saw, with an assistant's lane.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LanePair {
+pub struct SenderPair {
     /// Strict matches, as pairs of indices into the first and the other lane.
     pub matched: Vec<(usize, usize)>,
     /// Similarity of the two lanes' communications: how many of them match.
@@ -134,29 +134,29 @@ pub struct LanePair {
 
 /// Comparison of the wizard's and the assistants' communications in a trial so far.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LaneComparison {
+pub struct SenderComparison {
     /// Two communications can match if at most this many presses of the human lie between them.
     pub window: u32,
     /// The lanes, one for each sender; the first holds the signals that the participant saw.
-    pub lanes: Vec<CommunicationLane>,
+    pub lanes: Vec<SenderCommunications>,
     /// Comparisons of the first lane with each assistant's lane.
-    pub pairs: Vec<LanePair>,
+    pub pairs: Vec<SenderPair>,
     /// Communications without a match, in order of time; those that later ones can still match are left out.
     pub differences: Vec<UnmatchedCommunication>,
 }
 
-impl LaneComparison {
+impl SenderComparison {
     /// Compares the communications of all senders in a trial after `presses` presses of the human; `over`: the trial
     /// has ended.
-    pub fn new(lanes: Vec<CommunicationLane>, window: u32, presses: u32, over: bool) -> LaneComparison {
-        let said: Vec<Vec<CommunicationEvent>> = lanes.iter().map(CommunicationLane::said).collect();
+    pub fn new(lanes: Vec<SenderCommunications>, window: u32, presses: u32, over: bool) -> SenderComparison {
+        let said: Vec<Vec<CommunicationEvent>> = lanes.iter().map(SenderCommunications::said).collect();
         let pair = |with: &Vec<CommunicationEvent>| {
             let mut tally = MatchCounts::default();
             tally.add(&said[0], with, presses, window);
             let matched = matched(&said[0], with, window, MatchCriterion::Signal);
-            LanePair { matched, similarity: tally.similarity() }
+            SenderPair { matched, similarity: tally.similarity() }
         };
-        let pairs: Vec<LanePair> = said.iter().skip(1).map(pair).collect();
+        let pairs: Vec<SenderPair> = said.iter().skip(1).map(pair).collect();
         let mut differences = Vec::new();
         for (not, pair) in pairs.iter().enumerate() {
             let other = not + 1;
@@ -171,7 +171,7 @@ impl LaneComparison {
         }
         let time = |one: &UnmatchedCommunication| lanes[one.lane].spoken[one.index].time;
         differences.sort_by_key(|one| (time(one), one.lane, one.not));
-        LaneComparison { window, lanes, pairs, differences }
+        SenderComparison { window, lanes, pairs, differences }
     }
 
     /// The communication that is without a match.
@@ -261,12 +261,12 @@ fn thought(kitchen: &Kitchen, advice: &Recommendation, is_tom: bool) -> String {
 /// Two lists of state aspects in words: false beliefs (lowest P(truth) first), and beliefs that are right but
 /// uncertain.
 fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
-    let mut doubtful: Vec<(usize, &AspectSnapshot)> =
+    let mut doubtful: Vec<(usize, &AspectBeliefSnapshot)> =
         known.held.iter().enumerate().filter(|(_, held)| f64::from(held.p_truth) < SURE).collect();
     doubtful.sort_by(|a, b| a.1.p_truth.total_cmp(&b.1.p_truth));
     let (wrong, unsure): (Vec<_>, Vec<_>) =
         doubtful.into_iter().partition(|(_, held)| f64::from(held.p_truth) < FALSE_BELOW);
-    let told = |&(index, held): &(usize, &AspectSnapshot)| {
+    let told = |&(index, held): &(usize, &AspectBeliefSnapshot)| {
         let aspect = &kitchen.aspects[index];
         let truth = kitchen.true_value(known.state, AspectId(index as u8));
         let name = wording::location(&aspect.name);
@@ -276,7 +276,7 @@ fn believed(kitchen: &Kitchen, known: &CommunicationContext) -> [String; 2] {
             false => format!("{name}: {believes} {:.2}, truly {truth_label} {:.2}", held.p, held.p_truth),
         }
     };
-    let doubted = |&(index, held): &(usize, &AspectSnapshot)| {
+    let doubted = |&(index, held): &(usize, &AspectBeliefSnapshot)| {
         format!("{} {:.2}", wording::location(&kitchen.aspects[index].name), held.p_truth)
     };
     let list = |told: Vec<String>| if told.is_empty() { "nothing".to_string() } else { told.join("; ") };
@@ -303,7 +303,7 @@ fn truly(kitchen: &Kitchen, state: State) -> String {
     if there.is_empty() { "an empty kitchen".to_string() } else { there.join(", ") }
 }
 
-fn seen(screen: Option<&VisibleScreen>) -> String {
+fn seen(screen: Option<&WizardScreenContent>) -> String {
     match screen {
         Some(screen) => {
             let dialog = screen.dialog.as_ref().map_or(String::new(), |dialog| format!(", {dialog} open"));

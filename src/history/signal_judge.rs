@@ -8,12 +8,12 @@ use crate::communication::recommendation::aspects_told;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::{Agent, AspectId};
 use crate::measures::wizard_performance::LATE_PRESSES;
-use crate::session::event::SignalEnd;
-use crate::session::{Event, Session, Stamped};
+use crate::session::event::SignalEndReason;
+use crate::session::{Event, Session, TimestampedEvent};
 
 /// Counts of a sender's signals by how they were judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SignalTally {
+pub struct SignalJudgementCounts {
     /// Number of signals about a false belief of the participant.
     pub hits: u64,
     /// Signals about a belief that became right at most [`LATE_PRESSES`] presses of the human before.
@@ -24,7 +24,7 @@ pub struct SignalTally {
     pub taken_back: u64,
 }
 
-impl SignalTally {
+impl SignalJudgementCounts {
     /// Number of signals that the sender sent.
     pub fn sent(&self) -> u64 {
         self.hits + self.late + self.needless
@@ -43,15 +43,15 @@ struct Standing {
 #[derive(Clone, Debug, Default)]
 pub struct SignalJudge {
     beliefs: Vec<Standing>,
-    wizard: SignalTally,
-    assistant: SignalTally,
+    wizard: SignalJudgementCounts,
+    assistant: SignalJudgementCounts,
     /// Who sent the last signal: wizard or assistant.
     last: Option<Sender>,
 }
 
 impl SignalJudge {
     /// Judges the signal in an event that has been applied to the session, by the beliefs noted before the event.
-    pub fn judge(&mut self, stamped: &Stamped, session: &Session) {
+    pub fn judge(&mut self, stamped: &TimestampedEvent, session: &Session) {
         match &stamped.event {
             Event::TrialStarted => *self = SignalJudge::default(),
             // A proposal of presses is not about beliefs, so it is not judged.
@@ -70,7 +70,7 @@ impl SignalJudge {
                     () => tally.needless += 1,
                 }
             }
-            Event::SignalEnded { reason: SignalEnd::TakenBack } => {
+            Event::SignalEnded { reason: SignalEndReason::TakenBack } => {
                 if let Some(by) = self.last.take() {
                     self.tally_mut(by).taken_back += 1;
                 }
@@ -93,14 +93,14 @@ impl SignalJudge {
     }
 
     /// Counts of the signals of a sender so far.
-    pub fn tally(&self, by: Sender) -> SignalTally {
+    pub fn tally(&self, by: Sender) -> SignalJudgementCounts {
         match by {
             Sender::Wizard => self.wizard,
             Sender::Assistant => self.assistant,
         }
     }
 
-    fn tally_mut(&mut self, by: Sender) -> &mut SignalTally {
+    fn tally_mut(&mut self, by: Sender) -> &mut SignalJudgementCounts {
         match by {
             Sender::Wizard => &mut self.wizard,
             Sender::Assistant => &mut self.assistant,

@@ -2,26 +2,26 @@
 
 use super::probe_wording;
 use crate::base::words::count;
-use crate::communication::offer::OfferedAct;
-use crate::communication::recommendation::Reason;
+use crate::communication::offer::OfferedCommunication;
+use crate::communication::recommendation::SignalReason;
 use crate::communication::{Sender, Signal};
-use crate::gaze::quality::DropCounts;
-use crate::kitchen::no_effect::NoEffect;
+use crate::gaze::quality::DroppedInputCounts;
+use crate::kitchen::no_effect::NoEffectReason;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, Dish, Kitchen, LocationId, OrderContent, State};
 use crate::measures::JudgedPress;
-use crate::measures::attribution::Cause;
-use crate::measures::cause_codes::{CauseKind, Code};
+use crate::measures::attribution::ErrorCause;
+use crate::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
 use crate::robot::moment::ArmPhase;
 use crate::robot::safety::SafetyMode;
-use crate::session::accuracy_check::CalibrationEvent;
+use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::answer_value::AnswerValue;
-use crate::session::event::{EndReason, SignalEnd};
+use crate::session::event::{SignalEndReason, TrialEndReason};
 use crate::session::plan::PhaseSpec;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::{TrackerEvent, TrackerRecording};
 use crate::session::tutorial::TutorialEvent;
-use crate::session::wall_display::Answering;
-use crate::session::{Phase, Session, TimelineEvent};
+use crate::session::wall_display::AnswerEntry;
+use crate::session::{Session, TimelineEvent, TrialPhase};
 
 /// A button's label in words: "cutting board", "take rice".
 pub fn button(kitchen: &Kitchen, agent: Agent, id: crate::kitchen::ButtonId) -> String {
@@ -34,9 +34,9 @@ pub fn location(name: &str) -> String {
 }
 
 /// A rater's code for the cause of an error, in words: "slip", "wrong about cooking pot".
-pub fn code(code: &Code) -> String {
+pub fn code(code: &ErrorCauseCode) -> String {
     match code {
-        Code::Belief(place) => format!("{} {}", CauseKind::Belief.title(), location(place)),
+        ErrorCauseCode::Belief(place) => format!("{} {}", ErrorCauseKind::Belief.title(), location(place)),
         other => other.kind().title().to_string(),
     }
 }
@@ -50,19 +50,19 @@ pub fn no_effect(kitchen: &Kitchen, state: State, id: ButtonId) -> Option<String
 }
 
 /// Why a press has no effect, in words; `content` is what the location in question holds.
-fn because(kitchen: &Kitchen, why: NoEffect, about: LocationId, content: &str) -> String {
+fn because(kitchen: &Kitchen, why: NoEffectReason, about: LocationId, content: &str) -> String {
     let name = kitchen.location(about).label();
     match why {
-        NoEffect::HandFull => "the hand is full".to_string(),
-        NoEffect::HandEmpty => "the hand is empty".to_string(),
-        NoEffect::BothEmpty => "the hand and the place are empty".to_string(),
-        NoEffect::PlaceEmpty => format!("the {name} is empty"),
-        NoEffect::PlaceFull => format!("the {name} is full"),
-        NoEffect::NotAccepted => "it is not accepted there".to_string(),
-        NoEffect::NotStacked => "the items cannot be stacked".to_string(),
-        NoEffect::NotProcessed => format!("cannot process {content}"),
-        NoEffect::NoOrder => format!("{name} wants nothing"),
-        NoEffect::NotServed => "it cannot be served there".to_string(),
+        NoEffectReason::HandFull => "the hand is full".to_string(),
+        NoEffectReason::HandEmpty => "the hand is empty".to_string(),
+        NoEffectReason::BothEmpty => "the hand and the place are empty".to_string(),
+        NoEffectReason::PlaceEmpty => format!("the {name} is empty"),
+        NoEffectReason::PlaceFull => format!("the {name} is full"),
+        NoEffectReason::NotAccepted => "it is not accepted there".to_string(),
+        NoEffectReason::NotStacked => "the items cannot be stacked".to_string(),
+        NoEffectReason::NotProcessed => format!("cannot process {content}"),
+        NoEffectReason::NoOrder => format!("{name} wants nothing"),
+        NoEffectReason::NotServed => "it cannot be served there".to_string(),
     }
 }
 
@@ -92,18 +92,18 @@ pub fn proposal(presses: &[String]) -> String {
 }
 
 /// What an offer to the wizard contains, in words.
-pub fn offered(what: &OfferedAct) -> String {
+pub fn offered(what: &OfferedCommunication) -> String {
     match what {
-        OfferedAct::Signal(told) => signal(told),
-        OfferedAct::Presses(presses) => proposal(presses),
+        OfferedCommunication::Signal(told) => signal(told),
+        OfferedCommunication::Presses(presses) => proposal(presses),
     }
 }
 
 /// The reason of a recommendation with contents in words, as screens show them; the recorded reason has the names of
 /// the log.
-pub fn reason(kitchen: &Kitchen, reason: &Reason) -> Reason {
+pub fn reason(kitchen: &Kitchen, reason: &SignalReason) -> SignalReason {
     let worded = |name: &str| kitchen.worded(name).to_string();
-    Reason { believes: worded(&reason.believes), truth: worded(&reason.truth), ..reason.clone() }
+    SignalReason { believes: worded(&reason.believes), truth: worded(&reason.truth), ..reason.clone() }
 }
 
 /// The sender of a signal in words: wizard or assistant.
@@ -130,27 +130,27 @@ pub fn dish(kitchen: &Kitchen, dish: &Dish) -> String {
 /// Phase of the study's protocol and of the trial, in a word.
 pub fn stage(session: &Session) -> String {
     match session.study_phase().map(PhaseSpec::phase) {
-        Some(around) if !around.has_trial() && session.phase != Phase::Closed => around.name().to_uppercase(),
+        Some(around) if !around.has_trial() && session.phase != TrialPhase::Closed => around.name().to_uppercase(),
         _ => phase(session.phase).to_string(),
     }
 }
 
 /// The phase of the trial in a word.
-pub fn phase(phase: Phase) -> &'static str {
+pub fn phase(phase: TrialPhase) -> &'static str {
     match phase {
-        Phase::Ready => "READY",
-        Phase::Running => "RUNNING",
-        Phase::Paused => "PAUSED",
-        Phase::Over(EndReason::Aborted) => "ABORTED",
-        Phase::Over(_) => "TRIAL OVER",
-        Phase::Closed => "CLOSED",
+        TrialPhase::Ready => "READY",
+        TrialPhase::Running => "RUNNING",
+        TrialPhase::Paused => "PAUSED",
+        TrialPhase::Over(TrialEndReason::Aborted) => "ABORTED",
+        TrialPhase::Over(_) => "TRIAL OVER",
+        TrialPhase::Closed => "CLOSED",
     }
 }
 
 /// An event of the study protocol in words.
 pub fn protocol(event: &ProtocolEvent) -> String {
     match event {
-        ProtocolEvent::ConsentGiven { on: Some(Answering::Display), .. } => {
+        ProtocolEvent::ConsentGiven { on: Some(AnswerEntry::Display), .. } => {
             "the participant agrees to be recorded, on the display".to_string()
         }
         ProtocolEvent::ConsentGiven { .. } => "the participant agrees to be recorded".to_string(),
@@ -194,8 +194,10 @@ pub fn happening(kitchen: &Kitchen, what: &TimelineEvent) -> (&'static str, Stri
             (agent.name(), format!("{}{}", button(kitchen, *agent, *id), why.unwrap_or_default()))
         }
         TimelineEvent::Signal { by, signal: shown } => (sender(*by), signal(shown)),
-        TimelineEvent::SignalEnded(SignalEnd::TakenBack) => ("wizard", "took the signal back".to_string()),
-        TimelineEvent::SignalEnded(SignalEnd::Elapsed | SignalEnd::Outdated) => ("", "signal is over".to_string()),
+        TimelineEvent::SignalEnded(SignalEndReason::TakenBack) => ("wizard", "took the signal back".to_string()),
+        TimelineEvent::SignalEnded(SignalEndReason::Elapsed | SignalEndReason::Outdated) => {
+            ("", "signal is over".to_string())
+        }
         TimelineEvent::Served { order } => ("", format!("{} is served", kitchen.location(*order).label())),
         TimelineEvent::OrderShown { order } => ("", format!("{} is new", kitchen.location(*order).label())),
         TimelineEvent::Marker(note) => ("note", note.clone()),
@@ -243,17 +245,17 @@ pub fn arm_phase(phase: ArmPhase) -> &'static str {
 }
 
 /// State of the trial in a few words: "over: time is up".
-pub fn trial(phase: Phase) -> &'static str {
+pub fn trial(phase: TrialPhase) -> &'static str {
     match phase {
-        Phase::Ready => "ready",
-        Phase::Running => "runs",
-        Phase::Paused => "paused",
-        Phase::Over(EndReason::Presses) => "over: all presses made",
-        Phase::Over(EndReason::Time) => "over: time is up",
-        Phase::Over(EndReason::Orders) => "over: all orders served",
-        Phase::Over(EndReason::Wizard) => "ended by the wizard",
-        Phase::Over(EndReason::Aborted) => "aborted by the wizard",
-        Phase::Closed => "closed",
+        TrialPhase::Ready => "ready",
+        TrialPhase::Running => "runs",
+        TrialPhase::Paused => "paused",
+        TrialPhase::Over(TrialEndReason::Presses) => "over: all presses made",
+        TrialPhase::Over(TrialEndReason::Time) => "over: time is up",
+        TrialPhase::Over(TrialEndReason::Orders) => "over: all orders served",
+        TrialPhase::Over(TrialEndReason::Wizard) => "ended by the wizard",
+        TrialPhase::Over(TrialEndReason::Aborted) => "aborted by the wizard",
+        TrialPhase::Closed => "closed",
     }
 }
 
@@ -292,31 +294,31 @@ pub fn quoted(names: &[String]) -> String {
 }
 
 /// Counts of gaze input that could not be recorded, by kind, in words.
-pub fn drops(counts: &DropCounts) -> String {
+pub fn drops(counts: &DroppedInputCounts) -> String {
     let kinds = [(counts.malformed, "malformed"), (counts.too_frequent, "too frequent"), (counts.overrun, "overrun")];
     kinds.iter().filter(|(n, _)| *n > 0).map(|(n, kind)| format!("{n} {kind}")).collect::<Vec<_>>().join(", ")
 }
 
 /// An event of the gaze accuracy check in words.
-pub fn calibration(event: &CalibrationEvent) -> String {
+pub fn calibration(event: &GazeCheckEvent) -> String {
     match event {
-        CalibrationEvent::Begun { targets } => format!("gaze accuracy check begins: {} targets", targets.len()),
-        CalibrationEvent::TargetShown { target } => format!("target {} is shown", target + 1),
-        CalibrationEvent::TargetsHidden => "the targets are hidden".to_string(),
-        CalibrationEvent::Measured { found: None } => "gaze not measured: too few usable samples".to_string(),
-        CalibrationEvent::Measured { found: Some(found) } => format!(
+        GazeCheckEvent::Begun { targets } => format!("gaze accuracy check begins: {} targets", targets.len()),
+        GazeCheckEvent::TargetShown { target } => format!("target {} is shown", target + 1),
+        GazeCheckEvent::TargetsHidden => "the targets are hidden".to_string(),
+        GazeCheckEvent::Measured { found: None } => "gaze not measured: too few usable samples".to_string(),
+        GazeCheckEvent::Measured { found: Some(found) } => format!(
             "gaze measured: accuracy {:.2} deg, {:.2} deg without its offset, precision {:.2} deg",
             found.accuracy_deg, found.corrected_deg, found.precision_deg
         ),
-        CalibrationEvent::Accepted { corrected: true } => "gaze accepted, its offset is subtracted".to_string(),
-        CalibrationEvent::Accepted { corrected: false } => "gaze accepted without correction".to_string(),
-        CalibrationEvent::Carried { corrected: true, .. } => {
+        GazeCheckEvent::Accepted { corrected: true } => "gaze accepted, its offset is subtracted".to_string(),
+        GazeCheckEvent::Accepted { corrected: false } => "gaze accepted without correction".to_string(),
+        GazeCheckEvent::Carried { corrected: true, .. } => {
             "gaze correction taken over from the previous recording: its offset is subtracted".to_string()
         }
-        CalibrationEvent::Carried { corrected: false, .. } => {
+        GazeCheckEvent::Carried { corrected: false, .. } => {
             "gaze taken over from the previous recording, without correction".to_string()
         }
-        CalibrationEvent::Dismissed => "gaze accuracy check cancelled".to_string(),
+        GazeCheckEvent::Dismissed => "gaze accuracy check cancelled".to_string(),
     }
 }
 
@@ -324,12 +326,12 @@ pub fn calibration(event: &CalibrationEvent) -> String {
 pub fn error(kitchen: &Kitchen, press: &JudgedPress) -> String {
     let because = match press.cause {
         None => String::new(),
-        Some(Cause::Slip) => "; cause: slip".to_string(),
-        Some(Cause::Planning) => "; cause: planning error".to_string(),
-        Some(Cause::Belief { target, with: None, .. }) => {
+        Some(ErrorCause::Slip) => "; cause: slip".to_string(),
+        Some(ErrorCause::Planning) => "; cause: planning error".to_string(),
+        Some(ErrorCause::Belief { target, with: None, .. }) => {
             format!("; cause: false belief about {}", target.label(kitchen))
         }
-        Some(Cause::Belief { target, with: Some(other), .. }) => {
+        Some(ErrorCause::Belief { target, with: Some(other), .. }) => {
             format!("; cause: false belief about {} and {}", target.label(kitchen), other.label(kitchen))
         }
     };

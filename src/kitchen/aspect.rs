@@ -32,7 +32,7 @@ pub enum AspectKind {
 
 /// One state aspect and its possible values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Aspect {
+pub struct StateAspect {
     /// Name of the state aspect: that of its location, or "recipe of DISH".
     pub name: String,
     /// The location or the dish that the state aspect is about.
@@ -45,7 +45,7 @@ pub struct Aspect {
     pub wordings: Vec<String>,
 }
 
-impl Aspect {
+impl StateAspect {
     /// The index of a possible value, from its code.
     pub fn index_of(&self, code: u8) -> Option<usize> {
         self.values.iter().position(|&value| value == code)

@@ -23,7 +23,7 @@ pub struct Press {
 
 /// What an event of the session changed in the kitchen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Change {
+pub enum KitchenChange {
     /// The event does not change the kitchen.
     None,
     /// The trial started with an empty kitchen.
@@ -82,11 +82,11 @@ impl Press {
     }
 }
 
-impl Change {
+impl KitchenChange {
     /// The press of either agent, if the event is one that counts.
     pub fn press(&self) -> Option<Press> {
         match self {
-            Change::Press { press, .. } => Some(*press),
+            KitchenChange::Press { press, .. } => Some(*press),
             _ => None,
         }
     }
@@ -99,11 +99,11 @@ impl Change {
     /// The state of the kitchen before and after the event, if the event changed it.
     pub fn states(&self) -> Option<(State, State)> {
         let (before, after) = match self {
-            Change::None | Change::UncountedPress { .. } => return None,
-            Change::Press { press, .. } => (press.before, press.after),
-            Change::TrialStarted { before, after }
-            | Change::Order { before, after, .. }
-            | Change::Correction { before, after, .. } => (*before, *after),
+            KitchenChange::None | KitchenChange::UncountedPress { .. } => return None,
+            KitchenChange::Press { press, .. } => (press.before, press.after),
+            KitchenChange::TrialStarted { before, after }
+            | KitchenChange::Order { before, after, .. }
+            | KitchenChange::Correction { before, after, .. } => (*before, *after),
         };
         (before != after).then_some((before, after))
     }

@@ -2,12 +2,12 @@
 
 use super::action::{Button, ButtonAction, ButtonId};
 use super::agent::Agent;
-use super::aspect::{Aspect, AspectId, AspectKind};
+use super::aspect::{AspectId, AspectKind, StateAspect};
 use super::content::{Content, ContentId};
 use super::content_wording::KitchenWords;
 use super::dish::{Dish, DishId};
-use super::location::{Location, LocationId, LocationKind, Storage};
-use super::process::Process;
+use super::location::{IngredientStorage, Location, LocationId, LocationKind};
+use super::process::ProcessingStep;
 use super::state::{OrderContent, Recipes, State};
 use super::transition_tables::TransitionTables;
 use crate::base::rng::mix;
@@ -36,14 +36,14 @@ pub struct Kitchen {
     /// The buttons of the human and of the robot, indexed by [`Agent::index`] and [`ButtonId`].
     pub buttons: [Vec<Button>; 2],
     /// The storages: endless supplies of one ingredient each.
-    pub storages: Vec<Storage>,
+    pub storages: Vec<IngredientStorage>,
     /// The dishes of the menu.
     pub dishes: Vec<Dish>,
     /// The state aspects, about which beliefs can be false: one per location (its content) and one per dish (its
     /// recipe).
-    pub aspects: Vec<Aspect>,
+    pub aspects: Vec<StateAspect>,
     /// The processing steps: cutting, cooking and their like.
-    pub processes: Vec<Process>,
+    pub processes: Vec<ProcessingStep>,
     /// The locations that show orders.
     pub orders: Vec<LocationId>,
     /// The hand of each agent, indexed by [`Agent::index`].

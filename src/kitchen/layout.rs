@@ -20,7 +20,7 @@ pub struct LayoutSpec {
     /// The size of the wall display.
     pub display: WallDisplaySpec,
     /// The table, and the timing of orders.
-    pub table: TableSpec,
+    pub table: TabletopSpec,
     /// The order locations: at least one.
     pub order: Vec<OrderSpec>,
     /// The hands: one for each agent.
@@ -78,7 +78,7 @@ pub struct WallDisplaySpec {
 /// `[table]` of a layout file: the height of the table, and the timing of orders.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct TableSpec {
+pub struct TabletopSpec {
     /// Height of the table in the frame of the robot's base, in metres.
     pub height_m: f64,
     /// Time for which an order is shown as served, in seconds.

@@ -92,7 +92,7 @@ impl Location {
 
 /// An endless supply of one ingredient, within reach of one agent.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Storage {
+pub struct IngredientStorage {
     /// The agent who can take from the storage.
     pub agent: Agent,
     /// The item that the storage supplies: the ingredient in its first state.

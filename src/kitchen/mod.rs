@@ -38,14 +38,14 @@ pub mod world;
 
 pub use action::{Button, ButtonAction, ButtonColour, ButtonId};
 pub use agent::Agent;
-pub use aspect::{Aspect, AspectId, AspectKind};
-pub use change::{Change, Press};
+pub use aspect::{AspectId, AspectKind, StateAspect};
+pub use change::{KitchenChange, Press};
 pub use compiled::Kitchen;
 pub use content::{Content, ContentId};
 pub use cost_to_go::Fidelity;
 pub use dish::{Dish, DishId};
-pub use location::{DisplayArea, Location, LocationId, LocationKind, Storage};
+pub use location::{DisplayArea, IngredientStorage, Location, LocationId, LocationKind};
 pub use look::Appearance;
-pub use process::Process;
+pub use process::ProcessingStep;
 pub use state::{OrderContent, Recipes, State};
 pub use world::{WeightedWorld, WeightedWorlds, World};

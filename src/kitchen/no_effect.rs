@@ -12,7 +12,7 @@ use super::state::{OrderContent, State};
 /// Reason why a press has no effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum NoEffect {
+pub enum NoEffectReason {
     /// The agent's hand holds something, but would have to be empty.
     HandFull,
     /// The agent's hand is empty, but would have to hold something.
@@ -39,33 +39,33 @@ pub enum NoEffect {
 impl Kitchen {
     /// Why a press would have no effect in this state with the true recipes, and the location that the reason is about;
     /// `None` if the press would have an effect.
-    pub fn no_effect(&self, state: State, agent: Agent, button: ButtonId) -> Option<(NoEffect, LocationId)> {
+    pub fn no_effect(&self, state: State, agent: Agent, button: ButtonId) -> Option<(NoEffectReason, LocationId)> {
         if self.press(state, &self.true_recipes(), agent, button).is_some() {
             return None;
         }
         let hand = self.hands[agent.index()];
         let is_empty = |location: LocationId| state.content(location).is_empty();
         Some(match self.button(agent, button).action {
-            ButtonAction::Take(_) => (NoEffect::HandFull, hand),
-            ButtonAction::Trash => (NoEffect::HandEmpty, hand),
+            ButtonAction::Take(_) => (NoEffectReason::HandFull, hand),
+            ButtonAction::Trash => (NoEffectReason::HandEmpty, hand),
             ButtonAction::Use(location) => match (is_empty(hand), is_empty(location)) {
-                (true, _) => (NoEffect::BothEmpty, location),
-                (false, true) => (NoEffect::NotAccepted, location),
-                (false, false) if location == self.board => (NoEffect::NotStacked, location),
-                (false, false) => (NoEffect::PlaceFull, location),
+                (true, _) => (NoEffectReason::BothEmpty, location),
+                (false, true) => (NoEffectReason::NotAccepted, location),
+                (false, false) if location == self.board => (NoEffectReason::NotStacked, location),
+                (false, false) => (NoEffectReason::PlaceFull, location),
             },
             ButtonAction::Process(process) => {
                 let place = self.processes[usize::from(process)].place.unwrap_or(hand);
                 match is_empty(place) {
-                    true if place == hand => (NoEffect::HandEmpty, hand),
-                    true => (NoEffect::PlaceEmpty, place),
-                    false => (NoEffect::NotProcessed, place),
+                    true if place == hand => (NoEffectReason::HandEmpty, hand),
+                    true => (NoEffectReason::PlaceEmpty, place),
+                    false => (NoEffectReason::NotProcessed, place),
                 }
             }
             ButtonAction::Serve(order) => match (state.order(order), is_empty(self.plate)) {
-                (OrderContent::None | OrderContent::Served, _) => (NoEffect::NoOrder, order),
-                (OrderContent::Dish(_), true) => (NoEffect::PlaceEmpty, self.plate),
-                (OrderContent::Dish(_), false) => (NoEffect::NotServed, order),
+                (OrderContent::None | OrderContent::Served, _) => (NoEffectReason::NoOrder, order),
+                (OrderContent::Dish(_), true) => (NoEffectReason::PlaceEmpty, self.plate),
+                (OrderContent::Dish(_), false) => (NoEffectReason::NotServed, order),
             },
         })
     }

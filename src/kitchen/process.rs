@@ -5,7 +5,7 @@ use super::location::LocationId;
 
 /// A compiled processing step.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Process {
+pub struct ProcessingStep {
     /// The name of the processing step from the recipe file: "cut".
     pub name: String,
     /// Location of the processing step; `None` for the hand of the agent who presses.

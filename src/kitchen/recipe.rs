@@ -18,7 +18,7 @@ pub struct RecipesSpec {
     pub ingredient: Vec<IngredientSpec>,
     /// The processing steps.
     #[serde(default)]
-    pub process: Vec<ProcessSpec>,
+    pub process: Vec<ProcessingStepSpec>,
     /// The slots of a dish: a dish has at most one item from each slot.
     pub slot: Vec<SlotSpec>,
     /// Names for sets of items that places can accept.
@@ -55,7 +55,7 @@ pub struct IngredientSpec {
 /// `[[process]]` of a recipe file: a processing step, in which a press turns one item into another.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ProcessSpec {
+pub struct ProcessingStepSpec {
     /// The name of the processing step: "cut".
     pub name: Spanned<String>,
     /// Location of the processing step: a place of the layout, or "hand".
@@ -63,13 +63,13 @@ pub struct ProcessSpec {
     /// The agents who can do the processing step.
     pub agents: Vec<Agent>,
     /// The conversions of the processing step: which item becomes which.
-    pub steps: Vec<ProcessStepSpec>,
+    pub steps: Vec<ItemConversionSpec>,
 }
 
 /// A step of a process: one item becomes another.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ProcessStepSpec {
+pub struct ItemConversionSpec {
     /// The item before, as "ingredient state".
     pub from: Spanned<String>,
     /// The item after, as "ingredient state".

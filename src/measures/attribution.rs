@@ -13,8 +13,8 @@ use crate::kitchen::{
     AspectId, ButtonId, DishId, Kitchen, LocationId, LocationKind, OrderContent, Press, State, WeightedWorlds, World,
 };
 use crate::mind::belief::Belief;
-use crate::mind::choice_parameters::DecisionModel;
-use crate::mind::{BeliefWitness, ChoiceModel, PressOrigin};
+use crate::mind::choice_parameters::ChoiceParameters;
+use crate::mind::{ChoiceModel, PressOrigin, RecordedBelief};
 
 /// Least likelihood ratio of belief to truth for a belief related error.
 pub const LIKELIER: f64 = 3.0;
@@ -24,7 +24,7 @@ const DOUBTFUL: f64 = 0.1;
 /// What a false belief behind an error is about, and a signal can correct; an order and the recipe of its dish are one
 /// target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Target {
+pub enum FalseBeliefTarget {
     /// An order and the recipe of its dish.
     Order(LocationId, Option<DishId>),
     /// The content of a location other than an order.
@@ -35,7 +35,7 @@ pub enum Target {
 
 /// Cause of an error: slip, planning error or false belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Cause {
+pub enum ErrorCause {
     /// A slip: the press is not likelier under the belief than under the truth, or a simulated participant recorded a
     /// slip.
     Slip,
@@ -47,32 +47,32 @@ pub enum Cause {
         /// where raters coded it.
         gain_nats: f64,
         /// What the false belief is about.
-        target: Target,
+        target: FalseBeliefTarget,
         /// Second target, where a single target does not explain the error.
-        with: Option<Target>,
+        with: Option<FalseBeliefTarget>,
     },
 }
 
-impl Target {
+impl FalseBeliefTarget {
     /// All targets that a false belief can be about in a state.
-    pub fn all(kitchen: &Kitchen, state: State) -> Vec<Target> {
+    pub fn all(kitchen: &Kitchen, state: State) -> Vec<FalseBeliefTarget> {
         let locations = (0..kitchen.locations.len()).map(|index| LocationId(index as u8));
         let of_location = |location: LocationId| match (kitchen.location(location).kind, state.order(location)) {
-            (LocationKind::Order, OrderContent::Dish(dish)) => Target::Order(location, Some(dish)),
-            (LocationKind::Order, _) => Target::Order(location, None),
-            _ => Target::Place(location),
+            (LocationKind::Order, OrderContent::Dish(dish)) => FalseBeliefTarget::Order(location, Some(dish)),
+            (LocationKind::Order, _) => FalseBeliefTarget::Order(location, None),
+            _ => FalseBeliefTarget::Place(location),
         };
         let dishes = (0..kitchen.dishes.len()).map(|index| DishId(index as u8));
         let unwanted = dishes.filter(|dish| kitchen.wanted(state).all(|(_, wanted)| wanted != *dish));
-        locations.map(of_location).chain(unwanted.map(Target::Recipe)).collect()
+        locations.map(of_location).chain(unwanted.map(FalseBeliefTarget::Recipe)).collect()
     }
 
     /// The state aspects of the target.
     pub fn aspects(self, kitchen: &Kitchen) -> impl Iterator<Item = AspectId> {
         let (location, dish) = match self {
-            Target::Order(location, dish) => (Some(location), dish),
-            Target::Place(location) => (Some(location), None),
-            Target::Recipe(dish) => (None, Some(dish)),
+            FalseBeliefTarget::Order(location, dish) => (Some(location), dish),
+            FalseBeliefTarget::Place(location) => (Some(location), None),
+            FalseBeliefTarget::Recipe(dish) => (None, Some(dish)),
         };
         let recipe = dish.map(|dish| kitchen.aspect_of_dish(dish));
         location.map(AspectId::of_location).into_iter().chain(recipe)
@@ -81,36 +81,38 @@ impl Target {
     /// The target in words: "cooking pot", "tuna maki of order 1".
     pub fn label(self, kitchen: &Kitchen) -> String {
         match self {
-            Target::Order(order, Some(dish)) => {
+            FalseBeliefTarget::Order(order, Some(dish)) => {
                 format!("{} of {}", kitchen.dish(dish).name, kitchen.location(order).label())
             }
-            Target::Order(location, None) | Target::Place(location) => kitchen.location(location).label(),
-            Target::Recipe(dish) => format!("recipe of {}", kitchen.dish(dish).name),
+            FalseBeliefTarget::Order(location, None) | FalseBeliefTarget::Place(location) => {
+                kitchen.location(location).label()
+            }
+            FalseBeliefTarget::Recipe(dish) => format!("recipe of {}", kitchen.dish(dish).name),
         }
     }
 }
 
-impl Cause {
+impl ErrorCause {
     /// The cause of an error that a simulated participant recorded before its press in `state`; `None` if it recorded
     /// none.
-    pub fn recorded(kitchen: &Kitchen, state: State, witness: &BeliefWitness) -> Option<Cause> {
+    pub fn recorded(kitchen: &Kitchen, state: State, witness: &RecordedBelief) -> Option<ErrorCause> {
         match witness.origin? {
-            PressOrigin::Plan => return Some(Cause::Planning),
-            PressOrigin::Slip => return Some(Cause::Slip),
+            PressOrigin::Plan => return Some(ErrorCause::Planning),
+            PressOrigin::Slip => return Some(ErrorCause::Slip),
             PressOrigin::Belief => {}
         }
-        let is_told = |target: &Target| {
+        let is_told = |target: &FalseBeliefTarget| {
             target.aspects(kitchen).any(|aspect| witness.targets.contains(&kitchen.aspects[aspect.index()].name))
         };
-        let mut told = Target::all(kitchen, state).into_iter().filter(is_told);
-        Some(Cause::Belief { gain_nats: f64::INFINITY, target: told.next()?, with: told.next() })
+        let mut told = FalseBeliefTarget::all(kitchen, state).into_iter().filter(is_told);
+        Some(ErrorCause::Belief { gain_nats: f64::INFINITY, target: told.next()?, with: told.next() })
     }
 }
 
 /// Attributes errors of the human to causes.
 #[derive(Clone, Debug)]
-pub struct Attributor {
-    model: DecisionModel,
+pub struct ErrorAttributor {
+    model: ChoiceParameters,
     /// Seed of the random streams from which worlds are drawn.
     seed: u64,
 }
@@ -125,15 +127,22 @@ struct Inquiry<'a> {
     button: ButtonId,
 }
 
-impl Attributor {
+impl ErrorAttributor {
     /// Attributes errors by this choice model; `seed` names the random stream of the worlds that it draws.
-    pub fn new(model: DecisionModel, seed: u64) -> Attributor {
-        Attributor { model, seed }
+    pub fn new(model: ChoiceParameters, seed: u64) -> ErrorAttributor {
+        ErrorAttributor { model, seed }
     }
 
     /// The cause of an error, given the belief before it. `number` is the number of presses of both agents including
     /// this one; it seeds the random stream.
-    pub fn cause(&self, kitchen: &Kitchen, cost: &mut CostToGo, belief: &Belief, press: &Press, number: u32) -> Cause {
+    pub fn cause(
+        &self,
+        kitchen: &Kitchen,
+        cost: &mut CostToGo,
+        belief: &Belief,
+        press: &Press,
+        number: u32,
+    ) -> ErrorCause {
         let (state, button) = (press.before, press.button);
         let mut random = stream(self.seed, "attribution", u64::from(number));
         let worlds = self.model.worlds(kitchen, belief, &mut random);
@@ -144,8 +153,8 @@ impl Attributor {
         let gain_nats = believed - informed;
         let is_related = gain_nats >= LIKELIER.ln();
         match is_related.then(|| error.explain(cost, informed)).flatten() {
-            Some((target, with)) => Cause::Belief { gain_nats, target, with },
-            None => Cause::Slip,
+            Some((target, with)) => ErrorCause::Belief { gain_nats, target, with },
+            None => ErrorCause::Slip,
         }
     }
 }
@@ -157,10 +166,10 @@ impl Inquiry<'_> {
     }
 
     /// The target, or pair of targets, whose replacement by the truth makes the press unlikely enough.
-    fn explain(&self, cost: &mut CostToGo, informed: f64) -> Option<(Target, Option<Target>)> {
-        let mut targets = Target::all(self.kitchen, self.state);
+    fn explain(&self, cost: &mut CostToGo, informed: f64) -> Option<(FalseBeliefTarget, Option<FalseBeliefTarget>)> {
+        let mut targets = FalseBeliefTarget::all(self.kitchen, self.state);
         targets.retain(|&target| self.doubt(target) > 0.0);
-        let mut singles: Vec<(f64, Target)> =
+        let mut singles: Vec<(f64, FalseBeliefTarget)> =
             targets.into_iter().map(|target| (self.log_p(cost, &self.told(&self.worlds, target)), target)).collect();
         // The sort is stable: ties go to the layout's order.
         singles.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -174,7 +183,12 @@ impl Inquiry<'_> {
 
     /// The pair of targets whose replacement by the truth lowers the log probability of the press most, if it falls
     /// below `least`; the target with the larger effect of its own comes first.
-    fn best_pair(&self, cost: &mut CostToGo, targets: &[(f64, Target)], mut least: f64) -> Option<(Target, Target)> {
+    fn best_pair(
+        &self,
+        cost: &mut CostToGo,
+        targets: &[(f64, FalseBeliefTarget)],
+        mut least: f64,
+    ) -> Option<(FalseBeliefTarget, FalseBeliefTarget)> {
         let mut best = None;
         for (index, &(_, one)) in targets.iter().enumerate() {
             let told = self.told(&self.worlds, one);
@@ -189,14 +203,14 @@ impl Inquiry<'_> {
     }
 
     /// Probability that the human's belief about the target differs from the truth.
-    fn doubt(&self, target: Target) -> f64 {
+    fn doubt(&self, target: FalseBeliefTarget) -> f64 {
         let told = self.told(&self.worlds, target);
         let wrong = self.worlds.all.iter().zip(&told.all).filter(|(held, true_one)| held != true_one);
         wrong.map(|(held, _)| held.weight).sum()
     }
 
     /// The same worlds with the value of one target replaced by the truth.
-    fn told(&self, worlds: &WeightedWorlds, target: Target) -> WeightedWorlds {
+    fn told(&self, worlds: &WeightedWorlds, target: FalseBeliefTarget) -> WeightedWorlds {
         let mut worlds = worlds.clone();
         for aspect in target.aspects(self.kitchen) {
             let truth = self.kitchen.true_value(self.state, aspect);

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The source from which an analysis takes causes of errors and false beliefs; the most reliable source first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum BeliefBasis {
+pub enum BeliefSource {
     /// Beliefs that a simulated participant recorded.
     Recorded,
     /// Answers to freeze probes; they reveal false beliefs, but not the causes of errors.
@@ -18,26 +18,26 @@ pub enum BeliefBasis {
     Estimate,
 }
 
-impl BeliefBasis {
+impl BeliefSource {
     /// Name of the source in tables.
     pub fn name(self) -> &'static str {
         match self {
-            BeliefBasis::Recorded => "recorded",
-            BeliefBasis::Probes => "probes",
-            BeliefBasis::Consensus => "consensus",
-            BeliefBasis::Raters => "raters",
-            BeliefBasis::Estimate => "estimate",
+            BeliefSource::Recorded => "recorded",
+            BeliefSource::Probes => "probes",
+            BeliefSource::Consensus => "consensus",
+            BeliefSource::Raters => "raters",
+            BeliefSource::Estimate => "estimate",
         }
     }
 
     /// The source of knowledge about beliefs in words.
     pub fn words(self) -> &'static str {
         match self {
-            BeliefBasis::Recorded => "the recorded beliefs of simulated participants",
-            BeliefBasis::Probes => "the participants' answers to probes",
-            BeliefBasis::Consensus => "the consensus of two raters",
-            BeliefBasis::Raters => "the codes of two raters",
-            BeliefBasis::Estimate => "the assistant's estimate",
+            BeliefSource::Recorded => "the recorded beliefs of simulated participants",
+            BeliefSource::Probes => "the participants' answers to probes",
+            BeliefSource::Consensus => "the consensus of two raters",
+            BeliefSource::Raters => "the codes of two raters",
+            BeliefSource::Estimate => "the assistant's estimate",
         }
     }
 }

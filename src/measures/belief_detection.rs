@@ -12,8 +12,8 @@
 use serde::Serialize;
 
 use super::detection::{Calibration, auc};
-use super::flags::{AspectGroups, Flags, Thresholds};
-pub use super::press_view::{EstimateView, PressView, TrialView};
+use super::flags::{AspectGroups, FlagPerformance, FlagThresholds};
+pub use super::press_view::{BeliefsBeforePress, EstimateBeforePress, TrialView};
 use crate::kitchen::{AspectKind, Kitchen};
 
 /// Calibration uses only predicted probabilities within this range, since most aspects are obviously right most of the
@@ -35,7 +35,7 @@ pub struct AspectAuc {
 
 /// How well an estimate detects false beliefs; values are null without an estimate or without known beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Detection {
+pub struct FalseBeliefDetection {
     /// Mean of the areas under the ROC curves of locations and recipes.
     pub auc: Option<f64>,
     /// Area under the ROC curve over the locations.
@@ -52,7 +52,7 @@ pub struct Detection {
     pub auc_mean_of_aspects: Option<f64>,
     /// How well the chosen thresholds flag false belief episodes.
     #[serde(flatten)]
-    pub flags: Flags,
+    pub flags: FlagPerformance,
     /// The expected calibration error of the predicted probabilities of a false belief within [`CALIBRATED`].
     pub ece: Option<f64>,
     /// Predicted probabilities of a false belief in bins, with the observed frequencies.
@@ -61,20 +61,25 @@ pub struct Detection {
     pub aspects: Vec<AspectAuc>,
 }
 
-impl Detection {
+impl FalseBeliefDetection {
     /// Compares estimates with known beliefs. `thresholds` are those from which an aspect is flagged; with
-    /// `None` they are chosen on other trials than they are evaluated on (see [`Flags`]).
-    pub fn from_trials(kitchen: &Kitchen, trials: &[TrialView], thresholds: Option<Thresholds>) -> Detection {
-        let estimated = |press: &PressView, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
-        let changed = |press: &PressView, aspect| press.unseen_change.get(aspect).map(|&one| f64::from(u8::from(one)));
+    /// `None` they are chosen on other trials than they are evaluated on (see [`FlagPerformance`]).
+    pub fn from_trials(
+        kitchen: &Kitchen,
+        trials: &[TrialView],
+        thresholds: Option<FlagThresholds>,
+    ) -> FalseBeliefDetection {
+        let estimated = |press: &BeliefsBeforePress, aspect| press.estimate.as_ref().map(|one| one.p_wrong[aspect]);
+        let changed =
+            |press: &BeliefsBeforePress, aspect| press.unseen_change.get(aspect).map(|&one| f64::from(u8::from(one)));
         let groups = aspect_groups(kitchen);
-        let recent = |press: &PressView, aspect: usize| {
+        let recent = |press: &BeliefsBeforePress, aspect: usize| {
             press.since_change_s.get(aspect).map(|since_s| since_s.map_or(0.0, |since_s: f64| 1.0 / (1.0 + since_s)))
         };
         let both: Vec<usize> = (0..kitchen.aspects.len()).collect();
         let pool = |of: &[usize], score: Score| auc(&scored(trials, of, score));
         let of_groups = groups.each_ref().map(|group| pool(group, &estimated));
-        let predicted = |press: &PressView, aspect| press.estimate.as_ref().map(|one| one.p_false[aspect]);
+        let predicted = |press: &BeliefsBeforePress, aspect| press.estimate.as_ref().map(|one| one.p_false[aspect]);
         let predictions = scored(trials, &both, &predicted);
         let calibration = Calibration::from_predictions(predictions, CALIBRATED, CALIBRATION_BINS);
         let aspect = |&index: &usize| {
@@ -82,14 +87,14 @@ impl Detection {
             let wrong = known.iter().filter(|&&wrong| wrong).count() as f64 / known.len().max(1) as f64;
             AspectAuc { aspect: kitchen.aspects[index].name.clone(), auc: pool(&[index], &estimated), wrong }
         };
-        Detection {
+        FalseBeliefDetection {
             auc: mean(of_groups.into_iter().flatten()),
             auc_locations: of_groups[0],
             auc_recipes: of_groups[1],
             auc_baseline: pool(&groups[0], &changed),
             auc_recency: pool(&groups[0], &recent),
             auc_mean_of_aspects: mean(both.iter().filter_map(|&one| pool(&[one], &estimated))),
-            flags: Flags::from_trials(trials, &groups, thresholds),
+            flags: FlagPerformance::from_trials(trials, &groups, thresholds),
             ece: calibration.ece,
             calibration,
             aspects: both.iter().map(aspect).collect(),
@@ -98,11 +103,11 @@ impl Detection {
 }
 
 /// Function that scores one aspect before a press.
-type Score<'a> = &'a dyn Fn(&PressView, usize) -> Option<f64>;
+type Score<'a> = &'a dyn Fn(&BeliefsBeforePress, usize) -> Option<f64>;
 
 /// Scores of aspects before every press, each with whether the belief was false; only where both are known.
 fn scored(trials: &[TrialView], aspects: &[usize], score: Score) -> Vec<(f64, bool)> {
-    let one = |press: &PressView, aspect: usize| Some((score(press, aspect)?, press.is_wrong(aspect)?));
+    let one = |press: &BeliefsBeforePress, aspect: usize| Some((score(press, aspect)?, press.is_wrong(aspect)?));
     let presses = trials.iter().flatten();
     presses.flat_map(|press| aspects.iter().filter_map(move |&aspect| one(press, aspect))).collect()
 }

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::attribution::{Cause, Target};
+use super::attribution::{ErrorCause, FalseBeliefTarget};
 use super::judged_press::JudgedPress;
 use super::matching::kappa;
 use crate::kitchen::{Kitchen, LocationKind, OrderContent, State};
 
 /// Cause of an error as coded by a rater.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Code {
+pub enum ErrorCauseCode {
     /// A false belief; contains the location's name. An order location stands for the recipe of its dish.
     Belief(String),
     /// A slip of hand or attention, without a false belief.
@@ -28,7 +28,7 @@ pub enum Code {
 /// Kinds of causes of an error, without what a false belief is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum CauseKind {
+pub enum ErrorCauseKind {
     /// A false belief of the participant.
     Belief,
     /// A slip of hand or attention.
@@ -41,122 +41,127 @@ pub enum CauseKind {
     Buttons,
 }
 
-impl CauseKind {
+impl ErrorCauseKind {
     /// All kinds of causes, in the order of the keys that code them.
-    pub const ALL: [CauseKind; 5] =
-        [CauseKind::Belief, CauseKind::Slip, CauseKind::Race, CauseKind::Other, CauseKind::Buttons];
+    pub const ALL: [ErrorCauseKind; 5] = [
+        ErrorCauseKind::Belief,
+        ErrorCauseKind::Slip,
+        ErrorCauseKind::Race,
+        ErrorCauseKind::Other,
+        ErrorCauseKind::Buttons,
+    ];
 
     /// Name of the cause in files.
     pub fn name(self) -> &'static str {
         match self {
-            CauseKind::Belief => "belief",
-            CauseKind::Slip => "slip",
-            CauseKind::Race => "race",
-            CauseKind::Other => "other",
-            CauseKind::Buttons => "buttons",
+            ErrorCauseKind::Belief => "belief",
+            ErrorCauseKind::Slip => "slip",
+            ErrorCauseKind::Race => "race",
+            ErrorCauseKind::Other => "other",
+            ErrorCauseKind::Buttons => "buttons",
         }
     }
 
     /// Name of the cause in the raters' codebook.
     pub fn title(self) -> &'static str {
         match self {
-            CauseKind::Belief => "wrong about",
-            CauseKind::Slip => "slip",
-            CauseKind::Race => "race",
-            CauseKind::Other => "other cause",
-            CauseKind::Buttons => "mixed up buttons",
+            ErrorCauseKind::Belief => "wrong about",
+            ErrorCauseKind::Slip => "slip",
+            ErrorCauseKind::Race => "race",
+            ErrorCauseKind::Other => "other cause",
+            ErrorCauseKind::Buttons => "mixed up buttons",
         }
     }
 
     /// Definition of the cause in the raters' codebook, in one line.
     pub fn definition(self) -> &'static str {
         match self {
-            CauseKind::Belief => "order: or its recipe",
-            CauseKind::Slip => "nothing was believed wrong",
-            CauseKind::Race => "the robot was quicker",
-            CauseKind::Other => "none of these causes",
-            CauseKind::Buttons => "wanted another",
+            ErrorCauseKind::Belief => "order: or its recipe",
+            ErrorCauseKind::Slip => "nothing was believed wrong",
+            ErrorCauseKind::Race => "the robot was quicker",
+            ErrorCauseKind::Other => "none of these causes",
+            ErrorCauseKind::Buttons => "wanted another",
         }
     }
 
     /// The definition of the cause in two words, for narrow screens; `None` where the title suffices.
     pub fn short_definition(self) -> Option<&'static str> {
         match self {
-            CauseKind::Slip => Some("belief right"),
-            CauseKind::Race => Some("robot first"),
-            CauseKind::Belief | CauseKind::Other | CauseKind::Buttons => None,
+            ErrorCauseKind::Slip => Some("belief right"),
+            ErrorCauseKind::Race => Some("robot first"),
+            ErrorCauseKind::Belief | ErrorCauseKind::Other | ErrorCauseKind::Buttons => None,
         }
     }
 
     /// The kind of cause with this name.
-    pub fn named(name: &str) -> Option<CauseKind> {
-        CauseKind::ALL.into_iter().find(|kind| kind.name() == name)
+    pub fn named(name: &str) -> Option<ErrorCauseKind> {
+        ErrorCauseKind::ALL.into_iter().find(|kind| kind.name() == name)
     }
 }
 
-impl Code {
+impl ErrorCauseCode {
     /// The code for a kind of cause; `aspect` names the location of a false belief and is given for false beliefs only.
-    pub fn new(kind: CauseKind, aspect: Option<&str>) -> Option<Code> {
+    pub fn new(kind: ErrorCauseKind, aspect: Option<&str>) -> Option<ErrorCauseCode> {
         match (kind, aspect) {
-            (CauseKind::Belief, Some(aspect)) => Some(Code::Belief(aspect.to_string())),
-            (CauseKind::Slip, None) => Some(Code::Slip),
-            (CauseKind::Race, None) => Some(Code::Race),
-            (CauseKind::Other, None) => Some(Code::Other),
-            (CauseKind::Buttons, None) => Some(Code::Buttons),
+            (ErrorCauseKind::Belief, Some(aspect)) => Some(ErrorCauseCode::Belief(aspect.to_string())),
+            (ErrorCauseKind::Slip, None) => Some(ErrorCauseCode::Slip),
+            (ErrorCauseKind::Race, None) => Some(ErrorCauseCode::Race),
+            (ErrorCauseKind::Other, None) => Some(ErrorCauseCode::Other),
+            (ErrorCauseKind::Buttons, None) => Some(ErrorCauseCode::Buttons),
             _ => None,
         }
     }
 
     /// The kind of the cause, without what a false belief is about.
-    pub fn kind(&self) -> CauseKind {
+    pub fn kind(&self) -> ErrorCauseKind {
         match self {
-            Code::Belief(_) => CauseKind::Belief,
-            Code::Slip => CauseKind::Slip,
-            Code::Race => CauseKind::Race,
-            Code::Other => CauseKind::Other,
-            Code::Buttons => CauseKind::Buttons,
+            ErrorCauseCode::Belief(_) => ErrorCauseKind::Belief,
+            ErrorCauseCode::Slip => ErrorCauseKind::Slip,
+            ErrorCauseCode::Race => ErrorCauseKind::Race,
+            ErrorCauseCode::Other => ErrorCauseKind::Other,
+            ErrorCauseCode::Buttons => ErrorCauseKind::Buttons,
         }
     }
 
     /// Name of the location that the false belief is about.
     pub fn aspect(&self) -> Option<&str> {
         match self {
-            Code::Belief(aspect) => Some(aspect),
+            ErrorCauseCode::Belief(aspect) => Some(aspect),
             _ => None,
         }
     }
 
     /// Target of the false belief, in the state before the press; `None` for other causes.
-    pub fn target(&self, kitchen: &Kitchen, state: State) -> Option<Target> {
+    pub fn target(&self, kitchen: &Kitchen, state: State) -> Option<FalseBeliefTarget> {
         let location = kitchen.location_named(self.aspect()?)?;
         Some(match (kitchen.location(location).kind, state.order(location)) {
-            (LocationKind::Order, OrderContent::Dish(dish)) => Target::Order(location, Some(dish)),
-            (LocationKind::Order, _) => Target::Order(location, None),
-            _ => Target::Place(location),
+            (LocationKind::Order, OrderContent::Dish(dish)) => FalseBeliefTarget::Order(location, Some(dish)),
+            (LocationKind::Order, _) => FalseBeliefTarget::Order(location, None),
+            _ => FalseBeliefTarget::Place(location),
         })
     }
 }
 
 /// Errors and locations to which the raters' codes of one recording can refer.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Codable {
+pub struct CodableErrors {
     /// Log numbers of the presses that were errors, in ascending order.
     pub errors: Vec<u64>,
     /// Names of the kitchen's locations.
     pub places: Vec<String>,
 }
 
-impl Codable {
+impl CodableErrors {
     /// The errors among these presses, and the locations of their kitchen.
-    pub fn from_presses(kitchen: &Kitchen, presses: &[JudgedPress]) -> Codable {
-        Codable {
+    pub fn from_presses(kitchen: &Kitchen, presses: &[JudgedPress]) -> CodableErrors {
+        CodableErrors {
             errors: presses.iter().filter(|press| press.verdict.error).map(|press| press.seq).collect(),
             places: kitchen.locations.iter().map(|location| location.name.clone()).collect(),
         }
     }
 
     /// What is wrong with a code for the press with this log number, and the remedy; `None` for a valid code.
-    pub fn fault(&self, press: u64, code: &Code) -> Option<(String, String)> {
+    pub fn fault(&self, press: u64, code: &ErrorCauseCode) -> Option<(String, String)> {
         if !self.errors.contains(&press) {
             return Some((format!("press {press}, which was no error"), self.nearest(press)));
         }
@@ -178,36 +183,37 @@ impl Codable {
 
 /// Codes of one rater for one recording, by log number of the erroneous press.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Codes(pub BTreeMap<u64, Code>);
+pub struct RaterCodes(pub BTreeMap<u64, ErrorCauseCode>);
 
-impl Codes {
+impl RaterCodes {
     /// The true codes of a simulated participant's errors, for comparison with raters.
-    pub fn known(kitchen: &Kitchen, presses: &[JudgedPress]) -> Codes {
+    pub fn known(kitchen: &Kitchen, presses: &[JudgedPress]) -> RaterCodes {
         let code = |press: &JudgedPress| {
             Some(match press.cause? {
-                Cause::Slip => Code::Slip,
-                Cause::Planning => Code::Other,
-                Cause::Belief { target: Target::Order(location, _) | Target::Place(location), .. } => {
-                    Code::Belief(kitchen.location(location).name.clone())
-                }
+                ErrorCause::Slip => ErrorCauseCode::Slip,
+                ErrorCause::Planning => ErrorCauseCode::Other,
+                ErrorCause::Belief {
+                    target: FalseBeliefTarget::Order(location, _) | FalseBeliefTarget::Place(location),
+                    ..
+                } => ErrorCauseCode::Belief(kitchen.location(location).name.clone()),
                 // A false recipe belief has no location if no order requests the dish.
-                Cause::Belief { target: Target::Recipe(_), .. } => Code::Other,
+                ErrorCause::Belief { target: FalseBeliefTarget::Recipe(_), .. } => ErrorCauseCode::Other,
             })
         };
-        Codes(presses.iter().filter_map(|press| Some((press.seq, code(press)?))).collect())
+        RaterCodes(presses.iter().filter_map(|press| Some((press.seq, code(press)?))).collect())
     }
 
     /// The errors to which both raters gave the same code, with that code.
-    pub fn agreed(&self, other: &Codes) -> Codes {
+    pub fn agreed(&self, other: &RaterCodes) -> RaterCodes {
         let same = self.0.iter().filter(|(press, code)| other.0.get(press) == Some(code));
-        Codes(same.map(|(press, code)| (*press, code.clone())).collect())
+        RaterCodes(same.map(|(press, code)| (*press, code.clone())).collect())
     }
 }
 
 /// Contingency table of two raters' codes over the errors that both coded; recordings are added to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AgreementTable {
-    kinds: BTreeMap<(CauseKind, CauseKind), u64>,
+    kinds: BTreeMap<(ErrorCauseKind, ErrorCauseKind), u64>,
     /// Counts of location pairs (as indices of names) for errors that both raters coded as false beliefs.
     aspects: BTreeMap<(usize, usize), u64>,
     names: Vec<String>,
@@ -215,7 +221,7 @@ pub struct AgreementTable {
 
 /// Agreement of two raters on the causes of errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Agreement {
+pub struct RaterAgreement {
     /// Number of errors that both raters coded.
     pub errors: u64,
     /// Number of errors to which both raters gave the same kind of cause.
@@ -233,7 +239,7 @@ pub struct Agreement {
 
 impl AgreementTable {
     /// Adds the codes of one recording by both raters to the table.
-    pub fn add(&mut self, one: &Codes, other: &Codes) {
+    pub fn add(&mut self, one: &RaterCodes, other: &RaterCodes) {
         for (press, a) in &one.0 {
             let Some(b) = other.0.get(press) else { continue };
             *self.kinds.entry((a.kind(), b.kind())).or_default() += 1;
@@ -255,8 +261,8 @@ impl AgreementTable {
     }
 
     /// Computes the agreement from the table.
-    pub fn agreement(&self) -> Agreement {
-        Agreement {
+    pub fn agreement(&self) -> RaterAgreement {
+        RaterAgreement {
             errors: self.kinds.values().sum(),
             same_cause: same(&self.kinds),
             kappa_cause: kappa(&self.kinds),

@@ -3,9 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::attribution::{Cause, Target};
+use super::attribution::{ErrorCause, FalseBeliefTarget};
 use super::judged_press::JudgedPress;
-use super::sequences::Episode;
+use super::sequences::FalseBeliefEpisode;
 use crate::kitchen::{AspectId, Kitchen};
 
 /// Numbers of belief related errors by kind of aspect.
@@ -25,10 +25,14 @@ pub struct CauseKindCounts {
 impl CauseKindCounts {
     /// Counts these presses. `episodes` tells whether the belief about an order or about its recipe was false at the
     /// time of an error.
-    pub fn from_presses(kitchen: &Kitchen, presses: &[JudgedPress], episodes: &[Episode]) -> CauseKindCounts {
+    pub fn from_presses(
+        kitchen: &Kitchen,
+        presses: &[JudgedPress],
+        episodes: &[FalseBeliefEpisode],
+    ) -> CauseKindCounts {
         let mut counts = CauseKindCounts::default();
         for press in presses {
-            let Some(Cause::Belief { target, .. }) = press.cause else { continue };
+            let Some(ErrorCause::Belief { target, .. }) = press.cause else { continue };
             let is_false = |aspect: AspectId| {
                 let is_open = |end| press.time <= end;
                 episodes.iter().any(|episode| {
@@ -36,10 +40,10 @@ impl CauseKindCounts {
                 })
             };
             let count = match target {
-                Target::Place(_) => &mut counts.places,
-                Target::Recipe(_) => &mut counts.recipes,
-                Target::Order(_, None) => &mut counts.orders,
-                Target::Order(location, Some(dish)) => {
+                FalseBeliefTarget::Place(_) => &mut counts.places,
+                FalseBeliefTarget::Recipe(_) => &mut counts.recipes,
+                FalseBeliefTarget::Order(_, None) => &mut counts.orders,
+                FalseBeliefTarget::Order(location, Some(dish)) => {
                     match (is_false(AspectId::of_location(location)), is_false(kitchen.aspect_of_dish(dish))) {
                         (true, false) => &mut counts.orders,
                         (false, true) => &mut counts.recipes,

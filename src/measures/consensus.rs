@@ -3,24 +3,24 @@
 
 use std::collections::BTreeMap;
 
-use super::cause_codes::{Code, Codes};
+use super::cause_codes::{ErrorCauseCode, RaterCodes};
 
 /// A code that two raters share, with the raters' own codes at the time of the decision.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SettledCode {
+pub struct ConsensusCode {
     /// The code that both raters share.
-    pub code: Code,
+    pub code: ErrorCauseCode,
     /// Each rater's own code at the time of the decision; `None` if the rater had not coded the error.
-    pub from: [Option<Code>; 2],
+    pub from: [Option<ErrorCauseCode>; 2],
 }
 
 /// The consensus of two raters about the errors of one recording, by log number of the erroneous press.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Consensus {
+pub struct RaterConsensus {
     /// The two raters, in the order of their codes.
     pub raters: [String; 2],
     /// The shared codes by press, decided together or equal from the beginning.
-    pub settled: BTreeMap<u64, SettledCode>,
+    pub settled: BTreeMap<u64, ConsensusCode>,
 }
 
 /// A rater's own code that changed after the consensus on the error was reached.
@@ -32,12 +32,12 @@ pub struct ChangedCode {
     pub rater: String,
 }
 
-impl Consensus {
+impl RaterConsensus {
     /// A consensus without any settled errors. The order of the two raters has no meaning.
-    pub fn new(one: &str, other: &str) -> Consensus {
+    pub fn new(one: &str, other: &str) -> RaterConsensus {
         let mut raters = [one.to_string(), other.to_string()];
         raters.sort();
-        Consensus { raters, settled: BTreeMap::new() }
+        RaterConsensus { raters, settled: BTreeMap::new() }
     }
 
     /// Name of the consensus in tables: "R1+R2". No single rater has such a name.
@@ -46,25 +46,25 @@ impl Consensus {
     }
 
     /// Adds the errors that both raters coded alike.
-    pub fn with_agreed(mut self, codes: [&Codes; 2]) -> Consensus {
+    pub fn with_agreed(mut self, codes: [&RaterCodes; 2]) -> RaterConsensus {
         for (press, code) in codes[0].agreed(codes[1]).0 {
             let from = [Some(code.clone()), Some(code.clone())];
-            self.settled.insert(press, SettledCode { code, from });
+            self.settled.insert(press, ConsensusCode { code, from });
         }
         self
     }
 
     /// Adds codes that the two raters decided together; `codes` are their own codes at that time.
-    pub fn with_decided(mut self, decided: &Codes, codes: [&Codes; 2]) -> Consensus {
+    pub fn with_decided(mut self, decided: &RaterCodes, codes: [&RaterCodes; 2]) -> RaterConsensus {
         for (press, code) in &decided.0 {
             let from = codes.map(|codes| codes.0.get(press).cloned());
-            self.settled.insert(*press, SettledCode { code: code.clone(), from });
+            self.settled.insert(*press, ConsensusCode { code: code.clone(), from });
         }
         self
     }
 
     /// The raters' own codes that changed since the consensus; any of them makes the consensus on its error stale.
-    pub fn changed(&self, codes: [&Codes; 2]) -> Vec<ChangedCode> {
+    pub fn changed(&self, codes: [&RaterCodes; 2]) -> Vec<ChangedCode> {
         let mut changed = Vec::new();
         for (press, settled) in &self.settled {
             for (index, rater) in self.raters.iter().enumerate() {
@@ -77,11 +77,11 @@ impl Consensus {
     }
 
     /// The shared codes whose underlying raters' codes have not changed since.
-    pub fn current(&self, codes: [&Codes; 2]) -> Codes {
+    pub fn current(&self, codes: [&RaterCodes; 2]) -> RaterCodes {
         let stale = self.changed(codes);
         let holds = |press: &u64| stale.iter().all(|changed| changed.press != *press);
         let settled = self.settled.iter().filter(|(press, _)| holds(press));
-        Codes(settled.map(|(press, settled)| (*press, settled.code.clone())).collect())
+        RaterCodes(settled.map(|(press, settled)| (*press, settled.code.clone())).collect())
     }
 
     /// Number of errors that both raters had coded alike before the discussion.
@@ -90,7 +90,7 @@ impl Consensus {
     }
 }
 
-impl SettledCode {
+impl ConsensusCode {
     /// Whether both raters had given this code by themselves.
     pub fn is_agreed(&self) -> bool {
         self.from.iter().all(|from| from.as_ref() == Some(&self.code))
@@ -105,7 +105,7 @@ impl SettledCode {
 }
 
 /// The errors that two raters still have to settle: their codes differ, or one of the codes is missing.
-pub fn unsettled(errors: &[u64], codes: [&Codes; 2]) -> Vec<u64> {
+pub fn unsettled(errors: &[u64], codes: [&RaterCodes; 2]) -> Vec<u64> {
     let [one, other] = codes;
     let differs = |press: &u64| match (one.0.get(press), other.0.get(press)) {
         (Some(a), Some(b)) => a != b,
@@ -118,41 +118,41 @@ pub fn unsettled(errors: &[u64], codes: [&Codes; 2]) -> Vec<u64> {
 mod tests {
     use super::*;
 
-    fn codes(of: &[(u64, Code)]) -> Codes {
-        Codes(of.iter().cloned().collect())
+    fn codes(of: &[(u64, ErrorCauseCode)]) -> RaterCodes {
+        RaterCodes(of.iter().cloned().collect())
     }
 
     #[test]
     fn what_both_say_is_taken_over_and_the_rest_is_to_be_settled() {
-        let one = codes(&[(3, Code::Slip), (5, Code::Race), (8, Code::Other)]);
-        let other = codes(&[(3, Code::Slip), (5, Code::Slip)]);
+        let one = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Race), (8, ErrorCauseCode::Other)]);
+        let other = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Slip)]);
         assert_eq!(unsettled(&[3, 5, 8, 9], [&one, &other]), [5, 8, 9]);
-        let begun = Consensus::new("R2", "R1").with_agreed([&one, &other]);
+        let begun = RaterConsensus::new("R2", "R1").with_agreed([&one, &other]);
         assert_eq!((begun.name().as_str(), begun.agreed()), ("R1+R2", 1));
-        let decided = codes(&[(5, Code::Race), (8, Code::Buttons)]);
+        let decided = codes(&[(5, ErrorCauseCode::Race), (8, ErrorCauseCode::Buttons)]);
         let settled = begun.with_decided(&decided, [&one, &other]);
         assert_eq!(settled.current([&one, &other]).0.len(), 3);
-        assert_eq!(settled.settled[&8].from, [Some(Code::Other), None]);
+        assert_eq!(settled.settled[&8].from, [Some(ErrorCauseCode::Other), None]);
     }
 
     #[test]
     fn a_code_that_changes_afterwards_makes_its_error_stale_and_no_other() {
-        let one = codes(&[(3, Code::Slip), (5, Code::Race)]);
-        let other = codes(&[(3, Code::Slip), (5, Code::Slip)]);
-        let settled = Consensus::new("R1", "R2")
+        let one = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Race)]);
+        let other = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Slip)]);
+        let settled = RaterConsensus::new("R1", "R2")
             .with_agreed([&one, &other])
-            .with_decided(&codes(&[(5, Code::Race)]), [&one, &other]);
+            .with_decided(&codes(&[(5, ErrorCauseCode::Race)]), [&one, &other]);
         assert_eq!(settled.changed([&one, &other]), []);
-        let later = codes(&[(3, Code::Slip), (5, Code::Other)]);
+        let later = codes(&[(3, ErrorCauseCode::Slip), (5, ErrorCauseCode::Other)]);
         assert_eq!(settled.changed([&one, &later]), [ChangedCode { press: 5, rater: "R2".to_string() }]);
-        assert_eq!(settled.current([&one, &later]), codes(&[(3, Code::Slip)]));
+        assert_eq!(settled.current([&one, &later]), codes(&[(3, ErrorCauseCode::Slip)]));
     }
 
     #[test]
     fn nobody_overrules_what_both_raters_say() {
-        let both = [Some(Code::Slip), Some(Code::Slip)];
-        assert!(SettledCode { code: Code::Race, from: both.clone() }.fault().is_some());
-        assert!(SettledCode { code: Code::Slip, from: both }.fault().is_none());
-        assert!(SettledCode { code: Code::Race, from: [None, None] }.fault().is_none());
+        let both = [Some(ErrorCauseCode::Slip), Some(ErrorCauseCode::Slip)];
+        assert!(ConsensusCode { code: ErrorCauseCode::Race, from: both.clone() }.fault().is_some());
+        assert!(ConsensusCode { code: ErrorCauseCode::Slip, from: both }.fault().is_none());
+        assert!(ConsensusCode { code: ErrorCauseCode::Race, from: [None, None] }.fault().is_none());
     }
 }

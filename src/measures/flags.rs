@@ -11,7 +11,7 @@
 
 use serde::Serialize;
 
-use super::press_view::{PressView, TrialView};
+use super::press_view::{BeliefsBeforePress, TrialView};
 
 /// Largest share of (press, aspect) pairs with a right belief that may be flagged.
 pub const MOST_WRONGLY_FLAGGED: f64 = 0.05;
@@ -28,7 +28,7 @@ const CANDIDATES: usize = 200;
 
 /// Expected belief deviation, 1 - E[P(truth)], from which on an aspect is flagged, for locations and for recipes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Thresholds {
+pub struct FlagThresholds {
     /// Flag threshold of the expected belief deviation for locations.
     pub locations: f64,
     /// Flag threshold of the expected belief deviation for recipes.
@@ -49,7 +49,7 @@ pub enum ThresholdSource {
 
 /// Detections and false alarms of flags on aspects that are probably believed wrong.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Flags {
+pub struct FlagPerformance {
     /// Number of false belief episodes with two or more errors.
     pub episodes: Option<u64>,
     /// Share of these episodes that were flagged in time.
@@ -59,7 +59,7 @@ pub struct Flags {
     /// Share of (press, aspect) pairs with a right belief that were flagged.
     pub wrongly_flagged: Option<f64>,
     /// The thresholds; with [`ThresholdSource::OtherHalf`] those that all trials together would give.
-    pub thresholds: Option<Thresholds>,
+    pub thresholds: Option<FlagThresholds>,
     /// The trials on which the thresholds were chosen.
     pub thresholds_from: Option<ThresholdSource>,
 }
@@ -96,13 +96,17 @@ struct FlagCounts {
     right: usize,
 }
 
-impl Flags {
+impl FlagPerformance {
     /// Evaluates flags on trials, with these thresholds from other recordings, or with thresholds that are chosen by
     /// cross-fitting.
-    pub fn from_trials(trials: &[TrialView], groups: &AspectGroups, thresholds: Option<Thresholds>) -> Flags {
+    pub fn from_trials(
+        trials: &[TrialView],
+        groups: &AspectGroups,
+        thresholds: Option<FlagThresholds>,
+    ) -> FlagPerformance {
         let all: Vec<&TrialView> = trials.iter().collect();
         if !is_known(&all) {
-            return Flags::default();
+            return FlagPerformance::default();
         }
         let half = |parity: usize| -> Vec<&TrialView> { trials.iter().skip(parity).step_by(2).collect() };
         let halves = [half(0), half(1)];
@@ -118,7 +122,7 @@ impl Flags {
             None => (FlagCounts::from_trials(&all, groups, of_all), ThresholdSource::SameTrial),
         };
         let share = |part: usize, all: usize| (all > 0).then(|| part as f64 / all as f64);
-        Flags {
+        FlagPerformance {
             episodes: Some(counts.episodes as u64),
             flagged_before_third_error: share(counts.caught, counts.episodes),
             false_flags_per_20_actions: share(counts.false_flags, counts.presses).map(|rate| PER_PRESSES * rate),
@@ -130,7 +134,7 @@ impl Flags {
 }
 
 impl FlagCounts {
-    fn from_trials(trials: &[&TrialView], groups: &AspectGroups, thresholds: Thresholds) -> FlagCounts {
+    fn from_trials(trials: &[&TrialView], groups: &AspectGroups, thresholds: FlagThresholds) -> FlagCounts {
         let presses = trials.iter().map(|trial| trial.len()).sum();
         let mut counts = FlagCounts { presses, ..FlagCounts::default() };
         for (group, threshold) in groups.iter().zip([thresholds.locations, thresholds.recipes]) {
@@ -162,13 +166,13 @@ fn is_known(trials: &[&TrialView]) -> bool {
 }
 
 /// The flag thresholds that are best on these trials; `None` if beliefs or estimates are not known.
-pub fn chosen_thresholds(trials: &[TrialView], groups: &AspectGroups) -> Option<Thresholds> {
+pub fn chosen_thresholds(trials: &[TrialView], groups: &AspectGroups) -> Option<FlagThresholds> {
     let all: Vec<&TrialView> = trials.iter().collect();
     is_known(&all).then(|| best_thresholds(&all, groups))
 }
 
 /// The flag thresholds that detect most episodes within the allowed numbers of false flags.
-fn best_thresholds(trials: &[&TrialView], groups: &AspectGroups) -> Thresholds {
+fn best_thresholds(trials: &[&TrialView], groups: &AspectGroups) -> FlagThresholds {
     let presses: usize = trials.iter().map(|trial| trial.len()).sum();
     let wrongly = allowed_wrongly(trials, groups);
     let outcomes = groups.each_ref().map(|group| -> Vec<Outcome> {
@@ -179,9 +183,8 @@ fn best_thresholds(trials: &[&TrialView], groups: &AspectGroups) -> Thresholds {
     let false_flags = (MOST_FALSE_FLAGS * presses as f64 / PER_PRESSES) as usize;
     let best = best_pair(&outcomes[0], &outcomes[1], [false_flags, wrongly]);
     // If no pair of thresholds stays within the allowed numbers, nothing is flagged.
-    best.map_or(Thresholds { locations: f64::INFINITY, recipes: f64::INFINITY }, |[location, recipe]| Thresholds {
-        locations: location.threshold,
-        recipes: recipe.threshold,
+    best.map_or(FlagThresholds { locations: f64::INFINITY, recipes: f64::INFINITY }, |[location, recipe]| {
+        FlagThresholds { locations: location.threshold, recipes: recipe.threshold }
     })
 }
 
@@ -216,13 +219,13 @@ fn candidates(trials: &[&TrialView], group: &[usize], allowed: usize) -> Vec<f64
     if tried.is_empty() { vec![0.0] } else { tried }
 }
 
-fn p_wrong(press: &PressView, aspect: usize) -> f64 {
+fn p_wrong(press: &BeliefsBeforePress, aspect: usize) -> f64 {
     press.estimate.as_ref().map_or(0.0, |estimate| estimate.p_wrong[aspect])
 }
 
 /// Expected belief deviations, 1 - E[P(truth)], of all (press, aspect) pairs with a right belief.
 fn while_right<'a>(trials: &'a [&'a TrialView], group: &'a [usize]) -> impl Iterator<Item = f64> + 'a {
-    let is_right = |press: &PressView, aspect: usize| press.is_wrong(aspect) == Some(false);
+    let is_right = |press: &BeliefsBeforePress, aspect: usize| press.is_wrong(aspect) == Some(false);
     trials.iter().flat_map(|trial| trial.iter()).flat_map(move |press| {
         group.iter().filter(move |&&aspect| is_right(press, aspect)).map(move |&aspect| p_wrong(press, aspect))
     })
@@ -253,7 +256,7 @@ fn harmful(trials: &[&TrialView], aspect: usize) -> Vec<Episode> {
 
 impl Outcome {
     fn from_threshold(trials: &[&TrialView], group: &[usize], episodes: &[Episode], threshold: f64) -> Outcome {
-        let is_flagged = |press: &PressView, aspect: usize| p_wrong(press, aspect) >= threshold;
+        let is_flagged = |press: &BeliefsBeforePress, aspect: usize| p_wrong(press, aspect) >= threshold;
         let is_caught = |episode: &&Episode| {
             trials[episode.trial][episode.in_time.clone()].iter().any(|press| is_flagged(press, episode.aspect))
         };

@@ -1,6 +1,6 @@
 //! A press of the human with its judgement and cause.
 
-use super::attribution::Cause;
+use super::attribution::ErrorCause;
 use super::errors::PressVerdict;
 use crate::base::time::SessionTime;
 use crate::kitchen::State;
@@ -20,5 +20,5 @@ pub struct JudgedPress {
     /// Whether the human's belief before the press is known.
     pub belief_known: bool,
     /// Cause of an error; `None` if the press was no error or the belief is not known.
-    pub cause: Option<Cause>,
+    pub cause: Option<ErrorCause>,
 }

@@ -3,11 +3,11 @@
 use super::sequences::FALSE_BELOW;
 use crate::base::incomplete_beta::regularized_incomplete_beta;
 use crate::kitchen::{AspectId, ButtonId, State};
-use crate::mind::recorded_estimate::EstimateWitness;
+use crate::mind::recorded_estimate::RecordedEstimate;
 
 /// The participant's belief and its estimate directly before a press of the human.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PressView {
+pub struct BeliefsBeforePress {
     /// State of the kitchen before the press.
     pub state: State,
     /// The pressed button, as an index into the human's buttons.
@@ -15,7 +15,7 @@ pub struct PressView {
     /// The participant's P(truth) of each aspect; `None` where it is not known, as for people.
     pub held: Option<Vec<f64>>,
     /// The estimate of the belief before the press, if there is one.
-    pub estimate: Option<EstimateView>,
+    pub estimate: Option<EstimateBeforePress>,
     /// For each location, whether somebody else changed it since the human last looked at it: the input of the
     /// baseline.
     pub unseen_change: Vec<bool>,
@@ -28,7 +28,7 @@ pub struct PressView {
 
 /// An estimate of the human's belief before a press.
 #[derive(Clone, Debug, PartialEq)]
-pub struct EstimateView {
+pub struct EstimateBeforePress {
     /// For each aspect, the expected probability that the belief gives to wrong values: the score of detection and
     /// flags.
     pub p_wrong: Vec<f64>,
@@ -40,22 +40,22 @@ pub struct EstimateView {
     pub log_p: f64,
 }
 
-impl EstimateView {
+impl EstimateBeforePress {
     /// Takes the values from a recorded estimate.
-    pub fn from_witness(witness: &EstimateWitness) -> EstimateView {
+    pub fn from_witness(witness: &RecordedEstimate) -> EstimateBeforePress {
         let p_wrong = witness.aspects.iter().map(|aspect| 1.0 - aspect.p_truth);
         let p_false = witness.aspects.iter().map(|aspect| {
             let [of_truth, of_others] = [aspect.p_truth, 1.0 - aspect.p_truth].map(|mean| mean * aspect.precision);
             regularized_incomplete_beta(FALSE_BELOW, of_truth, of_others)
         });
-        EstimateView { p_wrong: p_wrong.collect(), p_false: p_false.collect(), log_p: witness.log_p }
+        EstimateBeforePress { p_wrong: p_wrong.collect(), p_false: p_false.collect(), log_p: witness.log_p }
     }
 }
 
 /// The presses of one trial with beliefs and estimates, in order of time.
-pub type TrialView = Vec<PressView>;
+pub type TrialView = Vec<BeliefsBeforePress>;
 
-impl PressView {
+impl BeliefsBeforePress {
     /// Whether the participant's belief about an aspect is false; `None` where it is not known.
     pub fn is_wrong(&self, aspect: usize) -> Option<bool> {
         self.held.as_ref().map(|held| held[aspect] < FALSE_BELOW)

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::cause_codes::Codes;
+use super::cause_codes::RaterCodes;
 
 /// Two raters with their codes of one recording, in alphabetical order, which has no meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -10,7 +10,7 @@ pub struct RaterPair {
     /// The names of the raters.
     pub raters: [String; 2],
     /// The codes of errors by each rater.
-    pub codes: [Codes; 2],
+    pub codes: [RaterCodes; 2],
 }
 
 /// The choice of the two raters who coded most errors of a recording.
@@ -31,7 +31,7 @@ pub enum RaterChoice {
 
 impl RaterPair {
     /// The two raters with these names. A rater without codes gets an empty list of codes.
-    pub fn named(all: &BTreeMap<String, Codes>, raters: &[String; 2]) -> RaterPair {
+    pub fn named(all: &BTreeMap<String, RaterCodes>, raters: &[String; 2]) -> RaterPair {
         let mut raters = raters.clone();
         raters.sort();
         let codes = raters.each_ref().map(|rater| all.get(rater).cloned().unwrap_or_default());
@@ -41,7 +41,7 @@ impl RaterPair {
 
 impl RaterChoice {
     /// The two raters with the most codes.
-    pub fn most_complete(all: &BTreeMap<String, Codes>) -> RaterChoice {
+    pub fn most_complete(all: &BTreeMap<String, RaterCodes>) -> RaterChoice {
         let mut numbers: Vec<usize> = all.values().map(|codes| codes.0.len()).collect();
         numbers.sort_unstable_by_key(|&number| std::cmp::Reverse(number));
         let Some(&coded) = numbers.get(1) else { return RaterChoice::TooFew };

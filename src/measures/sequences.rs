@@ -10,7 +10,7 @@
 
 use std::collections::BTreeSet;
 
-use super::attribution::{Cause, Target};
+use super::attribution::{ErrorCause, FalseBeliefTarget};
 use super::judged_press::JudgedPress;
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, DishId, Kitchen, LocationId, State};
@@ -23,9 +23,9 @@ pub const FALSE_BELOW: f64 = 0.5;
 
 /// An error sequence: related errors with few correct presses between them.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sequence {
+pub struct ErrorSequence {
     /// The target of most of the sequence's errors; of several, the target of the earliest error.
-    pub target: Target,
+    pub target: FalseBeliefTarget,
     /// The errors of the sequence, as indices of the human's presses.
     pub errors: Vec<usize>,
     /// Session time of the first error.
@@ -34,7 +34,7 @@ pub struct Sequence {
     pub recovered: Option<SessionTime>,
 }
 
-impl Sequence {
+impl ErrorSequence {
     /// The number of errors in the sequence.
     pub fn length(&self) -> u32 {
         self.errors.len() as u32
@@ -51,42 +51,44 @@ pub enum ErrorSubject {
     Place(LocationId),
 }
 
-impl Target {
+impl FalseBeliefTarget {
     /// The subject of a false belief about this target.
     pub fn subject(self) -> ErrorSubject {
         match self {
-            Target::Order(_, Some(dish)) | Target::Recipe(dish) => ErrorSubject::Dish(dish),
-            Target::Order(location, None) | Target::Place(location) => ErrorSubject::Place(location),
+            FalseBeliefTarget::Order(_, Some(dish)) | FalseBeliefTarget::Recipe(dish) => ErrorSubject::Dish(dish),
+            FalseBeliefTarget::Order(location, None) | FalseBeliefTarget::Place(location) => {
+                ErrorSubject::Place(location)
+            }
         }
     }
 }
 
 /// The sequences of related errors of a trial, in order of their first errors.
-pub fn sequences(presses: &[JudgedPress]) -> Vec<Sequence> {
+pub fn sequences(presses: &[JudgedPress]) -> Vec<ErrorSequence> {
     let subjects: BTreeSet<ErrorSubject> =
         presses.iter().filter_map(|press| Some(target_of(press)?.subject())).collect();
     let of_subject = |subject: ErrorSubject| grouped(presses, move |target| target.subject() == subject);
-    let mut all: Vec<Sequence> = subjects.into_iter().flat_map(of_subject).collect();
+    let mut all: Vec<ErrorSequence> = subjects.into_iter().flat_map(of_subject).collect();
     all.sort_by_key(|sequence| sequence.errors[0]);
     all
 }
 
 /// The error sequences of a trial, whatever aspect the false beliefs are about.
-pub fn sequences_any_aspect(presses: &[JudgedPress]) -> Vec<Sequence> {
+pub fn sequences_any_aspect(presses: &[JudgedPress]) -> Vec<ErrorSequence> {
     grouped(presses, |_| true)
 }
 
 /// Target of a belief related error.
-fn target_of(press: &JudgedPress) -> Option<Target> {
+fn target_of(press: &JudgedPress) -> Option<FalseBeliefTarget> {
     match press.cause {
-        Some(Cause::Belief { target, .. }) => Some(target),
+        Some(ErrorCause::Belief { target, .. }) => Some(target),
         _ => None,
     }
 }
 
-fn grouped(presses: &[JudgedPress], counts: impl Fn(Target) -> bool) -> Vec<Sequence> {
+fn grouped(presses: &[JudgedPress], counts: impl Fn(FalseBeliefTarget) -> bool) -> Vec<ErrorSequence> {
     let mut done = Vec::new();
-    let mut open: Vec<(usize, Target)> = Vec::new();
+    let mut open: Vec<(usize, FalseBeliefTarget)> = Vec::new();
     let (mut apart, mut recovered) = (0, None);
     for (index, press) in presses.iter().enumerate() {
         if let Some(target) = target_of(press).filter(|&target| counts(target)) {
@@ -105,21 +107,25 @@ fn grouped(presses: &[JudgedPress], counts: impl Fn(Target) -> bool) -> Vec<Sequ
     done
 }
 
-fn closed(presses: &[JudgedPress], errors: &[(usize, Target)], recovered: Option<SessionTime>) -> Option<Sequence> {
+fn closed(
+    presses: &[JudgedPress],
+    errors: &[(usize, FalseBeliefTarget)],
+    recovered: Option<SessionTime>,
+) -> Option<ErrorSequence> {
     let (first, mut target) = *errors.first()?;
-    let frequency = |one: Target| errors.iter().filter(|(_, other)| *other == one).count();
+    let frequency = |one: FalseBeliefTarget| errors.iter().filter(|(_, other)| *other == one).count();
     for &(_, other) in errors {
         if frequency(other) > frequency(target) {
             target = other;
         }
     }
     let errors = errors.iter().map(|(index, _)| *index).collect();
-    Some(Sequence { target, errors, began: presses[first].time, recovered })
+    Some(ErrorSequence { target, errors, began: presses[first].time, recovered })
 }
 
 /// A false belief episode: the time from the beginning of a false belief to its correction.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Episode {
+pub struct FalseBeliefEpisode {
     /// The aspect that the false belief is about.
     pub aspect: AspectId,
     /// Session time at which the belief became false.
@@ -132,14 +138,14 @@ pub struct Episode {
 
 /// Tracks false belief episodes over a trial.
 #[derive(Clone, Debug, Default)]
-pub struct Episodes {
-    open: Vec<Option<Episode>>,
-    done: Vec<Episode>,
+pub struct FalseBeliefTracker {
+    open: Vec<Option<FalseBeliefEpisode>>,
+    done: Vec<FalseBeliefEpisode>,
     /// Time at which the belief was last recorded.
     last: SessionTime,
 }
 
-impl Episodes {
+impl FalseBeliefTracker {
     /// Records the belief at a time. `changed_at` contains the time of each location's last change, at which a belief
     /// that was right when last recorded became false.
     pub fn believed(
@@ -157,17 +163,17 @@ impl Episodes {
             if is_false && open.is_none() {
                 let changed = if index < kitchen.locations.len() { changed_at.get(index).copied() } else { None };
                 let began = changed.filter(|&time| time > self.last).unwrap_or(now);
-                *open = Some(Episode { aspect, began, corrected: None, errors: 0 });
+                *open = Some(FalseBeliefEpisode { aspect, began, corrected: None, errors: 0 });
             } else if !is_false && let Some(episode) = open.take() {
-                self.done.push(Episode { corrected: Some(now), ..episode });
+                self.done.push(FalseBeliefEpisode { corrected: Some(now), ..episode });
             }
         }
         self.last = now;
     }
 
     /// Records an error: it counts for every aspect of its cause about which the belief is false.
-    pub fn erred(&mut self, kitchen: &Kitchen, cause: Cause) {
-        let Cause::Belief { target, with, .. } = cause else { return };
+    pub fn erred(&mut self, kitchen: &Kitchen, cause: ErrorCause) {
+        let ErrorCause::Belief { target, with, .. } = cause else { return };
         for target in [Some(target), with].into_iter().flatten() {
             for aspect in target.aspects(kitchen) {
                 if let Some(Some(episode)) = self.open.get_mut(aspect.index()) {
@@ -178,12 +184,12 @@ impl Episodes {
     }
 
     /// All false belief episodes so far, with and without errors, in order of their corrections, open ones last.
-    pub fn all(&self) -> impl Iterator<Item = &Episode> {
+    pub fn all(&self) -> impl Iterator<Item = &FalseBeliefEpisode> {
         self.done.iter().chain(self.open.iter().flatten())
     }
 
     /// The false belief episodes so far that caused at least one error, in order of their corrections, open ones last.
-    pub fn harmful(&self) -> impl Iterator<Item = &Episode> {
+    pub fn harmful(&self) -> impl Iterator<Item = &FalseBeliefEpisode> {
         self.all().filter(|episode| episode.errors > 0)
     }
 }

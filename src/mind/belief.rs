@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::BeliefWitness;
+use super::RecordedBelief;
 use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorld, WeightedWorlds, World};
 
@@ -29,7 +29,7 @@ impl Belief {
     /// The belief that a simulated participant recorded, for the kitchen in `state`: listed values keep their
     /// probability, the remaining probability is spread evenly over the other values. `None` if the record names
     /// aspects or values that the kitchen does not have, or if its probabilities do not form a distribution.
-    pub fn of_witness(kitchen: &Kitchen, state: State, witness: &BeliefWitness) -> Option<Belief> {
+    pub fn of_witness(kitchen: &Kitchen, state: State, witness: &RecordedBelief) -> Option<Belief> {
         let mut belief = Belief { of: Vec::with_capacity(kitchen.aspects.len()) };
         for (index, aspect) in kitchen.aspects.iter().enumerate() {
             let told = witness.aspects.get(index).filter(|told| told.aspect == aspect.name)?;

@@ -6,7 +6,7 @@
 //! draws choices, and the attribution of errors uses all probabilities. The reference implementations of filter and
 //! planner implement the same model a second time, so that tests can compare the two.
 
-use super::choice_parameters::DecisionModel;
+use super::choice_parameters::ChoiceParameters;
 use super::lapse_posterior::PressParts;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, ButtonId, Kitchen, WeightedWorlds};
@@ -47,7 +47,7 @@ pub struct ChoiceWeights {
 /// Predicts the choices of a human from the human's belief (softmax with lapses).
 #[derive(Clone, Debug)]
 pub struct ChoiceModel {
-    parameters: DecisionModel,
+    parameters: ChoiceParameters,
     /// For each intended button, the two buttons that a slip hits: the nearest other button, and the button with the
     /// look-alike symbol (the nearest button again where there is none).
     slips_to: Vec<[ButtonId; 2]>,
@@ -62,7 +62,7 @@ pub struct ChoiceModel {
 
 impl ChoiceModel {
     /// The choice model for beliefs that are represented by weighted worlds.
-    pub fn new(kitchen: &Kitchen, parameters: &DecisionModel) -> ChoiceModel {
+    pub fn new(kitchen: &Kitchen, parameters: &ChoiceParameters) -> ChoiceModel {
         let buttons = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
         let slips = |button| {
             let next = kitchen.nearest_button(Agent::Human, button).unwrap_or(button);
@@ -80,7 +80,7 @@ impl ChoiceModel {
     }
 
     /// The choice model for beliefs that are represented by exactly `draws` drawn worlds. Weights are not truncated.
-    pub fn for_draws(kitchen: &Kitchen, parameters: &DecisionModel, draws: usize) -> ChoiceModel {
+    pub fn for_draws(kitchen: &Kitchen, parameters: &ChoiceParameters, draws: usize) -> ChoiceModel {
         let mut model = ChoiceModel::new(kitchen, parameters);
         let row = (0..=draws * MOST_PRESSES).map(|more| parameters.weight(more, draws));
         model.weights.resize(draws, Vec::new());
@@ -89,7 +89,7 @@ impl ChoiceModel {
     }
 
     /// The choice model for beliefs that are represented by at most `draws` drawn worlds. Weights below e^-20 are 0.
-    pub fn up_to_draws(kitchen: &Kitchen, parameters: &DecisionModel, draws: usize) -> ChoiceModel {
+    pub fn up_to_draws(kitchen: &Kitchen, parameters: &ChoiceParameters, draws: usize) -> ChoiceModel {
         let row = |n: usize| {
             let last = (NEGLIGIBLE_EXPONENT * n as f64 / parameters.tau).min((n * MOST_PRESSES) as f64) as usize;
             (0..=last).map(|more| parameters.weight(more, n.max(1))).collect()
@@ -234,7 +234,7 @@ impl ChoiceModel {
     /// The choice that the human executes, slips included; `draw` is uniform in [0, 1).
     pub fn executed(&self, intended: HumanChoice, draw: f64) -> HumanChoice {
         let HumanChoice::Press(button) = intended else { return intended };
-        let DecisionModel { lapse, lapse_anywhere: anywhere, .. } = self.parameters;
+        let ChoiceParameters { lapse, lapse_anywhere: anywhere, .. } = self.parameters;
         if draw >= lapse {
             return intended;
         }

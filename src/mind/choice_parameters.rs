@@ -9,7 +9,7 @@ use crate::kitchen::{Kitchen, WeightedWorlds};
 /// Parameters of the choice model (paper, section "Human model").
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct DecisionModel {
+pub struct ChoiceParameters {
     /// Softmax rationality tau: preference for a lower expected cost to go, per press.
     pub tau: f64,
     /// The share of presses that are slips.
@@ -23,13 +23,13 @@ pub struct DecisionModel {
     pub cases: usize,
 }
 
-impl Default for DecisionModel {
+impl Default for ChoiceParameters {
     fn default() -> Self {
-        DecisionModel { tau: 4.0, lapse: 0.03, lapse_anywhere: 0.3, wait_cost: 0.5, cases: 32 }
+        ChoiceParameters { tau: 4.0, lapse: 0.03, lapse_anywhere: 0.3, wait_cost: 0.5, cases: 32 }
     }
 }
 
-impl DecisionModel {
+impl ChoiceParameters {
     /// The worlds that represent a belief in this choice model.
     pub fn worlds(&self, kitchen: &Kitchen, belief: &Belief, random: &mut Stream) -> WeightedWorlds {
         belief.worlds(kitchen, self.cases.max(1), random)

@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::choice_parameters::DecisionModel;
-use super::fitting::Parameter;
+use super::choice_parameters::ChoiceParameters;
+use super::fitting::HumanModelParameter;
 use super::model::{
-    AdaptModel, HumanModel, InferenceModel, LookingModel, PerceptionModel, PriorModel, TransitionModel,
+    AdaptModel, HumanModel, InferenceSettings, LookingModel, PerceptionModel, PriorModel, TransitionModel,
 };
 use super::signal_model::SignalModel;
 
 /// Parameters of persons by their codes; what a person's table leaves out is as in the population.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct FittedPeople(pub BTreeMap<String, BTreeMap<Parameter, f64>>);
+pub struct FittedPeople(pub BTreeMap<String, BTreeMap<HumanModelParameter, f64>>);
 
 impl FittedPeople {
     /// Gives a model of the population the parameters of the person with this code. Returns whether there are any.
@@ -24,7 +24,7 @@ impl FittedPeople {
     }
 
     /// Forgets this parameter of all persons: everybody has that of the population.
-    pub fn forget(&mut self, parameter: Parameter) {
+    pub fn forget(&mut self, parameter: HumanModelParameter) {
         self.0.values_mut().for_each(|own| {
             own.remove(&parameter);
         });
@@ -39,11 +39,11 @@ pub struct HumanModelFile {
     perception: PerceptionModel,
     looking: LookingModel,
     transition: TransitionModel,
-    decision: DecisionModel,
+    decision: ChoiceParameters,
     signal: SignalModel,
     #[serde(skip_serializing_if = "AdaptModel::is_off")]
     adapt: AdaptModel,
-    inference: InferenceModel,
+    inference: InferenceSettings,
     /// Parameters of persons, if the file has any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub people: Option<FittedPeople>,

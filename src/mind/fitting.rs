@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::dirichlet::Dirichlet;
 use super::filter::BeliefFilter;
 use super::model::HumanModel;
-use super::observation::{Observation, Observed};
+use super::observation::{Observation, ObservedEvidence};
 use crate::base::incomplete_beta::regularized_incomplete_beta;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen, Press};
@@ -18,7 +18,7 @@ const STRICT: f64 = 0.1;
 /// A parameter of the human model that can be fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Parameter {
+pub enum HumanModelParameter {
     /// Softmax rationality tau: how strictly fewer expected presses are preferred, per press.
     Tau,
     /// Share of presses that are slips.
@@ -41,68 +41,75 @@ pub enum Parameter {
     RecipeTruth,
 }
 
-impl Parameter {
+impl HumanModelParameter {
     /// The parameters that are fitted by default.
-    pub const USUAL: [Parameter; 5] =
-        [Parameter::Tau, Parameter::Lapse, Parameter::RadiusDeg, Parameter::ReadingRateHz, Parameter::RecipeHalfLifeS];
+    pub const USUAL: [HumanModelParameter; 5] = [
+        HumanModelParameter::Tau,
+        HumanModelParameter::Lapse,
+        HumanModelParameter::RadiusDeg,
+        HumanModelParameter::ReadingRateHz,
+        HumanModelParameter::RecipeHalfLifeS,
+    ];
 
     /// Name of the parameter in a parameter file.
     pub fn name(self) -> &'static str {
         match self {
-            Parameter::Tau => "tau",
-            Parameter::Lapse => "lapse",
-            Parameter::RadiusDeg => "radius_deg",
-            Parameter::ReadingRateHz => "reading_rate_hz",
-            Parameter::RecipeHalfLifeS => "recipe_half_life_s",
-            Parameter::Foresight => "foresight",
-            Parameter::LooksHz => "looks_hz",
-            Parameter::OtherLooksHz => "other_looks_hz",
-            Parameter::Capture => "capture",
-            Parameter::RecipeTruth => "recipe_truth",
+            HumanModelParameter::Tau => "tau",
+            HumanModelParameter::Lapse => "lapse",
+            HumanModelParameter::RadiusDeg => "radius_deg",
+            HumanModelParameter::ReadingRateHz => "reading_rate_hz",
+            HumanModelParameter::RecipeHalfLifeS => "recipe_half_life_s",
+            HumanModelParameter::Foresight => "foresight",
+            HumanModelParameter::LooksHz => "looks_hz",
+            HumanModelParameter::OtherLooksHz => "other_looks_hz",
+            HumanModelParameter::Capture => "capture",
+            HumanModelParameter::RecipeTruth => "recipe_truth",
         }
     }
 
     /// Unit of the human model's parameter.
     pub fn unit(self) -> &'static str {
         match self {
-            Parameter::Tau => "1/press",
-            Parameter::Lapse | Parameter::Foresight | Parameter::Capture => "share",
-            Parameter::RadiusDeg => "deg",
-            Parameter::ReadingRateHz | Parameter::LooksHz | Parameter::OtherLooksHz => "1/s",
-            Parameter::RecipeHalfLifeS => "s",
-            Parameter::RecipeTruth => "probability",
+            HumanModelParameter::Tau => "1/press",
+            HumanModelParameter::Lapse | HumanModelParameter::Foresight | HumanModelParameter::Capture => "share",
+            HumanModelParameter::RadiusDeg => "deg",
+            HumanModelParameter::ReadingRateHz | HumanModelParameter::LooksHz | HumanModelParameter::OtherLooksHz => {
+                "1/s"
+            }
+            HumanModelParameter::RecipeHalfLifeS => "s",
+            HumanModelParameter::RecipeTruth => "probability",
         }
     }
 
     /// Value of the parameter in a human model.
     pub fn get(self, model: &HumanModel) -> f64 {
         match self {
-            Parameter::Tau => model.decision.tau,
-            Parameter::Lapse => model.decision.lapse,
-            Parameter::RadiusDeg => model.perception.radius_deg,
-            Parameter::ReadingRateHz => model.perception.reading_rate_hz,
-            Parameter::RecipeHalfLifeS => model.transition.recipe_half_life_s,
-            Parameter::Foresight => model.transition.foresight,
-            Parameter::LooksHz => model.looking.looks_hz,
-            Parameter::OtherLooksHz => model.looking.other_looks_hz,
-            Parameter::Capture => model.looking.capture,
-            Parameter::RecipeTruth => model.prior.recipe_truth,
+            HumanModelParameter::Tau => model.decision.tau,
+            HumanModelParameter::Lapse => model.decision.lapse,
+            HumanModelParameter::RadiusDeg => model.perception.radius_deg,
+            HumanModelParameter::ReadingRateHz => model.perception.reading_rate_hz,
+            HumanModelParameter::RecipeHalfLifeS => model.transition.recipe_half_life_s,
+            HumanModelParameter::Foresight => model.transition.foresight,
+            HumanModelParameter::LooksHz => model.looking.looks_hz,
+            HumanModelParameter::OtherLooksHz => model.looking.other_looks_hz,
+            HumanModelParameter::Capture => model.looking.capture,
+            HumanModelParameter::RecipeTruth => model.prior.recipe_truth,
         }
     }
 
     /// Sets the parameter in a human model.
     pub fn set(self, model: &mut HumanModel, value: f64) {
         match self {
-            Parameter::Tau => model.decision.tau = value,
-            Parameter::Lapse => model.decision.lapse = value,
-            Parameter::RadiusDeg => model.perception.radius_deg = value,
-            Parameter::ReadingRateHz => model.perception.reading_rate_hz = value,
-            Parameter::RecipeHalfLifeS => model.transition.recipe_half_life_s = value,
-            Parameter::Foresight => model.transition.foresight = value,
-            Parameter::LooksHz => model.looking.looks_hz = value,
-            Parameter::OtherLooksHz => model.looking.other_looks_hz = value,
-            Parameter::Capture => model.looking.capture = value,
-            Parameter::RecipeTruth => model.prior.recipe_truth = value,
+            HumanModelParameter::Tau => model.decision.tau = value,
+            HumanModelParameter::Lapse => model.decision.lapse = value,
+            HumanModelParameter::RadiusDeg => model.perception.radius_deg = value,
+            HumanModelParameter::ReadingRateHz => model.perception.reading_rate_hz = value,
+            HumanModelParameter::RecipeHalfLifeS => model.transition.recipe_half_life_s = value,
+            HumanModelParameter::Foresight => model.transition.foresight = value,
+            HumanModelParameter::LooksHz => model.looking.looks_hz = value,
+            HumanModelParameter::OtherLooksHz => model.looking.other_looks_hz = value,
+            HumanModelParameter::Capture => model.looking.capture = value,
+            HumanModelParameter::RecipeTruth => model.prior.recipe_truth = value,
         }
     }
 
@@ -110,14 +117,14 @@ impl Parameter {
     /// presses carry no information about tau.
     pub fn bounds(self) -> [f64; 2] {
         match self {
-            Parameter::Tau => [0.05, 20.0],
-            Parameter::Lapse => [0.001, 0.5],
-            Parameter::RadiusDeg => [0.25, 16.0],
-            Parameter::ReadingRateHz => [0.2, 100.0],
-            Parameter::RecipeHalfLifeS => [5.0, 20_000.0],
-            Parameter::Foresight | Parameter::Capture => [0.001, 0.999],
-            Parameter::LooksHz | Parameter::OtherLooksHz => [0.01, 20.0],
-            Parameter::RecipeTruth => [0.01, 0.999],
+            HumanModelParameter::Tau => [0.05, 20.0],
+            HumanModelParameter::Lapse => [0.001, 0.5],
+            HumanModelParameter::RadiusDeg => [0.25, 16.0],
+            HumanModelParameter::ReadingRateHz => [0.2, 100.0],
+            HumanModelParameter::RecipeHalfLifeS => [5.0, 20_000.0],
+            HumanModelParameter::Foresight | HumanModelParameter::Capture => [0.001, 0.999],
+            HumanModelParameter::LooksHz | HumanModelParameter::OtherLooksHz => [0.01, 20.0],
+            HumanModelParameter::RecipeTruth => [0.01, 0.999],
         }
     }
 
@@ -125,22 +132,26 @@ impl Parameter {
     /// ln(1 / (1 / tau + 0.1)) for tau, since the likelihood changes less and less as tau grows.
     pub fn to_scale(self, value: f64) -> f64 {
         match self {
-            Parameter::Lapse | Parameter::Foresight | Parameter::Capture | Parameter::RecipeTruth => {
+            HumanModelParameter::Lapse
+            | HumanModelParameter::Foresight
+            | HumanModelParameter::Capture
+            | HumanModelParameter::RecipeTruth => {
                 let p = value.clamp(1e-4, 1.0 - 1e-4);
                 (p / (1.0 - p)).ln()
             }
-            Parameter::Tau => (value / (1.0 + STRICT * value)).ln(),
+            HumanModelParameter::Tau => (value / (1.0 + STRICT * value)).ln(),
             _ => value.ln(),
         }
     }
 
-    /// The value of a parameter from the scale of the fit, the inverse of [`Parameter::to_scale`].
+    /// The value of a parameter from the scale of the fit, the inverse of [`HumanModelParameter::to_scale`].
     pub fn from_scale(self, scaled: f64) -> f64 {
         match self {
-            Parameter::Lapse | Parameter::Foresight | Parameter::Capture | Parameter::RecipeTruth => {
-                1.0 / (1.0 + (-scaled).exp())
-            }
-            Parameter::Tau => 1.0 / ((-scaled).exp() - STRICT),
+            HumanModelParameter::Lapse
+            | HumanModelParameter::Foresight
+            | HumanModelParameter::Capture
+            | HumanModelParameter::RecipeTruth => 1.0 / (1.0 + (-scaled).exp()),
+            HumanModelParameter::Tau => 1.0 / ((-scaled).exp() - STRICT),
             _ => scaled.exp(),
         }
     }
@@ -148,10 +159,11 @@ impl Parameter {
     /// Standard error of a value from its standard error on the scale of the fit (delta method).
     pub fn error_of(self, value: f64, scaled_error: f64) -> f64 {
         let slope = match self {
-            Parameter::Lapse | Parameter::Foresight | Parameter::Capture | Parameter::RecipeTruth => {
-                value * (1.0 - value)
-            }
-            Parameter::Tau => value * (1.0 + STRICT * value),
+            HumanModelParameter::Lapse
+            | HumanModelParameter::Foresight
+            | HumanModelParameter::Capture
+            | HumanModelParameter::RecipeTruth => value * (1.0 - value),
+            HumanModelParameter::Tau => value * (1.0 + STRICT * value),
             _ => value,
         };
         slope * scaled_error
@@ -188,7 +200,7 @@ pub struct FitObservations {
 
 /// Log likelihoods of the human's presses and answers to probes in one trial, and their numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Likelihood {
+pub struct TrialLikelihood {
     /// Number of presses of the human.
     pub presses: u64,
     /// Sum over presses of ln p under the estimate before each press, in nats.
@@ -200,15 +212,15 @@ pub struct Likelihood {
     pub log_p_answers: f64,
 }
 
-impl Likelihood {
+impl TrialLikelihood {
     /// Log likelihood of presses and answers together.
     pub fn total(&self) -> f64 {
         self.log_p + self.log_p_answers
     }
 
     /// Sum of the likelihoods of two trials.
-    pub fn plus(self, other: Likelihood) -> Likelihood {
-        Likelihood {
+    pub fn plus(self, other: TrialLikelihood) -> TrialLikelihood {
+        TrialLikelihood {
             presses: self.presses + other.presses,
             log_p: self.log_p + other.log_p,
             answers: self.answers + other.answers,
@@ -224,9 +236,9 @@ pub fn likelihood(
     model: &HumanModel,
     trial: &FitObservations,
     cost: &mut CostToGo,
-) -> Likelihood {
+) -> TrialLikelihood {
     let mut filter = BeliefFilter::new(kitchen.clone(), model.clone(), trial.seed);
-    let mut found = Likelihood::default();
+    let mut found = TrialLikelihood::default();
     let mut answers = trial.answers.iter().peekable();
     for (index, observation) in trial.observations.iter().enumerate() {
         filter.observe(observation, cost);
@@ -237,7 +249,7 @@ pub fn likelihood(
                 found.log_p_answers += p_answer(belief.aspect(answer.aspect), answer.value).ln();
             }
         }
-        if let (Observed::Pressed(Press { agent: Agent::Human, .. }), Some(evidence)) =
+        if let (ObservedEvidence::Pressed(Press { agent: Agent::Human, .. }), Some(evidence)) =
             (observation.what, filter.evidence())
         {
             found.presses += 1;

@@ -23,7 +23,7 @@ pub struct CoveredTime {
 
 /// Accounts for the time in which the gaze is known or unknown.
 #[derive(Clone, Debug)]
-pub struct GazePresence {
+pub struct GazeAvailability {
     blink_s: f64,
     max_sample_s: f64,
     /// Time at which the last sample was taken, whether it was usable or not.
@@ -40,10 +40,10 @@ pub struct GazePresence {
     pub display_in_view: bool,
 }
 
-impl GazePresence {
+impl GazeAvailability {
     /// The state before the start of a trial.
-    pub fn new(model: &HumanModel) -> GazePresence {
-        GazePresence {
+    pub fn new(model: &HumanModel) -> GazeAvailability {
+        GazeAvailability {
             blink_s: model.looking.blink_s,
             max_sample_s: model.perception.max_sample_s,
             last: None,

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 
 /// The recorded belief of a simulated participant at one time, with the reason for its next press.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct BeliefWitness {
+pub struct RecordedBelief {
     /// The belief about each state aspect, in the order of the kitchen's aspects.
     pub aspects: Vec<AspectBelief>,
     /// Reason for the participant's next press: "as believed", "slip to the neighbouring button", …
@@ -63,5 +63,5 @@ pub struct AspectBelief {
     pub values: BTreeMap<String, f64>,
 }
 
-/// Least probability of a value that a [`BeliefWitness`] lists.
+/// Least probability of a value that a [`RecordedBelief`] lists.
 pub const WORTH_TELLING: f64 = 0.01;

@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::choice_parameters::DecisionModel;
+use super::choice_parameters::ChoiceParameters;
 use super::signal_model::SignalModel;
 
 /// All parameters of the human model, and the sample sizes of its inference.
@@ -22,14 +22,14 @@ pub struct HumanModel {
     /// How the human's beliefs change between observations.
     pub transition: TransitionModel,
     /// How the human's presses follow from beliefs.
-    pub decision: DecisionModel,
+    pub decision: ChoiceParameters,
     /// How the human notices and reads signals.
     pub signal: SignalModel,
     /// What the estimate learns about the person in a trial.
     #[serde(skip_serializing_if = "AdaptModel::is_off")]
     pub adapt: AdaptModel,
     /// How the belief is inferred: settings of the computation, not properties of people.
-    pub inference: InferenceModel,
+    pub inference: InferenceSettings,
 }
 
 /// Which parameters the estimate adapts to the person in a trial, press by press.
@@ -210,7 +210,7 @@ impl Default for TransitionModel {
 /// How the belief is inferred: from which evidence, and the sample sizes of the inference from one press.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct InferenceModel {
+pub struct InferenceSettings {
     /// Number of belief samples drawn from the estimate.
     pub beliefs: usize,
     /// Number of worlds (state and recipes) drawn from each belief sample.
@@ -227,9 +227,9 @@ pub struct InferenceModel {
     pub waiting: bool,
 }
 
-impl Default for InferenceModel {
+impl Default for InferenceSettings {
     fn default() -> Self {
-        InferenceModel {
+        InferenceSettings {
             beliefs: 256,
             states: 32,
             min_effective: 32.0,

@@ -42,12 +42,12 @@ pub struct Observation {
     /// Session time of the observation.
     pub time: SessionTime,
     /// The observed evidence about the human's belief.
-    pub what: Observed,
+    pub what: ObservedEvidence,
 }
 
 /// Kinds of evidence about the human's belief. A state here is the true state, which the display shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Observed {
+pub enum ObservedEvidence {
     /// The trial starts; the human knows the state of the kitchen.
     Started {
         /// The state of the kitchen at the start.

@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use super::WORTH_TELLING;
 use super::dirichlet::DirichletBelief;
-use super::filter::Evidence;
-use crate::kitchen::{Aspect, AspectId, Kitchen, State};
+use super::filter::PressEvidence;
+use crate::kitchen::{AspectId, Kitchen, State, StateAspect};
 
 /// The recorded estimate of the human's belief before one press of the human.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct EstimateWitness {
+pub struct RecordedEstimate {
     /// Sequence number of the press in the log.
     pub press: u64,
     /// ln p(press) under the estimate, in nats.
@@ -37,16 +37,16 @@ pub struct AspectEstimate {
     pub values: BTreeMap<String, f64>,
 }
 
-impl EstimateWitness {
+impl RecordedEstimate {
     /// The record of an estimate before the press with number `press` in `state`, with the evidence of that press.
     pub fn new(
         kitchen: &Kitchen,
         press: u64,
         belief: &DirichletBelief,
         state: State,
-        evidence: Evidence,
-    ) -> EstimateWitness {
-        let of = |(index, aspect): (usize, &Aspect)| {
+        evidence: PressEvidence,
+    ) -> RecordedEstimate {
+        let of = |(index, aspect): (usize, &StateAspect)| {
             let of_aspect = &belief.aspects[index];
             let values = aspect.labels.iter().zip(of_aspect.mean()).filter(|(_, p)| **p >= WORTH_TELLING);
             AspectEstimate {
@@ -57,7 +57,7 @@ impl EstimateWitness {
                 values: values.map(|(label, &p)| (label.clone(), rounded(p))).collect(),
             }
         };
-        EstimateWitness {
+        RecordedEstimate {
             press,
             log_p: rounded(evidence.log_p),
             effective: rounded(evidence.effective),

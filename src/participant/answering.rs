@@ -7,7 +7,7 @@ use super::simulated::SimulatedParticipant;
 use super::witness;
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::{AspectId, LocationId, State};
-use crate::mind::BeliefWitness;
+use crate::mind::RecordedBelief;
 
 /// Standard deviation of the logarithm of one participant's answering times.
 const ANSWER_JITTER: f64 = 0.35;
@@ -16,7 +16,7 @@ const SURE_FROM: [f64; 2] = [2.0 / 3.0, 0.9];
 
 impl SimulatedParticipant {
     /// Record of the participant's present beliefs, from which the answers follow.
-    pub fn believes(&self, state: State) -> BeliefWitness {
+    pub fn believes(&self, state: State) -> RecordedBelief {
         witness::without_press(&self.kitchen, &self.beliefs, state)
     }
 

@@ -11,7 +11,7 @@ const MOST_GLANCES: usize = 6;
 /// Queue of locations at which a simulated participant intends to look, and the time of the last reading of each
 /// location.
 #[derive(Clone, Debug, Default)]
-pub struct Attention {
+pub struct LookQueue {
     /// The locations to look at next, in order.
     pub glances: VecDeque<LocationId>,
     /// The location at which the participant is looking.
@@ -20,7 +20,7 @@ pub struct Attention {
     pub read_at: Vec<SessionTime>,
 }
 
-impl Attention {
+impl LookQueue {
     /// Puts a location at the front of the queue.
     pub fn first(&mut self, location: LocationId) {
         self.glances.retain(|&other| other != location);

@@ -6,10 +6,10 @@
 
 use std::collections::VecDeque;
 
-use super::goals::{Goals, Prospect};
+use super::goals::{GoalContext, Goals};
 use super::habits::{Habits, Lapses};
 use super::knowledge::TaskKnowledge;
-use super::planning::{Chaining, ProposedPress};
+use super::planning::{BackwardChaining, ProposedPress};
 use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, ButtonAction, ButtonId, ContentId, Kitchen, LocationId, LocationKind, State, World};
 
@@ -27,7 +27,7 @@ const HOPES: f64 = 0.5;
 
 /// Current plan of the simulated participant.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Intent {
+pub struct ParticipantPlan {
     /// Planned next presses of the participant.
     pub plan: VecDeque<ButtonId>,
     /// The order that the participant works on, and the time until which it stays with this order.
@@ -38,7 +38,7 @@ pub struct Intent {
     pub lapses: Lapses,
 }
 
-impl Intent {
+impl ParticipantPlan {
     /// Forgets the planned presses and the order in progress, as after an interruption.
     pub fn lose(&mut self) {
         self.plan.clear();
@@ -48,7 +48,7 @@ impl Intent {
 
 /// How long the simulated participant has found no useful press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Urgency {
+pub enum Impatience {
     /// The participant waits for the robot.
     Calm,
     /// The participant makes detours.
@@ -75,12 +75,12 @@ pub struct Decision<'a> {
     /// Lapses (omissions and habits) in this decision.
     pub lapses: Lapses,
     /// How long the participant has found no useful press.
-    pub urgency: Urgency,
+    pub urgency: Impatience,
 }
 
 /// The result of a decision: an order and the next presses.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Resolution {
+pub struct DecisionResult {
     /// The order on which the participant works.
     pub order: Option<LocationId>,
     /// The next presses; empty if the participant waits.
@@ -101,35 +101,35 @@ struct Foreseen {
 
 impl Decision<'_> {
     /// Decides on the next presses in a world that the participant believes to be true.
-    pub fn resolve(&self, world: &World) -> Resolution {
+    pub fn resolve(&self, world: &World) -> DecisionResult {
         let presses = |button: ButtonId| self.kitchen.press(world.state, &world.recipes, Agent::Human, button);
         if let Some(button) = self.lapses.insists_on.filter(|&button| presses(button).is_some()) {
-            return Resolution { order: self.in_progress, plan: VecDeque::from([button]) };
+            return DecisionResult { order: self.in_progress, plan: VecDeque::from([button]) };
         }
-        let prospect = Prospect {
+        let prospect = GoalContext {
             kitchen: self.kitchen,
             knowledge: self.knowledge,
             recipes: &world.recipes,
             forgets_parked: self.lapses.forgets_parked,
             skips_check: self.lapses.skips_check,
-            waits_for_robot: self.urgency < Urgency::Desperate || self.lapses.whim < HOPES,
+            waits_for_robot: self.urgency < Impatience::Desperate || self.lapses.whim < HOPES,
         };
         let habits = self.habits.with_last(self.last_dish.filter(|_| self.lapses.follows_habit));
         let orders = self.orders(&prospect, world.state);
         // If nothing can be done for an order now, the next order is considered.
         for &order in &orders {
             if let Some(plan) = self.choose(&prospect, world.state, order, &habits) {
-                return Resolution { order: Some(order), plan };
+                return DecisionResult { order: Some(order), plan };
             }
         }
-        let is_desperate = self.urgency == Urgency::Desperate && !orders.is_empty();
+        let is_desperate = self.urgency == Impatience::Desperate && !orders.is_empty();
         let plan = is_desperate.then(|| self.try_something(world)).flatten().into_iter().collect();
-        Resolution { order: orders.first().copied(), plan }
+        DecisionResult { order: orders.first().copied(), plan }
     }
 
     /// The orders by preference: the one in progress first, then those for which most is available already; ties are
     /// broken at random.
-    fn orders(&self, prospect: &Prospect, state: State) -> Vec<LocationId> {
+    fn orders(&self, prospect: &GoalContext, state: State) -> Vec<LocationId> {
         let worth = |order: LocationId| {
             let goals = Goals::in_state(prospect, state, order);
             let goal = &goals.orders[0];
@@ -156,12 +156,12 @@ impl Decision<'_> {
     /// The press with the fewest foreseen detours; ties go to the first.
     fn choose(
         &self,
-        prospect: &Prospect,
+        prospect: &GoalContext,
         state: State,
         order: LocationId,
         habits: &Habits,
     ) -> Option<VecDeque<ButtonId>> {
-        let chaining = Chaining::new(prospect, state, order);
+        let chaining = BackwardChaining::new(prospect, state, order);
         let mut proposals = chaining.proposals(habits);
         if self.lapses.takes_along
             && let Some(index) = proposals.iter().position(|press| self.is_quick(press))
@@ -169,7 +169,7 @@ impl Decision<'_> {
             let quick = proposals.remove(index);
             proposals.insert(0, quick);
         }
-        if self.urgency == Urgency::Calm {
+        if self.urgency == Impatience::Calm {
             proposals.retain(|press| !press.is_detour);
         }
         let mut best: Option<Foreseen> = None;
@@ -197,7 +197,7 @@ impl Decision<'_> {
     /// Simulates a press and the participant's next ones; `None` if the press would have no effect.
     fn foresee(
         &self,
-        prospect: &Prospect,
+        prospect: &GoalContext,
         state: State,
         order: LocationId,
         habits: &Habits,
@@ -211,7 +211,7 @@ impl Decision<'_> {
         let mut foreseen = Foreseen { path, detours: u32::from(is_detour), fills_hand, is_detour };
         let depth = if self.lapses.skips_check { PLANNED_PRESSES } else { self.depth.max(PLANNED_PRESSES) };
         for _ in 1..depth {
-            let chaining = Chaining::new(prospect, after, order);
+            let chaining = BackwardChaining::new(prospect, after, order);
             let proposals = chaining.proposals(habits);
             let forward = proposals.iter().find(|next| !next.is_detour);
             let Some(next) = forward.or(proposals.first()) else { break };

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::population::{Individual, chance, normal};
+use super::population::{ParticipantTraits, chance, normal};
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
@@ -55,7 +55,7 @@ pub struct Eyes {
 
 impl Eyes {
     /// Creates eyes that fixate the middle of the display.
-    pub fn new(mut random: Stream, display_m: [f64; 2], individual: &Individual, offset_size_m: f64) -> Eyes {
+    pub fn new(mut random: Stream, display_m: [f64; 2], individual: &ParticipantTraits, offset_size_m: f64) -> Eyes {
         let offset_m = [normal(&mut random) * offset_size_m, normal(&mut random) * offset_size_m];
         let zero = SessionTime::ZERO;
         Eyes {

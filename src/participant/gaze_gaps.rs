@@ -7,7 +7,7 @@ use crate::base::time::SessionTime;
 
 /// The schedule of the eye tracker's drop-outs in one trial.
 #[derive(Clone, Debug)]
-pub struct GazeGaps {
+pub struct GazeDropoutSchedule {
     random: Stream,
     every_s: f64,
     /// Natural logarithms of the shortest and the longest drop-out in seconds.
@@ -16,10 +16,10 @@ pub struct GazeGaps {
     next: Option<[SessionTime; 2]>,
 }
 
-impl GazeGaps {
+impl GazeDropoutSchedule {
     /// A schedule: mean time between drop-outs, shortest and longest drop-out, in seconds.
-    pub fn new(every_s: f64, [shortest_s, longest_s]: [f64; 2], random: Stream) -> GazeGaps {
-        GazeGaps { random, every_s, lengths: [shortest_s.ln(), longest_s.ln()], next: None }
+    pub fn new(every_s: f64, [shortest_s, longest_s]: [f64; 2], random: Stream) -> GazeDropoutSchedule {
+        GazeDropoutSchedule { random, every_s, lengths: [shortest_s.ln(), longest_s.ln()], next: None }
     }
 
     /// Whether the gaze sample that is due `now` is lost in a drop-out. Must be called in the order of the samples'

@@ -48,7 +48,7 @@ pub struct Goals {
 
 /// What a simulated participant takes into account when it determines its goals.
 #[derive(Clone, Copy, Debug)]
-pub struct Prospect<'a> {
+pub struct GoalContext<'a> {
     /// The kitchen in which the participant works.
     pub kitchen: &'a Kitchen,
     /// What the participant knows of the kitchen's buttons and processing steps.
@@ -65,7 +65,7 @@ pub struct Prospect<'a> {
 
 impl Goals {
     /// The goals in a state; the order `first` claims available contents before the others.
-    pub fn in_state(prospect: &Prospect, state: State, first: LocationId) -> Goals {
+    pub fn in_state(prospect: &GoalContext, state: State, first: LocationId) -> Goals {
         let mut wanted: Vec<(LocationId, DishId)> = prospect.kitchen.wanted(state).collect();
         wanted.sort_by_key(|&(order, _)| order != first);
         let mut goals = Goals { orders: Vec::with_capacity(wanted.len()), claimed: 0 };
@@ -85,7 +85,7 @@ impl Goals {
         self.claimed |= 1 << location.0;
     }
 
-    fn of_order(&mut self, prospect: &Prospect, state: State, order: LocationId, stack: ContentId) -> OrderGoal {
+    fn of_order(&mut self, prospect: &GoalContext, state: State, order: LocationId, stack: ContentId) -> OrderGoal {
         let kitchen = prospect.kitchen;
         let mut goal = OrderGoal { order, stack, finished: None, has_base: false, needs: Vec::new() };
         goal.finished = self.find(prospect, state, |_, content| (content == stack).then_some(0)).map(|one| one.at);
@@ -122,7 +122,7 @@ impl Goals {
     /// the robot's hand.
     fn find(
         &self,
-        prospect: &Prospect,
+        prospect: &GoalContext,
         state: State,
         steps: impl Fn(LocationId, ContentId) -> Option<u8>,
     ) -> Option<PartSource> {

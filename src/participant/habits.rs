@@ -3,7 +3,7 @@
 
 use rand::RngExt;
 
-use super::population::{Individual, chance};
+use super::population::{ParticipantTraits, chance};
 use crate::base::rng::Stream;
 use crate::kitchen::{ButtonId, ContentId, Kitchen};
 
@@ -65,7 +65,7 @@ pub struct Lapses {
 
 impl Lapses {
     /// Draws the lapses until the next press.
-    pub fn draw(person: &Individual, random: &mut Stream) -> Lapses {
+    pub fn draw(person: &ParticipantTraits, random: &mut Stream) -> Lapses {
         Lapses {
             skips_check: chance(random, person.skips_check),
             follows_habit: chance(random, person.follows_habit),

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 
-use super::decision::{Urgency, effective_presses};
+use super::decision::{Impatience, effective_presses};
 use super::population::{chance, normal};
 use super::simulated::{ParticipantAction, SimulatedParticipant};
 use super::true_beliefs::wanted_dish;
@@ -46,14 +46,14 @@ impl SimulatedParticipant {
         let reason = match slip {
             Some(slip) => PressReason::slip(slip),
             None if is_proposed => PressReason::proposed(),
-            None => self.reason(Urgency::Calm, state, button),
+            None => self.reason(Impatience::Calm, state, button),
         };
         self.intent.plan.pop_front();
         Some(self.press(now, state, pressed, reason))
     }
 
     /// The reason for which the participant presses this button, found by repeating the decision with the truth.
-    fn reason(&self, urgency: Urgency, state: State, button: ButtonId) -> PressReason {
+    fn reason(&self, urgency: Impatience, state: State, button: ButtonId) -> PressReason {
         let (believed, truth) = (self.beliefs.point(&self.kitchen), World::with_true_recipes(&self.kitchen, state));
         PressReason::decided(&self.decision(urgency), &believed, &truth, button)
     }
@@ -138,7 +138,7 @@ impl SimulatedParticipant {
             self.attention.later(location);
         }
         if standstill_s >= self.person.patience_s
-            && let Some(action) = self.press_urgently(now, state, Urgency::Impatient)
+            && let Some(action) = self.press_urgently(now, state, Impatience::Impatient)
         {
             return Some(action);
         }
@@ -155,11 +155,11 @@ impl SimulatedParticipant {
             }
             return None;
         }
-        self.press_urgently(now, state, Urgency::Desperate)
+        self.press_urgently(now, state, Impatience::Desperate)
     }
 
     /// Decides again with this urgency, and presses at once.
-    fn press_urgently(&mut self, now: SessionTime, state: State, urgency: Urgency) -> Option<ParticipantAction> {
+    fn press_urgently(&mut self, now: SessionTime, state: State, urgency: Impatience) -> Option<ParticipantAction> {
         let plan = self.decision(urgency).resolve(&self.beliefs.point(&self.kitchen)).plan;
         let button = *plan.front()?;
         self.meant = None;

@@ -7,7 +7,7 @@ const MOST_STEPS: usize = 8;
 
 /// How an item is made: the processing step, and the item to which it is applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Making {
+pub struct ItemPreparation {
     /// The processing step, as an index into [`Kitchen::processes`].
     pub process: u8,
     /// The item before the processing step.
@@ -25,7 +25,7 @@ pub struct TaskKnowledge {
     serves: Vec<Option<ButtonId>>,
     /// The human's button that throws the content of its hand away.
     pub trash: Option<ButtonId>,
-    makings: Vec<Option<Making>>,
+    makings: Vec<Option<ItemPreparation>>,
     is_station: Vec<bool>,
 }
 
@@ -56,7 +56,7 @@ impl TaskKnowledge {
                 knowledge.is_station[place.index()] = true;
             }
             for &(from, to) in &process.steps {
-                let making = Making { process: index as u8, from, place: process.place };
+                let making = ItemPreparation { process: index as u8, from, place: process.place };
                 knowledge.makings[to.index()].get_or_insert(making);
             }
         }
@@ -91,7 +91,7 @@ impl TaskKnowledge {
     }
 
     /// How an item is made; `None` for an item that comes from a storage.
-    pub fn making(&self, item: ContentId) -> Option<Making> {
+    pub fn making(&self, item: ContentId) -> Option<ItemPreparation> {
         self.makings[item.index()]
     }
 
@@ -109,7 +109,7 @@ impl TaskKnowledge {
 
     /// The next processing step of `content` on the way to `part`; `None` if it is that part already, or can never
     /// become it.
-    pub fn next_making(&self, content: ContentId, part: ContentId) -> Option<Making> {
+    pub fn next_making(&self, content: ContentId, part: ContentId) -> Option<ItemPreparation> {
         let mut item = part;
         for _ in 0..MOST_STEPS {
             let making = self.making(item)?;

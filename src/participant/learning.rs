@@ -76,7 +76,7 @@ fn make_sense(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, button: Butto
 /// Explains an unexpected lack of effect: the belief about the least certain of the locations involved is weakened.
 fn blame(kitchen: &Kitchen, beliefs: &mut ParticipantBeliefs, state: State, button: ButtonId) {
     if matches!(kitchen.button(Agent::Human, button).action, ButtonAction::Serve(_)) {
-        // The participant sees the plate's content, so it doubts the recipe instead; see `Memory::doubt`.
+        // The participant sees the plate's content, so it doubts the recipe instead; see `RecipeMemory::doubt`.
         return;
     }
     let recipes = kitchen.true_recipes();

@@ -3,7 +3,7 @@
 
 use rand::RngExt;
 
-use super::population::{Individual, Population, normal, rare_chance};
+use super::population::{ParticipantTraits, Population, normal, rare_chance};
 use super::true_beliefs::ParticipantBeliefs;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
@@ -22,7 +22,7 @@ const FITTING_FACTOR: f64 = 4.0;
 
 /// Memory of one simulated participant for the recipes.
 #[derive(Clone, Debug)]
-pub struct Memory {
+pub struct RecipeMemory {
     random: Stream,
     /// Distribution over the versions of each dish's recipe to which the participant's memory fades.
     faded: Vec<Vec<f64>>,
@@ -38,15 +38,15 @@ pub struct Memory {
     last: SessionTime,
 }
 
-impl Memory {
+impl RecipeMemory {
     /// Memory of the recipes after the instruction; it sets the recipe aspects of `beliefs`.
     pub fn new(
         kitchen: &Kitchen,
         population: &Population,
-        person: &Individual,
+        person: &ParticipantTraits,
         mut random: Stream,
         beliefs: &mut ParticipantBeliefs,
-    ) -> Memory {
+    ) -> RecipeMemory {
         let (mut faded, mut learned, mut corrected) = (Vec::new(), Vec::new(), Vec::new());
         // Fewer dishes are easier to remember.
         let ease = USUAL_MENU_DISHES / kitchen.dishes.len() as f64;
@@ -80,7 +80,7 @@ impl Memory {
         }
         let left = learned.iter().map(|known| vec![1.0; known.len()]).collect();
         let (half_life_s, last) = (person.half_life_s, SessionTime::ZERO);
-        Memory { random, faded, corrected, learned, left, half_life_s, last }
+        RecipeMemory { random, faded, corrected, learned, left, half_life_s, last }
     }
 
     /// Lets the memory of recipes fade for dishes that are not in preparation.

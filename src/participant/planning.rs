@@ -6,7 +6,7 @@
 //! down. The participant waits for what only the robot can do, and for what the robot holds. A press that undoes
 //! something for the sake of another is a detour.
 
-use super::goals::{Goals, OrderGoal, PartNeed, PartSource, Prospect};
+use super::goals::{GoalContext, Goals, OrderGoal, PartNeed, PartSource};
 use super::habits::Habits;
 use crate::kitchen::{Agent, ButtonId, ContentId, LocationId, LocationKind, State};
 
@@ -30,20 +30,20 @@ impl ProposedPress {
 }
 
 /// Backward chaining in one believed state.
-pub struct Chaining<'a> {
-    prospect: &'a Prospect<'a>,
+pub struct BackwardChaining<'a> {
+    prospect: &'a GoalContext<'a>,
     state: State,
     goals: Goals,
     hand: LocationId,
     held: ContentId,
 }
 
-impl<'a> Chaining<'a> {
+impl<'a> BackwardChaining<'a> {
     /// Starts from the goals in a state, those of the order in progress first.
-    pub fn new(prospect: &'a Prospect<'a>, state: State, in_progress: LocationId) -> Chaining<'a> {
+    pub fn new(prospect: &'a GoalContext<'a>, state: State, in_progress: LocationId) -> BackwardChaining<'a> {
         let hand = prospect.kitchen.hands[Agent::Human.index()];
         let goals = Goals::in_state(prospect, state, in_progress);
-        Chaining { prospect, state, goals, hand, held: state.content(hand) }
+        BackwardChaining { prospect, state, goals, hand, held: state.content(hand) }
     }
 
     /// The presses that advance the goals, the preferred one first: for the order in progress by the participant's

@@ -269,7 +269,7 @@ impl Default for Population {
 
 /// Traits of one simulated participant, drawn from the population. Meanings and units as in [`Population`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Individual {
+pub struct ParticipantTraits {
     /// Median time from one press of the participant to the next, in seconds, with some practice.
     pub press_s: f64,
     /// Probability of a slip: hitting the neighbouring button on the table.
@@ -360,8 +360,8 @@ impl Population {
     }
 
     /// Draws one individual from the population.
-    pub fn draw(&self, random: &mut Stream) -> Individual {
-        Individual {
+    pub fn draw(&self, random: &mut Stream) -> ParticipantTraits {
+        ParticipantTraits {
             press_s: self.press_s.draw(random),
             slip: self.slip.draw_chance(random),
             look_alike_slip: self.look_alike_slip.draw_chance(random),
@@ -401,14 +401,16 @@ impl Population {
     }
 }
 
-impl Individual {
+impl ParticipantTraits {
     /// The same individual after some trials: it knows the recipes better.
-    pub fn after(self, experience: Experience, population: &Population) -> Individual {
+    pub fn after(self, experience: Experience, population: &Population) -> ParticipantTraits {
         let gain = population.recipes_gained.powi(experience.trials as i32);
         let better = |p: f64| gain * p / (1.0 - p + gain * p);
         match experience.trials {
             0 => self,
-            _ => Individual { learned: better(self.learned), half_forgotten: better(self.half_forgotten), ..self },
+            _ => {
+                ParticipantTraits { learned: better(self.learned), half_forgotten: better(self.half_forgotten), ..self }
+            }
         }
     }
 }

@@ -2,20 +2,20 @@
 
 use std::sync::Arc;
 
-use super::attention::Attention;
-use super::decision::Intent;
+use super::attention::LookQueue;
+use super::decision::ParticipantPlan;
 use super::eyes::Eyes;
 use super::habits::{Habits, Lapses};
 use super::knowledge::TaskKnowledge;
-use super::memory::Memory;
-use super::population::{Experience, Individual, Population};
+use super::memory::RecipeMemory;
+use super::population::{Experience, ParticipantTraits, Population};
 use super::signal_sense::SignalSense;
 use super::true_beliefs::ParticipantBeliefs;
 use crate::base::rng::{Stream, of_trial, stream};
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{ButtonId, Kitchen, LocationId, State};
-use crate::mind::BeliefWitness;
+use crate::mind::RecordedBelief;
 
 /// Probability that the simulated participant gives to the empty kitchen at the start of a trial.
 const SURE_AT_START: f64 = 0.97;
@@ -30,7 +30,7 @@ pub enum ParticipantAction {
         /// The pressed button, as an index into the human's buttons.
         button: ButtonId,
         /// The participant's beliefs at the press, and the cause of the press.
-        belief: BeliefWitness,
+        belief: RecordedBelief,
     },
 }
 
@@ -41,15 +41,15 @@ pub struct SimulatedParticipant {
     pub(super) knowledge: Arc<TaskKnowledge>,
     pub(super) habits: Habits,
     pub(super) population: Population,
-    pub(super) person: Individual,
+    pub(super) person: ParticipantTraits,
     pub(super) beliefs: ParticipantBeliefs,
-    pub(super) memory: Memory,
+    pub(super) memory: RecipeMemory,
     pub(super) eyes: Eyes,
     /// Copy of the eyes that looks at the targets of an accuracy check of the eye tracker; present only during the
     /// check.
     pub(super) at_targets: Option<Eyes>,
-    pub(super) attention: Attention,
-    pub(super) intent: Intent,
+    pub(super) attention: LookQueue,
+    pub(super) intent: ParticipantPlan,
     /// Random streams of the participant: of the mind (attention, reading, thinking), and of the hand (press times,
     /// slips).
     pub(super) mind: Stream,
@@ -88,7 +88,7 @@ impl SimulatedParticipant {
         let person = population.draw(&mut stream(seed, "participant", person)).after(experience, population);
         let mut beliefs = ParticipantBeliefs::of_state(&kitchen, kitchen.empty_state(), SURE_AT_START);
         let recall = stream(seed, "participant's memory", trial);
-        let memory = Memory::new(&kitchen, population, &person, recall, &mut beliefs);
+        let memory = RecipeMemory::new(&kitchen, population, &person, recall, &mut beliefs);
         let sight = stream(seed, "participant's eyes", trial);
         let eyes = Eyes::new(sight, kitchen.display_m, &person, population.tracker_offset_m);
         let read_at = vec![SessionTime::ZERO; kitchen.locations.len()];
@@ -104,8 +104,8 @@ impl SimulatedParticipant {
             memory,
             eyes,
             at_targets: None,
-            attention: Attention { read_at, ..Attention::default() },
-            intent: Intent { lapses, ..Intent::default() },
+            attention: LookQueue { read_at, ..LookQueue::default() },
+            intent: ParticipantPlan { lapses, ..ParticipantPlan::default() },
             mind,
             hand: stream(seed, "participant's hand", trial),
             is_started: false,
@@ -125,7 +125,7 @@ impl SimulatedParticipant {
     }
 
     /// Individual traits of the participant.
-    pub fn person(&self) -> &Individual {
+    pub fn person(&self) -> &ParticipantTraits {
         &self.person
     }
 

@@ -1,7 +1,7 @@
 //! Interpretation of events by the simulated participant (own presses, robot presses, passing time), and its decisions
 //! on next presses.
 
-use super::decision::{Decision, Urgency};
+use super::decision::{Decision, Impatience};
 use super::habits::Lapses;
 use super::learning;
 use super::population::chance;
@@ -120,7 +120,7 @@ impl SimulatedParticipant {
         }
         self.intent.order = self.intent.order.filter(|&(_, until)| now < until);
         let before = self.intent.plan.front().copied();
-        let resolution = self.decision(Urgency::Calm).resolve(&self.beliefs.point(&self.kitchen));
+        let resolution = self.decision(Impatience::Calm).resolve(&self.beliefs.point(&self.kitchen));
         let commitment = SessionTime::from_secs_f64(self.person.commitment_s);
         let kept = self.intent.order.filter(|&(order, _)| Some(order) == resolution.order);
         self.intent.order = kept.or(resolution.order.map(|order| (order, now + commitment)));
@@ -137,7 +137,7 @@ impl SimulatedParticipant {
     }
 
     /// The data of the decision that is due, without the world that the participant believes.
-    pub(super) fn decision(&self, urgency: Urgency) -> Decision<'_> {
+    pub(super) fn decision(&self, urgency: Impatience) -> Decision<'_> {
         Decision {
             kitchen: &self.kitchen,
             knowledge: &self.knowledge,

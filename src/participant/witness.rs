@@ -7,13 +7,13 @@
 use super::decision::Decision;
 use super::true_beliefs::ParticipantBeliefs;
 use crate::kitchen::{AspectId, AspectKind, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State, World};
-use crate::mind::{AspectBelief, BeliefWitness, PressOrigin, WORTH_TELLING};
+use crate::mind::{AspectBelief, PressOrigin, RecordedBelief, WORTH_TELLING};
 
 /// Records the belief about every aspect: its most probable value, the probability of the true value, and all other
 /// probabilities large enough for the log.
-pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, reason: PressReason) -> BeliefWitness {
+pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, reason: PressReason) -> RecordedBelief {
     let name = |aspect: &AspectId| kitchen.aspects[aspect.index()].name.clone();
-    BeliefWitness {
+    RecordedBelief {
         cause: reason.cause,
         origin: Some(reason.origin),
         targets: reason.targets.iter().map(name).collect(),
@@ -22,7 +22,7 @@ pub fn witness(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State, re
 }
 
 /// Records the belief about every aspect at a freeze probe, which causes no press.
-pub fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State) -> BeliefWitness {
+pub fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: State) -> RecordedBelief {
     let told = |index: usize| {
         let (aspect, id) = (&kitchen.aspects[index], AspectId(index as u8));
         let values = aspect.labels.iter().zip(beliefs.distribution(id)).filter(|(_, p)| **p >= WORTH_TELLING);
@@ -33,7 +33,7 @@ pub fn without_press(kitchen: &Kitchen, beliefs: &ParticipantBeliefs, state: Sta
             values: values.map(|(label, &p)| (label.clone(), rounded(p))).collect(),
         }
     };
-    BeliefWitness {
+    RecordedBelief {
         aspects: (0..kitchen.aspects.len()).map(told).collect(),
         cause: "asked by a probe".to_string(),
         origin: None,

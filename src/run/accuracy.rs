@@ -4,16 +4,16 @@
 use std::path::PathBuf;
 
 use super::parallel;
-use super::replay::{Replay, SameKitchen, each_once};
+use super::replay::{RecordingReplay, SameKitchenCheck, each_once};
 use super::timing::monotonic_ns;
 use crate::analysis::planner_accuracy::{
-    AccuracySummary, BenchPlanner, ComparedQuestion, PlannerBench, RecordedQuestions,
+    BenchPlanner, ComparedAdviceRequest, PlannerAccuracySummary, PlannerComparison, RecordedAdviceRequests,
 };
 use crate::edge::file_error::FileResult;
 
 /// Numbers of steps at which the planner's accuracy is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct AccuracySample {
+pub struct PlannerAccuracySample {
     /// Number of steps answered by the converged planner.
     pub steps: usize,
     /// Number of steps answered by the plain reference planner, a subset of them.
@@ -24,28 +24,32 @@ pub struct AccuracySample {
 ///
 /// # Errors
 /// A recording cannot be read or replayed, or the recordings are of different kitchens.
-pub fn measure(recordings: &[PathBuf], extent: AccuracySample, done: impl Fn() + Sync) -> FileResult<AccuracySummary> {
+pub fn measure(
+    recordings: &[PathBuf],
+    extent: PlannerAccuracySample,
+    done: impl Fn() + Sync,
+) -> FileResult<PlannerAccuracySummary> {
     each_once(recordings)?;
-    let (mut one_kitchen, mut asked) = (SameKitchen::default(), Vec::new());
+    let (mut one_kitchen, mut asked) = (SameKitchenCheck::default(), Vec::new());
     for recording in recordings {
-        let mut replay = Replay::open(recording)?;
+        let mut replay = RecordingReplay::open(recording)?;
         one_kitchen.admit(recording, &replay.session().kitchen)?;
         asked.push(ask(&mut replay)?);
     }
-    let bench = PlannerBench::new(one_kitchen.kitchen()?, asked, monotonic_ns);
+    let bench = PlannerComparison::new(one_kitchen.kitchen()?, asked, monotonic_ns);
     let mut steps = bench.spread(extent.steps);
     bench.answer(&mut steps, extent.reference_steps, &done);
-    let converge = |planner: &mut BenchPlanner, step: &ComparedQuestion| bench.converge(planner, step);
+    let converge = |planner: &mut BenchPlanner, step: &ComparedAdviceRequest| bench.converge(planner, step);
     let steps = parallel::each_with(&steps, BenchPlanner::default, converge, done);
     Ok(bench.summary(&steps))
 }
 
 /// The requests for advice after the presses of a recording.
-fn ask(replay: &mut Replay) -> FileResult<RecordedQuestions> {
+fn ask(replay: &mut RecordingReplay) -> FileResult<RecordedAdviceRequests> {
     let session = replay.log().session();
     let mut questions = Vec::new();
     while let Some(question) = replay.next_question()? {
         questions.push(question);
     }
-    Ok(RecordedQuestions { session, questions })
+    Ok(RecordedAdviceRequests { session, questions })
 }

@@ -10,7 +10,7 @@ use crate::communication::recommendation::Recommendation;
 
 impl Advisor {
     /// Starts the assistant's thread, which ends when the returned desk is dropped.
-    pub fn on_thread(mut self) -> AdvisorDesk {
+    pub fn on_thread(mut self) -> LiveAdvisor {
         let (ask, questions) = channel::<AdviceRequest>();
         let (answer, answers) = unbounded_channel();
         thread::spawn(move || {
@@ -22,19 +22,19 @@ impl Advisor {
                 }
             }
         });
-        AdvisorDesk { ask, answers }
+        LiveAdvisor { ask, answers }
     }
 }
 
 /// A live session's connection to the assistant's thread.
 #[derive(Debug)]
-pub struct AdvisorDesk {
+pub struct LiveAdvisor {
     ask: Sender<AdviceRequest>,
     /// Recommendations of the assistant, in the order of the requests.
     pub answers: UnboundedReceiver<Recommendation>,
 }
 
-impl AdvisorDesk {
+impl LiveAdvisor {
     /// Sends a request for advice, which replaces an earlier one that has not been answered.
     pub fn ask(&self, question: AdviceRequest) {
         // If the assistant's thread has ended, the session continues without recommendations.
@@ -43,7 +43,7 @@ impl AdvisorDesk {
 }
 
 /// Waits for the assistant's next recommendation; forever if the session has no assistant.
-pub async fn next_advice(advisor: &mut Option<AdvisorDesk>) -> Option<Recommendation> {
+pub async fn next_advice(advisor: &mut Option<LiveAdvisor>) -> Option<Recommendation> {
     match advisor {
         Some(desk) => desk.answers.recv().await,
         None => std::future::pending().await,

@@ -8,20 +8,20 @@ use serde::Serialize;
 
 use super::{consents, standing};
 use crate::analysis::bids::{
-    BidsFile, BidsParticipant, Labels, Phenotypes, PressOutcome, RecordingTables, SessionRow, TableCounts,
-    dataset_files, letters_and_digits, session_label, sessions_files,
+    BidsFile, BidsLabels, BidsParticipant, BidsRowCounts, BidsSessionRow, PressOutcome, QuestionnairePhenotypes,
+    RecordingTables, dataset_files, letters_and_digits, session_label, sessions_files,
 };
 use crate::base::words::count;
 use crate::edge::bids_tree::BidsTree;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogEnding, LogReader, at_line};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Change, Kitchen};
+use crate::kitchen::{Agent, Kitchen, KitchenChange};
 use crate::measures::errors::PressJudge;
 use crate::session::event::Event;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::ParticipantKind;
-use crate::session::{Header, apply};
+use crate::session::{LogHeader, apply};
 
 /// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
 #[derive(Clone, Debug, Serialize)]
@@ -46,13 +46,13 @@ pub struct BidsRecording {
     /// Common beginning of the paths of the recording's files in the data set.
     pub place: String,
     /// Numbers of rows in the recording's tables.
-    pub rows: TableCounts,
+    pub rows: BidsRowCounts,
 }
 
 /// A recording with its place in the data set, before it is read.
 struct Planned {
     recording: PathBuf,
-    header: Header,
+    header: LogHeader,
     label: String,
     session: String,
 }
@@ -68,11 +68,11 @@ type KnownCost = Option<(Arc<Kitchen>, CostToGo)>;
 pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: impl Fn()) -> FileResult<BidsSummary> {
     let named = recordings.iter().map(|path| Ok((path.clone(), header(path)?))).collect::<FileResult<Vec<_>>>()?;
     let whole = without_parts(named);
-    let labels = Labels::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
+    let labels = BidsLabels::from_names(whole.iter().map(|(_, header)| header.session.participant.code.as_str()));
     let planned = places(whole, &labels);
     let tree = BidsTree::create(folder)?;
-    let (mut cost, mut phenotypes) = (None, Phenotypes::default());
-    let mut sessions: BTreeMap<String, Vec<SessionRow>> = BTreeMap::new();
+    let (mut cost, mut phenotypes) = (None, QuestionnairePhenotypes::default());
+    let mut sessions: BTreeMap<String, Vec<BidsSessionRow>> = BTreeMap::new();
     let mut told = Vec::new();
     for one in &planned {
         let (files, row, counts) = read(one, with_words, &mut cost, &mut phenotypes)?;
@@ -105,7 +105,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
 }
 
 /// Header of a recording; refuses one that is still being written.
-fn header(recording: &Path) -> FileResult<Header> {
+fn header(recording: &Path) -> FileResult<LogHeader> {
     let log = LogReader::open(recording)?;
     if log.ending() == LogEnding::Running {
         let remedy = "a recording whose session is over".to_string();
@@ -116,9 +116,9 @@ fn header(recording: &Path) -> FileResult<Header> {
 
 /// The recordings, each once, without parts that another recording continues: a later part is read together with all
 /// earlier ones.
-fn without_parts(named: Vec<(PathBuf, Header)>) -> Vec<(PathBuf, Header)> {
+fn without_parts(named: Vec<(PathBuf, LogHeader)>) -> Vec<(PathBuf, LogHeader)> {
     let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
-    let before = |(path, header): &(PathBuf, Header)| {
+    let before = |(path, header): &(PathBuf, LogHeader)| {
         let folder = if path.is_dir() { place(path) } else { place(path).parent()?.to_path_buf() };
         Some(folder.parent()?.join(&header.continues.as_ref()?.recording))
     };
@@ -128,13 +128,13 @@ fn without_parts(named: Vec<(PathBuf, Header)>) -> Vec<(PathBuf, Header)> {
 }
 
 /// Places of the recordings in the data set: by the participant's label, then by plan, date and name of the recording.
-fn places(mut all: Vec<(PathBuf, Header)>, labels: &Labels) -> Vec<Planned> {
+fn places(mut all: Vec<(PathBuf, LogHeader)>, labels: &BidsLabels) -> Vec<Planned> {
     all.sort_by_cached_key(|(path, header)| {
         let step = header.session.step.as_ref().map(|step| (step.plan.clone(), step.period, step.attempt));
         (header.session.participant.code.clone(), step, header.started.clone(), path.clone())
     });
     let mut taken: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    let place = |(recording, header): (PathBuf, Header)| {
+    let place = |(recording, header): (PathBuf, LogHeader)| {
         let code = &header.session.participant.code;
         let label = labels.label(code).unwrap_or(code).to_string();
         let session = session_label(header.session.step.as_ref(), taken.entry(label.clone()).or_default());
@@ -148,8 +148,8 @@ fn read(
     one: &Planned,
     with_words: bool,
     cost: &mut KnownCost,
-    phenotypes: &mut Phenotypes,
-) -> FileResult<(Vec<BidsFile>, (SessionRow, String), TableCounts)> {
+    phenotypes: &mut QuestionnairePhenotypes,
+) -> FileResult<(Vec<BidsFile>, (BidsSessionRow, String), BidsRowCounts)> {
     let mut log = LogReader::open(&one.recording)?;
     let mut session = log.session();
     let kitchen = session.kitchen.clone();
@@ -162,16 +162,16 @@ fn read(
             |error: apply::ApplyError| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy);
         let change = apply(&mut session, &line.stamped).map_err(wrong)?.change;
         let outcome = match (change, &mut *cost) {
-            (Change::Press { press, .. }, Some((_, cost))) if press.agent == Agent::Human => {
+            (KitchenChange::Press { press, .. }, Some((_, cost))) if press.agent == Agent::Human => {
                 let error = judge.human_pressed(cost, line.stamped.time, &press).error;
                 Some(PressOutcome { effective: press.effective, error: Some(error) })
             }
-            (Change::Press { press, .. }, _) => {
+            (KitchenChange::Press { press, .. }, _) => {
                 judge.others_changed(line.stamped.time, press.before, press.after);
                 Some(PressOutcome { effective: press.effective, error: None })
             }
-            (Change::UncountedPress { .. }, _) => Some(PressOutcome::default()),
-            (Change::Correction { before, after, .. }, _) => {
+            (KitchenChange::UncountedPress { .. }, _) => Some(PressOutcome::default()),
+            (KitchenChange::Correction { before, after, .. }, _) => {
                 judge.others_changed(line.stamped.time, before, after);
                 None
             }
@@ -186,7 +186,7 @@ fn read(
     let is_complete = log.ending() == LogEnding::Closed;
     let name = one.recording.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let labels = (one.session.as_str(), name.as_str());
-    let row = SessionRow::new(labels, &one.header, &session, tables.ended(), [is_complete, counts]);
+    let row = BidsSessionRow::new(labels, &one.header, &session, tables.ended(), [is_complete, counts]);
     let (files, rows) = tables.into_files(&session);
     Ok((files, (row, kitchen.name.clone()), rows))
 }
@@ -225,7 +225,7 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
 
 /// The export as text for the terminal.
 pub fn describe(summary: &BidsSummary) -> String {
-    let rows = |of: fn(&TableCounts) -> u64| summary.recordings.iter().map(|one| of(&one.rows)).sum::<u64>();
+    let rows = |of: fn(&BidsRowCounts) -> u64| summary.recordings.iter().map(|one| of(&one.rows)).sum::<u64>();
     let line = |one: &BidsRecording| format!("  {} from {}\n", one.place, one.recording.display());
     let recordings: String = summary.recordings.iter().map(line).collect();
     let changed = summary.changed_codes.iter();

@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::parallel;
-use super::replay::{Replay, SameKitchen, each_once};
+use super::replay::{RecordingReplay, SameKitchenCheck, each_once};
 use crate::analysis::belief_check::{BeliefCheck, PressViews};
 use crate::analysis::probe_collector::ProbeCollector;
-use crate::analysis::probe_figures::ProbeFigures;
+use crate::analysis::probe_figures::ProbeSummary;
 use crate::analysis::probe_record::ProbedTrial;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::Kitchen;
-use crate::measures::belief_detection::{EstimateView, TrialView, aspect_groups};
+use crate::measures::belief_detection::{EstimateBeforePress, TrialView, aspect_groups};
 use crate::measures::flags::chosen_thresholds;
 use crate::session::settings::ParticipantKind;
 
@@ -33,7 +33,7 @@ pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sy
         })?),
     };
     let checked = probes[..recordings.len()].iter().flatten();
-    let probes = ProbeFigures::from_trials(checked.map(|(participant, probed)| (participant.as_str(), probed)));
+    let probes = ProbeSummary::from_trials(checked.map(|(participant, probed)| (participant.as_str(), probed)));
     Ok(BeliefCheck::from_trials(&kitchen, &trials, thresholds, probes))
 }
 
@@ -58,7 +58,7 @@ pub struct BeliefCheckTrials {
 pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheckTrials> {
     each_once(recordings)?;
     let results = parallel::each(recordings, |recording| view(recording), done);
-    let (mut one_kitchen, mut trials, mut probes) = (SameKitchen::default(), Vec::new(), Vec::new());
+    let (mut one_kitchen, mut trials, mut probes) = (SameKitchenCheck::default(), Vec::new(), Vec::new());
     for (result, recording) in results.into_iter().zip(recordings) {
         let (kitchen, trial, probed) = result?;
         one_kitchen.admit(recording, &kitchen)?;
@@ -70,14 +70,14 @@ pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Belie
 
 /// The presses and freeze probes of one recording.
 fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView, Option<ProbedParticipant>)> {
-    let mut replay = Replay::open(recording)?;
+    let mut replay = RecordingReplay::open(recording)?;
     let mut probes = ProbeCollector::default();
     let mut views = PressViews::default();
     while let Some(replayed) = replay.step()? {
         let (follower, seq) = (&replay.follower, replayed.stamped.seq);
         let judged = follower.judged.last().filter(|press| press.seq == seq);
         let estimated = follower.estimated.as_ref().filter(|one| one.press == seq);
-        let estimate = estimated.map(|one| EstimateView::from_witness(&one.witness(&follower.session.kitchen)));
+        let estimate = estimated.map(|one| EstimateBeforePress::from_witness(&one.witness(&follower.session.kitchen)));
         probes.note(&replayed.stamped, &replayed.change, follower);
         views.add(&follower.session, judged, estimate, &replayed.stamped, &replayed.change);
     }

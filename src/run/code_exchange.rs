@@ -5,9 +5,9 @@ use std::path::Path;
 use super::codes::CodedRecording;
 use super::error::RunError;
 use crate::edge::log::consensus_file;
-use crate::edge::log::rater_codes::{self, CodeRow};
-use crate::measures::cause_codes::{Code, Codes};
-use crate::measures::consensus::Consensus;
+use crate::edge::log::rater_codes::{self, RaterCodeRow};
+use crate::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use crate::measures::consensus::RaterConsensus;
 use crate::session::settings::is_code;
 
 /// Advice in error messages on how the table names a rater.
@@ -88,15 +88,15 @@ pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, Run
 
 impl CodedRecording {
     /// Adds a consensus code of two raters. If that is not possible, returns what was found and what would be right.
-    fn settle(&mut self, raters: &[String; 2], press: u64, code: &Code) -> Result<(), (String, String)> {
-        let new = Consensus::new(&raters[0], &raters[1]);
+    fn settle(&mut self, raters: &[String; 2], press: u64, code: &ErrorCauseCode) -> Result<(), (String, String)> {
+        let new = RaterConsensus::new(&raters[0], &raters[1]);
         let own = new.raters.clone().map(|rater| self.codes.get(&rater).cloned().unwrap_or_default());
         let consensus = self.consensus.take().unwrap_or_else(|| new.clone());
         if consensus.raters != new.raters {
             let remedy = format!("{}, who settled this recording; or delete its consensus first", consensus.name());
             return Err((format!("the consensus of {}", new.raters.join(" and ")), remedy));
         }
-        let decided = Codes([(press, code.clone())].into());
+        let decided = RaterCodes([(press, code.clone())].into());
         let consensus = consensus.with_agreed(own.each_ref()).with_decided(&decided, own.each_ref());
         if let Some(remedy) = consensus.settled.get(&press).and_then(|settled| settled.fault()) {
             return Err((format!("press {press} with another cause than both raters say"), remedy.to_string()));
@@ -116,7 +116,7 @@ pub fn export(recordings: &[CodedRecording], file: &Path) -> Result<u64, RunErro
         let settled = one.consensus.as_ref().map(|consensus| (consensus.name(), one.current(consensus)));
         let own = one.codes.iter().map(|(rater, codes)| (rater.clone(), codes.clone()));
         for (rater, codes) in own.chain(settled) {
-            rows.extend(codes.0.into_iter().map(|(press, code)| CodeRow {
+            rows.extend(codes.0.into_iter().map(|(press, code)| RaterCodeRow {
                 line: 0,
                 recording: one.name(),
                 rater: rater.clone(),

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::replay::Replay;
+use super::replay::RecordingReplay;
 use crate::analysis::error_list::ListedError;
 use crate::base::words::count;
 use crate::edge::file_error::FileResult;
 use crate::edge::log::{consensus_file, rater_codes};
 use crate::history::wording;
-use crate::measures::cause_codes::{Agreement, AgreementTable, Codable, Code, Codes};
-use crate::measures::consensus::{Consensus, unsettled};
+use crate::measures::cause_codes::{AgreementTable, CodableErrors, ErrorCauseCode, RaterAgreement, RaterCodes};
+use crate::measures::consensus::{RaterConsensus, unsettled};
 use crate::session::settings::ParticipantKind;
 
 /// A recording with raters' codes of its errors.
@@ -21,15 +21,15 @@ pub struct CodedRecording {
     /// Folder of the recording.
     pub folder: PathBuf,
     /// The errors that can be coded, and the false beliefs that can be named as causes.
-    pub codable: Codable,
+    pub codable: CodableErrors,
     /// Errors of the recording, with times and presses.
     pub errors: Vec<ListedError>,
     /// Codes of the errors, by the rater's identifier.
-    pub codes: BTreeMap<String, Codes>,
+    pub codes: BTreeMap<String, RaterCodes>,
     /// Consensus of two raters about the codes.
-    pub consensus: Option<Consensus>,
+    pub consensus: Option<RaterConsensus>,
     /// True causes of the errors, for a simulated participant.
-    pub known: Option<Codes>,
+    pub known: Option<RaterCodes>,
 }
 
 impl CodedRecording {
@@ -38,7 +38,7 @@ impl CodedRecording {
     /// # Errors
     /// The recording cannot be read, or a file with codes is damaged.
     pub fn open(recording: &Path) -> FileResult<CodedRecording> {
-        let mut replay = Replay::open(recording)?;
+        let mut replay = RecordingReplay::open(recording)?;
         if replay.session().spec.participant.kind != ParticipantKind::Simulated {
             replay = replay.without_causes();
         }
@@ -47,13 +47,13 @@ impl CodedRecording {
         let kitchen = &replay.session().kitchen;
         let is_known = !judged.is_empty() && judged.iter().all(|press| press.belief_known);
         let folder = replay.log().folder().to_path_buf();
-        let codable = Codable::from_presses(kitchen, judged);
+        let codable = CodableErrors::from_presses(kitchen, judged);
         Ok(CodedRecording {
             codes: rater_codes::read_all(&folder, &codable)?,
             consensus: consensus_file::read(&folder, &codable)?,
             codable,
             errors: ListedError::all(&replay.follower),
-            known: is_known.then(|| Codes::known(kitchen, judged)),
+            known: is_known.then(|| RaterCodes::known(kitchen, judged)),
             folder,
         })
     }
@@ -65,41 +65,42 @@ impl CodedRecording {
     }
 
     /// The consensus codes that still hold, since the raters have not changed their codes.
-    pub fn current(&self, consensus: &Consensus) -> Codes {
-        let none = Codes::default();
+    pub fn current(&self, consensus: &RaterConsensus) -> RaterCodes {
+        let none = RaterCodes::default();
         consensus.current(consensus.raters.each_ref().map(|rater| self.codes.get(rater).unwrap_or(&none)))
     }
 
-    fn settled(&self) -> Option<SettledSummary> {
+    fn settled(&self) -> Option<ConsensusSummary> {
         let consensus = self.consensus.as_ref()?;
-        let none = Codes::default();
+        let none = RaterCodes::default();
         let own = consensus.raters.each_ref().map(|rater| self.codes.get(rater).unwrap_or(&none));
         let [of, with] = consensus.raters.clone();
         let agreed = consensus.agreed() as u64;
         let settled = consensus.current(own).0.len() as u64;
-        let stale = consensus.changed(own).into_iter().map(|changed| StaleCode {
+        let stale = consensus.changed(own).into_iter().map(|changed| ChangedRaterCode {
             error: self.codable.errors.partition_point(|&press| press < changed.press) as u64 + 1,
             press: changed.press,
             rater: changed.rater,
         });
         let errors = self.codable.errors.len() as u64;
-        Some(SettledSummary { of, with, agreed, settled, open: errors - settled, stale: stale.collect() })
+        Some(ConsensusSummary { of, with, agreed, settled, open: errors - settled, stale: stale.collect() })
     }
 
     /// The errors that two raters coded differently.
-    fn disagreements(&self, of: (&String, &Codes), with: (&String, &Codes)) -> Vec<Disagreement> {
+    fn disagreements(&self, of: (&String, &RaterCodes), with: (&String, &RaterCodes)) -> Vec<RaterDisagreement> {
         let differ = unsettled(&self.codable.errors, [of.1, with.1]);
-        let is_pairs = |consensus: &&Consensus| consensus.raters.contains(of.0) && consensus.raters.contains(with.0);
+        let is_pairs =
+            |consensus: &&RaterConsensus| consensus.raters.contains(of.0) && consensus.raters.contains(with.0);
         let consensus = self.consensus.as_ref().filter(is_pairs);
         let settled = consensus.map(|consensus| self.current(consensus)).unwrap_or_default();
         let listed = self.errors.iter().filter(|error| differ.contains(&error.press));
         let disagreement = |error: &ListedError| {
             let (of_code, with_code) = (of.1.0.get(&error.press)?, with.1.0.get(&error.press)?);
-            let parts = |code: &Code| (code.kind().name().to_string(), code.aspect().map(str::to_string));
+            let parts = |code: &ErrorCauseCode| (code.kind().name().to_string(), code.aspect().map(str::to_string));
             let ((of_cause, of_aspect), (with_cause, with_aspect)) = (parts(of_code), parts(with_code));
             let shared = settled.0.get(&error.press);
             let (settled_cause, settled_aspect) = shared.map(parts).unzip();
-            Some(Disagreement {
+            Some(RaterDisagreement {
                 recording: self.name(),
                 error: error.clone(),
                 of: of.0.clone(),
@@ -120,7 +121,7 @@ impl CodedRecording {
 
 /// Raters' codes, agreement and disagreements: the output of `tomcom codes`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CodesSummary {
+pub struct RaterCodesSummary {
     /// Recordings, with the number of errors that each rater has coded.
     pub recordings: Vec<CodedRecordingSummary>,
     /// Agreement of each pair of raters with common errors. A consensus does not count as a rater.
@@ -128,7 +129,7 @@ pub struct CodesSummary {
     /// Agreement of each rater with the true causes of simulated participants.
     pub known: Vec<RaterPairSummary>,
     /// The errors that two raters coded differently, for each pair of raters.
-    pub disagreements: Vec<Disagreement>,
+    pub disagreements: Vec<RaterDisagreement>,
 }
 
 /// Progress of the raters in coding one recording.
@@ -141,12 +142,12 @@ pub struct CodedRecordingSummary {
     /// Number of errors coded by each rater.
     pub coded: BTreeMap<String, u64>,
     /// Consensus of two raters; null without one.
-    pub consensus: Option<SettledSummary>,
+    pub consensus: Option<ConsensusSummary>,
 }
 
 /// Consensus of two raters about a recording's errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SettledSummary {
+pub struct ConsensusSummary {
     /// Identifier of the first rater.
     pub of: String,
     /// Identifier of the second rater.
@@ -158,12 +159,12 @@ pub struct SettledSummary {
     /// Number of errors without a consensus code.
     pub open: u64,
     /// Raters' codes that changed after the raters had settled them.
-    pub stale: Vec<StaleCode>,
+    pub stale: Vec<ChangedRaterCode>,
 }
 
 /// A rater's code that changed after two raters had settled it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct StaleCode {
+pub struct ChangedRaterCode {
     /// Number of the error in the recording, from 1.
     pub error: u64,
     /// Sequence number of the press in the log.
@@ -174,7 +175,7 @@ pub struct StaleCode {
 
 /// An error that two raters coded differently.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Disagreement {
+pub struct RaterDisagreement {
     /// The name of the recording's folder.
     pub recording: String,
     /// The error that is coded differently.
@@ -213,13 +214,13 @@ pub struct RaterPairSummary {
     pub with: String,
     /// Agreement of the two, over all recordings together.
     #[serde(flatten)]
-    pub agreement: Agreement,
+    pub agreement: RaterAgreement,
 }
 
-impl CodesSummary {
+impl RaterCodesSummary {
     /// Summary of coded recordings.
-    pub fn from_recordings(recordings: &[CodedRecording]) -> CodesSummary {
-        let mut pairs: BTreeMap<(String, String), (AgreementTable, Vec<Disagreement>)> = BTreeMap::new();
+    pub fn from_recordings(recordings: &[CodedRecording]) -> RaterCodesSummary {
+        let mut pairs: BTreeMap<(String, String), (AgreementTable, Vec<RaterDisagreement>)> = BTreeMap::new();
         let mut known: BTreeMap<String, AgreementTable> = BTreeMap::new();
         for one in recordings {
             for (index, (of, codes)) in one.codes.iter().enumerate() {
@@ -249,7 +250,7 @@ impl CodesSummary {
             agreements.push(pair(raters, table));
             disagreements.extend(differ);
         }
-        CodesSummary {
+        RaterCodesSummary {
             recordings: recordings.iter().map(recording).collect(),
             agreements,
             known: known.into_iter().map(|(of, table)| pair((of, "simulation".to_string()), table)).collect(),
@@ -259,7 +260,7 @@ impl CodesSummary {
 }
 
 /// The summary of raters' codes as text for the terminal.
-pub fn describe(figures: &CodesSummary) -> String {
+pub fn describe(figures: &RaterCodesSummary) -> String {
     let mut text = String::new();
     for one in &figures.recordings {
         let coded: Vec<String> = one.coded.iter().map(|(rater, number)| format!("{rater} {number}")).collect();
@@ -272,7 +273,7 @@ pub fn describe(figures: &CodesSummary) -> String {
     }
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     for pair in figures.agreements.iter().chain(&figures.known) {
-        let Agreement { errors, same_cause, kappa_cause, beliefs, same_aspect, kappa_aspect } = pair.agreement;
+        let RaterAgreement { errors, same_cause, kappa_cause, beliefs, same_aspect, kappa_aspect } = pair.agreement;
         text += &format!(
             "{} and {}: the same cause for {same_cause} of {errors} errors (kappa {}), the same wrong belief for \
              {same_aspect} of {beliefs} (kappa {})\n",
@@ -285,18 +286,18 @@ pub fn describe(figures: &CodesSummary) -> String {
     text + &describe_disagreements(&figures.disagreements)
 }
 
-fn describe_consensus(found: &SettledSummary) -> String {
-    let SettledSummary { of, with, agreed, settled, open, stale } = found;
+fn describe_consensus(found: &ConsensusSummary) -> String {
+    let ConsensusSummary { of, with, agreed, settled, open, stale } = found;
     let decided = settled.saturating_sub(*agreed);
     let mut text = format!("  consensus of {of} and {with}: {agreed} agreed, {decided} settled, {open} open\n");
-    for StaleCode { error, press, rater } in stale {
+    for ChangedRaterCode { error, press, rater } in stale {
         text += &format!("  stale: {rater} changed the code of error {error} (press {press}) after it was settled\n");
     }
     text
 }
 
 /// The disagreements as a table, followed by how to settle them.
-fn describe_disagreements(all: &[Disagreement]) -> String {
+fn describe_disagreements(all: &[RaterDisagreement]) -> String {
     let Some(first) = all.first() else { return String::new() };
     let recordings = all.iter().map(|one| one.recording.chars().count()).max().unwrap_or(0).max(9);
     let open = all.iter().filter(|one| one.settled_words.is_none()).count();

@@ -3,11 +3,11 @@
 use super::error::ReviewError;
 use super::seekable_replay::SeekableReplay;
 use crate::analysis::error_list::ListedError;
-use crate::console::rater_session::{CodingParty, RaterSession};
+use crate::console::rater_session::{CodingRaters, RaterSession};
 use crate::edge::file_error::FileError;
-use crate::edge::log::{WriteError, consensus_file, rater_codes};
-use crate::measures::cause_codes::{Codable, Codes};
-use crate::measures::consensus::{Consensus, unsettled};
+use crate::edge::log::{RecordingWriteError, consensus_file, rater_codes};
+use crate::measures::cause_codes::{CodableErrors, RaterCodes};
+use crate::measures::consensus::{RaterConsensus, unsettled};
 
 /// The session of one rater, with the codes that the rater gave earlier.
 ///
@@ -15,12 +15,12 @@ use crate::measures::consensus::{Consensus, unsettled};
 /// A file with codes is damaged.
 pub(super) fn of_rater(film: &SeekableReplay, rater: &str) -> Result<RaterSession, ReviewError> {
     let follower = &film.replay.follower;
-    let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
+    let codable = CodableErrors::from_presses(&follower.session.kitchen, &follower.judged);
     let mut all = rater_codes::read_all(film.replay.log().folder(), &codable)?;
     let codes = all.remove(rater).unwrap_or_default();
-    let party = CodingParty::Rater(rater.to_string());
+    let party = CodingRaters::Rater(rater.to_string());
     let mut session = RaterSession::new(party, ListedError::all(follower), codes);
-    let is_complete = |codes: &Codes| codable.errors.iter().all(|press| codes.0.contains_key(press));
+    let is_complete = |codes: &RaterCodes| codable.errors.iter().all(|press| codes.0.contains_key(press));
     session.finished = all.into_iter().filter(|(_, codes)| is_complete(codes)).map(|(rater, _)| rater).collect();
     Ok(session)
 }
@@ -33,9 +33,9 @@ pub(super) fn of_rater(film: &SeekableReplay, rater: &str) -> Result<RaterSessio
 /// written to.
 pub(super) fn of_pair(film: &SeekableReplay, raters: [&str; 2]) -> Result<RaterSession, ReviewError> {
     let (log, follower) = (film.replay.log(), &film.replay.follower);
-    let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
+    let codable = CodableErrors::from_presses(&follower.session.kitchen, &follower.judged);
     let mut all = rater_codes::read_all(log.folder(), &codable)?;
-    let new = Consensus::new(raters[0], raters[1]);
+    let new = RaterConsensus::new(raters[0], raters[1]);
     for rater in &new.raters {
         if all.get(rater).is_none_or(|codes| codes.0.is_empty()) {
             let found = format!("no codes of the rater {rater}");
@@ -59,10 +59,10 @@ pub(super) fn of_pair(film: &SeekableReplay, raters: [&str; 2]) -> Result<RaterS
     let errors: Vec<ListedError> =
         ListedError::all(follower).into_iter().filter(|error| open.contains(&error.press)).collect();
     let current = consensus.current(own.each_ref()).0.into_iter();
-    let codes = Codes(current.filter(|(press, _)| open.contains(press)).collect());
+    let codes = RaterCodes(current.filter(|(press, _)| open.contains(press)).collect());
     // Errors that the raters can still change are in the session's codes; the consensus holds the others.
     consensus.settled.retain(|press, _| !codes.0.contains_key(press));
-    let session = RaterSession::new(CodingParty::Pair { consensus, own }, errors, codes);
+    let session = RaterSession::new(CodingRaters::Pair { consensus, own }, errors, codes);
     save(film, &session)?;
     Ok(session)
 }
@@ -76,8 +76,8 @@ pub(super) fn greeting(session: &RaterSession) -> String {
         Some(open) => format!("error {} is the first without a code", session.errors[open].error),
     };
     let reopened = match &session.party {
-        CodingParty::Pair { consensus, own } => consensus.changed(own.each_ref()),
-        CodingParty::Rater(_) => Vec::new(),
+        CodingRaters::Pair { consensus, own } => consensus.changed(own.each_ref()),
+        CodingRaters::Rater(_) => Vec::new(),
     };
     let mut changed: Vec<&str> = reopened.iter().map(|changed| changed.rater.as_str()).collect();
     changed.dedup();
@@ -91,11 +91,11 @@ pub(super) fn greeting(session: &RaterSession) -> String {
 ///
 /// # Errors
 /// The folder cannot be written to.
-pub(super) fn save(film: &SeekableReplay, session: &RaterSession) -> Result<(), WriteError> {
+pub(super) fn save(film: &SeekableReplay, session: &RaterSession) -> Result<(), RecordingWriteError> {
     let folder = film.replay.log().folder();
     match &session.party {
-        CodingParty::Rater(rater) => rater_codes::write(folder, rater, &session.codes),
-        CodingParty::Pair { consensus, own } => {
+        CodingRaters::Rater(rater) => rater_codes::write(folder, rater, &session.codes),
+        CodingRaters::Pair { consensus, own } => {
             consensus_file::write(folder, &consensus.clone().with_decided(&session.codes, own.each_ref()))
         }
     }

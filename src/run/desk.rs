@@ -17,12 +17,12 @@ use crate::console::ConsoleMessage;
 use crate::console::gaze_pairing::GazePairing;
 use crate::console::view::theme::Theme;
 use crate::edge::gaze_file::{self, GazeFile};
-use crate::edge::gaze_input::GazeNews;
+use crate::edge::gaze_input::TrackerMessage;
 use crate::edge::gaze_json;
-use crate::edge::lsl::{self, InletEnd, LslError};
-use crate::edge::pupil::{self, CaptureAddress, CaptureRequest};
+use crate::edge::lsl::{self, InletThreadEnd, LslError};
+use crate::edge::pupil::{self, CaptureConfiguration, CaptureRequest};
 use crate::edge::terminal::{TerminalInput, TerminalScreen, asked_to_end, outlive_file_limits, theme};
-use crate::gaze::surface::SurfaceMap;
+use crate::gaze::surface::SurfaceHomography;
 use crate::gaze::tags::{DisplayTags, TagError};
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
@@ -66,18 +66,18 @@ pub(super) struct OperatorInput {
 /// External gaze source: an eye tracker, a stream or a file.
 #[derive(Default)]
 pub(super) struct GazeTracker {
-    news: Option<Receiver<GazeNews>>,
+    news: Option<Receiver<TrackerMessage>>,
     /// Channel for requests to Pupil Capture.
     orders: Option<Sender<CaptureRequest>>,
     /// End of the thread that reads a Lab Streaming Layer stream; it is waited for once `news` is dropped.
-    _inlet: Option<InletEnd>,
+    _inlet: Option<InletThreadEnd>,
     file: Option<Arc<GazeFile>>,
     /// Pairing codes for gaze senders at other computers, if they have to pair.
     pairing: Option<GazePairing>,
     /// Latest connection state of the tracker, for recordings that begin later.
-    link: Option<GazeNews>,
-    sees_display: Option<GazeNews>,
-    other_surfaces: Option<GazeNews>,
+    link: Option<TrackerMessage>,
+    sees_display: Option<TrackerMessage>,
+    other_surfaces: Option<TrackerMessage>,
     /// Last gaze accuracy check that was accepted.
     calibrated: Option<AcceptedGazeCheck>,
 }
@@ -141,7 +141,7 @@ impl GazeTracker {
             let corners = tracker.corners.map_or_else(hull, Ok)?;
             let found = format!("corners = {corners:?}");
             let remedy = "a convex quadrangle".to_string();
-            SurfaceMap::new(corners).ok_or(LiveError::Tags(TagError { found, remedy }))
+            SurfaceHomography::new(corners).ok_or(LiveError::Tags(TagError { found, remedy }))
         };
         match participant.gaze {
             GazeSource::Json => {
@@ -155,7 +155,7 @@ impl GazeTracker {
             GazeSource::Pupil => {
                 let (address, surface_name) = (tracker.address.clone(), tracker.surface.clone());
                 let (port, records) = (tracker.port, tracker.record);
-                let capture = CaptureAddress { address, port, surface: surface_name, map: surface()?, records };
+                let capture = CaptureConfiguration { address, port, surface: surface_name, map: surface()?, records };
                 let (news, orders) = pupil::follow(capture);
                 Ok(GazeTracker { news: Some(news), orders: Some(orders), ..GazeTracker::default() })
             }
@@ -177,7 +177,7 @@ impl GazeTracker {
     }
 
     /// Waits for the next tracker messages (samples arrive in packets); forever if there is no tracker.
-    pub async fn next(&mut self) -> Option<Vec<GazeNews>> {
+    pub async fn next(&mut self) -> Option<Vec<TrackerMessage>> {
         let Some(news) = &mut self.news else { return std::future::pending().await };
         let mut packet = Vec::new();
         // All pending messages are received in one call, so that none is lost if another branch of the event loop is
@@ -187,20 +187,20 @@ impl GazeTracker {
         (!packet.is_empty()).then_some(packet)
     }
 
-    fn know(&mut self, news: &GazeNews) {
+    fn know(&mut self, news: &TrackerMessage) {
         match news {
-            GazeNews::Connected(_) => self.link = Some(news.clone()),
-            GazeNews::Lost(_) => {
+            TrackerMessage::Connected(_) => self.link = Some(news.clone()),
+            TrackerMessage::Lost(_) => {
                 (self.link, self.sees_display, self.other_surfaces) = (Some(news.clone()), None, None);
             }
-            GazeNews::SeesDisplay(_) => (self.sees_display, self.other_surfaces) = (Some(news.clone()), None),
-            GazeNews::OtherSurfaces(_) => self.other_surfaces = Some(news.clone()),
+            TrackerMessage::SeesDisplay(_) => (self.sees_display, self.other_surfaces) = (Some(news.clone()), None),
+            TrackerMessage::OtherSurfaces(_) => self.other_surfaces = Some(news.clone()),
             _ => {}
         }
     }
 
     /// Messages that describe the tracker's present state, for a recording that begins now.
-    pub fn known(&self) -> impl Iterator<Item = GazeNews> {
+    pub fn known(&self) -> impl Iterator<Item = TrackerMessage> {
         let known = self.link.iter().chain(&self.sees_display).chain(&self.other_surfaces);
         known.cloned().collect::<Vec<_>>().into_iter()
     }
@@ -222,7 +222,8 @@ impl GazeTracker {
 
     /// Waits briefly until Pupil Capture has finished its requests.
     pub async fn settle(&self) {
-        let Some(orders) = self.orders.as_ref().filter(|_| matches!(self.link, Some(GazeNews::Connected(_)))) else {
+        let Some(orders) = self.orders.as_ref().filter(|_| matches!(self.link, Some(TrackerMessage::Connected(_))))
+        else {
             return;
         };
         let (sender, done) = oneshot::channel();

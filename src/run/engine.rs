@@ -23,8 +23,8 @@ use std::sync::Arc;
 
 use self::agents::{gaze_gaps, scripted_wizard, simulated_participant, trial_robot};
 use crate::analysis::advisor::{AdviceRequest, Advisor};
-use crate::analysis::follower::Follower;
-use crate::arm::worker::Robot;
+use crate::analysis::follower::SessionFollower;
+use crate::arm::worker::RobotTaskExecutor;
 use crate::base::time::SessionTime;
 use crate::communication::Sender;
 use crate::kitchen::cost_to_go::CostToGo;
@@ -32,36 +32,36 @@ use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::measures::JudgedPress;
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::participant::gaze_gaps::GazeGaps;
+use crate::participant::gaze_gaps::GazeDropoutSchedule;
 use crate::participant::{ParticipantAction, SimulatedParticipant};
 use crate::session::admit::{admit, hygiene};
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
-use crate::session::event::{EndReason, SignalEnd};
+use crate::session::event::{SignalEndReason, TrialEndReason};
 use crate::session::offers;
 use crate::session::orders::OrderList;
 use crate::session::probes::ProbeEvent;
 use crate::session::settings::ParticipantKind;
 use crate::session::silence;
 use crate::session::timers::TimerQueue;
-use crate::session::{Applied, Effect, Event, Header, Session, SessionSpec, Stamped, Timer};
+use crate::session::{AppliedEvent, Event, LogHeader, Session, SessionEffect, SessionSpec, Timer, TimestampedEvent};
 use crate::wizard::{ScriptedWizard, WizardAction};
 
 /// Runs a session: raises due events, accepts external ones, and stamps all of them.
 #[derive(Clone, Debug)]
-pub struct Engine {
-    follower: Follower,
+pub struct SessionEngine {
+    follower: SessionFollower,
     timers: TimerQueue,
     orders: OrderList,
-    robot: Robot,
+    robot: RobotTaskExecutor,
     participant: Option<SimulatedParticipant>,
     /// Gaps in the simulated eye tracker's data, if the session has any.
-    gaps: Option<GazeGaps>,
+    gaps: Option<GazeDropoutSchedule>,
     /// The scripted wizard of the session, if there is one.
     wizard: Option<ScriptedWizard>,
     next_seq: u64,
     /// Stamped events that the engine has not returned to the caller yet.
-    out: Vec<Stamped>,
+    out: Vec<TimestampedEvent>,
     /// The latest event after which advice is requested; the request is made once the event's immediate consequences
     /// have been applied.
     to_ask: Option<(u64, SessionTime)>,
@@ -76,7 +76,7 @@ pub struct Engine {
 #[must_use = "the events belong into the log, also when the input was refused"]
 pub struct InputResult {
     /// Events up to the one from outside, and its immediate consequences, in order.
-    pub events: Vec<Stamped>,
+    pub events: Vec<TimestampedEvent>,
     /// Why the event from outside was refused, in words for the wizard.
     pub refused: Option<String>,
 }
@@ -91,24 +91,24 @@ enum Source {
     Probe,
 }
 
-impl Engine {
+impl SessionEngine {
     /// A session before its first event. `cost` may be shared with other engines of the same kitchen: its cache never
     /// changes its results.
     ///
     /// # Panics
     /// The settings ask for an arm with simulated physics, and this build has none; `SessionSpec::require_built` checks
     /// that.
-    pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> Engine {
+    pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> SessionEngine {
         let orders = OrderList::new(kitchen.dishes.len(), &spec, trial);
         let robot = trial_robot(&kitchen, &spec, trial);
         let participant = (spec.participant.kind == ParticipantKind::Simulated)
             .then(|| simulated_participant(kitchen.clone(), &spec, trial));
         let gaps = gaze_gaps(&spec, trial);
         let wizard = scripted_wizard(&kitchen, &spec, trial);
-        let follower = Follower::new(Session::new(kitchen, spec, trial), cost);
+        let follower = SessionFollower::new(Session::new(kitchen, spec, trial), cost);
         let timers = TimerQueue::default();
         let (out, questions) = (Vec::new(), Vec::new());
-        Engine {
+        SessionEngine {
             follower,
             timers,
             orders,
@@ -135,8 +135,8 @@ impl Engine {
     }
 
     /// This engine without attribution of errors to causes, which takes too long in a running session.
-    pub fn without_causes(self) -> Engine {
-        Engine { follower: self.follower.without_causes(), ..self }
+    pub fn without_causes(self) -> SessionEngine {
+        SessionEngine { follower: self.follower.without_causes(), ..self }
     }
 
     /// The present estimate of the human's belief.
@@ -170,7 +170,7 @@ impl Engine {
     }
 
     /// Raises the next internal event at its due time, with its immediate consequences.
-    pub fn fire(&mut self) -> Vec<Stamped> {
+    pub fn fire(&mut self) -> Vec<TimestampedEvent> {
         self.fire_next();
         std::mem::take(&mut self.out)
     }
@@ -190,32 +190,32 @@ impl Engine {
     }
 
     /// The session with everything that is derived from it, such as judged presses and the estimate.
-    pub fn follower(&self) -> &Follower {
+    pub fn follower(&self) -> &SessionFollower {
         &self.follower
     }
 
     /// This engine without its scripted wizard, who sends no further signals.
-    pub fn without_wizard(self) -> Engine {
-        Engine { wizard: None, ..self }
+    pub fn without_wizard(self) -> SessionEngine {
+        SessionEngine { wizard: None, ..self }
     }
 
     /// The engine for a recording's header, without features that the recording's format lacks.
     ///
     /// # Panics
     /// As [`Self::new`].
-    pub fn for_header(kitchen: Arc<Kitchen>, header: &Header, cost: CostToGo) -> Engine {
-        let engine = Engine::new(kitchen, header.session.clone(), header.trial, cost);
+    pub fn for_header(kitchen: Arc<Kitchen>, header: &LogHeader, cost: CostToGo) -> SessionEngine {
+        let engine = SessionEngine::new(kitchen, header.session.clone(), header.trial, cost);
         if header.has_offers() { engine } else { engine.without_offers() }
     }
 
     /// This engine without offers to the wizard, for recordings that have none.
-    pub fn without_offers(mut self) -> Engine {
+    pub fn without_offers(mut self) -> SessionEngine {
         self.follower.session.makes_offers = false;
         self
     }
 
     /// The follower of the session, after its end.
-    pub fn into_follower(self) -> Follower {
+    pub fn into_follower(self) -> SessionFollower {
         self.follower
     }
 
@@ -299,10 +299,10 @@ impl Engine {
                 let dish = kitchen.dish(self.orders.draw()).name.clone();
                 Event::OrderShown { order: kitchen.location(order).name.clone(), dish }
             }
-            Timer::EndSignal => Event::SignalEnded { reason: SignalEnd::Elapsed },
-            Timer::EndTrial => Event::TrialEnded { reason: EndReason::Time },
-            Timer::EndTrialByOrders => Event::TrialEnded { reason: EndReason::Orders },
-            Timer::EndTrialByPresses => Event::TrialEnded { reason: EndReason::Presses },
+            Timer::EndSignal => Event::SignalEnded { reason: SignalEndReason::Elapsed },
+            Timer::EndTrial => Event::TrialEnded { reason: TrialEndReason::Time },
+            Timer::EndTrialByOrders => Event::TrialEnded { reason: TrialEndReason::Orders },
+            Timer::EndTrialByPresses => Event::TrialEnded { reason: TrialEndReason::Presses },
             Timer::HumanWaits => Event::HumanWaits { silent_ns: silence::lasted(self.session(), now) },
             Timer::ReviewOffer => return self.review_offer(now),
         };
@@ -350,8 +350,8 @@ impl Engine {
             Event::Gaze(sample) => Event::Gaze(sample.rounded()),
             other => other,
         };
-        let stamped = Stamped { seq: self.next_seq, time: now, event };
-        let Applied { effects, change } = self.follower.apply(&stamped)?;
+        let stamped = TimestampedEvent { seq: self.next_seq, time: now, event };
+        let AppliedEvent { effects, change } = self.follower.apply(&stamped)?;
         self.next_seq += 1;
         effects.into_iter().for_each(|effect| self.perform(effect));
         self.tell_participant(&stamped, &change);
@@ -391,15 +391,15 @@ impl Engine {
         Ok(())
     }
 
-    fn perform(&mut self, effect: Effect) {
+    fn perform(&mut self, effect: SessionEffect) {
         match effect {
-            Effect::At { time, timer } => self.timers.set(time, timer),
-            Effect::Cancel(timer) => self.timers.cancel(timer),
-            Effect::CancelAll => {
+            SessionEffect::At { time, timer } => self.timers.set(time, timer),
+            SessionEffect::Cancel(timer) => self.timers.cancel(timer),
+            SessionEffect::CancelAll => {
                 self.timers.cancel_all();
                 self.robot.rest();
             }
-            Effect::Postpone(by) => {
+            SessionEffect::Postpone(by) => {
                 self.timers.postpone(by);
                 self.robot.postpone(by);
                 if let Some(participant) = &mut self.participant {
@@ -409,7 +409,7 @@ impl Engine {
                     wizard.postpone(by);
                 }
             }
-            Effect::Close => {}
+            SessionEffect::Close => {}
         }
     }
 }

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use super::resume::ResumeError;
 use crate::console::key_action::KeyError;
 use crate::edge::file_error::FileError;
-use crate::edge::log::WriteError;
+use crate::edge::log::RecordingWriteError;
 use crate::edge::lsl::LslError;
 use crate::gaze::tags::TagError;
 
@@ -21,7 +21,7 @@ pub enum RunError {
     /// A recording cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Recording(#[from] WriteError),
+    Recording(#[from] RecordingWriteError),
 }
 
 impl From<FileError> for RunError {
@@ -81,7 +81,7 @@ pub enum LiveError {
     /// The recording cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Recording(#[from] WriteError),
+    Recording(#[from] RecordingWriteError),
     /// The recording cannot be continued.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -114,7 +114,7 @@ pub enum ReviewError {
     /// The consensus of two raters cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Recording(#[from] WriteError),
+    Recording(#[from] RecordingWriteError),
     /// The record of a wizard's training cannot be written.
     #[error("{}: the training cannot be recorded: {reason}", path.display())]
     #[diagnostic(help("a folder that can be written to, with --out"))]

@@ -10,11 +10,11 @@ use tokio::time::{Instant, Interval, MissedTickBehavior, interval, sleep_until};
 use super::desk::{OperatorDesk, PageInput};
 use super::error::TerminalError;
 use crate::communication::recommendation::Recommendation;
-use crate::console::question::QuestionPage;
+use crate::console::question::StartQuestion;
 use crate::console::recording_picker::RecordingPicker;
 use crate::console::view::theme::Theme;
 use crate::console::{ConsoleMessage, ConsoleModel};
-use crate::edge::gaze_input::GazeNews;
+use crate::edge::gaze_input::TrackerMessage;
 use crate::edge::terminal::TerminalScreen;
 use crate::session::Session;
 
@@ -53,7 +53,7 @@ pub(super) enum LoopEvent {
     FileGazeDue,
     /// Messages of the eye tracker, in order of arrival. This variant is last, so that a tracker that sends too much
     /// delays only itself.
-    Gaze(Vec<GazeNews>),
+    Gaze(Vec<TrackerMessage>),
 }
 
 /// Deadlines of a console's shell; `None` for no deadline.
@@ -77,7 +77,7 @@ impl Default for ShellDeadlines {
 pub(super) enum ShellView<'a> {
     Console(&'a Session, &'a ConsoleModel),
     /// A question to the wizard before a recording.
-    Question(&'a QuestionPage, Theme),
+    Question(&'a StartQuestion, Theme),
     /// A list of recordings to choose from.
     Recordings(&'a RecordingPicker, Theme),
 }

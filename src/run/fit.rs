@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::parallel::WorkerPool;
-use super::replay::{Replay, SameKitchen, each_once};
+use super::replay::{RecordingReplay, SameKitchenCheck, each_once};
 use crate::analysis::fitting::fitted_answers::IntervalShrinkage;
-use crate::analysis::fitting::{self, FitPlan, FitSummary, FittedRecordings};
+use crate::analysis::fitting::{self, FitSettings, FitSummary, FittedRecordings};
 use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::mind::fitting::{FitObservations, Likelihood, ProbedValue, likelihood};
+use crate::mind::fitting::{FitObservations, ProbedValue, TrialLikelihood, likelihood};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::Observation;
 use crate::session::Event;
@@ -43,10 +43,10 @@ impl FitTrials {
     /// `probes` asks for them.
     pub fn read(recordings: &[PathBuf], probes: bool) -> FileResult<FitTrials> {
         each_once(recordings)?;
-        let (mut one_kitchen, mut observations, mut models) = (SameKitchen::default(), Vec::new(), Vec::new());
+        let (mut one_kitchen, mut observations, mut models) = (SameKitchenCheck::default(), Vec::new(), Vec::new());
         let mut people = Vec::new();
         for recording in recordings {
-            let mut replay = Replay::open(recording)?;
+            let mut replay = RecordingReplay::open(recording)?;
             one_kitchen.admit(recording, &replay.session().kitchen)?;
             models.push(replay.session().spec.human.clone());
             let (participant, trial) = (&replay.session().spec.participant, replay.session().trial);
@@ -88,7 +88,7 @@ fn names(trials: &[(ParticipantKind, String, u64, u64)]) -> Vec<(String, u64)> {
 }
 
 /// Observations and probe answers of a recording, without answers about what comes next.
-fn read_trial(replay: &mut Replay) -> FileResult<FitObservations> {
+fn read_trial(replay: &mut RecordingReplay) -> FileResult<FitObservations> {
     let mut trial = FitObservations { seed: replay.session().seed(), ..FitObservations::default() };
     let mut questions: Vec<ProbeQuestion> = Vec::new();
     let mut frozen = 0;
@@ -118,7 +118,7 @@ fn read_trial(replay: &mut Replay) -> FileResult<FitObservations> {
 
 /// Fits the parameters of a plan to trials. `tried` is called after each evaluation. If there are answers to freeze
 /// probes, the fit is repeated without them, to tell what the answers add.
-pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
+pub fn fit(trials: &FitTrials, plan: &FitSettings, tried: impl Fn()) -> FitSummary {
     let mut found = fit_once(trials, plan, &tried);
     if let Some(answers) = &mut found.answers {
         let alone = fit_once(&trials.without_answers(), plan, &tried);
@@ -131,7 +131,7 @@ pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
     found
 }
 
-fn fit_once(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary {
+fn fit_once(trials: &FitTrials, plan: &FitSettings, tried: impl Fn()) -> FitSummary {
     let kitchen = &trials.kitchen;
     // Each thread keeps its cache of costs to go between evaluations.
     let pool = WorkerPool::new(|| CostToGo::new(kitchen.clone()));
@@ -139,7 +139,7 @@ fn fit_once(trials: &FitTrials, plan: &FitPlan, tried: impl Fn()) -> FitSummary 
         let of_trial = |cost: &mut CostToGo, trial: &FitObservations| likelihood(kitchen, model, trial, cost);
         // Likelihoods are added in the order of the trials, so that the sum does not depend on the number of threads.
         let found = pool.each(&trials.observations, of_trial, || {});
-        found.into_iter().fold(Likelihood::default(), Likelihood::plus)
+        found.into_iter().fold(TrialLikelihood::default(), TrialLikelihood::plus)
     };
     let number = trials.observations.len() as u64;
     let recordings = FittedRecordings { number, model: &trials.model, differ: trials.differ };

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use super::fit::FitTrials;
 use super::parallel::WorkerPool;
-use crate::analysis::fitting::FitPlan;
+use crate::analysis::fitting::FitSettings;
 use crate::analysis::fitting::people_fit::fit_people;
 use crate::analysis::fitting::people_search::{PersonTry, ROUNDS, TrialPart};
 use crate::analysis::fitting::people_summary::{FittedPerson, HeldOut, HeldOutGain, HeldOutPerson, PeopleSummary};
 use crate::analysis::fitting::response_surface::points;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::mind::fitting::{FitObservations, Likelihood, likelihood};
+use crate::mind::fitting::{FitObservations, TrialLikelihood, likelihood};
 use crate::mind::model::HumanModel;
 use crate::study::statistics::mean_interval;
 
@@ -40,13 +40,13 @@ pub fn require_people(recordings: &[PathBuf], trials: &FitTrials) -> FileResult<
 }
 
 /// Largest number of replays of single trials that a fit takes.
-pub fn most_replays(trials: &FitTrials, plan: &FitPlan) -> u64 {
+pub fn most_replays(trials: &FitTrials, plan: &FitSettings) -> u64 {
     let rounds = ROUNDS * points(plan.parameters.len());
     2 * ((plan.most_tries + rounds) * trials.observations.len()) as u64
 }
 
 /// Fits population and persons to trials. `tried` is called after each trial of each try.
-pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn() + Sync) -> PeopleSummary {
+pub fn fit(trials: &FitTrials, plan: &FitSettings, tried: impl Fn() + Sync) -> PeopleSummary {
     let kitchen = &trials.kitchen;
     let by_person = by_person(trials);
     let fitted: Vec<FittedPerson> = by_person
@@ -66,7 +66,7 @@ pub fn fit(trials: &FitTrials, plan: &FitPlan, tried: impl Fn() + Sync) -> Peopl
         };
         let found = pool.each(&items, of_trial, &tried);
         // Summed in the order of the trials, so the sums do not depend on the number of threads.
-        let mut sums = vec![Likelihood::default(); tries.len()];
+        let mut sums = vec![TrialLikelihood::default(); tries.len()];
         items.iter().zip(found).for_each(|((index, _), found)| sums[*index] = sums[*index].plus(found));
         sums
     };

@@ -1,22 +1,22 @@
 //! Runs a session in virtual time as fast as possible, by jumping from one due event to the next.
 
-use super::engine::Engine;
+use super::engine::SessionEngine;
 use crate::base::time::SessionTime;
 use crate::session::protocol::ProtocolEvent;
-use crate::session::{Event, Phase, Stamped};
+use crate::session::{Event, TimestampedEvent, TrialPhase};
 
 /// Time after which a simulated attendant resumes an arm that has stopped by itself, in seconds.
 const LOOKS_S: f64 = 3.0;
 
 /// Stands in for a wizard in simulations: resumes an arm that has stopped by itself.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Attendant {
+pub struct SimulatedAttendant {
     stopped: Option<SessionTime>,
 }
 
-impl Attendant {
+impl SimulatedAttendant {
     /// Raises the next internal event of a running session, and resumes the arm if it has been stopped for a while.
-    pub fn step(&mut self, engine: &mut Engine) -> Vec<Stamped> {
+    pub fn step(&mut self, engine: &mut SessionEngine) -> Vec<TimestampedEvent> {
         let now = engine.next_due().unwrap_or(engine.session().time);
         let mut events = engine.fire();
         self.stopped = engine.session().robot.stopped.then(|| self.stopped.unwrap_or(now));
@@ -31,16 +31,16 @@ impl Attendant {
 ///
 /// # Errors
 /// The first error of `record`; the session stops there.
-pub fn run<E>(engine: &mut Engine, mut record: impl FnMut(&Stamped) -> Result<(), E>) -> Result<(), E> {
+pub fn run<E>(engine: &mut SessionEngine, mut record: impl FnMut(&TimestampedEvent) -> Result<(), E>) -> Result<(), E> {
     let mut advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
     if let Some(phase) = engine.session().next_phase() {
         let event = Event::Protocol(ProtocolEvent::PhaseStarted { phase, number: 1 });
         engine.input(SessionTime::ZERO, event).events.iter().try_for_each(&mut record)?;
     }
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
-    let mut attendant = Attendant::default();
+    let mut attendant = SimulatedAttendant::default();
     // Until the trial ends, a next event is always pending: the end of the trial's time.
-    while engine.session().phase == Phase::Running || engine.session().is_frozen() {
+    while engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
         for question in engine.take_questions() {
             if let Some(advisor) = &mut advisor {
                 let advice = Event::Advised(advisor.answer(&question));

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use crate::analysis::follower::Follower;
-use crate::analysis::foxglove::MessageMaker;
+use crate::analysis::follower::SessionFollower;
+use crate::analysis::foxglove::McapMessageConverter;
 use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogEnding, LogReader, at_line};
 use crate::edge::mcap_file::McapFile;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::session::Header;
+use crate::session::LogHeader;
 use crate::session::study_arm::StudyArm;
 
 /// Summary of a recording's export as MCAP.
@@ -46,7 +46,7 @@ pub fn export(recording: &Path) -> FileResult<McapSummary> {
     let mut file = McapFile::create(&folder).map_err(unwritable)?;
     let session = log.session();
     let cost = CostToGo::new(session.kitchen.clone());
-    let (mut follower, maker) = (Follower::new(session, cost), MessageMaker::default());
+    let (mut follower, maker) = (SessionFollower::new(session, cost), McapMessageConverter::default());
     while let Some(line) = log.next_line()? {
         follower
             .apply(&line.stamped)
@@ -64,7 +64,7 @@ pub fn export(recording: &Path) -> FileResult<McapSummary> {
 
 /// Metadata of the recording in the MCAP file. `arm`: study arm by what was done. Times in the file are session times;
 /// `started` is the wall clock time of session time 0.
-fn about(folder: &Path, header: &Header, arm: StudyArm) -> BTreeMap<String, String> {
+fn about(folder: &Path, header: &LogHeader, arm: StudyArm) -> BTreeMap<String, String> {
     let spec = &header.session;
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut about = BTreeMap::from([

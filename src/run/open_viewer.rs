@@ -7,22 +7,22 @@ use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::replay::Replay;
+use super::replay::RecordingReplay;
 use crate::base::time::SessionTime;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, WriteError};
+use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError};
 use crate::edge::overwrite;
 use crate::edge::rerun::{RerunWriter, StreamIdentity, StreamLane, StreamOutlets, WebViewer, uri};
-use crate::edge::rrd::{self, RRD_NAME, RrdState};
+use crate::edge::rrd::{self, RRD_NAME, RerunFileState};
 use crate::edge::stream::{PORTS, is_free};
 use crate::edge::stream_head;
 use crate::edge::temporary::new_file;
 use crate::edge::terminal::asked_to_end;
-use crate::edge::viewer::{self, Viewer};
+use crate::edge::viewer::{self, ViewerAvailability};
 use crate::mind::dirichlet::DirichletBelief;
 use crate::scene::entity_content::slug;
 use crate::scene::{DerivedData, SessionScene};
-use crate::session::Stamped;
+use crate::session::TimestampedEvent;
 
 /// First ports that are tried for the stream's server and for the web viewer.
 const SERVER_PORT: u16 = 9878;
@@ -36,7 +36,7 @@ const BEGUN: &str = ".new";
 
 /// Error of showing recordings in the Rerun viewer.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum RerunError {
+pub enum RerunViewerError {
     /// A file cannot be read.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -75,15 +75,15 @@ pub enum RerunError {
     },
 }
 
-impl From<FileError> for RerunError {
-    fn from(error: FileError) -> RerunError {
-        RerunError::File(Box::new(error))
+impl From<FileError> for RerunViewerError {
+    fn from(error: FileError) -> RerunViewerError {
+        RerunViewerError::File(Box::new(error))
     }
 }
 
 /// Request of `tomcom review`: recordings, and how to show them.
 #[derive(Clone, Debug)]
-pub struct ReviewRequest {
+pub struct RerunReviewRequest {
     /// Folders of the recordings.
     pub recordings: Vec<PathBuf>,
     /// Only write the stream file: beside the log, or to this path.
@@ -96,7 +96,7 @@ pub struct ReviewRequest {
 
 /// A stream file, and whether it had to be rebuilt.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SavedStream {
+pub struct RerunStreamFile {
     /// Path of the stream file.
     pub path: PathBuf,
     /// Whether the file was just rebuilt from the log.
@@ -129,11 +129,11 @@ pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<OngoingRecording>> {
 }
 
 /// Result of a review.
-pub enum ReviewOutcome {
+pub enum RerunReviewOutcome {
     /// The stream file was written.
-    Saved(SavedStream),
+    Saved(RerunStreamFile),
     /// A viewer was opened on the stream file.
-    Opened(SavedStream),
+    Opened(RerunStreamFile),
     /// The viewer is served for a browser until this value is dropped.
     Served {
         /// Address to open in a browser.
@@ -149,23 +149,23 @@ pub enum ReviewOutcome {
 ///
 /// # Errors
 /// A recording cannot be read, a file cannot be written, or the viewer cannot be opened.
-pub fn review(asked: &ReviewRequest) -> Result<ReviewOutcome, RerunError> {
-    let viewer = if asked.web { Viewer::None } else { Viewer::find() };
+pub fn review(asked: &RerunReviewRequest) -> Result<RerunReviewOutcome, RerunViewerError> {
+    let viewer = if asked.web { ViewerAvailability::None } else { ViewerAvailability::find() };
     match (&asked.save, viewer) {
         (Some(place), _) => {
             let place = place.as_deref().map_or(StreamPlace::BesideLog, StreamPlace::File);
-            Ok(ReviewOutcome::Saved(saved(&asked.recordings, place)?))
+            Ok(RerunReviewOutcome::Saved(saved(&asked.recordings, place)?))
         }
-        (None, Viewer::Ready(viewer)) => {
+        (None, ViewerAvailability::Ready(viewer)) => {
             let file = saved(&asked.recordings, StreamPlace::Anywhere)?;
             let opened = viewer::open(&viewer, &file.path, asked.at.map(|at| at.0));
-            opened.map_err(|reason| RerunError::Viewer { path: viewer, reason })?;
-            Ok(ReviewOutcome::Opened(file))
+            opened.map_err(|reason| RerunViewerError::Viewer { path: viewer, reason })?;
+            Ok(RerunReviewOutcome::Opened(file))
         }
         (None, other) => {
             let because = match other {
-                Viewer::Other(_) => "the viewer that is installed is of another version",
-                Viewer::NoScreen => "there is no screen for a window",
+                ViewerAvailability::Other(_) => "the viewer that is installed is of another version",
+                ViewerAvailability::NoScreen => "there is no screen for a window",
                 _ if asked.web => "as asked for",
                 _ => "there is no viewer in PATH",
             };
@@ -188,10 +188,10 @@ pub fn until_asked_to_end() -> io::Result<()> {
 ///
 /// # Errors
 /// The recording cannot be read, or the file not be written.
-pub fn save(recording: &Path) -> Result<PathBuf, RerunError> {
+pub fn save(recording: &Path) -> Result<PathBuf, RerunViewerError> {
     loop {
         match saved(&[recording.to_path_buf()], StreamPlace::BesideLog) {
-            Err(RerunError::InUse { .. }) => std::thread::sleep(LOOK),
+            Err(RerunViewerError::InUse { .. }) => std::thread::sleep(LOOK),
             saved => return Ok(saved?.path),
         }
     }
@@ -208,14 +208,18 @@ enum StreamPlace<'a> {
 }
 
 /// Streams recordings to a server, and serves the viewer for browsers.
-fn serve(recordings: &[PathBuf], at: Option<SessionTime>, because: &'static str) -> Result<ReviewOutcome, RerunError> {
+fn serve(
+    recordings: &[PathBuf],
+    at: Option<SessionTime>,
+    because: &'static str,
+) -> Result<RerunReviewOutcome, RerunViewerError> {
     let playing = playing(recordings)?;
-    let (server, web, viewer) = ports().map_err(RerunError::Web)?;
+    let (server, web, viewer) = ports().map_err(RerunViewerError::Web)?;
     let outlets = StreamOutlets { file: None, server: Some((server, true)), at };
-    let writer = write(playing, recordings, &outlets)?.map_err(RerunError::Web)?;
+    let writer = write(playing, recordings, &outlets)?.map_err(RerunViewerError::Web)?;
     let url = format!("http://{web}/?url={}", uri(server).replace('+', "%2B").replace(':', "%3A").replace('/', "%2F"));
     viewer::browse(&url);
-    Ok(ReviewOutcome::Served { url, because, _serving: Box::new((writer, viewer)) })
+    Ok(RerunReviewOutcome::Served { url, because, _serving: Box::new((writer, viewer)) })
 }
 
 /// The first free pair of ports for stream and web viewer; the web viewer is served at once. Ports are taken in pairs,
@@ -233,7 +237,7 @@ fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
 }
 
 /// The stream file of these recordings: the existing one if it is up to date, else one rebuilt from the logs.
-fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<SavedStream, RerunError> {
+fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, RerunViewerError> {
     let (mut locked, mut because, mut logs) = (None, None, None);
     let path = match (place, recordings) {
         (StreamPlace::File(place), _) => place.to_path_buf(),
@@ -241,20 +245,20 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<SavedStream, Reru
             let log = LogReader::open(recording)?;
             let (folder, parts) = (log.folder().to_path_buf(), log.logs());
             let path = folder.join(RRD_NAME);
-            let state = rrd::state(&path, &parts).unwrap_or(RrdState::Unsealed);
-            if state == RrdState::Whole {
-                return Ok(SavedStream { path, made: false, because: None });
+            let state = rrd::state(&path, &parts).unwrap_or(RerunFileState::Unsealed);
+            if state == RerunFileState::Whole {
+                return Ok(RerunStreamFile { path, made: false, because: None });
             }
             match (RecordingLock::take(&folder), place) {
                 (Ok(lock), _) => {
                     (locked, because, logs) = (Some(lock), state.reason(), Some(parts));
                     path
                 }
-                (Err(WriteError::InUse { folder, .. }), StreamPlace::BesideLog) => {
-                    return Err(RerunError::InUse { folder });
+                (Err(RecordingWriteError::InUse { folder, .. }), StreamPlace::BesideLog) => {
+                    return Err(RerunViewerError::InUse { folder });
                 }
-                (Err(WriteError::Unwritable { path, reason, .. }), StreamPlace::BesideLog) => {
-                    return Err(RerunError::Unwritable { path, reason });
+                (Err(RecordingWriteError::Unwritable { path, reason, .. }), StreamPlace::BesideLog) => {
+                    return Err(RerunViewerError::Unwritable { path, reason });
                 }
                 _ => elsewhere(recordings)?,
             }
@@ -264,14 +268,14 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<SavedStream, Reru
     let sealed = put(recordings, &path)?.and_then(|()| logs.map_or(Ok(()), |logs| rrd::seal(&path, &logs)));
     drop(locked);
     match sealed {
-        Ok(()) => Ok(SavedStream { path, made: true, because }),
-        Err(reason) => Err(RerunError::Unwritable { path, reason }),
+        Ok(()) => Ok(RerunStreamFile { path, made: true, because }),
+        Err(reason) => Err(RerunViewerError::Unwritable { path, reason }),
     }
 }
 
 /// Builds the stream file of these recordings. An existing file is replaced only when the new one is complete, so a
 /// damaged log loses nothing.
-fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError> {
+fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunViewerError> {
     let mut begun = path.as_os_str().to_os_string();
     begun.push(BEGUN);
     let begun = PathBuf::from(begun);
@@ -279,12 +283,12 @@ fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError
         for path in [path, &begun] {
             let is_own = |_: &[u8]| stream_head::identity(path).is_ok_and(|found| found.is_some());
             if let Err(reason) = overwrite::check(path, "a stream", is_own) {
-                return Err(RerunError::Unwritable { path: path.to_path_buf(), reason });
+                return Err(RerunViewerError::Unwritable { path: path.to_path_buf(), reason });
             }
         }
     }
     let outlets = StreamOutlets { file: Some(begun.clone()), server: None, at: None };
-    let written = playing(recordings).map_err(RerunError::from).and_then(|all| write(all, recordings, &outlets));
+    let written = playing(recordings).map_err(RerunViewerError::from).and_then(|all| write(all, recordings, &outlets));
     match written {
         Ok(Ok(_)) => Ok(fs::rename(&begun, path)),
         failed => {
@@ -296,13 +300,13 @@ fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunError
 }
 
 /// Creates an empty file for a stream in the system's folder for temporary files; returns its path.
-fn elsewhere(recordings: &[PathBuf]) -> Result<PathBuf, RerunError> {
+fn elsewhere(recordings: &[PathBuf]) -> Result<PathBuf, RerunViewerError> {
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
     // A file name has at most 255 bytes on most systems.
     let names: String = names.join("-and-").chars().take(NAMED).collect();
     let (below, stem) = (std::env::temp_dir(), format!("tomcom-{names}-{}", std::process::id()));
     let made = new_file(&below, &stem, &format!(".rrd{BEGUN}"));
-    let (begun, _) = made.map_err(|reason| RerunError::Unwritable { path: below.join(stem), reason })?;
+    let (begun, _) = made.map_err(|reason| RerunViewerError::Unwritable { path: below.join(stem), reason })?;
     Ok(begun.with_extension(""))
 }
 
@@ -334,7 +338,7 @@ fn write(
     playing: Vec<Playing>,
     recordings: &[PathBuf],
     outlets: &StreamOutlets,
-) -> Result<io::Result<RerunWriter>, RerunError> {
+) -> Result<io::Result<RerunWriter>, RerunViewerError> {
     let lanes: Vec<StreamLane> = playing.iter().map(|one| one.lane.clone()).collect();
     let names: Vec<String> = recordings.iter().map(|recording| name(recording)).collect();
     let began: Vec<String> = playing.iter().map(Playing::began).collect();
@@ -352,14 +356,14 @@ fn write(
 
 /// A recording that is being written to a stream.
 struct Playing {
-    replay: Replay,
+    replay: RecordingReplay,
     scene: SessionScene,
     lane: StreamLane,
 }
 
 impl Playing {
     fn open(recording: &Path) -> FileResult<Playing> {
-        let replay = Replay::open(recording)?.without_causes();
+        let replay = RecordingReplay::open(recording)?.without_causes();
         let scene = SessionScene::new(replay.session(), 0);
         Ok(Playing { replay, scene, lane: StreamLane::default() })
     }
@@ -374,7 +378,7 @@ impl Playing {
     fn write(mut self, writer: &mut RerunWriter) -> FileResult<u64> {
         writer.fixed(&self.lane, &self.scene.fixed());
         let mut rows = writer.moment(&self.lane, &self.scene.opening());
-        let mut held: Option<(Stamped, Option<DirichletBelief>)> = None;
+        let mut held: Option<(TimestampedEvent, Option<DirichletBelief>)> = None;
         loop {
             let next = self.replay.step()?;
             if let Some((stamped, belief)) = held.take() {

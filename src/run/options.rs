@@ -4,12 +4,12 @@ use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::analysis::watcher::CompareRequest;
+use crate::analysis::watcher::ComparisonRequest;
 use crate::communication::concept::ConceptName;
 use crate::edge::file_error::FileResult;
 use crate::edge::files::{self, SessionFiles};
 use crate::kitchen::Kitchen;
-use crate::session::Header;
+use crate::session::LogHeader;
 use crate::session::plan::PlanSpec;
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, SettingError};
 
@@ -19,7 +19,7 @@ pub enum SessionStart {
     /// Repetition of a trial in a new recording below `out`.
     Again {
         /// Header of the new recording.
-        header: Box<Header>,
+        header: Box<LogHeader>,
         /// Kitchen that the header describes.
         kitchen: Arc<Kitchen>,
         /// Folder in which the recording's folder is created.
@@ -48,7 +48,7 @@ pub struct RemainingTrials {
     /// Folder of the participant's recordings.
     pub out: PathBuf,
     /// Comparison of wizard and assistants, if the console shows it.
-    pub compare: Option<CompareRequest>,
+    pub compare: Option<ComparisonRequest>,
 }
 
 /// Session settings that the command line overrides; `None` keeps the session file's value.

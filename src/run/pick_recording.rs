@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::desk::OperatorDesk;
 use super::error::{ReviewError, TerminalError};
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
-use super::recording_list::{self, ListDepth};
+use super::recording_list::{self, RecordingListDetail};
 use crate::analysis::recording_table::RecordingList;
 use crate::console::ConsoleMessage;
 use crate::console::click::ClickAction;
@@ -24,7 +24,7 @@ const REDRAW: Duration = Duration::from_millis(100);
 /// # Errors
 /// The folder cannot be read or has no recordings, or there is no terminal.
 pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
-    let (list, paths) = recording_list::list(folder, ListDepth::Quick, |_| (), || ())?;
+    let (list, paths) = recording_list::list(folder, RecordingListDetail::Quick, |_| (), || ())?;
     // The column of errors is left out, since errors are not counted here.
     let without_errors = |cells: [String; 7]| {
         let [code, condition, date, length, _, state, recording] = cells;

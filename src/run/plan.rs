@@ -11,7 +11,7 @@ use crate::base::words::count;
 use crate::edge::file_error::FileResult;
 use crate::edge::files::KitchenFiles;
 use crate::edge::{frozen_file, recordings};
-use crate::session::plan::{Progress, RecordingOutcome, Study};
+use crate::session::plan::{ParticipantProgress, RecordingOutcome, Study};
 use crate::study::frozen_plan::FrozenPlan;
 
 /// Progress of a study: the output of `tomcom plan SESSION`.
@@ -28,7 +28,7 @@ pub struct StudyPlanSummary {
     /// Number of participants who have completed all recordings.
     pub finished: usize,
     /// Progress of each participant.
-    pub participants: Vec<Progress>,
+    pub participants: Vec<ParticipantProgress>,
 }
 
 impl StudyPlanSummary {
@@ -43,7 +43,8 @@ impl StudyPlanSummary {
             let (recording, code) = (&stranger.recording, &stranger.code);
             return Err(LiveError::Plan(format!("{recording} of {code}, who is not in the plan")));
         }
-        let progress = |participant| Progress::from_recordings(study, participant, &made).map_err(LiveError::Plan);
+        let progress =
+            |participant| ParticipantProgress::from_recordings(study, participant, &made).map_err(LiveError::Plan);
         let participants = (0..codes.len()).map(progress).collect::<Result<Vec<_>, _>>()?;
         Ok(StudyPlanSummary {
             plan: study.plan.name.clone(),
@@ -58,7 +59,7 @@ impl StudyPlanSummary {
 
 /// Result of freezing a study plan: the output of `tomcom plan SESSION --freeze FILE`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FrozenSummary {
+pub struct FrozenPlanSummary {
     /// Name of the study plan.
     pub plan: String,
     /// SHA-256 digest of the frozen plan.
@@ -69,7 +70,7 @@ pub struct FrozenSummary {
     pub file: PathBuf,
 }
 
-impl FrozenSummary {
+impl FrozenPlanSummary {
     /// What was frozen, as text for the terminal.
     pub fn describe(&self) -> String {
         let (file, before) = (self.file.display(), count(self.recordings_before, "recording", "recordings"));
@@ -93,12 +94,12 @@ pub fn freeze(
     kitchen: &KitchenFiles,
     progress: &StudyPlanSummary,
     file: &Path,
-) -> FileResult<FrozenSummary> {
+) -> FileResult<FrozenPlanSummary> {
     let steps = progress.participants.iter().flat_map(|one| &one.steps);
     let recordings_before = steps.map(|step| step.recordings.len() as u64).sum();
     let frozen = FrozenPlan::new(study, [&kitchen.layout.text, &kitchen.recipes.text], recordings_before);
     let digest = frozen_file::freeze(file, &frozen)?;
-    Ok(FrozenSummary { plan: frozen.plan, digest, recordings_before, file: file.to_path_buf() })
+    Ok(FrozenPlanSummary { plan: frozen.plan, digest, recordings_before, file: file.to_path_buf() })
 }
 
 /// Progress of the study as text for the terminal.
@@ -117,7 +118,7 @@ pub fn describe(figures: &StudyPlanSummary) -> String {
         figures.planned,
         sizes.join(", ")
     );
-    let one = |progress: &Progress| {
+    let one = |progress: &ParticipantProgress| {
         let trials = progress.steps.iter().filter(|stand| stand.slot.period.is_some());
         let order: Vec<&str> = trials.map(|stand| stand.slot.condition.name()).collect();
         let width = figures.participants.iter().map(|one| one.code.len()).max().unwrap_or(0);
@@ -130,7 +131,7 @@ pub fn describe(figures: &StudyPlanSummary) -> String {
 }
 
 /// Remarks on a participant's recordings: invalid ones, and those made with another version of the plan.
-fn attempts(progress: &Progress) -> String {
+fn attempts(progress: &ParticipantProgress) -> String {
     let mut lines = String::new();
     for (slot, stand) in progress.steps.iter().enumerate() {
         for attempt in &stand.recordings {

@@ -5,13 +5,13 @@ use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::engine::Engine;
+use super::engine::SessionEngine;
 use super::headless;
 use super::parallel::WorkerPool;
-use super::simulate::Shard;
+use super::simulate::SimulationShard;
 use crate::analysis::signal_time::SignalTimes;
 use crate::analysis::trial_summary::TrialSummary;
-use crate::communication::settings::Shadow;
+use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::SessionFiles;
 use crate::kitchen::Kitchen;
@@ -19,8 +19,8 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::plan::{Participants, Study};
 use crate::session::settings::Condition;
 use crate::session::study_arm::StudyArm;
-use crate::session::{SessionSpec, Stamped};
-use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, SimulationPool, TrialCounts};
+use crate::session::{SessionSpec, TimestampedEvent};
+use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
 
 /// Request to simulate a pool of participants.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ pub struct PoolRequest {
     /// Number of participants in the whole pool, instead of the plan's number.
     pub participants: u32,
     /// Shard of the pool that is simulated.
-    pub shard: Shard,
+    pub shard: SimulationShard,
     /// Whether trials are simulated in the arms of the plan.
     pub arms: bool,
     /// Whether unassisted twins of the trials are simulated.
@@ -116,7 +116,7 @@ impl PoolRequest {
 impl PoolStudy<'_> {
     /// The trials of the shard, ordered by participant and period; a twin follows its trial.
     fn items(&self) -> Vec<PoolItem> {
-        let Shard { number, of } = self.request.shard;
+        let SimulationShard { number, of } = self.request.shard;
         let own = (0..self.request.participants).filter(|&one| u64::from(one) % of == number - 1);
         let periods = self.header.conditions.len() as u32;
         let items = own.flat_map(|participant| {
@@ -148,7 +148,7 @@ impl PoolStudy<'_> {
         };
         if done != StudyArm::WizardWithAdvice {
             // Recommendations that nobody sees would only cost computing time.
-            spec.assistant.shadow = Shadow::Off;
+            spec.assistant.shadow = ShadowMode::Off;
         }
         (spec, done, trial)
     }
@@ -156,9 +156,9 @@ impl PoolStudy<'_> {
     /// Simulates a trial. Returns the cost to go for the next one.
     fn simulate(&self, kitchen: &Arc<Kitchen>, item: PoolItem, cost: CostToGo) -> (PoolTrial, CostToGo) {
         let (spec, arm, trial) = self.settings(item);
-        let mut engine = Engine::new(kitchen.clone(), spec, trial, cost);
+        let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, cost);
         let mut signals = SignalTimes::default();
-        let keep = |stamped: &Stamped| {
+        let keep = |stamped: &TimestampedEvent| {
             signals.note(stamped);
             Ok::<(), Infallible>(())
         };
@@ -167,7 +167,7 @@ impl PoolStudy<'_> {
         let summary = TrialSummary::from_follower(&follower);
         // Simulated participants record their beliefs before every press, so beliefs are known.
         let beliefs = summary.beliefs.unwrap_or_default();
-        let counts = TrialCounts {
+        let counts = PoolTrialCounts {
             human_presses: summary.human_actions,
             robot_presses: summary.robot_actions,
             errors: summary.errors,

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use super::parallel;
 use crate::edge::file_error::{FileError, FileResult};
-use crate::study::drawn_study::{DrawnEffect, PowerTest, StudySource, tests};
+use crate::study::drawn_study::{DrawnEffect, PowerTest, StudySampler, tests};
 use crate::study::power::{POOLS, RejectionCount, STUDIES_OF_POOL, STUDIES_OF_RATIO, count, ratios};
-use crate::study::power_answer::{PowerSummary, SizeCounts};
+use crate::study::power_answer::{PowerSummary, SampleSizeRejections};
 use crate::study::simulation_pool::SimulationPool;
 
 /// Number of studies that a thread draws in one block.
@@ -91,7 +91,7 @@ pub fn measure(
         }
         _ => {}
     }
-    let source = match StudySource::new(pool) {
+    let source = match StudySampler::new(pool) {
         Ok(source) => source,
         Err(found) => return wrong(found, "a larger pool: two persons or more in every order of the conditions"),
     };
@@ -110,20 +110,20 @@ pub fn measure(
             Drawn::Ratio(index) => Some(index + 1),
             _ => None,
         });
-        SizeCounts {
+        SampleSizeRejections {
             participants: size,
             counts: sum(Drawn::Pool),
             of_pools: (1..=POOLS).map(|number| sum(Drawn::Resampled(number))).collect(),
             of_ratios: (0..tried.max().unwrap_or(0)).map(|index| sum(Drawn::Ratio(index))).collect(),
         }
     };
-    let sizes: Vec<SizeCounts> = request.sizes.iter().map(of_size).collect();
+    let sizes: Vec<SampleSizeRejections> = request.sizes.iter().map(of_size).collect();
     Ok(PowerSummary::new(header, request.effect, &sizes))
 }
 
 /// Counts of rejections in the studies of a block.
 fn counts(
-    source: &StudySource,
+    source: &StudySampler,
     tests: &[PowerTest],
     effect: DrawnEffect,
     ratios: &[f64],

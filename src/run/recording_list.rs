@@ -11,13 +11,13 @@ use crate::edge::list_cache::{KeptFigures, ListCache, LogGlance};
 use crate::edge::log::{LogEnding, LogReader, at_line};
 use crate::edge::recordings;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Change, Kitchen};
+use crate::kitchen::{Agent, Kitchen, KitchenChange};
 use crate::measures::errors::PressJudge;
 use crate::session::apply;
 
 /// Which information a list of recordings contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ListDepth {
+pub enum RecordingListDetail {
     /// Everything but the number of errors, which takes longest to compute.
     Quick,
     /// Everything, including the number of errors.
@@ -31,7 +31,7 @@ pub enum ListDepth {
 /// The folder cannot be read, or there is no recording.
 pub fn list(
     folder: &Path,
-    depth: ListDepth,
+    depth: RecordingListDetail,
     begun: impl FnOnce(usize),
     done: impl Fn() + Sync,
 ) -> FileResult<(RecordingList, Vec<PathBuf>)> {
@@ -59,7 +59,7 @@ type NewFigures = Option<(String, KeptFigures)>;
 
 fn read_or_tell(
     path: &Path,
-    depth: ListDepth,
+    depth: RecordingListDetail,
     cost: &mut Option<(Arc<Kitchen>, CostToGo)>,
     cache: &ListCache,
 ) -> (ListedRecording, NewFigures) {
@@ -95,7 +95,7 @@ fn read_or_tell(
 /// The row of a closed recording whose figures are known.
 fn from_figures(
     path: &Path,
-    depth: ListDepth,
+    depth: RecordingListDetail,
     glance: &LogGlance,
     figures: KeptFigures,
 ) -> FileResult<ListedRecording> {
@@ -108,7 +108,7 @@ fn from_figures(
         arm: Some(figures.arm),
         date: glance.date.clone(),
         trial_s: Some(figures.trial_s),
-        errors: (depth == ListDepth::WithErrors).then_some(figures.errors),
+        errors: (depth == RecordingListDetail::WithErrors).then_some(figures.errors),
         state: if is_excluded { RecordingState::Excluded } else { RecordingState::Whole },
         reason: is_excluded.then(|| standing.describe()),
     })
@@ -117,7 +117,7 @@ fn from_figures(
 /// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen. Returns, too, what was said at the console.
 fn read(
     path: &Path,
-    depth: ListDepth,
+    depth: RecordingListDetail,
     cost: &mut Option<(Arc<Kitchen>, CostToGo)>,
 ) -> FileResult<(ListedRecording, ExclusionStatus)> {
     let mut log = LogReader::open(path)?;
@@ -134,15 +134,17 @@ fn read(
         };
         let change = apply(&mut session, &line.stamped).map_err(wrong)?.change;
         match (change, &mut *cost) {
-            (Change::Press { press, .. }, Some((_, cost)))
-                if press.agent == Agent::Human && depth == ListDepth::WithErrors =>
+            (KitchenChange::Press { press, .. }, Some((_, cost)))
+                if press.agent == Agent::Human && depth == RecordingListDetail::WithErrors =>
             {
                 errors += u64::from(judge.human_pressed(cost, line.stamped.time, &press).error);
             }
-            (Change::Press { press, .. }, _) if press.agent == Agent::Robot => {
+            (KitchenChange::Press { press, .. }, _) if press.agent == Agent::Robot => {
                 judge.others_changed(line.stamped.time, press.before, press.after);
             }
-            (Change::Correction { before, after, .. }, _) => judge.others_changed(line.stamped.time, before, after),
+            (KitchenChange::Correction { before, after, .. }, _) => {
+                judge.others_changed(line.stamped.time, before, after)
+            }
             _ => {}
         }
     }
@@ -161,7 +163,7 @@ fn read(
         arm: Some(session.study_arm()),
         date: log.header.started.clone(),
         trial_s: Some(session.trial_clock(session.time).as_secs_f64()),
-        errors: (depth == ListDepth::WithErrors).then_some(errors),
+        errors: (depth == RecordingListDetail::WithErrors).then_some(errors),
         state,
         reason: (state == RecordingState::Excluded).then(|| standing.describe()),
     };

@@ -5,50 +5,50 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::analysis::advisor::AdviceRequest;
-use crate::analysis::follower::Follower;
+use crate::analysis::follower::SessionFollower;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LOG_NAME, LogReader, at_line};
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Change, Kitchen};
-use crate::session::{Event, Session, Stamped};
+use crate::kitchen::{Kitchen, KitchenChange};
+use crate::session::{Event, Session, TimestampedEvent};
 
 /// A recording with the session at the present position of the replay.
 #[derive(Debug)]
-pub struct Replay {
+pub struct RecordingReplay {
     log: LogReader,
     /// The session up to the present position, with what follows from its events: judged presses and the estimate.
-    pub follower: Follower,
+    pub follower: SessionFollower,
 }
 
 /// An event that a replay has just applied, with the change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReplayedEvent {
     /// The event with its sequence number and time.
-    pub stamped: Stamped,
+    pub stamped: TimestampedEvent,
     /// Change of the kitchen by the event.
-    pub change: Change,
+    pub change: KitchenChange,
 }
 
-impl Replay {
+impl RecordingReplay {
     /// Opens a recording, before its first event.
     ///
     /// # Errors
     /// Errors of [`LogReader::open`].
-    pub fn open(recording: &Path) -> FileResult<Replay> {
+    pub fn open(recording: &Path) -> FileResult<RecordingReplay> {
         let log = LogReader::open(recording)?;
         let cost = CostToGo::new(log.kitchen.clone());
-        Ok(Replay::over(log, cost))
+        Ok(RecordingReplay::over(log, cost))
     }
 
     /// A replay of a log; `cost` must be for the log's kitchen and can come from another replay.
-    pub fn over(log: LogReader, cost: CostToGo) -> Replay {
-        let follower = Follower::new(log.session(), cost);
-        Replay { log, follower }
+    pub fn over(log: LogReader, cost: CostToGo) -> RecordingReplay {
+        let follower = SessionFollower::new(log.session(), cost);
+        RecordingReplay { log, follower }
     }
 
     /// This replay without attribution of errors to causes.
-    pub fn without_causes(self) -> Replay {
-        Replay { follower: self.follower.without_causes(), ..self }
+    pub fn without_causes(self) -> RecordingReplay {
+        RecordingReplay { follower: self.follower.without_causes(), ..self }
     }
 
     /// Applies and returns the next event; `None` at the present end of the log.
@@ -67,7 +67,7 @@ impl Replay {
     /// Applies all remaining events.
     ///
     /// # Errors
-    /// Errors of [`Replay::step`].
+    /// Errors of [`RecordingReplay::step`].
     pub fn run(&mut self) -> FileResult<()> {
         while self.step()?.is_some() {}
         Ok(())
@@ -76,7 +76,7 @@ impl Replay {
     /// Replays up to the next request for advice after a press; `None` at the present end of the log.
     ///
     /// # Errors
-    /// Errors of [`Replay::step`].
+    /// Errors of [`RecordingReplay::step`].
     pub fn next_question(&mut self) -> FileResult<Option<AdviceRequest>> {
         let mut pressed = None;
         while let Some(ReplayedEvent { stamped, change }) = self.step()? {
@@ -122,11 +122,11 @@ pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
 
 /// Checks that all recordings are of one kitchen.
 #[derive(Debug, Default)]
-pub struct SameKitchen {
+pub struct SameKitchenCheck {
     first: Option<(PathBuf, Arc<Kitchen>)>,
 }
 
-impl SameKitchen {
+impl SameKitchenCheck {
     /// Adds the kitchen of a recording.
     ///
     /// # Errors

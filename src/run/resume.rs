@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::engine::Engine;
+use super::engine::SessionEngine;
 use super::verify::RerunRecording;
 use crate::base::time::SessionTime;
 use crate::edge::file_error::FileError;
-use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, WriteError, check_continued};
-use crate::session::header::Continues;
-use crate::session::{Event, Header, Stamped};
+use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, check_continued};
+use crate::session::header::PreviousPart;
+use crate::session::{Event, LogHeader, TimestampedEvent};
 
 /// Why a recording cannot be continued.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -21,7 +21,7 @@ pub enum ResumeError {
     /// The new part cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Recording(#[from] WriteError),
+    Recording(#[from] RecordingWriteError),
     /// The session of this recording ended properly.
     #[error("{}: this session was brought to its end: there is nothing to continue", .0.display())]
     #[diagnostic(help("a recording that was cut; a new session: tomcom operate"))]
@@ -51,11 +51,11 @@ impl From<FileError> for ResumeError {
 #[derive(Debug)]
 pub struct ResumedSession {
     /// The engine, in the session's state at the cut.
-    pub engine: Engine,
+    pub engine: SessionEngine,
     /// First events of the new part: events lost by the cut, and the pause of a running trial.
-    pub first: Vec<Stamped>,
+    pub first: Vec<TimestampedEvent>,
     /// Header of the new part.
-    pub header: Header,
+    pub header: LogHeader,
     /// Session time at which the session continues.
     pub time: SessionTime,
     /// Folder of the previous part.
@@ -94,9 +94,9 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
         first.extend(again.engine.input(time, Event::TrialPaused).events);
     }
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let continues = Continues { recording: name, events: log.events(), t_ns: time };
+    let continues = PreviousPart { recording: name, events: log.events(), t_ns: time };
     let old = log.header;
-    let mut header = Header::new(old.session, old.trial, old.layout, old.recipes);
+    let mut header = LogHeader::new(old.session, old.trial, old.layout, old.recipes);
     header.continues = Some(continues);
     header.keys = old.keys;
     // All parts of a recording have the same version of the format.

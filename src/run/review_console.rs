@@ -8,12 +8,12 @@ use super::desk::OperatorDesk;
 use super::error::{ReviewError, TerminalError};
 use super::event_loop::{self, ConsoleShell, LoopEvent, ShellView};
 use super::seekable_replay::SeekableReplay;
-use super::watch_desk::ComparisonDesk;
-use crate::analysis::watcher::{CompareRequest, ComparisonFollower};
+use super::watch_desk::LiveComparison;
+use crate::analysis::watcher::{ComparisonFollower, ComparisonRequest};
 use crate::base::time::SessionTime;
 use crate::console::compared::ComparisonView;
 use crate::console::notice::NoticeLevel;
-use crate::console::playback::{Playback, ReplayKey, SPEEDS};
+use crate::console::playback::{Playback, ReplayAction, SPEEDS};
 use crate::console::rater_session::RaterSession;
 use crate::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, update};
 use crate::edge::key_file::key_map;
@@ -34,7 +34,7 @@ const SEEK: SessionTime = SessionTime(10_000_000_000);
 ///
 /// # Errors
 /// The recording cannot be read, or there is no terminal.
-pub fn review(recording: &Path, follow: bool, compare: Option<&CompareRequest>) -> Result<(), ReviewError> {
+pub fn review(recording: &Path, follow: bool, compare: Option<&ComparisonRequest>) -> Result<(), ReviewError> {
     // The console begins at once, and the rest is read beside it; a running session is shown at its end.
     let film = if follow { SeekableReplay::open(recording) } else { SeekableReplay::begin(recording) }?;
     at_desk(film, recording, follow, compare, None)
@@ -70,7 +70,7 @@ fn at_desk(
     film: SeekableReplay,
     recording: &Path,
     follow: bool,
-    compare: Option<&CompareRequest>,
+    compare: Option<&ComparisonRequest>,
     coding: Option<RaterSession>,
 ) -> Result<(), ReviewError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
@@ -94,7 +94,7 @@ struct Review {
     grows: bool,
     dirty: bool,
     /// Comparison of wizard and assistants, if it was asked for.
-    comparison: Option<ComparisonDesk>,
+    comparison: Option<LiveComparison>,
 }
 
 impl Review {
@@ -103,7 +103,7 @@ impl Review {
         desk: &OperatorDesk,
         recording: &Path,
         follow: bool,
-        compare: Option<&CompareRequest>,
+        compare: Option<&ComparisonRequest>,
         coding: Option<RaterSession>,
     ) -> Result<Review, ReviewError> {
         let size = TerminalScreen::size().map_err(TerminalError)?;
@@ -139,7 +139,7 @@ impl Review {
         review.playback(|playback| playback.playing = plays);
         review.begin_coding();
         if follow {
-            review.go(ReplayKey::ToEnd);
+            review.go(ReplayAction::ToEnd);
         }
         Ok(review)
     }
@@ -150,7 +150,7 @@ impl Review {
         self.tick();
         match update(&mut self.model, &self.film.session, message) {
             Some(ConsoleCommand::Move(to)) => {
-                if !matches!(to, ReplayKey::PlayPause | ReplayKey::Faster | ReplayKey::Slower) {
+                if !matches!(to, ReplayAction::PlayPause | ReplayAction::Faster | ReplayAction::Slower) {
                     self.read_rest(|| true)?;
                 }
                 self.go(to);
@@ -167,7 +167,7 @@ impl Review {
     fn keep(&mut self, press: u64) {
         let present = self.model.coding.as_ref().and_then(|coding| coding.present(self.film.position));
         if present.map(|error| error.press) != Some(press) {
-            self.go(ReplayKey::ToEvent(press));
+            self.go(ReplayAction::ToEvent(press));
         }
         let Some(coding) = &self.model.coding else { return };
         let error = coding.errors.iter().find(|error| error.press == press);
@@ -190,7 +190,7 @@ impl Review {
         let said = coding_desk::greeting(coding);
         let first = coding.errors.get(coding.first_open().unwrap_or(0)).map(|error| error.press);
         if let Some(press) = first {
-            self.go(ReplayKey::ToEvent(press));
+            self.go(ReplayAction::ToEvent(press));
         }
         self.model.say(NoticeLevel::Done, said);
     }
@@ -210,28 +210,28 @@ impl Review {
         self.model.playback.as_ref().is_some_and(what)
     }
 
-    fn go(&mut self, to: ReplayKey) {
+    fn go(&mut self, to: ReplayAction) {
         let speeds = SPEEDS.len() - 1;
         match to {
-            ReplayKey::PlayPause => {
+            ReplayAction::PlayPause => {
                 let at_end = self.film.position == self.film.length().1 && !self.grows;
                 if at_end {
                     self.stand_at(0);
                 }
                 self.playback(|playback| playback.playing = !playback.playing);
             }
-            ReplayKey::Faster => self.playback(|playback| playback.speed = (playback.speed + 1).min(speeds)),
-            ReplayKey::Slower => self.playback(|playback| playback.speed = playback.speed.saturating_sub(1)),
-            ReplayKey::StepForward => self.stand_at(self.film.next_step()),
-            ReplayKey::StepBack => self.stand_at(self.film.last_step()),
-            ReplayKey::On(what) => self.look_for(what, true),
-            ReplayKey::BackTo(what) => self.look_for(what, false),
-            ReplayKey::ToStart => self.stand_at(0),
-            ReplayKey::ToEvent(number) => self.stand_at(number as usize + 1),
-            ReplayKey::ToTime(time) => self.seek(time),
-            ReplayKey::SeekForward => self.seek(self.now + SEEK),
-            ReplayKey::SeekBack => self.seek(self.now - SEEK),
-            ReplayKey::ToEnd => {
+            ReplayAction::Faster => self.playback(|playback| playback.speed = (playback.speed + 1).min(speeds)),
+            ReplayAction::Slower => self.playback(|playback| playback.speed = playback.speed.saturating_sub(1)),
+            ReplayAction::StepForward => self.stand_at(self.film.next_step()),
+            ReplayAction::StepBack => self.stand_at(self.film.last_step()),
+            ReplayAction::On(what) => self.look_for(what, true),
+            ReplayAction::BackTo(what) => self.look_for(what, false),
+            ReplayAction::ToStart => self.stand_at(0),
+            ReplayAction::ToEvent(number) => self.stand_at(number as usize + 1),
+            ReplayAction::ToTime(time) => self.seek(time),
+            ReplayAction::SeekForward => self.seek(self.now + SEEK),
+            ReplayAction::SeekBack => self.seek(self.now - SEEK),
+            ReplayAction::ToEnd => {
                 let (length, events) = self.film.length();
                 self.wind(events);
                 self.now = length;
@@ -239,8 +239,8 @@ impl Review {
                 self.playback(|playback| playback.playing = grows);
             }
         }
-        let follows = self.grows && to == ReplayKey::ToEnd;
-        if !matches!(to, ReplayKey::Faster | ReplayKey::Slower) {
+        let follows = self.grows && to == ReplayAction::ToEnd;
+        if !matches!(to, ReplayAction::Faster | ReplayAction::Slower) {
             self.playback(|playback| playback.follows = follows);
         }
         self.at = Instant::now();
@@ -373,7 +373,7 @@ impl ConsoleShell for Review {
     fn advance(&mut self) -> bool {
         self.play();
         if let (Some(newest), Some(compared)) =
-            (self.comparison.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)
+            (self.comparison.as_ref().and_then(LiveComparison::newest), &mut self.model.comparison)
         {
             compared.show(newest);
             self.dirty = true;

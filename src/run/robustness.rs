@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use super::engine::Engine;
+use super::engine::SessionEngine;
 use super::headless;
 use super::parallel::WorkerPool;
 use super::simulate::settings_of_trial;
@@ -14,10 +14,10 @@ use crate::analysis::trial_summary::TrialSummary;
 use crate::edge::battery_file::BatteryFiles;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::belief_detection::{EstimateView, TrialView};
+use crate::measures::belief_detection::{EstimateBeforePress, TrialView};
 use crate::session::battery::CohortSpec;
 use crate::session::settings::{Condition, SessionSpec};
-use crate::session::{Event, Session, Stamped, apply};
+use crate::session::{Event, Session, TimestampedEvent, apply};
 
 /// Request of `tomcom robustness`.
 #[derive(Clone, Debug)]
@@ -105,19 +105,19 @@ fn simulate(
     trial: u64,
     cost: CostToGo,
 ) -> (TrialView, TrialSummary, CostToGo) {
-    let mut engine = Engine::new(kitchen.clone(), spec.clone(), trial, cost);
+    let mut engine = SessionEngine::new(kitchen.clone(), spec.clone(), trial, cost);
     let mut events = Vec::new();
-    let keep = |stamped: &Stamped| {
+    let keep = |stamped: &TimestampedEvent| {
         events.push(stamped.clone());
         Ok::<(), Infallible>(())
     };
     headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
     let follower = engine.into_follower();
     let summary = TrialSummary::from_follower(&follower);
-    let estimates: BTreeMap<u64, EstimateView> = events
+    let estimates: BTreeMap<u64, EstimateBeforePress> = events
         .iter()
         .filter_map(|stamped| match &stamped.event {
-            Event::BeliefEstimated(witness) => Some((witness.press, EstimateView::from_witness(witness))),
+            Event::BeliefEstimated(witness) => Some((witness.press, EstimateBeforePress::from_witness(witness))),
             _ => None,
         })
         .collect();

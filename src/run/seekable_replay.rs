@@ -3,15 +3,15 @@
 
 use std::path::Path;
 
-use super::replay::Replay;
+use super::replay::RecordingReplay;
 use super::standing::exclusion_status;
 use crate::analysis::exclusion_status::ExclusionStatus;
 use crate::base::time::SessionTime;
 use crate::edge::file_error::FileResult;
 use crate::history::belief_track::{BeliefHistory, BeliefSnapshot};
 use crate::history::landmark::ReplayLandmark;
-use crate::session::settings::Visibility;
-use crate::session::{Event, Session, Stamped, apply};
+use crate::session::settings::WizardVisibility;
+use crate::session::{Event, Session, TimestampedEvent, apply};
 
 /// Number of events between two snapshots of the session.
 const KEEP_EVERY: usize = 4096;
@@ -41,8 +41,8 @@ fn is_step(event: &Event) -> bool {
 /// A recording that is shown at any position.
 #[derive(Debug)]
 pub struct SeekableReplay {
-    pub(super) replay: Replay,
-    pub(super) events: Vec<Stamped>,
+    pub(super) replay: RecordingReplay,
+    pub(super) events: Vec<TimestampedEvent>,
     /// Session times of the errors.
     pub errors: Vec<SessionTime>,
     judged: usize,
@@ -62,7 +62,7 @@ impl SeekableReplay {
     /// Reads a recording to its end and moves to its beginning.
     ///
     /// # Errors
-    /// Errors of [`Replay::step`].
+    /// Errors of [`RecordingReplay::step`].
     pub fn open(recording: &Path) -> FileResult<SeekableReplay> {
         let mut film = SeekableReplay::begin(recording)?;
         film.read()?;
@@ -72,9 +72,9 @@ impl SeekableReplay {
     /// Opens a recording without reading its events.
     ///
     /// # Errors
-    /// Errors of [`Replay::open`].
+    /// Errors of [`RecordingReplay::open`].
     pub fn begin(recording: &Path) -> FileResult<SeekableReplay> {
-        let replay = Replay::open(recording)?;
+        let replay = RecordingReplay::open(recording)?;
         let last = replay.log().last_event()?;
         let unread_end = Some(last.map_or((SessionTime::ZERO, 0), |last| (last.time, last.seq as usize + 1)));
         let session = replay.session().clone();
@@ -98,7 +98,7 @@ impl SeekableReplay {
         // The others hold what is hidden.
         self.kept.truncate(1);
         for session in self.kept.iter_mut().chain([&mut self.session]) {
-            session.spec.console.visibility = Visibility::State;
+            session.spec.console.visibility = WizardVisibility::State;
         }
         for stamped in self.events.iter_mut().filter(|stamped| tells_condition(&stamped.event)) {
             stamped.event = HIDDEN;
@@ -109,7 +109,7 @@ impl SeekableReplay {
     /// Reads events that were appended to the log; returns whether there were any.
     ///
     /// # Errors
-    /// Errors of [`Replay::step`].
+    /// Errors of [`RecordingReplay::step`].
     pub fn read(&mut self) -> FileResult<bool> {
         self.read_while(|| true)
     }
@@ -117,7 +117,7 @@ impl SeekableReplay {
     /// Reads appended events, as long as `goes_on` says so; returns whether there were any.
     ///
     /// # Errors
-    /// Errors of [`Replay::step`].
+    /// Errors of [`RecordingReplay::step`].
     pub fn read_while(&mut self, goes_on: impl Fn() -> bool) -> FileResult<bool> {
         let before = self.events.len();
         while goes_on() {
@@ -175,7 +175,7 @@ impl SeekableReplay {
     }
 
     /// Applies and returns the next event.
-    pub fn forward(&mut self) -> Option<&Stamped> {
+    pub fn forward(&mut self) -> Option<&TimestampedEvent> {
         let stamped = self.events.get(self.position)?;
         apply(&mut self.session, stamped).expect("it was applied when it was read");
         self.position += 1;

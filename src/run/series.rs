@@ -8,12 +8,12 @@ use super::live;
 use super::options::{RemainingTrials, SessionStart};
 use super::unfinished_recording::PreparedSession;
 use super::wizard_question::{ask, ask_consent};
-use crate::analysis::watcher::CompareRequest;
-use crate::console::question::QuestionPage;
+use crate::analysis::watcher::ComparisonRequest;
+use crate::console::question::StartQuestion;
 use crate::edge::files::SessionFiles;
 use crate::edge::recordings;
-use crate::session::plan::{NextRecording, Progress, Study};
-use crate::session::wall_display::Answering;
+use crate::session::plan::{NextRecording, ParticipantProgress, Study};
+use crate::session::wall_display::AnswerEntry;
 
 /// Result of a session, or of a participant's series of sessions.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ pub struct SeriesOutcome {
 ///
 /// # Errors
 /// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
-pub fn operate(beginning: SessionStart, compare: Option<CompareRequest>) -> Result<SeriesOutcome, LiveError> {
+pub fn operate(beginning: SessionStart, compare: Option<ComparisonRequest>) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async {
         // The start is checked before the terminal is taken over and a recording is created, so that a session that
         // cannot start leaves nothing behind.
@@ -89,9 +89,9 @@ impl Planned {
         Ok(Planned { series, study })
     }
 
-    fn progress(&self) -> Result<Progress, LiveError> {
+    fn progress(&self) -> Result<ParticipantProgress, LiveError> {
         let made = recordings::of_plan(&self.series.out, &self.study.plan.name)?;
-        Progress::from_recordings(&self.study, self.series.participant, &made).map_err(LiveError::Plan)
+        ParticipantProgress::from_recordings(&self.study, self.series.participant, &made).map_err(LiveError::Plan)
     }
 
     async fn run(self) -> Result<SeriesOutcome, LiveError> {
@@ -123,7 +123,7 @@ impl Planned {
     }
 
     /// Prepares the next recording, after asking the wizard the questions that come before it.
-    async fn choose(&self, progress: &Progress, desk: &mut OperatorDesk) -> Result<Choice, LiveError> {
+    async fn choose(&self, progress: &ParticipantProgress, desk: &mut OperatorDesk) -> Result<Choice, LiveError> {
         let (slot, attempt, open) = match &progress.next {
             NextRecording::Begin { slot, attempt } => (*slot, *attempt, None),
             NextRecording::Choose { recording, slot, attempt } => (*slot, *attempt, Some(recording)),
@@ -150,7 +150,7 @@ impl Planned {
         if progress.consent {
             return Ok(Choice::Begin(Box::new(begun)));
         }
-        let on_display = self.study.plan.consent_on == Answering::Display
+        let on_display = self.study.plan.consent_on == AnswerEntry::Display
             && desk.wall.ask_consent(begun.engine.session(), &self.study.plan.consent);
         match ask_consent(desk, &consent(&self.study, progress, &label, on_display), on_display).await? {
             Some((0, on)) => Ok(Choice::Begin(Box::new(begun.with_consent(Some(self.study.consent_given(on)))))),
@@ -164,11 +164,11 @@ impl Planned {
 }
 
 /// The question to the wizard whether an unfinished recording is continued or repeated.
-fn which(progress: &Progress, recording: &str, slot: usize) -> QuestionPage {
+fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartQuestion {
     let name = slot_name(progress, slot);
     let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
     let presses = attempt.map_or(0, |attempt| attempt.presses);
-    QuestionPage {
+    StartQuestion {
         title: format!("{}: {name} is not done", progress.code),
         text: vec![format!("{recording} was cut, or left before everything was done. It has {presses} presses.")],
         answers: vec![
@@ -180,7 +180,7 @@ fn which(progress: &Progress, recording: &str, slot: usize) -> QuestionPage {
 
 /// The question for the participant's consent, without which nothing is recorded. If the display asks for it, the
 /// wizard can still confirm it at the console.
-fn consent(study: &Study, progress: &Progress, label: &str, on_display: bool) -> QuestionPage {
+fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_display: bool) -> StartQuestion {
     let mut text = vec![study.plan.consent.clone()];
     if on_display {
         text.push("Waiting for the participant, who agrees on the display by holding a button.".to_string());
@@ -190,7 +190,7 @@ fn consent(study: &Study, progress: &Progress, label: &str, on_display: bool) ->
     } else {
         "yes, the participant agrees"
     };
-    QuestionPage {
+    StartQuestion {
         title: format!("{}: {label}", progress.code),
         text,
         answers: vec![yes.to_string(), "no: nothing is recorded".to_string()],
@@ -198,7 +198,7 @@ fn consent(study: &Study, progress: &Progress, label: &str, on_display: bool) ->
 }
 
 /// Name of a step of the plan: "familiarisation", "trial 1".
-pub(super) fn slot_name(progress: &Progress, slot: usize) -> String {
+pub(super) fn slot_name(progress: &ParticipantProgress, slot: usize) -> String {
     match progress.steps.get(slot).and_then(|stand| stand.slot.period) {
         Some(period) => format!("trial {period}"),
         None => "familiarisation".to_string(),
@@ -206,7 +206,7 @@ pub(super) fn slot_name(progress: &Progress, slot: usize) -> String {
 }
 
 /// Progress of a participant, in one line.
-pub(super) fn stands(progress: &Progress) -> String {
+pub(super) fn stands(progress: &ParticipantProgress) -> String {
     let (code, done, all) = (&progress.code, progress.done(), progress.steps.len());
     match &progress.next {
         NextRecording::Finished => format!("{code}: everything is done"),

@@ -6,7 +6,7 @@ use super::parallel;
 use super::replay::each_once;
 use super::standing::exclusion_status;
 use crate::analysis::compared_recording::{ComparedRecording, RecordingComparer};
-use crate::analysis::watcher::CompareRequest;
+use crate::analysis::watcher::ComparisonRequest;
 use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogReader, at_line};
@@ -20,7 +20,7 @@ pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
 /// A recording cannot be read or replayed, or is named twice.
 pub fn watch(
     recordings: &[PathBuf],
-    request: &CompareRequest,
+    request: &ComparisonRequest,
     done: impl Fn() + Sync,
 ) -> FileResult<Vec<ComparedRecording>> {
     each_once(recordings)?;
@@ -28,7 +28,7 @@ pub fn watch(
 }
 
 /// Compares wizard and assistants in one recording, from beginning to end.
-fn follow(recording: &Path, request: &CompareRequest) -> FileResult<ComparedRecording> {
+fn follow(recording: &Path, request: &ComparisonRequest) -> FileResult<ComparedRecording> {
     let mut log = LogReader::open(recording)?;
     let mut comparer = RecordingComparer::new(log.session(), request);
     while let Some(line) = log.next_line()? {

@@ -9,23 +9,23 @@ use std::str::FromStr;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::engine::Engine;
+use super::engine::SessionEngine;
 use super::error::RunError;
 use super::parallel::WorkerPool;
-use super::replay::Replay;
+use super::replay::RecordingReplay;
 use super::{headless, options};
 use crate::analysis::kitchen_summary::plan_lengths;
-use crate::analysis::trial_summary::{ArmTotals, SimulationSummary, SimulationSums, TrialSummary};
+use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, StudyArmTotals, TrialSummary};
 use crate::base::words::count;
-use crate::communication::settings::Shadow;
+use crate::communication::settings::ShadowMode;
 use crate::edge::file_error::FileError;
 use crate::edge::files::SessionFiles;
-use crate::edge::log::{LogReader, RecordingLock, SimulatedLog, WriteError, check_simulated, ruling};
+use crate::edge::log::{LogReader, RecordingLock, RecordingWriteError, SimulatedLog, check_simulated, ruling};
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::settings::{Condition, ParticipantSpec, SessionSpec};
 use crate::session::study_arm::StudyArm;
-use crate::session::{Header, Stamped};
+use crate::session::{LogHeader, TimestampedEvent};
 
 /// Request of `tomcom simulate`.
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ pub struct SimulationRequest {
     /// Total number of trials, over all shards.
     pub trials: u64,
     /// Shard of the trials that is simulated.
-    pub shard: Shard,
+    pub shard: SimulationShard,
     /// Folder of the recordings.
     pub out: PathBuf,
 }
@@ -43,7 +43,7 @@ pub struct SimulationRequest {
 impl SimulationRequest {
     /// Indices of the shard's trials, in order.
     pub fn own_trials(&self) -> impl Iterator<Item = u64> + Clone {
-        let Shard { number, of } = self.shard;
+        let SimulationShard { number, of } = self.shard;
         (number - 1..self.trials).step_by(of as usize)
     }
 }
@@ -51,25 +51,25 @@ impl SimulationRequest {
 /// A shard of the trials, so that several computers can share a simulation: number `number` (from 1) of `of` disjoint
 /// parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
+pub struct SimulationShard {
     /// Number of this shard, from 1.
     pub number: u64,
     /// Number of shards.
     pub of: u64,
 }
 
-impl Shard {
+impl SimulationShard {
     /// The only shard of an undivided simulation, with all trials.
-    pub const WHOLE: Shard = Shard { number: 1, of: 1 };
+    pub const WHOLE: SimulationShard = SimulationShard { number: 1, of: 1 };
 }
 
-impl FromStr for Shard {
+impl FromStr for SimulationShard {
     type Err = String;
 
-    fn from_str(text: &str) -> Result<Shard, String> {
+    fn from_str(text: &str) -> Result<SimulationShard, String> {
         let parts = text.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
         match parts {
-            Some((number, of)) if number >= 1 && number <= of && of <= MAX_SHARDS => Ok(Shard { number, of }),
+            Some((number, of)) if number >= 1 && number <= of && of <= MAX_SHARDS => Ok(SimulationShard { number, of }),
             _ => Err("a part and how many there are, such as 1/8 to 8/8".to_string()),
         }
     }
@@ -88,7 +88,7 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     let mut spec = spec.clone();
     if spec.unattended(spec.trial.condition) != spec.trial.condition {
         // Without a wizard, the assistant has nobody to advise.
-        (spec.trial.condition, spec.assistant.shadow) = (Condition::None, Shadow::Off);
+        (spec.trial.condition, spec.assistant.shadow) = (Condition::None, ShadowMode::Off);
     }
     spec.participant.code = format!("S{:03}", trial + 1);
     spec.adopt_person();
@@ -169,8 +169,9 @@ pub fn each_trial(
             simulated
         };
         let mut simulated = workers.each(&block, one, || ());
-        let is_elsewhere =
-            |one: &Result<SimulatedTrial, RunError>| matches!(one, Err(RunError::Recording(WriteError::InUse { .. })));
+        let is_elsewhere = |one: &Result<SimulatedTrial, RunError>| {
+            matches!(one, Err(RunError::Recording(RecordingWriteError::InUse { .. })))
+        };
         let mut elsewhere: Vec<usize> = (0..block.len()).filter(|&index| is_elsewhere(&simulated[index])).collect();
         while !elsewhere.is_empty() {
             let trials: Vec<u64> = elsewhere.iter().map(|&index| block[index]).collect();
@@ -200,7 +201,7 @@ fn wait_for_any(simulation: &SimulationRequest, trials: &[u64]) {
 pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>, RunError> {
     let mut files = options::session_or_default(None).map_err(Box::new)?;
     (files.spec.plan, files.spec.seed) = (None, seed);
-    (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, Shadow::Off);
+    (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, ShadowMode::Off);
     (files.spec.trial.seconds, files.spec.trial.orders) = (seconds, None);
     files.spec.participant = ParticipantSpec::default();
     files.spec.check().map_err(|error| {
@@ -208,7 +209,7 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
     })?;
     // The length is part of the path, since recordings of different length would have the same name.
     let out = out.join(format!("{seconds}s"));
-    let figures = simulate(&SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out }, || ())?;
+    let figures = simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out }, || ())?;
     Ok(figures.recordings.iter().map(PathBuf::from).collect())
 }
 
@@ -221,7 +222,7 @@ fn folder_of_trial(out: &Path, spec: &SessionSpec) -> PathBuf {
 
 /// Header of a trial's recording. With a study plan, trials are ordered by participant; without one, each trial has its
 /// own participant.
-fn header_of_trial(simulation: &SimulationRequest, trial: u64) -> Header {
+fn header_of_trial(simulation: &SimulationRequest, trial: u64) -> LogHeader {
     let files = &simulation.files.kitchen;
     let (spec, trial) = match simulation.files.study() {
         None => (settings_of_trial(&simulation.files.spec, trial), trial),
@@ -230,7 +231,7 @@ fn header_of_trial(simulation: &SimulationRequest, trial: u64) -> Header {
             study.simulated((trial / periods) as usize, (trial % periods) as u32 + 1)
         }
     };
-    Header::new(spec, trial, files.layout.clone(), files.recipes.clone())
+    LogHeader::new(spec, trial, files.layout.clone(), files.recipes.clone())
 }
 
 fn folder_of(simulation: &SimulationRequest, trial: u64) -> PathBuf {
@@ -251,13 +252,13 @@ fn simulate_trial(
     let cost = own.take().unwrap_or_else(|| unused.clone());
     let (follower, found, moved) = match opened {
         SimulatedLog::Whole => {
-            let mut replay = Replay::over(LogReader::open(&folder).map_err(Box::new)?, cost);
+            let mut replay = RecordingReplay::over(LogReader::open(&folder).map_err(Box::new)?, cost);
             replay.run().map_err(Box::new)?;
             (replay.follower, true, None)
         }
         SimulatedLog::Begun { mut log, moved } => {
-            let mut engine = Engine::new(kitchen.clone(), header.session, header.trial, cost);
-            headless::run(&mut engine, |stamped: &Stamped| log.append(stamped))?;
+            let mut engine = SessionEngine::new(kitchen.clone(), header.session, header.trial, cost);
+            headless::run(&mut engine, |stamped: &TimestampedEvent| log.append(stamped))?;
             log.flush()?;
             (engine.into_follower(), false, moved)
         }
@@ -324,7 +325,7 @@ pub(super) fn describe_moved(moved: &[String]) -> String {
     moved.iter().map(line).collect()
 }
 
-fn describe_arm(one: &ArmTotals) -> String {
+fn describe_arm(one: &StudyArmTotals) -> String {
     let per_100 = |number: u64| 100.0 * number as f64 / one.human_actions.max(1) as f64;
     let (errors, signals) = (per_100(one.errors), count(one.signals, "signal", "signals"));
     format!("  {}: {errors:.1} %, {signals} ({:.1} per 100 presses)\n", one.arm.title(), per_100(one.signals))

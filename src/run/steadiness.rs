@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::parallel;
 use super::replay::each_once;
-use crate::analysis::offer_steadiness::{SteadinessSummary, SteadinessSums, SteadinessTally};
+use crate::analysis::offer_steadiness::{OfferSteadinessSummary, OfferSteadinessSums, OfferSteadinessTally};
 use crate::edge::file_error::FileResult;
 use crate::edge::log::{LogReader, at_line};
 use crate::session::{Session, apply};
@@ -13,9 +13,9 @@ use crate::session::{Session, apply};
 ///
 /// # Errors
 /// A recording cannot be read or replayed.
-pub fn measure(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<SteadinessSummary> {
+pub fn measure(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<OfferSteadinessSummary> {
     each_once(recordings)?;
-    let mut sums = SteadinessSums::default();
+    let mut sums = OfferSteadinessSums::default();
     for one in parallel::each(recordings, |recording| tally(recording), done) {
         let (tally, session) = one?;
         sums.add(tally, &session);
@@ -25,10 +25,10 @@ pub fn measure(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Ste
 
 /// Measures the steadiness of offers in one recording. Since offers depend on the session's state only, no estimate is
 /// computed.
-fn tally(recording: &Path) -> FileResult<(SteadinessTally, Session)> {
+fn tally(recording: &Path) -> FileResult<(OfferSteadinessTally, Session)> {
     let mut log = LogReader::open(recording)?;
     let mut session = log.session();
-    let mut tally = SteadinessTally::new(&session);
+    let mut tally = OfferSteadinessTally::new(&session);
     while let Some(line) = log.next_line()? {
         tally.before(&session, line.stamped.time);
         apply(&mut session, &line.stamped)

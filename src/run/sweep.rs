@@ -9,17 +9,17 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::error::RunError;
-use super::simulate::{Shard, SimulationRequest, describe_moved, each_trial};
+use super::simulate::{SimulationRequest, SimulationShard, describe_moved, each_trial};
 use crate::analysis::kitchen_summary::plan_lengths;
-use crate::analysis::sweep_row::{SweepRow, TrialErrors};
+use crate::analysis::sweep_row::{ParameterSweepRow, TrialErrors};
 use crate::analysis::trial_summary::{SimulationSummary, SimulationSums, TrialSummary};
 use crate::communication::concept::ConceptName;
-use crate::communication::settings::{AssistantSpec, Shadow};
+use crate::communication::settings::{AssistantSpec, ShadowMode};
 use crate::edge::file_error::FileError;
-use crate::edge::log::WriteError;
+use crate::edge::log::RecordingWriteError;
 use crate::edge::overwrite;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::mind::fitting::Parameter;
+use crate::mind::fitting::HumanModelParameter;
 use crate::session::SessionSpec;
 use crate::session::settings::{Condition, GazeSource};
 
@@ -69,17 +69,17 @@ const MOMENTS: [(&str, [bool; 2]); 4] =
 
 /// A swept setting with its values, as in `cost=0.5,1,1.5`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SweepAxis {
+pub struct ParameterSweepAxis {
     name: &'static str,
     knob: Knob,
     /// Values as the user typed them; each is valid for the setting.
     values: Vec<String>,
 }
 
-impl FromStr for SweepAxis {
+impl FromStr for ParameterSweepAxis {
     type Err = String;
 
-    fn from_str(text: &str) -> Result<SweepAxis, String> {
+    fn from_str(text: &str) -> Result<ParameterSweepAxis, String> {
         let names: Vec<&str> = KNOBS.iter().map(|(name, _)| *name).collect();
         let right = || format!("SETTING=VALUE,VALUE,…, with one of {}", names.join(", "));
         let (name, values) = text.split_once('=').ok_or_else(right)?;
@@ -96,7 +96,7 @@ impl FromStr for SweepAxis {
             return Err(format!("{name}={} twice: each value once", values[index]));
         }
         match values.iter().find(|value| !is_right(value)) {
-            None => Ok(SweepAxis { name, knob, values }),
+            None => Ok(ParameterSweepAxis { name, knob, values }),
             Some(wrong) => {
                 let right = match knob {
                     Knob::Gaze | Knob::Waiting => "on and off".to_string(),
@@ -111,14 +111,14 @@ impl FromStr for SweepAxis {
 }
 
 /// Gives everybody this parameter of the human model, also those who have one of their own.
-fn set_for_all(spec: &mut SessionSpec, parameter: Parameter, value: f64) {
+fn set_for_all(spec: &mut SessionSpec, parameter: HumanModelParameter, value: f64) {
     parameter.set(&mut spec.human, value);
     if let Some(people) = &mut spec.people {
         people.forget(parameter);
     }
 }
 
-impl SweepAxis {
+impl ParameterSweepAxis {
     /// Applies a value to the settings; the value was validated when it was parsed.
     fn set(&self, spec: &mut SessionSpec, value: &str) {
         let number = value.parse().unwrap_or_default();
@@ -131,8 +131,8 @@ impl SweepAxis {
                 spec.assistant.rollout.rollouts = whole;
                 spec.assistant.rollout.least_rollouts = spec.assistant.rollout.least_rollouts.min(whole);
             }
-            Knob::Tau => set_for_all(spec, Parameter::Tau, number),
-            Knob::Radius => set_for_all(spec, Parameter::RadiusDeg, number),
+            Knob::Tau => set_for_all(spec, HumanModelParameter::Tau, number),
+            Knob::Radius => set_for_all(spec, HumanModelParameter::RadiusDeg, number),
             Knob::Gaze if value == "off" => spec.participant.gaze = GazeSource::None,
             Knob::Gaze => {}
             Knob::Asks => {
@@ -150,9 +150,9 @@ type Cell = Vec<(&'static str, String)>;
 
 /// Table of results for every combination of values of the swept settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SweepSummary {
+pub struct ParameterSweepSummary {
     /// Rows of the table; the first is without signals.
-    pub rows: Vec<SweepRow>,
+    pub rows: Vec<ParameterSweepRow>,
     /// Path of the table's file.
     pub table: PathBuf,
     /// New paths of logs that ended before the end of their header; their trials were simulated again.
@@ -160,7 +160,7 @@ pub struct SweepSummary {
 }
 
 /// Total number of trials in a parameter sweep.
-pub fn trials(simulation: &SimulationRequest, axes: &[SweepAxis]) -> u64 {
+pub fn trials(simulation: &SimulationRequest, axes: &[ParameterSweepAxis]) -> u64 {
     let cells: usize = axes.iter().map(|axis| axis.values.len()).product();
     (cells as u64 + 1) * simulation.own_trials().count() as u64
 }
@@ -172,12 +172,12 @@ pub fn trials(simulation: &SimulationRequest, axes: &[SweepAxis]) -> u64 {
 /// Errors of simulations, too many combinations, or an invalid value.
 pub fn sweep(
     simulation: &SimulationRequest,
-    axes: &[SweepAxis],
+    axes: &[ParameterSweepAxis],
     done: impl Fn() + Sync,
-) -> Result<SweepSummary, RunError> {
+) -> Result<ParameterSweepSummary, RunError> {
     let cells = grid(axes)?;
     let table = simulation.out.join(table_name(simulation.shard));
-    let unwritable = |reason| WriteError::Unwritable { path: table.clone(), reason, saved: None };
+    let unwritable = |reason| RecordingWriteError::Unwritable { path: table.clone(), reason, saved: None };
     overwrite::check(&table, "a table of a sweep", |head| head.starts_with(b"condition,trials,"))
         .map_err(unwritable)?;
     check_axes(&simulation.files.spec, axes)?;
@@ -187,7 +187,7 @@ pub fn sweep(
     unassisted.out = simulation.out.join("unassisted");
     let (before, figures) = of_cell(&unassisted, &done)?;
     let mut moved = figures.moved.clone();
-    let mut rows = vec![SweepRow::new(&Cell::new(), &figures, None, None)];
+    let mut rows = vec![ParameterSweepRow::new(&Cell::new(), &figures, None, None)];
     let mut first = None;
     for (cell, spec) in cells.iter().zip(specs) {
         let mut one = simulation.clone();
@@ -195,24 +195,24 @@ pub fn sweep(
         one.out = simulation.out.join(folder_of(cell));
         let (trials, figures) = of_cell(&one, &done)?;
         let with_first = first.as_ref().map(|first: &Vec<TrialErrors>| [&first[..], &trials]);
-        rows.push(SweepRow::new(cell, &figures, Some([&before, &trials]), with_first));
+        rows.push(ParameterSweepRow::new(cell, &figures, Some([&before, &trials]), with_first));
         first.get_or_insert(trials);
         moved.extend(figures.moved);
     }
     write_table(&table, axes, &rows).map_err(unwritable)?;
-    Ok(SweepSummary { rows, table, moved })
+    Ok(ParameterSweepSummary { rows, table, moved })
 }
 
 /// File name of the table. Each shard has its own; the whole table is made from all recordings.
-fn table_name(shard: Shard) -> String {
+fn table_name(shard: SimulationShard) -> String {
     match shard {
-        Shard::WHOLE => TABLE_NAME.to_string(),
-        Shard { number, of } => format!("{PART_NAME}-{number}-of-{of}.csv"),
+        SimulationShard::WHOLE => TABLE_NAME.to_string(),
+        SimulationShard { number, of } => format!("{PART_NAME}-{number}-of-{of}.csv"),
     }
 }
 
 /// All combinations of the values; the values of the last setting vary fastest.
-fn grid(axes: &[SweepAxis]) -> Result<Vec<Cell>, RunError> {
+fn grid(axes: &[ParameterSweepAxis]) -> Result<Vec<Cell>, RunError> {
     let wrong = |found: String, remedy: String| {
         Err(Box::new(FileError::from_finding(Path::new("--sweep"), found, remedy)).into())
     };
@@ -237,7 +237,7 @@ fn grid(axes: &[SweepAxis]) -> Result<Vec<Cell>, RunError> {
 }
 
 /// Refuses settings of a concept that the session does not use.
-fn check_axes(spec: &SessionSpec, axes: &[SweepAxis]) -> Result<(), RunError> {
+fn check_axes(spec: &SessionSpec, axes: &[ParameterSweepAxis]) -> Result<(), RunError> {
     let decides = match spec.trial.condition {
         Condition::Assistant => Some(spec.assistant.concept),
         Condition::Wizard | Condition::None => None,
@@ -257,7 +257,7 @@ fn check_axes(spec: &SessionSpec, axes: &[SweepAxis]) -> Result<(), RunError> {
     Ok(())
 }
 
-fn spec_of(spec: &SessionSpec, axes: &[SweepAxis], cell: &Cell) -> Result<SessionSpec, RunError> {
+fn spec_of(spec: &SessionSpec, axes: &[ParameterSweepAxis], cell: &Cell) -> Result<SessionSpec, RunError> {
     let mut spec = spec.clone();
     for (axis, (_, value)) in axes.iter().zip(cell) {
         axis.set(&mut spec, value);
@@ -283,7 +283,7 @@ fn of_cell(
 ) -> Result<(Vec<TrialErrors>, SimulationSummary), RunError> {
     let mut simulation = simulation.clone();
     // Computing recommendations for trials without signals would only take time.
-    simulation.files.spec.assistant.shadow = Shadow::Off;
+    simulation.files.spec.assistant.shadow = ShadowMode::Off;
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
     let plan_lengths = plan_lengths(&kitchen, &mut CostToGo::new(kitchen.clone()));
     let (mut trials, mut sums, mut moved) = (Vec::new(), SimulationSums::default(), Vec::new());
@@ -299,7 +299,7 @@ fn of_cell(
 }
 
 /// A numeric column of the table: its name, and its value in a row.
-type SweepColumn = (&'static str, fn(&SweepRow) -> Option<f64>);
+type SweepColumn = (&'static str, fn(&ParameterSweepRow) -> Option<f64>);
 
 /// The numeric columns; unknown values become empty cells.
 const NUMBERS: [SweepColumn; 11] = [
@@ -316,11 +316,11 @@ const NUMBERS: [SweepColumn; 11] = [
     ("related_fewer_error", |row| row.related_fewer_error),
 ];
 
-fn setting(row: &SweepRow, axis: &SweepAxis) -> String {
+fn setting(row: &ParameterSweepRow, axis: &ParameterSweepAxis) -> String {
     row.settings.get(axis.name).and_then(|value| value.as_str()).unwrap_or_default().to_string()
 }
 
-fn write_table(path: &Path, axes: &[SweepAxis], rows: &[SweepRow]) -> std::io::Result<()> {
+fn write_table(path: &Path, axes: &[ParameterSweepAxis], rows: &[ParameterSweepRow]) -> std::io::Result<()> {
     let mut table = csv::Writer::from_path(path)?;
     let names = ["condition", "trials"].into_iter().chain(axes.iter().map(|axis| axis.name));
     table.write_record(names.chain(NUMBERS.map(|(name, _)| name)))?;
@@ -335,7 +335,7 @@ fn write_table(path: &Path, axes: &[SweepAxis], rows: &[SweepRow]) -> std::io::R
 }
 
 /// The table of the parameter sweep as text.
-pub fn describe(figures: &SweepSummary, axes: &[SweepAxis]) -> String {
+pub fn describe(figures: &ParameterSweepSummary, axes: &[ParameterSweepAxis]) -> String {
     let settings: String = axes.iter().map(|axis| format!("{:>13}", axis.name)).collect();
     let mut text = describe_moved(&figures.moved);
     text += &format!(

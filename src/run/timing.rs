@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 use std::time::Instant;
 
-use super::replay::Replay;
+use super::replay::RecordingReplay;
 use crate::analysis::advisor::Advisor;
 use crate::analysis::follower::InferenceTiming;
 use crate::analysis::timing_summary::{DurationPercentiles, TimingSummary};
@@ -20,9 +20,9 @@ pub(super) fn monotonic_ns() -> u64 {
 /// Replays a recording and measures computing times.
 ///
 /// # Errors
-/// Errors of [`Replay::run`].
+/// Errors of [`RecordingReplay::run`].
 pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
-    let mut replay = Replay::open(recording)?;
+    let mut replay = RecordingReplay::open(recording)?;
     replay.follower.timing = Some(InferenceTiming::with_clock(monotonic_ns));
     let session = replay.session();
     let mut advisor = Advisor::new(session, CostToGo::new(session.kitchen.clone()));

@@ -11,14 +11,14 @@ use super::event_loop;
 use super::leaving::LeavingReason;
 use super::seekable_replay::SeekableReplay;
 use super::training_shell::TrainingShell;
-use crate::analysis::training_record::{JudgedRecording, TrainingRecord};
+use crate::analysis::training_record::{WatchedRecording, WizardTrainingRecord};
 use crate::analysis::wizard_log::spells;
 use crate::console::playback::SPEEDS;
 use crate::edge::clock::WallTime;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::training;
 use crate::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, WizardMeasures};
-use crate::session::settings::{Condition, Visibility};
+use crate::session::settings::{Condition, WizardVisibility};
 
 /// Request of `tomcom train`.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ pub struct TrainingRequest {
 ///
 /// # Errors
 /// A recording is not suitable, there is no terminal, or the result cannot be written.
-pub fn train(lesson: &TrainingRequest) -> Result<(TrainingRecord, PathBuf), ReviewError> {
+pub fn train(lesson: &TrainingRequest) -> Result<(WizardTrainingRecord, PathBuf), ReviewError> {
     let before = training::read(&lesson.out, &lesson.wizard)?;
     let films: Vec<(SeekableReplay, Vec<FalseBeliefPeriod>)> =
         lesson.recordings.iter().map(|one| open(one)).collect::<FileResult<_>>()?;
@@ -51,7 +51,7 @@ pub fn train(lesson: &TrainingRequest) -> Result<(TrainingRecord, PathBuf), Revi
     let is_complete = recordings.len() == lesson.recordings.len() && recordings.iter().all(|one| one.complete);
     let met = is_complete && lesson.criterion.is_met(&WizardMeasures::sum(recordings.iter().map(|one| &one.measures)));
     let (wizard, criterion, speed) = (lesson.wizard.clone(), lesson.criterion, Some(SPEEDS[lesson.speed]));
-    let record = TrainingRecord { wizard, at, minutes, speed, criterion, met, recordings };
+    let record = WizardTrainingRecord { wizard, at, minutes, speed, criterion, met, recordings };
     let path = training::write(&lesson.out, &record)
         .map_err(|reason| ReviewError::Training { path: lesson.out.clone(), reason })?;
     Ok((record, path))
@@ -71,7 +71,7 @@ fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)
         spells(&film.replay.follower).ok_or_else(|| unfit("a trial of which nobody knows what was believed"))?;
     // The recording is shown as a wizard session with the information that the paper's wizard had.
     film.session.spec.trial.condition = Condition::Wizard;
-    film.session.spec.console.visibility = Visibility::State;
+    film.session.spec.console.visibility = WizardVisibility::State;
     Ok((film, spells))
 }
 
@@ -79,8 +79,8 @@ fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)
 async fn watch(
     lesson: &TrainingRequest,
     films: Vec<(SeekableReplay, Vec<FalseBeliefPeriod>)>,
-    before: &[TrainingRecord],
-) -> Result<Vec<JudgedRecording>, ReviewError> {
+    before: &[WizardTrainingRecord],
+) -> Result<Vec<WatchedRecording>, ReviewError> {
     let mut judged = Vec::new();
     let mut desk = None;
     for ((film, spells), recording) in films.into_iter().zip(&lesson.recordings) {

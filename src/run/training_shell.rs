@@ -9,7 +9,7 @@ use super::event_loop::{ConsoleShell, LoopEvent, ShellView};
 use super::leaving::LeavingReason;
 use super::seekable_replay::SeekableReplay;
 use crate::analysis::lesson_report;
-use crate::analysis::training_record::{JudgedBelief, JudgedRecording, JudgedSignal, TrainingRecord};
+use crate::analysis::training_record::{JudgedFalseBelief, JudgedSignal, WatchedRecording, WizardTrainingRecord};
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::communication::recommendation::aspects_told;
@@ -25,9 +25,9 @@ use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::measures::wizard_performance::{
     FalseBeliefPeriod, SignalVerdict, TrainingCriterion, WizardMeasures, WizardSignal, worths,
 };
-use crate::mind::BeliefWitness;
-use crate::session::event::SignalEnd;
-use crate::session::{Event, Stamped, apply};
+use crate::mind::RecordedBelief;
+use crate::session::event::SignalEndReason;
+use crate::session::{Event, TimestampedEvent, apply};
 
 /// The training console for one recording.
 pub(super) struct TrainingShell {
@@ -35,7 +35,7 @@ pub(super) struct TrainingShell {
     name: String,
     spells: Vec<FalseBeliefPeriod>,
     /// Periods of false belief in the recording that led to errors.
-    beliefs: Vec<JudgedBelief>,
+    beliefs: Vec<JudgedFalseBelief>,
     criterion: TrainingCriterion,
     model: ConsoleModel,
     sent: Vec<WizardSignal>,
@@ -149,7 +149,8 @@ impl TrainingShell {
     /// Shows a signal of the wizard on the timeline and as the participant would see it. Impossible signals are
     /// ignored.
     fn show(&mut self, event: Event) {
-        let shown = Stamped { seq: self.film.position as u64, time: self.now.max(self.film.session.time), event };
+        let shown =
+            TimestampedEvent { seq: self.film.position as u64, time: self.now.max(self.film.session.time), event };
         let _ = apply(&mut self.film.session, &shown);
     }
 
@@ -218,13 +219,13 @@ impl TrainingShell {
         }
         self.tick();
         if self.film.session.shown.as_ref().is_some_and(|shown| shown.until <= self.now) {
-            self.show(Event::SignalEnded { reason: SignalEnd::Elapsed });
+            self.show(Event::SignalEnded { reason: SignalEndReason::Elapsed });
         }
         self.say_missed();
     }
 
     /// Updates the present false beliefs from a recorded belief of the participant.
-    fn hear(&mut self, witness: &BeliefWitness) {
+    fn hear(&mut self, witness: &RecordedBelief) {
         let session = &self.film.session;
         let clock = session.trial_clock(session.time);
         let open = self.spells.iter().zip(&mut self.beliefs).filter(|(spell, _)| spell.holds(clock));
@@ -265,19 +266,19 @@ impl TrainingShell {
     }
 
     /// The false beliefs that led to errors and have begun so far.
-    fn judged_beliefs(&self) -> Vec<JudgedBelief> {
+    fn judged_beliefs(&self) -> Vec<JudgedFalseBelief> {
         let clock = self.film.session.trial_clock(self.now);
         let worths = worths(&self.sent, &self.spells);
         let hit_by = |index: usize| {
             worths.iter().position(|worth| matches!(worth, SignalVerdict::Hit { spell, .. } if *spell == index))
         };
         let begun = self.spells.iter().enumerate().filter(|(_, spell)| spell.errors > 0 && spell.began <= clock);
-        begun.map(|(index, _)| JudgedBelief { hit_by: hit_by(index), ..self.beliefs[index].clone() }).collect()
+        begun.map(|(index, _)| JudgedFalseBelief { hit_by: hit_by(index), ..self.beliefs[index].clone() }).collect()
     }
 
     /// The training record's entry for this recording; `before` are the wizard's earlier training records.
-    pub fn judged(&self, before: &[TrainingRecord]) -> JudgedRecording {
-        let mut judged = JudgedRecording {
+    pub fn judged(&self, before: &[WizardTrainingRecord]) -> WatchedRecording {
+        let mut judged = WatchedRecording {
             recording: self.name.clone(),
             complete: self.is_over(),
             presses: self.film.session.presses[Agent::Human.index()],

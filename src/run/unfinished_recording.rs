@@ -3,30 +3,30 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::engine::Engine;
+use super::engine::SessionEngine;
 use super::error::LiveError;
 use super::options::SessionStart;
 use super::resume::resume;
-use crate::analysis::watcher::CompareRequest;
+use crate::analysis::watcher::ComparisonRequest;
 use crate::base::time::SessionTime;
 use crate::edge::log::RecordingLock;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::protocol::ProtocolEvent;
-use crate::session::{Header, SessionSpec, Stamped};
+use crate::session::{LogHeader, SessionSpec, TimestampedEvent};
 
 /// A session that is ready to be run and recorded.
 pub(super) struct PreparedSession {
-    pub engine: Engine,
-    pub header: Header,
+    pub engine: SessionEngine,
+    pub header: LogHeader,
     /// First events of the recording.
-    pub first: Vec<Stamped>,
+    pub first: Vec<TimestampedEvent>,
     /// The consent that the participant has just given, if it was asked for.
     pub consent: Option<ProtocolEvent>,
     /// Session time at which the session begins.
     pub time: SessionTime,
     /// Comparison of wizard and assistants, if the console shows it.
-    pub compare: Option<CompareRequest>,
+    pub compare: Option<ComparisonRequest>,
     pub place: RecordingPlace,
 }
 
@@ -48,14 +48,15 @@ impl PreparedSession {
                 let kitchen = Arc::new(files.kitchen.kitchen);
                 let mut spec = files.spec;
                 spec.adopt_person();
-                let mut header = Header::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
+                let mut header = LogHeader::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
                 header.keys = files.keys;
-                let engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen)).without_causes();
+                let engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen)).without_causes();
                 let (first, time, place) = (Vec::new(), SessionTime::ZERO, RecordingPlace::In(out));
                 Ok(PreparedSession { engine, header, first, consent: None, time, compare: None, place })
             }
             SessionStart::Again { header, kitchen, out } => {
-                let engine = Engine::for_header(kitchen.clone(), &header, CostToGo::new(kitchen)).without_causes();
+                let engine =
+                    SessionEngine::for_header(kitchen.clone(), &header, CostToGo::new(kitchen)).without_causes();
                 let (header, place) = (*header, RecordingPlace::In(out));
                 Ok(PreparedSession {
                     engine,
@@ -90,7 +91,7 @@ impl PreparedSession {
     }
 
     /// Adds a comparison of wizard and assistants.
-    pub fn comparing(self, compare: Option<CompareRequest>) -> PreparedSession {
+    pub fn comparing(self, compare: Option<ComparisonRequest>) -> PreparedSession {
         PreparedSession { compare, ..self }
     }
 

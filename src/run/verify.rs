@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::engine::Engine;
+use super::engine::SessionEngine;
 use crate::analysis::advisor::{AdviceRequest, Advisor};
-use crate::analysis::follower::Follower;
+use crate::analysis::follower::SessionFollower;
 use crate::base::words::count;
 use crate::communication::recommendation::Recommendation;
 use crate::edge::file_error::{FileError, FileResult};
@@ -16,7 +16,7 @@ use crate::edge::log::{LogEnding, LogLine, LogReader, at_line, event_line};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::admit::is_external;
 use crate::session::header::PEOPLE_SINCE;
-use crate::session::{Event, Stamped};
+use crate::session::{Event, TimestampedEvent};
 
 /// Whether a recording verifies: the result of `tomcom replay RECORDING --verify`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -71,7 +71,7 @@ pub(super) struct RerunRecording {
     pub log: LogReader,
     pub again: RerunSession,
     /// The session after applying the recorded events.
-    replayed: Follower,
+    replayed: SessionFollower,
     /// First difference between recording and re-run, if any.
     pub difference: Option<VerificationDifference>,
 }
@@ -85,8 +85,8 @@ impl RerunRecording {
         let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
         header.session.require_built().map_err(|missing| FileError::not_built(log.path(), missing))?;
         let cost = CostToGo::new(kitchen.clone());
-        let mut replayed = Follower::new(log.session(), cost.clone());
-        let engine = Engine::for_header(kitchen, &header, cost);
+        let mut replayed = SessionFollower::new(log.session(), cost.clone());
+        let engine = SessionEngine::for_header(kitchen, &header, cost);
         let advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
         let mut again = RerunSession { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };
         let mut difference = None;
@@ -104,10 +104,10 @@ impl RerunRecording {
 
 /// A recorded session that is being run again.
 pub(super) struct RerunSession {
-    pub engine: Engine,
+    pub engine: SessionEngine,
     /// Events of the re-run that have not been compared yet; at the end of a cut recording, the events that the
     /// recording lacks.
-    pub produced: VecDeque<Stamped>,
+    pub produced: VecDeque<TimestampedEvent>,
     /// The assistant, which computes recommendations anew, if the session has one.
     advisor: Option<Advisor>,
     questions: VecDeque<AdviceRequest>,
@@ -154,7 +154,7 @@ impl RerunSession {
     }
 
     /// Whether the re-run ends with the same session state and estimate as the replay, without events left over.
-    fn ends_like(&self, replayed: &Follower) -> bool {
+    fn ends_like(&self, replayed: &SessionFollower) -> bool {
         self.produced.is_empty()
             && *self.engine.session() == replayed.session
             && self.engine.belief() == replayed.filter.belief()

@@ -4,13 +4,13 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
 use crate::analysis::watcher::ComparisonFollower;
-use crate::history::comparison::LaneComparison;
-use crate::session::{Event, Stamped};
+use crate::history::comparison::SenderComparison;
+use crate::session::{Event, TimestampedEvent};
 
 impl ComparisonFollower {
     /// Starts the comparison's thread, which ends when the returned desk is dropped.
-    pub fn on_thread(mut self) -> ComparisonDesk {
-        let (tell, events) = channel::<Stamped>();
+    pub fn on_thread(mut self) -> LiveComparison {
+        let (tell, events) = channel::<TimestampedEvent>();
         let (show, views) = channel();
         thread::spawn(move || {
             while let Ok(stamped) = events.recv() {
@@ -27,32 +27,32 @@ impl ComparisonFollower {
                 }
             }
         });
-        ComparisonDesk { tell, views }
+        LiveComparison { tell, views }
     }
 }
 
 /// The console's connection to the thread that compares wizard and assistants.
 #[derive(Debug)]
-pub struct ComparisonDesk {
-    tell: Sender<Stamped>,
-    views: Receiver<LaneComparison>,
+pub struct LiveComparison {
+    tell: Sender<TimestampedEvent>,
+    views: Receiver<SenderComparison>,
 }
 
-impl ComparisonDesk {
+impl LiveComparison {
     /// Passes an event of the session to the comparison.
-    pub fn tell(&self, stamped: &Stamped) {
+    pub fn tell(&self, stamped: &TimestampedEvent) {
         // If the comparison's thread has ended, the session continues without a comparison.
         let _ = self.tell.send(stamped.clone());
     }
 
     /// The final comparison, after all events that were passed.
-    pub fn last(self) -> Option<LaneComparison> {
+    pub fn last(self) -> Option<SenderComparison> {
         drop(self.tell);
         self.views.into_iter().last()
     }
 
     /// The latest comparison, if there is a new one since the last call.
-    pub fn newest(&self) -> Option<LaneComparison> {
+    pub fn newest(&self) -> Option<SenderComparison> {
         self.views.try_iter().last()
     }
 }

@@ -6,9 +6,9 @@ use super::desk::{OperatorDesk, is_consent};
 use super::error::LiveError;
 use super::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use crate::console::ConsoleMessage;
-use crate::console::question::{QuestionPage, QuestionReply};
+use crate::console::question::{StartQuestion, StartQuestionReply};
 use crate::console::view::theme::Theme;
-use crate::session::wall_display::Answering;
+use crate::session::wall_display::AnswerEntry;
 
 /// Period of redrawing a question on the screen.
 const REDRAW: Duration = Duration::from_millis(100);
@@ -17,7 +17,7 @@ const REDRAW: Duration = Duration::from_millis(100);
 ///
 /// # Errors
 /// The terminal was closed.
-pub(super) async fn ask(desk: &mut OperatorDesk, question: &QuestionPage) -> Result<Option<usize>, LiveError> {
+pub(super) async fn ask(desk: &mut OperatorDesk, question: &StartQuestion) -> Result<Option<usize>, LiveError> {
     Ok(ask_consent(desk, question, false).await?.map(|(index, _)| index))
 }
 
@@ -28,20 +28,20 @@ pub(super) async fn ask(desk: &mut OperatorDesk, question: &QuestionPage) -> Res
 /// The terminal was closed.
 pub(super) async fn ask_consent(
     desk: &mut OperatorDesk,
-    question: &QuestionPage,
+    question: &StartQuestion,
     on_display: bool,
-) -> Result<Option<(usize, Answering)>, LiveError> {
+) -> Result<Option<(usize, AnswerEntry)>, LiveError> {
     let mut shell = OpenQuestion { question, on_display, theme: desk.theme, dirty: true };
     let reply = event_loop::run(&mut shell, desk).await?;
     Ok(match reply {
-        Some((QuestionReply::Answer(index), on)) => Some((index, on)),
-        Some((QuestionReply::Leave, _)) | None => None,
+        Some((StartQuestionReply::Answer(index), on)) => Some((index, on)),
+        Some((StartQuestionReply::Leave, _)) | None => None,
     })
 }
 
 /// A question to the wizard that has not been answered.
 struct OpenQuestion<'a> {
-    question: &'a QuestionPage,
+    question: &'a StartQuestion,
     /// Whether the participant's page can answer the question.
     on_display: bool,
     theme: Theme,
@@ -50,7 +50,7 @@ struct OpenQuestion<'a> {
 }
 
 impl ConsoleShell for OpenQuestion<'_> {
-    type Outcome = (QuestionReply, Answering);
+    type Outcome = (StartQuestionReply, AnswerEntry);
     type Error = LiveError;
 
     fn deadlines(&mut self) -> ShellDeadlines {
@@ -59,17 +59,17 @@ impl ConsoleShell for OpenQuestion<'_> {
 
     /// Handles an event. Gaze and other page inputs are discarded during a question; otherwise they would be processed
     /// later as if they were new.
-    fn take(&mut self, event: LoopEvent) -> Result<Option<(QuestionReply, Answering)>, LiveError> {
+    fn take(&mut self, event: LoopEvent) -> Result<Option<(StartQuestionReply, AnswerEntry)>, LiveError> {
         let message = match event {
             LoopEvent::Page(input) if self.on_display && is_consent(&input) => {
-                return Ok(Some((QuestionReply::Answer(0), Answering::Display)));
+                return Ok(Some((StartQuestionReply::Answer(0), AnswerEntry::Display)));
             }
             LoopEvent::Terminal(message) => message,
             _ => return Ok(None),
         };
         self.dirty = true;
         Ok(match message {
-            ConsoleMessage::Key(key) => self.question.reply(&key).map(|reply| (reply, Answering::Console)),
+            ConsoleMessage::Key(key) => self.question.reply(&key).map(|reply| (reply, AnswerEntry::Console)),
             _ => None,
         })
     }

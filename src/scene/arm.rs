@@ -2,9 +2,9 @@
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
-use super::colours::{self, Colour};
+use super::colours::{self, SceneColour};
 use super::entity_content::{EntityData, EntityUpdate, ScenePoint, SceneSeries, slug};
-use crate::arm::kinematics::Arm;
+use crate::arm::kinematics::SerialArm;
 use crate::arm::link::{CollisionSolid, LinkShape};
 use crate::arm::motion::JointMotion;
 use crate::arm::physics::hand_body::HandPose;
@@ -12,11 +12,11 @@ use crate::arm::reach::BUTTON_M;
 use crate::arm::reaching::resting_place;
 use crate::base::time::SessionTime;
 use crate::history::wording;
-use crate::kitchen::{Agent, Button, ButtonId, Change, Kitchen, Press};
+use crate::kitchen::{Agent, Button, ButtonId, Kitchen, KitchenChange, Press};
 use crate::robot::moment::{ArmSample, JointAngles};
 use crate::robot::safety::SafetyMode;
 use crate::session::settings::ArmKind;
-use crate::session::{Event, Session, Stamped};
+use crate::session::{Event, Session, TimestampedEvent};
 
 /// Period of updates of a moving arm, in nanoseconds.
 const EVERY_NS: u64 = 50_000_000;
@@ -43,7 +43,7 @@ const CONTACT: &str = "robot/contact";
 const HAND: &str = "human/hand/shape";
 
 /// The joints of a UR5 from base to tool, each with the colour of its curve.
-const JOINTS: [(&str, Colour); 6] = [
+const JOINTS: [(&str, SceneColour); 6] = [
     ("base", colours::ROBOT),
     ("shoulder", colours::HUMAN),
     ("elbow", colours::ASSISTANT),
@@ -54,8 +54,8 @@ const JOINTS: [(&str, Colour); 6] = [
 
 /// Arm, table, buttons and hand as the viewer shows them.
 #[derive(Clone, Debug)]
-pub struct ArmScene {
-    arm: Arm,
+pub struct RobotArmScene {
+    arm: SerialArm,
     /// Motion of the timed arm; `None` for the physical arm, whose samples are part of the session.
     motion: Option<JointMotion>,
     /// Session time and joint angles of the last update.
@@ -65,15 +65,15 @@ pub struct ArmScene {
     feels: bool,
 }
 
-impl ArmScene {
+impl RobotArmScene {
     /// The arm's pose in this session.
-    pub fn new(session: &Session) -> ArmScene {
-        let arm = Arm::ur5();
+    pub fn new(session: &Session) -> RobotArmScene {
+        let arm = SerialArm::ur5();
         let motion = JointMotion::new(&session.kitchen, &arm);
         let told = session.robot.arm.last.map(|(_, moment)| moment.joints);
         let joints = told.unwrap_or_else(|| motion.at(session.time));
         let motion = (session.spec.robot.arm == ArmKind::Timed).then_some(motion);
-        ArmScene { arm, motion, until: session.time, joints, feels: false }
+        RobotArmScene { arm, motion, until: session.time, joints, feels: false }
     }
 
     /// Entities that do not change: table, buttons, and the shapes of the arm's links.
@@ -132,11 +132,16 @@ impl ArmScene {
     }
 
     /// Entity updates of arm and hand from an event that has just been applied.
-    pub fn follow(&mut self, session: &Session, stamped: &Stamped, change: &Change) -> Vec<EntityUpdate> {
+    pub fn follow(
+        &mut self,
+        session: &Session,
+        stamped: &TimestampedEvent,
+        change: &KitchenChange,
+    ) -> Vec<EntityUpdate> {
         let now = stamped.time;
         let kitchen = &session.kitchen;
-        if let Change::Press { press: Press { agent, button, .. }, .. } | Change::UncountedPress { agent, button } =
-            *change
+        if let KitchenChange::Press { press: Press { agent, button, .. }, .. }
+        | KitchenChange::UncountedPress { agent, button } = *change
         {
             return match agent {
                 Agent::Human => {
@@ -205,7 +210,7 @@ impl ArmScene {
 }
 
 /// Entity updates with the poses of the arm's links, and the joint angles.
-fn places(arm: &Arm, joints: &JointAngles) -> Vec<EntityUpdate> {
+fn places(arm: &SerialArm, joints: &JointAngles) -> Vec<EntityUpdate> {
     let links = arm.links.iter().zip(arm.forward(joints)).skip(1);
     let links = links.map(|(link, place)| EntityUpdate::new(entity(&link.name), EntityData::Place(place)));
     let angles = JOINTS.iter().zip(joints);

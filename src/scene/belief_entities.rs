@@ -4,12 +4,12 @@ use super::colours;
 use super::entity_content::{EntityData, EntityUpdate, MarkShape, SceneSeries, slug};
 use crate::base::time::SessionTime;
 use crate::history::wording;
-use crate::kitchen::{Aspect, AspectId, Kitchen, State};
+use crate::kitchen::{AspectId, Kitchen, State, StateAspect};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::recorded_estimate::EstimateWitness;
-use crate::mind::{AspectBelief, BeliefWitness};
-use crate::session::{Event, Session, Stamped};
+use crate::mind::recorded_estimate::RecordedEstimate;
+use crate::mind::{AspectBelief, RecordedBelief};
+use crate::session::{Event, Session, TimestampedEvent};
 
 /// Period of updates of the belief estimate between presses, in nanoseconds.
 const EVERY_NS: u64 = 200_000_000;
@@ -94,7 +94,7 @@ impl BeliefScene {
     pub fn follow(
         &mut self,
         session: &Session,
-        stamped: &Stamped,
+        stamped: &TimestampedEvent,
         belief: Option<&DirichletBelief>,
     ) -> Vec<EntityUpdate> {
         match &stamped.event {
@@ -104,7 +104,7 @@ impl BeliefScene {
         }
     }
 
-    fn before_press(&mut self, session: &Session, witness: &EstimateWitness) -> Vec<EntityUpdate> {
+    fn before_press(&mut self, session: &Session, witness: &RecordedEstimate) -> Vec<EntityUpdate> {
         let aspects = || witness.aspects.iter();
         let mut rows: Vec<EntityUpdate> =
             aspects().flat_map(|told| estimate_rows(&told.aspect, told.p_truth)).collect();
@@ -130,7 +130,7 @@ impl BeliefScene {
                 Held { believes, p_truth: p_truth(index) }
             })
             .collect();
-        let value = |(aspect, held): (&Aspect, &Held)| estimate_rows(&aspect.name, held.p_truth);
+        let value = |(aspect, held): (&StateAspect, &Held)| estimate_rows(&aspect.name, held.p_truth);
         let mut rows: Vec<EntityUpdate> = kitchen.aspects.iter().zip(&held).flat_map(value).collect();
         rows.extend(self.in_words(session, &held));
         rows
@@ -159,7 +159,7 @@ impl BeliefScene {
 }
 
 /// Entity updates from the recorded belief of a simulated participant.
-fn truly(witness: &BeliefWitness) -> Vec<EntityUpdate> {
+fn truly(witness: &RecordedBelief) -> Vec<EntityUpdate> {
     let rows = |told: &AspectBelief| p_truth_rows(held_truly(&told.aspect), truly_wrong(&told.aspect), told.p_truth);
     witness.aspects.iter().flat_map(rows).collect()
 }

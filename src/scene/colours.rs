@@ -4,46 +4,46 @@
 use crate::kitchen::{Agent, AspectId, ContentId, Kitchen};
 
 /// A colour: red, green, blue and opacity, each from 0 to 255.
-pub type Colour = [u8; 4];
+pub type SceneColour = [u8; 4];
 
 /// Colour of the display's outline.
-pub const FRAME: Colour = [104, 110, 122, 255];
+pub const FRAME: SceneColour = [104, 110, 122, 255];
 /// Colour of locations without content.
-pub const EMPTY: Colour = [124, 130, 142, 255];
+pub const EMPTY: SceneColour = [124, 130, 142, 255];
 /// Colour of locations with content.
-pub const FULL: Colour = [0, 172, 160, 255];
+pub const FULL: SceneColour = [0, 172, 160, 255];
 /// Colour of the human and the human's presses.
-pub const HUMAN: Colour = [52, 152, 235, 255];
+pub const HUMAN: SceneColour = [52, 152, 235, 255];
 /// Colour of the human's hand and forearm.
-pub const SKIN: Colour = [222, 170, 136, 255];
+pub const SKIN: SceneColour = [222, 170, 136, 255];
 /// Colour of the robot and its presses.
-pub const ROBOT: Colour = [236, 136, 32, 255];
+pub const ROBOT: SceneColour = [236, 136, 32, 255];
 /// Colour of signals, and of usable gaze samples.
-pub const SIGNAL: Colour = [236, 184, 0, 255];
+pub const SIGNAL: SceneColour = [236, 184, 0, 255];
 /// Colour of what the wizard sends.
-pub const WIZARD: Colour = [180, 100, 230, 255];
+pub const WIZARD: SceneColour = [180, 100, 230, 255];
 /// Colour of what the assistant advises or sends.
-pub const ASSISTANT: Colour = [40, 176, 104, 255];
+pub const ASSISTANT: SceneColour = [40, 176, 104, 255];
 /// Colour of errors and stops.
-pub const ERROR: Colour = [232, 60, 60, 255];
+pub const ERROR: SceneColour = [232, 60, 60, 255];
 /// Colour of less important curves and texts.
-pub const QUIET: Colour = [134, 140, 152, 255];
+pub const QUIET: SceneColour = [134, 140, 152, 255];
 /// Colour of gaze samples that cannot be used.
-pub const LOST: Colour = [120, 120, 120, 255];
+pub const LOST: SceneColour = [120, 120, 120, 255];
 /// Colour of the table.
-pub const TABLE: Colour = [92, 84, 76, 255];
+pub const TABLE: SceneColour = [92, 84, 76, 255];
 /// Colour of buttons on the table.
-pub const BUTTON: Colour = [176, 58, 58, 255];
+pub const BUTTON: SceneColour = [176, 58, 58, 255];
 /// Colour of the arm's links.
-pub const STEEL: Colour = [176, 186, 200, 255];
+pub const STEEL: SceneColour = [176, 186, 200, 255];
 /// Colour of the arm's joints.
-pub const JOINT: Colour = [82, 132, 190, 255];
+pub const JOINT: SceneColour = [82, 132, 190, 255];
 
 /// Hues of ingredients that do not look alike: yellow, green, orange, blue, pink, violet, cyan, lime.
 const HUES: [f64; 8] = [0.13, 0.38, 0.06, 0.58, 0.93, 0.75, 0.48, 0.22];
 
 /// The colour of an agent.
-pub fn agent_colour(agent: Agent) -> Colour {
+pub fn agent_colour(agent: Agent) -> SceneColour {
     match agent {
         Agent::Human => HUMAN,
         Agent::Robot => ROBOT,
@@ -51,7 +51,7 @@ pub fn agent_colour(agent: Agent) -> Colour {
 }
 
 /// The colour of an item: ingredients that look alike share a hue, and further processed ones are paler.
-pub fn of_item(kitchen: &Kitchen, item: ContentId) -> Colour {
+pub fn of_item(kitchen: &Kitchen, item: ContentId) -> SceneColour {
     let content = kitchen.content(item);
     let own = content.ingredient.unwrap_or_default();
     let alike = content.look_alikes.iter().filter_map(|&other| kitchen.content(other).ingredient);
@@ -63,13 +63,13 @@ pub fn of_item(kitchen: &Kitchen, item: ContentId) -> Colour {
 }
 
 /// The colour of a state aspect, for its curves and for the location's name in the kitchen.
-pub fn of_aspect(aspect: AspectId) -> Colour {
+pub fn of_aspect(aspect: AspectId) -> SceneColour {
     let nth = aspect.index();
     of_hue((0.02 + nth as f64 * 0.618).fract(), if nth.is_multiple_of(2) { 0.75 } else { 0.45 }, 0.95)
 }
 
 /// The colour with this hue, saturation and value, each from 0 to 1.
-fn of_hue(hue: f64, saturation: f64, value: f64) -> Colour {
+fn of_hue(hue: f64, saturation: f64, value: f64) -> SceneColour {
     let channel = |shift: f64| {
         let k = (shift + hue * 6.0) % 6.0;
         let part = value - value * saturation * k.min(4.0 - k).clamp(0.0, 1.0);

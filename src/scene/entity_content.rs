@@ -3,7 +3,7 @@
 
 use nalgebra::Isometry3;
 
-use super::colours::Colour;
+use super::colours::SceneColour;
 use crate::arm::link::CollisionSolid;
 
 /// New content of one entity in Rerun's scene.
@@ -36,12 +36,12 @@ pub enum EntityData {
         /// Radius of the circle, in millimetres.
         around: f64,
         /// Colour of point and circle.
-        colour: Colour,
+        colour: SceneColour,
     },
     /// Points in space, with labels.
     Points(Vec<ScenePoint>),
     /// Solids in the entity's own coordinate frame.
-    Solids(Vec<CollisionSolid>, Colour),
+    Solids(Vec<CollisionSolid>, SceneColour),
     /// Pose of the entity's coordinate frame in the frame of the robot's base.
     Place(Isometry3<f64>),
     /// A value of a time series.
@@ -55,11 +55,11 @@ pub enum EntityData {
     /// A line of the text log.
     Words {
         /// Level of the line in the log.
-        level: LogLevel,
+        level: SceneLogLevel,
         /// Text of the line.
         text: String,
         /// Colour of the line.
-        colour: Colour,
+        colour: SceneColour,
     },
     /// A page of text in Markdown, which replaces the previous page.
     Page(String),
@@ -79,7 +79,7 @@ pub struct SceneArea {
     /// Height of the rectangle, in millimetres.
     pub height: f64,
     /// Colour of the outline.
-    pub colour: Colour,
+    pub colour: SceneColour,
     /// Half the width of the outline, in millimetres.
     pub line: f64,
 }
@@ -94,7 +94,7 @@ pub struct SceneDisc {
     /// Label below the disc's centre; empty for none.
     pub words: String,
     /// Colour of the disc.
-    pub colour: Colour,
+    pub colour: SceneColour,
 }
 
 /// A labelled point in space, in metres.
@@ -107,7 +107,7 @@ pub struct ScenePoint {
     /// Label beside the point; empty for none.
     pub words: String,
     /// Colour of the point.
-    pub colour: Colour,
+    pub colour: SceneColour,
 }
 
 /// Name and colour of a time series.
@@ -116,7 +116,7 @@ pub struct SceneSeries {
     /// Name of the series in the legend.
     pub name: String,
     /// Colour of the line or the marks.
-    pub colour: Colour,
+    pub colour: SceneColour,
 }
 
 /// Shape of the marks of a time series.
@@ -132,7 +132,7 @@ pub enum MarkShape {
 
 /// Severity of a line in the text log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LogLevel {
+pub enum SceneLogLevel {
     /// Something happened as intended.
     Info,
     /// A press had no effect, or a signal was taken back.

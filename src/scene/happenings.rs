@@ -1,17 +1,17 @@
 //! Text log of events, and the net benefit of signals, for Rerun.
 
 use super::EntityUpdate;
-use super::colours::{self, Colour};
-use super::entity_content::{EntityData, LogLevel, MarkShape, SceneSeries, slug};
-use crate::communication::offer::{OfferEnd, OfferedAdvice};
+use super::colours::{self, SceneColour};
+use super::entity_content::{EntityData, MarkShape, SceneLogLevel, SceneSeries, slug};
+use crate::communication::offer::{OfferCloseReason, OfferedAdvice};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal, signals};
 use crate::history::wording;
 use crate::kitchen::{Agent, AspectId, Kitchen};
 use crate::measures::JudgedPress;
-use crate::session::event::SignalEnd;
+use crate::session::event::SignalEndReason;
 use crate::session::protocol::ProtocolEvent;
-use crate::session::{Session, Stamped, TimelineEntry, TimelineEvent};
+use crate::session::{Session, TimelineEntry, TimelineEvent, TimestampedEvent};
 
 /// Path of the error marks below the belief curves.
 const ERROR_MARKS: &str = "human/errors/marks";
@@ -28,7 +28,7 @@ fn benefit(signal: &Signal) -> String {
 /// Names and colours of curves and marks.
 pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     let (kitchen, assistant) = (&session.kitchen, &session.spec.assistant);
-    let line = |entity: String, name: String, colour: Colour| {
+    let line = |entity: String, name: String, colour: SceneColour| {
         EntityUpdate::new(entity, EntityData::Line(SceneSeries { name, colour }))
     };
     let mut rows: Vec<EntityUpdate> = signals(kitchen, session.spec.signals.own_hand)
@@ -46,7 +46,7 @@ pub fn fixed(session: &Session) -> Vec<EntityUpdate> {
     rows
 }
 
-fn say(entity: &str, level: LogLevel, text: String, colour: Colour) -> EntityUpdate {
+fn say(entity: &str, level: SceneLogLevel, text: String, colour: SceneColour) -> EntityUpdate {
     EntityUpdate::new(entity, EntityData::Words { level, text, colour })
 }
 
@@ -66,35 +66,35 @@ pub fn entry(session: &Session, entry: &TimelineEntry, error: Option<&JudgedPres
             match error.filter(|_| agent == Agent::Human) {
                 Some(press) => {
                     let text = format!("{text} ({})", wording::error(&session.kitchen, press));
-                    say(&entity, LogLevel::Error, text, colours::ERROR)
+                    say(&entity, SceneLogLevel::Error, text, colours::ERROR)
                 }
-                None if no_effect.is_none() => say(&entity, LogLevel::Info, text, colours::agent_colour(agent)),
-                None => say(&entity, LogLevel::Warning, text, colours::agent_colour(agent)),
+                None if no_effect.is_none() => say(&entity, SceneLogLevel::Info, text, colours::agent_colour(agent)),
+                None => say(&entity, SceneLogLevel::Warning, text, colours::agent_colour(agent)),
             }
         }
         TimelineEvent::Signal { by: Sender::Wizard, .. } => {
-            say("wizard/signals", LogLevel::Info, text, colours::WIZARD)
+            say("wizard/signals", SceneLogLevel::Info, text, colours::WIZARD)
         }
         TimelineEvent::Signal { by: Sender::Assistant, .. } => {
-            say("assistant/signals", LogLevel::Info, text, colours::ASSISTANT)
+            say("assistant/signals", SceneLogLevel::Info, text, colours::ASSISTANT)
         }
-        TimelineEvent::SignalEnded(SignalEnd::TakenBack) => {
-            say("wizard/signals", LogLevel::Warning, text, colours::WIZARD)
+        TimelineEvent::SignalEnded(SignalEndReason::TakenBack) => {
+            say("wizard/signals", SceneLogLevel::Warning, text, colours::WIZARD)
         }
-        TimelineEvent::ArmStopped { .. } => say("robot/events", LogLevel::Error, text, colours::ERROR),
-        TimelineEvent::ArmTouched { .. } => say("robot/events", LogLevel::Warning, text, colours::ROBOT),
-        _ if who == "wizard" || who == "note" => say("wizard/hands", LogLevel::Info, text, colours::WIZARD),
-        _ => say("trial/events", LogLevel::Info, text, colours::QUIET),
+        TimelineEvent::ArmStopped { .. } => say("robot/events", SceneLogLevel::Error, text, colours::ERROR),
+        TimelineEvent::ArmTouched { .. } => say("robot/events", SceneLogLevel::Warning, text, colours::ROBOT),
+        _ if who == "wizard" || who == "note" => say("wizard/hands", SceneLogLevel::Info, text, colours::WIZARD),
+        _ => say("trial/events", SceneLogLevel::Info, text, colours::QUIET),
     }
 }
 
 /// A line of the text log for an event of the study protocol.
 pub fn protocol(event: &ProtocolEvent) -> EntityUpdate {
-    say("trial/events", LogLevel::Info, wording::protocol(event), colours::QUIET)
+    say("trial/events", SceneLogLevel::Info, wording::protocol(event), colours::QUIET)
 }
 
 /// The judgement of the press in this event, if the press was an error.
-pub fn error<'a>(stamped: &Stamped, judged: &'a [JudgedPress]) -> Option<&'a JudgedPress> {
+pub fn error<'a>(stamped: &TimestampedEvent, judged: &'a [JudgedPress]) -> Option<&'a JudgedPress> {
     let press = judged.binary_search_by_key(&stamped.seq, |press| press.seq).ok().map(|index| &judged[index]);
     press.filter(|press| press.verdict.error)
 }
@@ -117,11 +117,11 @@ pub fn advice(kitchen: &Kitchen, advice: &Recommendation) -> Vec<EntityUpdate> {
         let reason = advice.reason.as_ref().map(|reason| wording::reason(kitchen, reason));
         let why = reason.map_or_else(String::new, |reason| format!("; {}", reason.words()));
         let text = format!("assistant advises: {} (net {net:+.2}){why}", wording::signal(best));
-        rows.push(say("assistant/advice", LogLevel::Info, text, colours::ASSISTANT));
+        rows.push(say("assistant/advice", SceneLogLevel::Info, text, colours::ASSISTANT));
     }
     if let Some(proposal) = &advice.proposal {
         let text = format!("assistant proposes: {}", wording::proposal(&proposal.presses));
-        rows.push(say("assistant/advice", LogLevel::Info, text, colours::ASSISTANT));
+        rows.push(say("assistant/advice", SceneLogLevel::Info, text, colours::ASSISTANT));
     }
     rows
 }
@@ -130,10 +130,10 @@ pub fn advice(kitchen: &Kitchen, advice: &Recommendation) -> Vec<EntityUpdate> {
 pub fn offer_opened(offer: &OfferedAdvice) -> EntityUpdate {
     let unseen = if offer.visible { "" } else { " (not visible to a wizard)" };
     let text = format!("offer to the wizard: {}{unseen}", wording::offered(&offer.what));
-    say("assistant/offers", LogLevel::Info, text, colours::ASSISTANT)
+    say("assistant/offers", SceneLogLevel::Info, text, colours::ASSISTANT)
 }
 
 /// A line of the text log for the closing of an offer.
-pub fn offer_closed(reason: OfferEnd) -> EntityUpdate {
-    say("assistant/offers", LogLevel::Info, format!("offer closes: {}", reason.words()), colours::ASSISTANT)
+pub fn offer_closed(reason: OfferCloseReason) -> EntityUpdate {
+    say("assistant/offers", SceneLogLevel::Info, format!("offer closes: {}", reason.words()), colours::ASSISTANT)
 }

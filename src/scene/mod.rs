@@ -13,11 +13,11 @@ mod place_entities;
 mod probe_entities;
 
 use crate::base::time::SessionTime;
-use crate::kitchen::Change;
+use crate::kitchen::KitchenChange;
 use crate::measures::JudgedPress;
 use crate::mind::dirichlet::DirichletBelief;
-use crate::session::{Event, Session, Stamped, apply};
-use arm::ArmScene;
+use crate::session::{Event, Session, TimestampedEvent, apply};
+use arm::RobotArmScene;
 use belief_entities::BeliefScene;
 pub use entity_content::{EntityData, EntityUpdate};
 use probe_entities::ProbeScene;
@@ -51,7 +51,7 @@ pub struct DerivedData<'a> {
 #[derive(Clone, Debug)]
 pub struct SessionScene {
     session: Session,
-    arm: ArmScene,
+    arm: RobotArmScene,
     belief: BeliefScene,
     probes: ProbeScene,
     /// Sequence number of the first event that the scene has not shown.
@@ -65,7 +65,7 @@ impl SessionScene {
     pub fn new(session: &Session, next: u64) -> SessionScene {
         SessionScene {
             session: session.clone(),
-            arm: ArmScene::new(session),
+            arm: RobotArmScene::new(session),
             belief: BeliefScene::default(),
             probes: ProbeScene::default(),
             next,
@@ -105,7 +105,7 @@ impl SessionScene {
 
     /// Applies the next event and returns the entity updates in order of time. An event that is not valid in the
     /// session's state, or was applied before, has none.
-    pub fn see(&mut self, stamped: &Stamped, derived: DerivedData<'_>) -> Vec<SceneUpdate> {
+    pub fn see(&mut self, stamped: &TimestampedEvent, derived: DerivedData<'_>) -> Vec<SceneUpdate> {
         if stamped.seq < self.next {
             return Vec::new();
         }
@@ -128,7 +128,12 @@ impl SessionScene {
         self.arm.until(time).into_iter().map(moment).collect()
     }
 
-    fn changes(&mut self, stamped: &Stamped, change: &Change, derived: DerivedData<'_>) -> Vec<EntityUpdate> {
+    fn changes(
+        &mut self,
+        stamped: &TimestampedEvent,
+        change: &KitchenChange,
+        derived: DerivedData<'_>,
+    ) -> Vec<EntityUpdate> {
         let session = &self.session;
         let changed = change.states().into_iter();
         let mut rows: Vec<EntityUpdate> = changed

@@ -1,12 +1,13 @@
 //! The kitchen as on the wall display, for Rerun: locations with their contents, the present signal, and the gaze.
 
-use super::colours::{self, Colour};
+use super::colours::{self, SceneColour};
 use super::entity_content::{EntityData, EntityUpdate, SceneArea, SceneDisc, slug};
 use crate::communication::Signal;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 use crate::history::wording;
 use crate::kitchen::{
-    self, Agent, AspectId, ContentId, Kitchen, Location, LocationId, LocationKind, OrderContent, State, Storage,
+    self, Agent, AspectId, ContentId, IngredientStorage, Kitchen, Location, LocationId, LocationKind, OrderContent,
+    State,
 };
 use crate::session::{Session, proposals};
 
@@ -18,7 +19,7 @@ const ABOVE_MM: f64 = 52.0;
 
 const MM: f64 = 1000.0;
 
-fn area(kitchen: &Kitchen, on: kitchen::DisplayArea, colour: Colour) -> SceneArea {
+fn area(kitchen: &Kitchen, on: kitchen::DisplayArea, colour: SceneColour) -> SceneArea {
     let [width_mm, height_mm] = kitchen.display_m.map(|length| length * MM);
     SceneArea {
         left: on.x * width_mm,
@@ -30,7 +31,7 @@ fn area(kitchen: &Kitchen, on: kitchen::DisplayArea, colour: Colour) -> SceneAre
     }
 }
 
-fn words_at(at: [f64; 2], words: &str, colour: Colour) -> SceneDisc {
+fn words_at(at: [f64; 2], words: &str, colour: SceneColour) -> SceneDisc {
     SceneDisc { at, radius: 0.0, words: words.to_string(), colour }
 }
 
@@ -60,7 +61,7 @@ pub fn fixed(kitchen: &Kitchen) -> Vec<EntityUpdate> {
     rows
 }
 
-fn dimmed([red, green, blue, opacity]: Colour) -> Colour {
+fn dimmed([red, green, blue, opacity]: SceneColour) -> SceneColour {
     [red / 2, green / 2, blue / 2, opacity]
 }
 
@@ -105,7 +106,7 @@ fn content(
     on: kitchen::DisplayArea,
     items: &[ContentId],
     words: &str,
-    colour: Colour,
+    colour: SceneColour,
 ) -> Vec<SceneDisc> {
     let SceneArea { left, top, width, height, .. } = area(kitchen, on, colour);
     let share = width / (items.len() as f64 + 1.0);
@@ -121,7 +122,7 @@ fn content(
 }
 
 /// Discs for a storage: its item above its name, both inside its area, since storages are adjacent.
-fn stored(kitchen: &Kitchen, storage: &Storage) -> [SceneDisc; 2] {
+fn stored(kitchen: &Kitchen, storage: &IngredientStorage) -> [SceneDisc; 2] {
     let SceneArea { left, top, width, height, .. } = area(kitchen, storage.display, colours::QUIET);
     let middle = left + width / 2.0;
     let disc = SceneDisc {

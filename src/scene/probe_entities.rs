@@ -2,7 +2,7 @@
 
 use super::EntityUpdate;
 use super::colours;
-use super::entity_content::{EntityData, LogLevel, slug};
+use super::entity_content::{EntityData, SceneLogLevel, slug};
 use crate::history::{probe_wording, wording};
 use crate::kitchen::Agent;
 use crate::mind::dirichlet::DirichletBelief;
@@ -71,7 +71,7 @@ impl ProbeScene {
         });
         let beside = estimate.as_ref().map_or_else(String::new, |estimate| format!(" (estimate: {estimate})"));
         let text = format!("human answers, {about}: {said}{beside}");
-        let line = EntityData::Words { level: LogLevel::Info, text, colour: colours::agent_colour(Agent::Human) };
+        let line = EntityData::Words { level: SceneLogLevel::Info, text, colour: colours::agent_colour(Agent::Human) };
         let lane = |kind: &str| format!("human/probes/{}_{kind}", slug(&about));
         let mut rows = vec![EntityUpdate::new(SAID, line)];
         for (kind, text) in [("answer", Some(said)), ("estimate", estimate)] {

@@ -1,9 +1,9 @@
 //! The gaze accuracy check in a session: targets are shown one after another on the display, and the gaze is compared
 //! with them. The check runs only while the trial does not.
 
-pub use super::gaze_check::{AcceptedGazeCheck, CalibrationEvent, GazeCheckResult, RunningGazeCheck};
+pub use super::gaze_check::{AcceptedGazeCheck, GazeCheckEvent, GazeCheckResult, RunningGazeCheck};
 use super::participant_settings::GazeSource;
-use super::phase::Phase;
+use super::phase::TrialPhase;
 use super::session_state::Session;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
@@ -35,61 +35,59 @@ impl Session {
 ///
 /// # Errors
 /// The reason for the refusal, in words for the wizard.
-pub(super) fn admit(session: &Session, event: &CalibrationEvent) -> Result<(), &'static str> {
+pub(super) fn admit(session: &Session, event: &GazeCheckEvent) -> Result<(), &'static str> {
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     let check = session.calibration.as_ref();
     match event {
-        CalibrationEvent::Begun { targets } => {
+        GazeCheckEvent::Begun { targets } => {
             unless(session.spec.participant.gaze != GazeSource::None, "there is no gaze in this session")?;
-            unless(session.phase != Phase::Running, "pause the trial first: the targets hide the kitchen")?;
+            unless(session.phase != TrialPhase::Running, "pause the trial first: the targets hide the kitchen")?;
             unless(!session.is_frozen(), "a probe is held: check the gaze after it")?;
             let are_places = targets.iter().flatten().all(|value| (0.0..=1.0).contains(value));
             unless(!targets.is_empty() && targets.len() <= 64 && are_places, "the targets are not on the display")
         }
-        CalibrationEvent::TargetShown { target } => {
+        GazeCheckEvent::TargetShown { target } => {
             let open = check.filter(|check| !check.are_hidden);
             unless(open.is_some_and(|check| *target < check.targets.len()), "there is no such target to be shown")
         }
-        CalibrationEvent::TargetsHidden => {
-            unless(check.is_some_and(|check| check.shown.is_some()), "no target is shown")
-        }
-        CalibrationEvent::Measured { .. } => {
+        GazeCheckEvent::TargetsHidden => unless(check.is_some_and(|check| check.shown.is_some()), "no target is shown"),
+        GazeCheckEvent::Measured { .. } => {
             unless(check.is_some_and(|check| check.are_hidden && check.result.is_none()), "there is nothing to measure")
         }
-        CalibrationEvent::Accepted { .. } => {
+        GazeCheckEvent::Accepted { .. } => {
             let found = check.and_then(|check| check.result.as_ref()?.found.as_ref());
             unless(found.is_some(), "nothing was measured that could be accepted")
         }
-        CalibrationEvent::Carried { .. } => {
+        GazeCheckEvent::Carried { .. } => {
             unless(session.spec.participant.gaze != GazeSource::None, "there is no gaze in this session")?;
-            unless(session.phase == Phase::Ready, "the trial has begun")
+            unless(session.phase == TrialPhase::Ready, "the trial has begun")
         }
-        CalibrationEvent::Dismissed => unless(check.is_some(), "the calibration is not being checked"),
+        GazeCheckEvent::Dismissed => unless(check.is_some(), "the calibration is not being checked"),
     }
 }
 
 /// Applies an event of an accuracy check that the session accepts.
-pub(super) fn apply(session: &mut Session, now: SessionTime, event: &CalibrationEvent) {
+pub(super) fn apply(session: &mut Session, now: SessionTime, event: &GazeCheckEvent) {
     match event {
-        CalibrationEvent::Begun { targets } => {
+        GazeCheckEvent::Begun { targets } => {
             let samples = vec![Vec::new(); targets.len()];
             let targets = targets.clone();
             session.calibration =
                 Some(RunningGazeCheck { targets, shown: None, samples, at: now, result: None, are_hidden: false });
             return;
         }
-        CalibrationEvent::Dismissed => {
+        GazeCheckEvent::Dismissed => {
             session.calibration = None;
             return;
         }
-        CalibrationEvent::Accepted { corrected } => {
+        GazeCheckEvent::Accepted { corrected } => {
             let outcome = session.calibration.take().and_then(|check| check.result);
             if let Some(found) = outcome.and_then(|outcome| outcome.found) {
                 session.calibrated = Some(AcceptedGazeCheck { at: now, found, corrected: *corrected });
             }
             return;
         }
-        CalibrationEvent::Carried { found, corrected } => {
+        GazeCheckEvent::Carried { found, corrected } => {
             session.calibrated = Some(AcceptedGazeCheck { at: now, found: found.clone(), corrected: *corrected });
             return;
         }
@@ -98,9 +96,9 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &Calibration
     let Some(check) = &mut session.calibration else { return };
     check.at = now;
     match event {
-        CalibrationEvent::TargetShown { target } => check.shown = Some((*target, now)),
-        CalibrationEvent::TargetsHidden => (check.shown, check.are_hidden) = (None, true),
-        CalibrationEvent::Measured { found } => check.result = Some(GazeCheckResult { found: found.clone() }),
+        GazeCheckEvent::TargetShown { target } => check.shown = Some((*target, now)),
+        GazeCheckEvent::TargetsHidden => (check.shown, check.are_hidden) = (None, true),
+        GazeCheckEvent::Measured { found } => check.result = Some(GazeCheckResult { found: found.clone() }),
         _ => {}
     }
 }

@@ -1,8 +1,8 @@
 //! Preconditions of events: whether a session accepts an event now. They are checked before an input is taken, and
 //! again when an event is applied.
 
-use super::event::{EndReason, Event, SignalEnd};
-use super::phase::Phase;
+use super::event::{Event, SignalEndReason, TrialEndReason};
+use super::phase::TrialPhase;
 use super::probe_event::ProbeEvent;
 use super::protocol::{self, ProtocolEvent};
 use super::session_state::Session;
@@ -21,23 +21,23 @@ use crate::kitchen::{Agent, LocationKind};
 pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
     let phase = session.phase;
-    refuse_if(phase == Phase::Closed, "the session is over")?;
+    refuse_if(phase == TrialPhase::Closed, "the session is over")?;
     match event {
         Event::TrialStarted => {
-            refuse_if(phase != Phase::Ready, "the trial was started already")?;
+            refuse_if(phase != TrialPhase::Ready, "the trial was started already")?;
             refuse_if(session.is_calibrating(), "the calibration is being checked")?;
             protocol::admit_trial(session)
         }
-        Event::Preflight { .. } => refuse_if(phase != Phase::Ready, "the trial was started already"),
+        Event::Preflight { .. } => refuse_if(phase != TrialPhase::Ready, "the trial was started already"),
         Event::TrialPaused => refuse_if(!session.can_be_paused(), "no trial runs"),
         Event::TrialResumed => {
-            refuse_if(phase != Phase::Paused, "the trial is not paused")?;
+            refuse_if(phase != TrialPhase::Paused, "the trial is not paused")?;
             refuse_if(session.can_be_paused(), "the trial goes on by itself after the probe")?;
             refuse_if(session.is_calibrating(), "the calibration is being checked")
         }
-        Event::TrialEnded { reason: EndReason::Aborted } => Err("an aborted trial needs a reason: trial_aborted"),
+        Event::TrialEnded { reason: TrialEndReason::Aborted } => Err("an aborted trial needs a reason: trial_aborted"),
         Event::TrialEnded { .. } => {
-            refuse_if(!matches!(phase, Phase::Running | Phase::Paused), "there is no trial to end")
+            refuse_if(!matches!(phase, TrialPhase::Running | TrialPhase::Paused), "there is no trial to end")
         }
         Event::Gaze(sample) => {
             let finite = sample.x.is_finite() && sample.y.is_finite() && sample.confidence.is_finite();
@@ -56,16 +56,18 @@ pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
             refuse_if(offer.is_some_and(|seq| !is_there(seq)), "that was not the last offer")
         }
         Event::OfferOpened(_) => {
-            refuse_if(phase != Phase::Running, "no trial runs")?;
+            refuse_if(phase != TrialPhase::Running, "no trial runs")?;
             refuse_if(session.offers.unclosed().is_some(), "an offer is open already")
         }
         Event::OfferClosed { offer, .. } => {
             let is_open = session.offers.unclosed().is_some_and(|open| open.seq == *offer);
             refuse_if(!is_open, "that offer is not open")
         }
-        Event::HumanWaits { .. } | Event::SeemsUnaware { .. } => refuse_if(phase != Phase::Running, "no trial runs"),
+        Event::HumanWaits { .. } | Event::SeemsUnaware { .. } => {
+            refuse_if(phase != TrialPhase::Running, "no trial runs")
+        }
         Event::Advised(_) => {
-            refuse_if(phase != Phase::Running, "no trial runs")?;
+            refuse_if(phase != TrialPhase::Running, "no trial runs")?;
             refuse_if(!session.spec.asks_assistant(), "nobody asks the assistant in this session")
         }
         Event::SignalEnded { .. } => refuse_if(session.shown.is_none(), "no signal is shown"),
@@ -89,7 +91,7 @@ pub fn may_send(session: &Session, by: Sender) -> Result<(), &'static str> {
 }
 
 fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'static str> {
-    if session.phase != Phase::Running {
+    if session.phase != TrialPhase::Running {
         return Err("signals are sent while the trial runs");
     }
     may_send(session, by)?;
@@ -170,7 +172,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         | Event::Tracker(_)
         | Event::SessionEnded => true,
         Event::Calibration(event) => event.is_external(),
-        Event::TrialEnded { reason } => *reason == EndReason::Wizard,
+        Event::TrialEnded { reason } => *reason == TrialEndReason::Wizard,
         Event::Probe(event) => match event {
             ProbeEvent::Requested | ProbeEvent::Skipped { .. } => true,
             ProbeEvent::Answered { .. } => participant.kind != ParticipantKind::Simulated,
@@ -178,7 +180,7 @@ pub fn is_external(session: &Session, event: &Event) -> bool {
         },
         Event::Protocol(event) => !matches!(event, ProtocolEvent::CriterionChecked { .. }),
         Event::SignalShown { by, .. } => *by == Sender::Wizard && !session.spec.scripts_wizard(),
-        Event::SignalEnded { reason } => *reason == SignalEnd::TakenBack,
+        Event::SignalEnded { reason } => *reason == SignalEndReason::TakenBack,
         Event::Gaze(_) => !participant.simulates_gaze(),
         Event::Press { agent, .. } => *agent == Agent::Human && participant.kind != ParticipantKind::Simulated,
         Event::OrderShown { .. }

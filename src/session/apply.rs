@@ -1,24 +1,26 @@
-//! `apply(&mut Session, &Stamped) -> Applied`: the only function that changes a session, by applying one event.
+//! `apply(&mut Session, &TimestampedEvent)`: the only function that changes a session, by applying one event.
 
 use super::admit::{admit, is_too_early};
-use super::event::{EndReason, Event, SignalEnd, Stamped};
+use super::event::{Event, SignalEndReason, TimestampedEvent, TrialEndReason};
 use super::gaze_samples::take_sample;
-use super::phase::Phase;
-use super::session_state::{Served, Session, ShownSignal};
+use super::phase::TrialPhase;
+use super::session_state::{ServedOrder, Session, ShownSignal};
 use super::timeline_entry::TimelineEvent;
 use super::{accuracy_check, offers, probes, protocol, robot_changes, silence, trial_clock};
 use crate::base::time::SessionTime;
-use crate::communication::offer::{GAP, HOLD, OfferBook, OfferEnd};
+use crate::communication::offer::{GAP, HOLD, OfferCloseReason, OfferHistory};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
-use crate::kitchen::{Agent, ButtonAction, ButtonId, Change, ContentId, DishId, LocationId, OrderContent, State};
+use crate::kitchen::{
+    Agent, ButtonAction, ButtonId, ContentId, DishId, KitchenChange, LocationId, OrderContent, State,
+};
 
 /// An action that the running session must perform after an event. A replay performs none.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Effect {
-    /// Set a timer; [`Effect::Postpone`] can delay it.
+pub enum SessionEffect {
+    /// Set a timer; [`SessionEffect::Postpone`] can delay it.
     At {
-        /// The session time at which the timer is due; [`Effect::Postpone`] can delay it.
+        /// The session time at which the timer is due; [`SessionEffect::Postpone`] can delay it.
         time: SessionTime,
         /// What happens when the timer is due.
         timer: Timer,
@@ -68,11 +70,11 @@ pub struct ApplyError {
 
 /// Result of applying an event: actions to perform, and the change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Applied {
+pub struct AppliedEvent {
     /// The actions to perform because of the event, in order.
-    pub effects: Vec<Effect>,
+    pub effects: Vec<SessionEffect>,
     /// The change of the kitchen's state by the event.
-    pub change: Change,
+    pub change: KitchenChange,
 }
 
 /// Applies an event to the session.
@@ -80,11 +82,11 @@ pub struct Applied {
 /// # Errors
 /// Unknown names, decreasing times, and events that the session does not accept now (see [`admit`]). The session is
 /// unchanged then.
-pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyError> {
+pub fn apply(session: &mut Session, stamped: &TimestampedEvent) -> Result<AppliedEvent, ApplyError> {
     check(session, stamped)?;
     let now = stamped.time;
     let named = Named { session, seq: stamped.seq };
-    let (mut effects, mut change) = (Vec::new(), Change::None);
+    let (mut effects, mut change) = (Vec::new(), KitchenChange::None);
     match &stamped.event {
         Event::TrialStarted => {
             session.cue = Some(stamped.seq);
@@ -95,7 +97,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         Event::TrialEnded { reason } => end_trial(session, now, *reason, &mut effects),
         Event::TrialAborted { reason } => {
             session.aborted = Some(reason.clone());
-            end_trial(session, now, EndReason::Aborted, &mut effects);
+            end_trial(session, now, TrialEndReason::Aborted, &mut effects);
         }
         Event::TrialExcluded { reason } => {
             session.excluded = Some(reason.clone());
@@ -152,17 +154,17 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         Event::KitchenCorrected { location, content } => {
             let (location, content) = (named.location(location)?, named.content(content)?);
             let (before, after) = update(session, now, |state| state.set_content(location, content));
-            change = Change::Correction { location, before, after };
+            change = KitchenChange::Correction { location, before, after };
             session.note(now, TimelineEvent::Corrected { location });
         }
         Event::Advised(advice) => advise(session, advice.clone()),
         Event::OfferOpened(advice) => {
             session.offers.opens(stamped.seq, now, advice.clone());
-            effects.push(Effect::At { time: now + HOLD, timer: Timer::ReviewOffer });
+            effects.push(SessionEffect::At { time: now + HOLD, timer: Timer::ReviewOffer });
         }
         Event::OfferClosed { reason, .. } => {
             session.offers.closes(now, *reason);
-            effects.push(Effect::At { time: now + GAP, timer: Timer::ReviewOffer });
+            effects.push(SessionEffect::At { time: now + GAP, timer: Timer::ReviewOffer });
         }
         Event::SignalShown { by, signal, offer, .. } => {
             let location = signal.target().map(|name| named.location(name)).transpose()?;
@@ -175,7 +177,7 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         }
         Event::SignalEnded { reason } => end_signal(session, now, *reason, &mut effects),
         Event::Marker { note: text } => session.note(now, TimelineEvent::Marker(text.clone())),
-        Event::Probe(event) => effects.extend(probes::apply(session, now, event).map(Effect::Postpone)),
+        Event::Probe(event) => effects.extend(probes::apply(session, now, event).map(SessionEffect::Postpone)),
         Event::Protocol(event) => protocol::apply(session, event),
         Event::Unblinded { .. } => session.unblinded = true,
         Event::Screen(_) => session.has_console = true,
@@ -185,11 +187,11 @@ pub fn apply(session: &mut Session, stamped: &Stamped) -> Result<Applied, ApplyE
         Event::SessionEnded => close(session, now, &mut effects),
     }
     session.time = now;
-    Ok(Applied { effects, change })
+    Ok(AppliedEvent { effects, change })
 }
 
 /// Checks sequence number, time and precondition of an event.
-fn check(session: &Session, stamped: &Stamped) -> Result<(), ApplyError> {
+fn check(session: &Session, stamped: &TimestampedEvent) -> Result<(), ApplyError> {
     if stamped.time < session.time {
         return Err(ApplyError {
             seq: stamped.seq,
@@ -256,28 +258,28 @@ fn update(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State))
     (before, session.state)
 }
 
-fn set_order(session: &mut Session, now: SessionTime, order: LocationId, content: OrderContent) -> Change {
+fn set_order(session: &mut Session, now: SessionTime, order: LocationId, content: OrderContent) -> KitchenChange {
     let (before, after) = update(session, now, |state| state.set_order(order, content));
-    Change::Order { order, before, after }
+    KitchenChange::Order { order, before, after }
 }
 
-fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) -> Change {
-    session.phase = Phase::Running;
+fn start(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffect>) -> KitchenChange {
+    session.phase = TrialPhase::Running;
     session.trial_start = now;
     session.paused_total = SessionTime::ZERO;
     session.presses = [0; 2];
     session.served.clear();
-    session.offers = OfferBook::default();
+    session.offers = OfferHistory::default();
     probes::start(session);
     let empty = session.kitchen.empty_state();
     let (before, after) = update(session, now, |state| *state = empty);
-    session.note(now, TimelineEvent::Trial(Phase::Running));
+    session.note(now, TimelineEvent::Trial(TrialPhase::Running));
     let end = now + SessionTime::from_secs_f64(session.spec.trial.seconds);
-    effects.push(Effect::At { time: end, timer: Timer::EndTrial });
+    effects.push(SessionEffect::At { time: end, timer: Timer::EndTrial });
     for &order in &session.kitchen.orders {
-        effects.push(Effect::At { time: now, timer: Timer::NewOrder(order) });
+        effects.push(SessionEffect::At { time: now, timer: Timer::NewOrder(order) });
     }
-    Change::TrialStarted { before, after }
+    KitchenChange::TrialStarted { before, after }
 }
 
 fn pause(session: &mut Session, now: SessionTime) {
@@ -285,40 +287,40 @@ fn pause(session: &mut Session, now: SessionTime) {
         true => probes::pause(session, now),
         false => trial_clock::pause(session, now),
     }
-    session.note(now, TimelineEvent::Trial(Phase::Paused));
+    session.note(now, TimelineEvent::Trial(TrialPhase::Paused));
 }
 
 /// Resumes after a pause: pending times are postponed by its duration. After a pause during a freeze probe, the probe
 /// continues.
-fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
+fn resume(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
     if session.is_frozen() {
         return probes::resume(session, now);
     }
-    effects.push(Effect::Postpone(trial_clock::resume(session, now)));
-    session.note(now, TimelineEvent::Trial(Phase::Running));
+    effects.push(SessionEffect::Postpone(trial_clock::resume(session, now)));
+    session.note(now, TimelineEvent::Trial(TrialPhase::Running));
 }
 
-fn end_trial(session: &mut Session, now: SessionTime, reason: EndReason, effects: &mut Vec<Effect>) {
+fn end_trial(session: &mut Session, now: SessionTime, reason: TrialEndReason, effects: &mut Vec<SessionEffect>) {
     trial_clock::stop(session, now);
-    session.phase = Phase::Over(reason);
+    session.phase = TrialPhase::Over(reason);
     probes::trial_ends(session, now);
     session.robot.rests();
     session.shown = None;
     session.advice = None;
-    effects.push(Effect::CancelAll);
+    effects.push(SessionEffect::CancelAll);
     session.note(now, TimelineEvent::Trial(session.phase));
 }
 
-fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<Effect>) {
+fn close(session: &mut Session, now: SessionTime, effects: &mut Vec<SessionEffect>) {
     trial_clock::stop(session, now);
-    session.phase = Phase::Closed;
+    session.phase = TrialPhase::Closed;
     probes::session_ends(session, now);
     session.robot.intention = None;
     session.shown = None;
-    session.offers.closes(now, OfferEnd::TrialEnded);
+    session.offers.closes(now, OfferCloseReason::TrialEnded);
     session.advice = None;
-    effects.push(Effect::CancelAll);
-    effects.push(Effect::Close);
+    effects.push(SessionEffect::CancelAll);
+    effects.push(SessionEffect::Close);
 }
 
 fn show(
@@ -326,20 +328,20 @@ fn show(
     now: SessionTime,
     by: Sender,
     (signal, location): (&Signal, Option<LocationId>),
-    effects: &mut Vec<Effect>,
+    effects: &mut Vec<SessionEffect>,
 ) {
     let until = now + SessionTime::from_secs_f64(session.spec.signals.shown_s);
     session.shown = Some(ShownSignal { signal: signal.clone(), location, by, since: now, until });
     if by == Sender::Wizard {
         session.signalled_at = Some(now);
         let cool_down = SessionTime::from_secs_f64(session.spec.signals.cool_down_s);
-        effects.push(Effect::At { time: now + cool_down, timer: Timer::ReviewOffer });
+        effects.push(SessionEffect::At { time: now + cool_down, timer: Timer::ReviewOffer });
         if let Some(advice) = &mut session.advice {
             advice.remove(signal);
         }
     }
-    effects.push(Effect::Cancel(Timer::EndSignal));
-    effects.push(Effect::At { time: until, timer: Timer::EndSignal });
+    effects.push(SessionEffect::Cancel(Timer::EndSignal));
+    effects.push(SessionEffect::At { time: until, timer: Timer::EndSignal });
     session.note(now, TimelineEvent::Signal { by, signal: signal.clone() });
 }
 
@@ -352,23 +354,29 @@ fn advise(session: &mut Session, mut advice: Recommendation) {
     session.advice = Some(advice);
 }
 
-fn end_signal(session: &mut Session, now: SessionTime, reason: SignalEnd, effects: &mut Vec<Effect>) {
+fn end_signal(session: &mut Session, now: SessionTime, reason: SignalEndReason, effects: &mut Vec<SessionEffect>) {
     session.shown = None;
-    if reason != SignalEnd::Elapsed {
-        effects.push(Effect::Cancel(Timer::EndSignal));
+    if reason != SignalEndReason::Elapsed {
+        effects.push(SessionEffect::Cancel(Timer::EndSignal));
     }
-    if reason == SignalEnd::TakenBack {
+    if reason == SignalEndReason::TakenBack {
         session.note(now, TimelineEvent::SignalEnded(reason));
     }
 }
 
-fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId, effects: &mut Vec<Effect>) -> Change {
+fn press(
+    session: &mut Session,
+    now: SessionTime,
+    agent: Agent,
+    button: ButtonId,
+    effects: &mut Vec<SessionEffect>,
+) -> KitchenChange {
     if agent == Agent::Robot {
         session.robot.intention = None;
         session.robot.driven_to = None;
     }
     if !session.is_running() || (agent == Agent::Human && is_too_early(session, now)) {
-        return Change::UncountedPress { agent, button };
+        return KitchenChange::UncountedPress { agent, button };
     }
     let kitchen = session.kitchen.clone();
     let press = kitchen.try_press(session.state, agent, button);
@@ -376,8 +384,8 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
     session.presses[agent.index()] += 1;
     session.note(now, TimelineEvent::Press { agent, button, no_effect });
     if agent == Agent::Human && session.spec.notes_silence() {
-        effects.push(Effect::Cancel(Timer::HumanWaits));
-        let waits = |after| Effect::At { time: now + after, timer: Timer::HumanWaits };
+        effects.push(SessionEffect::Cancel(Timer::HumanWaits));
+        let waits = |after| SessionEffect::At { time: now + after, timer: Timer::HumanWaits };
         effects.extend(silence::unusual_after(session).map(waits));
     }
     if press.effective {
@@ -386,20 +394,20 @@ fn press(session: &mut Session, now: SessionTime, agent: Agent, button: ButtonId
             (kitchen.button(agent, button).action, served_dish(&kitchen.button(agent, button).action, press.before))
         {
             let presses = session.all_presses();
-            session.served.push(Served { time: now, dish, presses });
+            session.served.push(ServedOrder { time: now, dish, presses });
             session.note(now, TimelineEvent::Served { order });
             let after_s = |seconds| now + SessionTime::from_secs_f64(seconds);
-            effects.push(Effect::At { time: after_s(kitchen.served_shown_s), timer: Timer::ClearOrder(order) });
-            effects.push(Effect::At { time: after_s(kitchen.new_order_after_s), timer: Timer::NewOrder(order) });
+            effects.push(SessionEffect::At { time: after_s(kitchen.served_shown_s), timer: Timer::ClearOrder(order) });
+            effects.push(SessionEffect::At { time: after_s(kitchen.new_order_after_s), timer: Timer::NewOrder(order) });
         }
         if session.spec.trial.orders.is_some_and(|orders| session.served.len() >= orders as usize) {
-            effects.push(Effect::At { time: now, timer: Timer::EndTrialByOrders });
+            effects.push(SessionEffect::At { time: now, timer: Timer::EndTrialByOrders });
         }
     }
     if session.all_presses() >= session.spec.trial.presses {
-        effects.push(Effect::At { time: now, timer: Timer::EndTrialByPresses });
+        effects.push(SessionEffect::At { time: now, timer: Timer::EndTrialByPresses });
     }
-    Change::Press { press, presses: session.presses }
+    KitchenChange::Press { press, presses: session.presses }
 }
 
 /// The order that a press of a serve button served, given the state before the press.

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::settings::{Condition, GazeSource, SessionSpec};
-use crate::communication::settings::Shadow;
+use crate::communication::settings::ShadowMode;
 use crate::participant::population::Population;
 
 /// A file with a battery of cohorts (populations of simulated people).
@@ -38,7 +38,7 @@ impl CohortSpec {
         spec.plan = None;
         spec.trial.condition = condition;
         // Nobody would see the advice, so it is not computed.
-        spec.assistant.shadow = Shadow::Off;
+        spec.assistant.shadow = ShadowMode::Off;
         if let Some(gaze) = &self.gaze {
             spec.participant.gaze = *gaze.get_ref();
         }

@@ -9,11 +9,11 @@ use super::setting_checks::SettingError;
 #[serde(deny_unknown_fields, default)]
 pub struct ConsoleSpec {
     /// How much the wizard sees: kitchen, estimated belief, recommendations.
-    pub visibility: Visibility,
+    pub visibility: WizardVisibility,
     /// Draw with ASCII characters only, for terminals and fonts without others.
     pub ascii: bool,
     /// Colour theme of the console: for a dark or a light terminal background.
-    pub theme: ThemeChoice,
+    pub theme: ColourTheme,
     /// Whether a mouse click on a signal or on the offer sends the signal at once, without a question.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub click_sends: bool,
@@ -37,9 +37,9 @@ impl Default for ConsoleSpec {
     fn default() -> Self {
         let texts = |texts: [&str; 5]| texts.map(str::to_string).to_vec();
         ConsoleSpec {
-            visibility: Visibility::Recommendation,
+            visibility: WizardVisibility::Recommendation,
             ascii: false,
-            theme: ThemeChoice::Auto,
+            theme: ColourTheme::Auto,
             click_sends: false,
             keys: None,
             notes: texts(["wrong recipe", "overlooked a change", "slip", "waits for the robot", "look at this later"]),
@@ -74,7 +74,7 @@ impl ConsoleSpec {
 /// Colour theme of the console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ThemeChoice {
+pub enum ColourTheme {
     /// Colours that fit the background which the terminal reports; dark if it reports none.
     Auto,
     /// Colours for a dark terminal background.
@@ -86,7 +86,7 @@ pub enum ThemeChoice {
 /// Amount of information on the wizard's console.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Visibility {
+pub enum WizardVisibility {
     /// Kitchen and gaze only, as in the paper.
     State,
     /// The wizard sees kitchen, gaze and estimated belief.
@@ -95,22 +95,24 @@ pub enum Visibility {
     Recommendation,
 }
 
-impl Visibility {
+impl WizardVisibility {
     /// Name of the visibility in files.
     pub fn name(self) -> &'static str {
         match self {
-            Visibility::State => "state",
-            Visibility::Belief => "belief",
-            Visibility::Recommendation => "recommendation",
+            WizardVisibility::State => "state",
+            WizardVisibility::Belief => "belief",
+            WizardVisibility::Recommendation => "recommendation",
         }
     }
 
     /// What the wizard sees, in words.
     pub fn title(self) -> &'static str {
         match self {
-            Visibility::State => "kitchen and gaze",
-            Visibility::Belief => "kitchen, gaze and the estimated belief",
-            Visibility::Recommendation => "kitchen, gaze, the estimated belief and the assistant's recommendation",
+            WizardVisibility::State => "kitchen and gaze",
+            WizardVisibility::Belief => "kitchen, gaze and the estimated belief",
+            WizardVisibility::Recommendation => {
+                "kitchen, gaze, the estimated belief and the assistant's recommendation"
+            }
         }
     }
 }

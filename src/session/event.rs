@@ -5,29 +5,29 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::gaze_check::CalibrationEvent;
+use super::gaze_check::GazeCheckEvent;
 use super::preflight_check::PreflightCheck;
 use super::probe_event::ProbeEvent;
 use super::protocol_event::ProtocolEvent;
 use super::tracker::TrackerEvent;
 use super::wall_display::DisplayEvent;
-use super::wizard_screen::VisibleScreen;
+use super::wizard_screen::WizardScreenContent;
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
-use crate::communication::offer::{OfferEnd, OfferedAdvice};
+use crate::communication::offer::{OfferCloseReason, OfferedAdvice};
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
-use crate::mind::BeliefWitness;
-use crate::mind::recorded_estimate::EstimateWitness;
+use crate::mind::RecordedBelief;
+use crate::mind::recorded_estimate::RecordedEstimate;
 use crate::robot::moment::ArmSample;
 use crate::robot::safety::SafetyMode;
 use crate::robot::{AbortReason, IdleReason};
 
 /// An event with its sequence number in the log and its time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Stamped {
+pub struct TimestampedEvent {
     /// Sequence number: 0, 1, 2, … without gaps.
     pub seq: u64,
     /// Session time of the event; never decreases along the log.
@@ -58,7 +58,7 @@ pub enum Event {
     /// The trial has ended.
     TrialEnded {
         /// The reason for the end of the trial.
-        reason: EndReason,
+        reason: TrialEndReason,
     },
     /// The trial is aborted and does not count; it may be repeated in another recording.
     TrialAborted {
@@ -77,7 +77,7 @@ pub enum Event {
     /// An event of the eye tracker other than a gaze sample.
     Tracker(TrackerEvent),
     /// A step of a gaze accuracy check.
-    Calibration(CalibrationEvent),
+    Calibration(GazeCheckEvent),
     /// An agent pressed a physical button.
     Press {
         /// The agent that pressed.
@@ -209,7 +209,7 @@ pub enum Event {
         /// Sequence number of the offer's event `offer_opened`.
         offer: u64,
         /// Why the offer closes.
-        reason: OfferEnd,
+        reason: OfferCloseReason,
     },
     /// Recorded only (witness): the first frame with the signal of this sequence number was written to the terminal.
     SignalDrawn {
@@ -219,7 +219,7 @@ pub enum Event {
     /// The signal disappears from the participant's display.
     SignalEnded {
         /// Why the signal disappears.
-        reason: SignalEnd,
+        reason: SignalEndReason,
     },
     /// The wizard sets a marker with a note.
     Marker {
@@ -239,7 +239,7 @@ pub enum Event {
     /// Recorded only (witness): a report of the participant's display.
     Display(DisplayEvent),
     /// Recorded only (witness): the visible content of the wizard's screen changes.
-    Screen(VisibleScreen),
+    Screen(WizardScreenContent),
     /// Recorded only (witness): from now on the wizard sees the comparison with these communication concepts.
     Unblinded {
         /// Names of the communication concepts.
@@ -251,9 +251,9 @@ pub enum Event {
     /// Recorded only (witness): the terminal has keyboard focus again.
     FocusRegained,
     /// Recorded only (witness): the belief of a simulated participant before its next press.
-    ParticipantBelieves(BeliefWitness),
+    ParticipantBelieves(RecordedBelief),
     /// Recorded only (witness): the belief estimate before the last press of the human.
-    BeliefEstimated(EstimateWitness),
+    BeliefEstimated(RecordedEstimate),
     /// The session ends; a log without this event was cut off.
     SessionEnded,
 }
@@ -321,7 +321,7 @@ impl Event {
 /// Reason for the end of a trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum EndReason {
+pub enum TrialEndReason {
     /// The set number of presses was reached.
     Presses,
     /// The set duration of the trial was reached.
@@ -334,15 +334,15 @@ pub enum EndReason {
     Aborted,
 }
 
-impl EndReason {
+impl TrialEndReason {
     /// Name of the reason in logs.
     pub fn name(self) -> &'static str {
         match self {
-            EndReason::Presses => "presses",
-            EndReason::Time => "time",
-            EndReason::Orders => "orders",
-            EndReason::Wizard => "wizard",
-            EndReason::Aborted => "aborted",
+            TrialEndReason::Presses => "presses",
+            TrialEndReason::Time => "time",
+            TrialEndReason::Orders => "orders",
+            TrialEndReason::Wizard => "wizard",
+            TrialEndReason::Aborted => "aborted",
         }
     }
 }
@@ -350,7 +350,7 @@ impl EndReason {
 /// Reason for the end of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum SignalEnd {
+pub enum SignalEndReason {
     /// The signal was shown for its set time.
     Elapsed,
     /// The sender withdrew the signal.

@@ -14,7 +14,7 @@ const READY_S: f64 = 1.0;
 /// A step of a gaze accuracy check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
-pub enum CalibrationEvent {
+pub enum GazeCheckEvent {
     /// The accuracy check begins or restarts, with its targets in fractions of the display.
     Begun {
         /// The targets in the order in which they are shown, in fractions of the display.
@@ -97,23 +97,23 @@ impl RunningGazeCheck {
     }
 
     /// The next step of the check with its time; `None` when all targets have been shown.
-    pub fn next(&self) -> Option<(SessionTime, CalibrationEvent)> {
+    pub fn next(&self) -> Option<(SessionTime, GazeCheckEvent)> {
         let (shown_s, target) = match self.shown {
             None if self.are_hidden => return None,
             None => (READY_S, 0),
             Some((target, _)) => (TARGET_S, target + 1),
         };
         let event = match target < self.targets.len() {
-            true => CalibrationEvent::TargetShown { target },
-            false => CalibrationEvent::TargetsHidden,
+            true => GazeCheckEvent::TargetShown { target },
+            false => GazeCheckEvent::TargetsHidden,
         };
         Some((self.at + SessionTime::from_secs_f64(shown_s), event))
     }
 
     /// The measurement event, once all targets have been shown.
-    pub fn to_measure(&self, viewing: &ViewingGeometry) -> Option<CalibrationEvent> {
+    pub fn to_measure(&self, viewing: &ViewingGeometry) -> Option<GazeCheckEvent> {
         let is_due = self.are_hidden && self.result.is_none();
-        is_due.then(|| CalibrationEvent::Measured { found: measure(viewing, &self.targets, &self.samples) })
+        is_due.then(|| GazeCheckEvent::Measured { found: measure(viewing, &self.targets, &self.samples) })
     }
 
     /// Adds a gaze sample taken at session time `taken`.
@@ -126,14 +126,14 @@ impl RunningGazeCheck {
     }
 }
 
-impl CalibrationEvent {
+impl GazeCheckEvent {
     /// The event that begins an accuracy check with the standard targets.
-    pub fn begin() -> CalibrationEvent {
-        CalibrationEvent::Begun { targets: TARGETS.to_vec() }
+    pub fn begin() -> GazeCheckEvent {
+        GazeCheckEvent::Begun { targets: TARGETS.to_vec() }
     }
 
     /// Whether the event comes from outside; the measurement follows from earlier events.
     pub(super) fn is_external(&self) -> bool {
-        !matches!(self, CalibrationEvent::Measured { .. })
+        !matches!(self, GazeCheckEvent::Measured { .. })
     }
 }

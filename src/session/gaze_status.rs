@@ -2,7 +2,7 @@
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
-use crate::gaze::quality::{GazeFault, SampleChecker};
+use crate::gaze::quality::{GazeFault, GazeFaultDetector};
 use crate::kitchen::state::MAX_LOCATIONS;
 
 /// State of the participant's gaze stream in a session.
@@ -19,7 +19,7 @@ pub struct GazeStatus {
     /// Number of gaze samples with too low a confidence or outside of the display.
     pub unusable: u64,
     /// Detector of faulty gaze samples, with their counts.
-    pub judge: SampleChecker,
+    pub judge: GazeFaultDetector,
     /// Fault of the latest gaze sample.
     pub fault: Option<GazeFault>,
     /// Sampling rate in Hz, smoothed over about a second: see [`super::Session::gaze_hz`].

@@ -17,7 +17,7 @@ pub const PEOPLE_SINCE: &str = "0.2.0";
 /// The header of a log: its first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Header {
+pub struct LogHeader {
     /// Name of the log's format, always [`FORMAT`].
     pub format: String,
     /// The version of the log's format.
@@ -27,30 +27,30 @@ pub struct Header {
     /// Index of the trial: with the same seed, another index gives other orders and another participant.
     pub trial: u64,
     /// Wall clock time at the beginning of the recording (UTC, RFC 3339), which is session time 0 or that of
-    /// [`Continues`]. Live sessions only.
+    /// [`PreviousPart`]. Live sessions only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub started: Option<String>,
     /// The earlier part that this recording continues.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub continues: Option<Continues>,
+    pub continues: Option<PreviousPart>,
     /// Name of the recording whose trial this recording repeats.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub redoes: Option<String>,
     /// All settings in use, including the seed.
     pub session: SessionSpec,
     /// The layout file of the kitchen, with its text.
-    pub layout: FileText,
+    pub layout: RecordedFile,
     /// The recipe file of the kitchen, with its text.
-    pub recipes: FileText,
+    pub recipes: RecordedFile,
     /// The file of the wizard's keys, if the session had one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub keys: Option<FileText>,
+    pub keys: Option<RecordedFile>,
 }
 
 /// The previous part of a recording, after which this recording continues the session.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Continues {
+pub struct PreviousPart {
     /// Name of the previous part's folder, in the same parent folder.
     pub recording: String,
     /// Number of events in all earlier parts, which is the sequence number of the first event in this part.
@@ -62,14 +62,14 @@ pub struct Continues {
 /// A text file of a session: its path and its complete text.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct FileText {
+pub struct RecordedFile {
     /// Path from which the file was read, for messages.
     pub path: String,
     /// The complete text of the file.
     pub text: String,
 }
 
-impl Header {
+impl LogHeader {
     /// Whether a simulated participant of an earlier program version took part, whose decisions were different.
     pub fn has_earlier_people(&self) -> bool {
         let numbers =
@@ -84,10 +84,10 @@ impl Header {
     }
 
     /// The header of a session that this program runs.
-    pub fn new(session: SessionSpec, trial: u64, layout: FileText, recipes: FileText) -> Header {
+    pub fn new(session: SessionSpec, trial: u64, layout: RecordedFile, recipes: RecordedFile) -> LogHeader {
         let program = env!("CARGO_PKG_VERSION").to_string();
         let (format, version) = (FORMAT.to_string(), VERSION);
-        Header {
+        LogHeader {
             format,
             version,
             program,

@@ -2,7 +2,7 @@
 //! and excluding trials. This file has their preconditions and state changes.
 
 use super::event::Event;
-use super::phase::Phase;
+use super::phase::TrialPhase;
 use super::session_state::Session;
 use crate::communication::Sender;
 use crate::kitchen::{ContentId, LocationKind};
@@ -20,19 +20,19 @@ pub(super) fn admit(session: &Session, event: &Event) -> Result<(), &'static str
         Event::RobotReleased { by } => by_the_wizard(*by).and(refuse_if(!robot.held, "the robot is not held")),
         Event::RobotSkipped { by } => {
             by_the_wizard(*by)?;
-            refuse_if(phase != Phase::Running, "presses are skipped while the trial runs")?;
+            refuse_if(phase != TrialPhase::Running, "presses are skipped while the trial runs")?;
             refuse_if(robot.intention.is_none(), "the robot is on its way to no press")
         }
         Event::RobotDriven { by, .. } => {
             by_the_wizard(*by)?;
-            refuse_if(phase != Phase::Running, "the robot's press can be chosen only while the trial runs")?;
+            refuse_if(phase != TrialPhase::Running, "the robot's press can be chosen only while the trial runs")?;
             refuse_if(robot.stopped, "the robot is stopped: resume it first")
         }
         Event::TrialAborted { .. } => {
-            refuse_if(!matches!(phase, Phase::Running | Phase::Paused), "there is no trial to abort")
+            refuse_if(!matches!(phase, TrialPhase::Running | TrialPhase::Paused), "there is no trial to abort")
         }
         Event::TrialExcluded { .. } => {
-            refuse_if(phase == Phase::Ready, "there is no trial to exclude")?;
+            refuse_if(phase == TrialPhase::Ready, "there is no trial to exclude")?;
             refuse_if(session.excluded.is_some(), "the trial is excluded already")
         }
         Event::TrialIncluded => refuse_if(session.excluded.is_none(), "the trial is not excluded"),
@@ -45,7 +45,7 @@ fn by_the_wizard(by: Sender) -> Result<(), &'static str> {
 }
 
 fn admit_correction(session: &Session, location: &str, content: &str) -> Result<(), &'static str> {
-    if !matches!(session.phase, Phase::Running | Phase::Paused) {
+    if !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused) {
         return Err("the kitchen can be corrected only during a trial");
     }
     if session.is_frozen() {

@@ -75,12 +75,12 @@ mod unseen_changes;
 pub mod wall_display;
 pub mod wizard_screen;
 
-pub use apply::{Applied, Effect, Timer, apply};
-pub use event::{Event, Stamped};
+pub use apply::{AppliedEvent, SessionEffect, Timer, apply};
+pub use event::{Event, TimestampedEvent};
 pub use gaze_status::GazeStatus;
-pub use header::Header;
-pub use phase::Phase;
+pub use header::LogHeader;
+pub use phase::TrialPhase;
 pub use robot_status::{ArmStatus, RobotStatus};
-pub use session_state::{Served, Session, ShownSignal};
+pub use session_state::{ServedOrder, Session, ShownSignal};
 pub use settings::SessionSpec;
 pub use timeline_entry::{TimelineEntry, TimelineEvent};

@@ -6,13 +6,13 @@
 
 use super::admit::{admit, hygiene};
 use super::event::Event;
-use super::phase::Phase;
+use super::phase::TrialPhase;
 use super::session_state::Session;
-use super::settings::{Condition, Visibility};
+use super::settings::{Condition, WizardVisibility};
 use crate::base::time::SessionTime;
 use crate::communication::offer::{
-    GAP, HOLD, Offer, OfferEnd, OfferThresholds, OfferUse, OfferWorth, OfferedAct, OfferedAdvice, TAKEN_AFTER, UNREAD,
-    UsedOffer,
+    GAP, HOLD, Offer, OfferCloseReason, OfferKeyUse, OfferThresholds, OfferWorth, OfferedAdvice, OfferedCommunication,
+    TAKEN_AFTER, UNREAD, UsedOffer,
 };
 use crate::communication::recommendation::{Recommendation, SignalOption};
 use crate::communication::{Sender, Signal, unavailable};
@@ -36,20 +36,20 @@ pub fn due(session: &Session, now: SessionTime) -> Option<Event> {
 }
 
 /// Why the open offer closes now, if it does.
-fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferEnd> {
+fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferCloseReason> {
     match session.phase {
-        Phase::Running => {}
-        Phase::Ready | Phase::Paused => return None,
-        Phase::Over(_) | Phase::Closed => return Some(OfferEnd::TrialEnded),
+        TrialPhase::Running => {}
+        TrialPhase::Ready | TrialPhase::Paused => return None,
+        TrialPhase::Over(_) | TrialPhase::Closed => return Some(OfferCloseReason::TrialEnded),
     }
     match offer.used.map(|used| used.how) {
-        Some(OfferUse::Taken) => return Some(OfferEnd::Taken),
-        Some(OfferUse::OwnKey) => return Some(OfferEnd::OwnKey),
+        Some(OfferKeyUse::Taken) => return Some(OfferCloseReason::Taken),
+        Some(OfferKeyUse::OwnKey) => return Some(OfferCloseReason::OwnKey),
         None => {}
     }
     let is_impossible = |signal| unavailable(&session.kitchen, session.state, signal).is_some();
     if offer.signal().is_some_and(is_impossible) {
-        return Some(OfferEnd::Impossible);
+        return Some(OfferCloseReason::Impossible);
     }
     if session.age(offer.opened, now) < HOLD {
         return None;
@@ -58,13 +58,13 @@ fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferEn
 }
 
 /// Why the latest recommendation closes the open offer, if it does.
-fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<OfferEnd> {
+fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<OfferCloseReason> {
     let signal = match &offer.advice.what {
-        OfferedAct::Signal(signal) => signal,
-        OfferedAct::Presses(presses) => {
+        OfferedCommunication::Signal(signal) => signal,
+        OfferedCommunication::Presses(presses) => {
             return match &advice.proposal {
-                None => Some(OfferEnd::Fell),
-                Some(proposal) => (proposal.presses != *presses).then_some(OfferEnd::Replaced),
+                None => Some(OfferCloseReason::Fell),
+                Some(proposal) => (proposal.presses != *presses).then_some(OfferCloseReason::Replaced),
             };
         }
     };
@@ -72,10 +72,10 @@ fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<
     let net = advice.options.iter().find(|option| option.signal == *signal)?.net;
     let thresholds = OfferThresholds::for_concept(session.spec.assistant.concept);
     if net < thresholds.closes_below {
-        return Some(OfferEnd::Fell);
+        return Some(OfferCloseReason::Fell);
     }
     let other = candidate(session, advice).filter(|option| option.signal != *signal)?;
-    (other.net >= net + thresholds.better_by).then_some(OfferEnd::Replaced)
+    (other.net >= net + thresholds.better_by).then_some(OfferCloseReason::Replaced)
 }
 
 /// The offer that opens now, if one does.
@@ -92,7 +92,7 @@ fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     let advice = session.advice.as_ref()?;
     let (for_seq, visible) = (advice.for_seq, is_visible(session));
     if let Some(proposal) = &advice.proposal {
-        let what = OfferedAct::Presses(proposal.presses.clone());
+        let what = OfferedCommunication::Presses(proposal.presses.clone());
         return Some(OfferedAdvice { what, for_seq, worth: None, reason: None, visible });
     }
     let option = candidate(session, advice)?;
@@ -100,13 +100,13 @@ fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     let worth = Some(OfferWorth { benefit, standard_error, net });
     // The recommendation gives a reason for its best signal only.
     let reason = advice.reason.clone().filter(|_| advice.best.as_ref() == Some(&option.signal));
-    Some(OfferedAdvice { what: OfferedAct::Signal(option.signal.clone()), for_seq, worth, reason, visible })
+    Some(OfferedAdvice { what: OfferedCommunication::Signal(option.signal.clone()), for_seq, worth, reason, visible })
 }
 
 /// Whether a wizard could see an offer that opens now: a console shows it or a script reads it, and the settings show
 /// recommendations.
 fn is_visible(session: &Session) -> bool {
-    let is_drawn = session.has_console && session.spec.console.visibility == Visibility::Recommendation;
+    let is_drawn = session.has_console && session.spec.console.visibility == WizardVisibility::Recommendation;
     is_drawn || session.spec.script_reads_offers()
 }
 
@@ -136,7 +136,7 @@ fn wanted(session: &Session, signal: &Signal) -> Option<((SessionTime, usize), O
 
 /// Records that the wizard sent a signal: that of the open offer, or of the last one while it can still be taken.
 pub(super) fn sends(session: &mut Session, now: SessionTime, signal: &Signal, is_taken: bool) {
-    let how = if is_taken { OfferUse::Taken } else { OfferUse::OwnKey };
+    let how = if is_taken { OfferKeyUse::Taken } else { OfferKeyUse::OwnKey };
     let with_last = still_takes(session, now).is_some();
     session.offers.sends(signal, UsedOffer { how, at: now }, with_last);
 }
@@ -169,7 +169,7 @@ pub fn meant(session: &Session, now: SessionTime) -> Result<&Offer, &'static str
 /// # Errors
 /// Why `enter` has no effect now, in words for the wizard.
 pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), String> {
-    if session.spec.console.visibility != Visibility::Recommendation {
+    if session.spec.console.visibility != WizardVisibility::Recommendation {
         return Err("recommendations are not shown in this session".to_string());
     }
     let offer = meant(session, now)?;

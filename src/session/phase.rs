@@ -1,10 +1,10 @@
 //! Phase of a session's trial: ready, running, paused or over.
 
-use super::event::EndReason;
+use super::event::TrialEndReason;
 
 /// Phase of a session's trial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Phase {
+pub enum TrialPhase {
     /// The trial has not started.
     Ready,
     /// The trial runs.
@@ -12,7 +12,7 @@ pub enum Phase {
     /// The trial is paused: its clock stands still.
     Paused,
     /// The trial has ended, for this reason.
-    Over(EndReason),
+    Over(TrialEndReason),
     /// The session has ended.
     Closed,
 }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::wall_display::Answering;
+use super::wall_display::AnswerEntry;
 
 /// An event of a freeze probe. Probes are numbered from 1 within a trial, scheduled and requested ones together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,14 +16,14 @@ pub enum ProbeEvent {
         /// Number of the freeze probe in the trial.
         probe: u32,
         /// Why the probe has to wait.
-        reason: ProbeBlock,
+        reason: ProbeDelayReason,
     },
     /// A freeze probe has waited for the longest allowed time, and is cancelled.
     Dropped {
         /// Number of the freeze probe in the trial.
         probe: u32,
         /// Why the probe still had to wait at the end.
-        reason: ProbeBlock,
+        reason: ProbeDelayReason,
     },
     /// A freeze probe begins: the task stands still from now on. All questions of the probe are drawn.
     Begun {
@@ -56,7 +56,7 @@ pub enum ProbeEvent {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         confidence: Option<u8>,
         /// Where the answer was entered: on the display or at the console.
-        on: Answering,
+        on: AnswerEntry,
     },
     /// The wizard skips the remaining questions of the freeze probe.
     Skipped {
@@ -70,7 +70,7 @@ pub enum ProbeEvent {
         /// Number of the freeze probe in the trial.
         probe: u32,
         /// Why no more questions are asked.
-        reason: ProbeEnd,
+        reason: ProbeEndReason,
     },
     /// The freeze probe ends, and the task continues.
     Ended {
@@ -114,19 +114,19 @@ pub enum ProbeSubject {
 /// Why a freeze probe that is due cannot begin yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ProbeBlock {
+pub enum ProbeDelayReason {
     /// A signal was shown a short time before.
     Signal,
     /// Another freeze probe ended a short time before.
     Probe,
 }
 
-impl ProbeBlock {
+impl ProbeDelayReason {
     /// The reason for the delay in words.
     pub fn words(self) -> &'static str {
         match self {
-            ProbeBlock::Signal => "a signal was shown just before",
-            ProbeBlock::Probe => "another probe ended just before",
+            ProbeDelayReason::Signal => "a signal was shown just before",
+            ProbeDelayReason::Probe => "another probe ended just before",
         }
     }
 }
@@ -154,7 +154,7 @@ impl ProbeOrigin {
 /// Why a freeze probe asks no more questions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ProbeEnd {
+pub enum ProbeEndReason {
     /// All questions of the probe are answered.
     Answered,
     /// The time limit of the probe was reached.
@@ -165,24 +165,24 @@ pub enum ProbeEnd {
     TrialEnded,
 }
 
-impl ProbeEnd {
+impl ProbeEndReason {
     /// Name of the reason in logs.
     pub fn name(self) -> &'static str {
         match self {
-            ProbeEnd::Answered => "answered",
-            ProbeEnd::TimeOver => "time_over",
-            ProbeEnd::Skipped => "skipped",
-            ProbeEnd::TrialEnded => "trial_ended",
+            ProbeEndReason::Answered => "answered",
+            ProbeEndReason::TimeOver => "time_over",
+            ProbeEndReason::Skipped => "skipped",
+            ProbeEndReason::TrialEnded => "trial_ended",
         }
     }
 
     /// The reason for the end of the questions in words.
     pub fn words(self) -> &'static str {
         match self {
-            ProbeEnd::Answered => "all questions are answered",
-            ProbeEnd::TimeOver => "its time is over",
-            ProbeEnd::Skipped => "the wizard skipped the rest",
-            ProbeEnd::TrialEnded => "the trial is over",
+            ProbeEndReason::Answered => "all questions are answered",
+            ProbeEndReason::TimeOver => "its time is over",
+            ProbeEndReason::Skipped => "the wizard skipped the rest",
+            ProbeEndReason::TrialEnded => "the trial is over",
         }
     }
 }

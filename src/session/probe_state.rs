@@ -1,13 +1,13 @@
 //! State of the freeze probes of a trial.
 
-use super::probe_event::{ProbeBlock, ProbeEnd, ProbeOrigin, ProbeQuestion};
+use super::probe_event::{ProbeDelayReason, ProbeEndReason, ProbeOrigin, ProbeQuestion};
 use super::probe_schedule::ScheduledProbe;
-use super::wall_display::Answering;
+use super::wall_display::AnswerEntry;
 use crate::base::time::SessionTime;
 
 /// All freeze probes of a trial: the present one, past ones, and the schedule.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ProbeBook {
+pub struct TrialProbes {
     /// The freeze probe for which the task stands still, from `begun` to `ended`.
     pub open: Option<OpenProbe>,
     /// The freeze probes that have ended.
@@ -15,7 +15,7 @@ pub struct ProbeBook {
     /// A freeze probe that is due and has not begun.
     pub waiting: Option<WaitingProbe>,
     /// Numbers of the cancelled freeze probes, with the reason for which they had to wait.
-    pub dropped: Vec<(u32, ProbeBlock)>,
+    pub dropped: Vec<(u32, ProbeDelayReason)>,
     /// The scheduled freeze probes of the trial, whose times were drawn at its start.
     pub schedule: Vec<ScheduledProbe>,
     /// Number of scheduled freeze probes that have become due.
@@ -40,7 +40,7 @@ pub struct WaitingProbe {
     /// Time at which the probe became due, on the trial's clock.
     pub since: SessionTime,
     /// Why the probe has to wait, once that is recorded.
-    pub reason: Option<ProbeBlock>,
+    pub reason: Option<ProbeDelayReason>,
 }
 
 /// A freeze probe that has begun.
@@ -65,7 +65,7 @@ pub struct OpenProbe {
     /// The wizard's reason for skipping the remaining questions, if the wizard did.
     pub skipped: Option<String>,
     /// Why and when the questions ended.
-    pub closed: Option<(ProbeEnd, SessionTime)>,
+    pub closed: Option<(ProbeEndReason, SessionTime)>,
     /// Session time at which the wizard paused the probe, if it is paused.
     pub paused_since: Option<SessionTime>,
     /// Session times of start and end of each finished pause of the probe.
@@ -82,7 +82,7 @@ pub struct ProbeAnswer {
     /// Response time: from the question to the answer, without pauses.
     pub took: SessionTime,
     /// Where the answer was entered: on the display or at the console.
-    pub on: Answering,
+    pub on: AnswerEntry,
 }
 
 impl OpenProbe {

@@ -4,13 +4,13 @@
 //! recorded events. While a probe is open the trial is paused, and the probe has its own time, which stands still while
 //! the wizard pauses the probe.
 
-use super::phase::Phase;
-pub use super::probe_event::{ProbeBlock, ProbeEnd, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
+use super::phase::TrialPhase;
+pub use super::probe_event::{ProbeDelayReason, ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use super::probe_sampling;
 pub use super::probe_schedule::{ScheduledProbe, of_trial};
 use super::probe_schedule::{draw, requested_uses_estimate};
 use super::probe_settings::ProbeSpec;
-pub use super::probe_state::{OpenProbe, ProbeAnswer, ProbeBook, WaitingProbe};
+pub use super::probe_state::{OpenProbe, ProbeAnswer, TrialProbes, WaitingProbe};
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
 use super::trial_clock;
@@ -50,8 +50,8 @@ fn in_probe(session: &Session, spec: &ProbeSpec, open: &OpenProbe) -> Option<(Se
     let (now, probe) = (session.time, open.number);
     let when = |at, seconds| open.when(at, SessionTime::from_secs_f64(seconds)).max(now);
     let closes = |at, reason| Some((at, DueProbe::Event(ProbeEvent::Closed { probe, reason })));
-    if let Phase::Over(_) = session.phase {
-        return closes(now, ProbeEnd::TrialEnded);
+    if let TrialPhase::Over(_) = session.phase {
+        return closes(now, ProbeEndReason::TrialEnded);
     }
     if open.is_paused() {
         return None;
@@ -60,7 +60,7 @@ fn in_probe(session: &Session, spec: &ProbeSpec, open: &OpenProbe) -> Option<(Se
         return Some((when(closed, spec.count_down_s), DueProbe::Event(ProbeEvent::Ended { probe })));
     }
     if open.skipped.is_some() {
-        return closes(now, ProbeEnd::Skipped);
+        return closes(now, ProbeEndReason::Skipped);
     }
     let next = open.shown.map_or(0, |shown| shown + 1);
     let asked = match open.shown {
@@ -69,11 +69,11 @@ fn in_probe(session: &Session, spec: &ProbeSpec, open: &OpenProbe) -> Option<(Se
     };
     let limit = when(open.begun, spec.limit_s);
     if open.question().is_some() || limit < asked {
-        return closes(limit, ProbeEnd::TimeOver);
+        return closes(limit, ProbeEndReason::TimeOver);
     }
     match next < open.questions.len() {
         true => Some((asked, DueProbe::Event(ProbeEvent::Asked { probe, question: next as u32 + 1 }))),
-        false => closes(now, ProbeEnd::Answered),
+        false => closes(now, ProbeEndReason::Answered),
     }
 }
 
@@ -110,9 +110,10 @@ fn at_clock(session: &Session, clock: SessionTime) -> SessionTime {
 }
 
 /// Why a freeze probe cannot begin at `at`, and until when.
-fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeBlock, SessionTime)> {
+fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeDelayReason, SessionTime)> {
     let after = SessionTime::from_secs_f64(spec.after_signal_s);
-    let last = [(ProbeBlock::Signal, session.probes.signalled_at), (ProbeBlock::Probe, session.probes.ended_at)];
+    let last =
+        [(ProbeDelayReason::Signal, session.probes.signalled_at), (ProbeDelayReason::Probe, session.probes.ended_at)];
     let blocks = last.into_iter().filter_map(|(reason, last)| {
         let age = session.age(last?, at);
         (age < after).then(|| (reason, at + (after - age)))
@@ -132,18 +133,18 @@ pub(super) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
     match event {
         ProbeEvent::Requested => {
             unless(book.open.is_none(), "a probe is held already")?;
-            unless(session.phase == Phase::Running, "probes are held while the trial runs")?;
+            unless(session.phase == TrialPhase::Running, "probes are held while the trial runs")?;
             unless(book.waiting.is_none(), "a probe is waiting already")
         }
         ProbeEvent::Delayed { probe, .. } => {
-            unless(session.phase == Phase::Running && is_next(*probe), "that probe is not due")
+            unless(session.phase == TrialPhase::Running && is_next(*probe), "that probe is not due")
         }
         ProbeEvent::Dropped { probe, .. } => {
             let waits = book.waiting.as_ref().is_some_and(|waiting| waiting.number == *probe);
-            unless(session.phase == Phase::Running && waits, "that probe is not waiting")
+            unless(session.phase == TrialPhase::Running && waits, "that probe is not waiting")
         }
         ProbeEvent::Begun { probe, questions, .. } => {
-            unless(session.phase == Phase::Running && is_next(*probe), "that probe is not due")?;
+            unless(session.phase == TrialPhase::Running && is_next(*probe), "that probe is not due")?;
             unless(!questions.is_empty(), "a probe needs a question")?;
             let fit = questions.iter().all(|question| probe_sampling::fits(&session.kitchen, question));
             unless(fit, "the kitchen has no such question")
@@ -171,7 +172,7 @@ pub(super) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'stati
         ProbeEvent::Closed { probe, .. } => opened(session, *probe).map(drop),
         ProbeEvent::Ended { probe } => {
             let open = book.open.as_ref().filter(|open| open.number == *probe).ok_or("that probe is not held")?;
-            unless(open.closed.is_some() && session.phase == Phase::Paused, "the probe's questions are not over")?;
+            unless(open.closed.is_some() && session.phase == TrialPhase::Paused, "the probe's questions are not over")?;
             unless(!open.is_paused(), "the probe is paused")
         }
     }
@@ -200,7 +201,7 @@ impl Session {
 
 /// Draws the schedule of freeze probes at the start of a trial.
 pub(super) fn start(session: &mut Session) {
-    session.probes = ProbeBook { schedule: draw(&session.spec, session.trial), ..ProbeBook::default() };
+    session.probes = TrialProbes { schedule: draw(&session.spec, session.trial), ..TrialProbes::default() };
 }
 
 /// Applies an event of a freeze probe that the session accepts; returns for how long the task stood still, if it
@@ -257,7 +258,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
 
 /// Applies an event of the open freeze probe.
 fn in_open(session: &mut Session, now: SessionTime, event: &ProbeEvent) {
-    let is_over = matches!(session.phase, Phase::Over(_));
+    let is_over = matches!(session.phase, TrialPhase::Over(_));
     let Some(open) = &mut session.probes.open else { return };
     match event {
         ProbeEvent::Asked { question, .. } => {
@@ -327,7 +328,7 @@ pub(super) fn trial_ends(session: &mut Session, now: SessionTime) {
 pub(super) fn session_ends(session: &mut Session, now: SessionTime) {
     trial_ends(session, now);
     if let Some(mut open) = session.probes.open.take() {
-        open.closed = Some((ProbeEnd::TrialEnded, now));
+        open.closed = Some((ProbeEndReason::TrialEnded, now));
         session.probes.over.push(open);
     }
 }

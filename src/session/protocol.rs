@@ -1,15 +1,15 @@
 //! The study protocol: the phases of a recording of a plan, one after another, with their rules.
 
-use super::phase::Phase;
+use super::phase::TrialPhase;
 use super::plan::{PhaseSpec, Questionnaire, StepSpec};
 pub use super::protocol_event::{ProtocolEvent, StudyPhase};
-pub use super::protocol_state::{ItemAnswer, Practice, Protocol};
+pub use super::protocol_state::{ItemAnswer, PracticeResult, StudyProtocolState};
 use super::session_state::Session;
 use super::tutorial;
 
 impl Session {
     /// The recording's step in the plan and the protocol's state, if the recording belongs to a plan.
-    pub fn step(&self) -> Option<(&StepSpec, &Protocol)> {
+    pub fn step(&self) -> Option<(&StepSpec, &StudyProtocolState)> {
         self.spec.step.as_ref().zip(self.protocol.as_ref())
     }
 
@@ -59,7 +59,7 @@ impl Session {
                 (!is_over).then_some("the participant is not through the tutorial")
             }
             PhaseSpec::Trial | PhaseSpec::Familiarisation => {
-                (!matches!(self.phase, Phase::Over(_))).then_some("the trial is not over")
+                (!matches!(self.phase, TrialPhase::Over(_))).then_some("the trial is not over")
             }
             PhaseSpec::Questionnaire { .. } => (!protocol.confirmed).then_some("the answers are not confirmed"),
         }
@@ -109,7 +109,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
         }
         ProtocolEvent::CriterionChecked { .. } => {
             let is_practice = matches!(session.study_phase(), Some(PhaseSpec::Familiarisation));
-            let is_over = matches!(session.phase, Phase::Over(_));
+            let is_over = matches!(session.phase, TrialPhase::Over(_));
             unless(is_practice && is_over && protocol.practice.is_none(), "there is no practice to judge")
         }
         ProtocolEvent::CriterionWaived { reason } => {
@@ -191,7 +191,7 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
         ProtocolEvent::AnswersConfirmed => protocol.confirmed = true,
         ProtocolEvent::CriterionChecked { met, orders, presses, errors } => {
             let (met, orders, presses, errors) = (*met, *orders, *presses, *errors);
-            protocol.practice = Some(Practice { met, orders, presses, errors, waived: None });
+            protocol.practice = Some(PracticeResult { met, orders, presses, errors, waived: None });
         }
         ProtocolEvent::CriterionWaived { reason } => {
             if let Some(practice) = &mut protocol.practice {

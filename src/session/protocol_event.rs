@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::answer_value::AnswerValue;
 use super::tutorial_event::TutorialEvent;
-use super::wall_display::Answering;
+use super::wall_display::AnswerEntry;
 
 /// A phase of a study, such as instruction, trial or questionnaire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,7 +52,7 @@ pub enum ProtocolEvent {
         /// How the participant consented: by holding a button on the display, or by telling the wizard, who confirmed
         /// it on the console.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        on: Option<Answering>,
+        on: Option<AnswerEntry>,
         /// The text to which the participant consented.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         text: Option<String>,

@@ -14,7 +14,7 @@ pub enum ItemAnswer {
 
 /// Result of the practice trial.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Practice {
+pub struct PracticeResult {
     /// Whether the practice trial met the criterion.
     pub met: bool,
     /// Number of orders served in the practice trial.
@@ -29,7 +29,7 @@ pub struct Practice {
 
 /// State of the study protocol in a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Protocol {
+pub struct StudyProtocolState {
     /// Whether the participant consented to what the plan asks for.
     pub consent: bool,
     /// Number of the present phase, from 1; 0 before the first phase.
@@ -43,7 +43,7 @@ pub struct Protocol {
     /// Whether the participant has confirmed the answers of the phase.
     pub confirmed: bool,
     /// Result of the practice trial, once it is over.
-    pub practice: Option<Practice>,
+    pub practice: Option<PracticeResult>,
     /// State of the tutorial, in the tutorial's phase.
     pub tutorial: Option<TutorialState>,
 }
@@ -58,7 +58,7 @@ impl ItemAnswer {
     }
 }
 
-impl Protocol {
+impl StudyProtocolState {
     /// The answer to the item with this index, if the participant gave one.
     pub fn given(&self, index: usize) -> Option<&AnswerValue> {
         self.answers.get(index)?.as_ref()?.value()

@@ -1,14 +1,14 @@
 //! Checks that the build contains the optional parts of the program that a session needs.
 
 use super::settings::{ArmKind, ParticipantKind, SessionSpec};
-use crate::base::features::{Feature, NotBuilt};
+use crate::base::features::{Feature, MissingFeature};
 
 impl SessionSpec {
     /// Checks that this build can run the session without a console, which may need the simulated arm.
     ///
     /// # Errors
     /// The missing part.
-    pub const fn require_built(&self) -> Result<(), NotBuilt> {
+    pub const fn require_built(&self) -> Result<(), MissingFeature> {
         match self.robot.arm {
             ArmKind::Physics => Feature::Physics.require(),
             ArmKind::Timed => Ok(()),
@@ -19,7 +19,7 @@ impl SessionSpec {
     ///
     /// # Errors
     /// The missing part.
-    pub fn require_built_live(&self) -> Result<(), NotBuilt> {
+    pub fn require_built_live(&self) -> Result<(), MissingFeature> {
         self.require_built()?;
         match self.participant.kind {
             ParticipantKind::Display => Feature::Display.require(),

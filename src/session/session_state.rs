@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use super::gaze_check::{AcceptedGazeCheck, RunningGazeCheck};
 use super::gaze_status::GazeStatus;
-use super::phase::Phase;
-use super::probe_state::ProbeBook;
-use super::protocol_state::Protocol;
+use super::phase::TrialPhase;
+use super::probe_state::TrialProbes;
+use super::protocol_state::StudyProtocolState;
 use super::robot_status::RobotStatus;
-use super::settings::{Condition, SessionSpec, Visibility};
+use super::settings::{Condition, SessionSpec, WizardVisibility};
 use super::study_arm::StudyArm;
 use super::timeline_entry::{TimelineEntry, TimelineEvent};
 use super::tracker::TrackerStatus;
 use crate::base::rng::of_trial;
 use crate::base::time::SessionTime;
-use crate::communication::offer::OfferBook;
+use crate::communication::offer::OfferHistory;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::state::MAX_LOCATIONS;
@@ -36,7 +36,7 @@ pub struct Session {
     /// The session time of the last event.
     pub time: SessionTime,
     /// The phase of the trial: ready, running, paused or over.
-    pub phase: Phase,
+    pub phase: TrialPhase,
     /// Session time of the trial's start.
     pub trial_start: SessionTime,
     /// Total duration of all finished pauses of the trial's clock.
@@ -52,7 +52,7 @@ pub struct Session {
     /// Number of presses during the trial by each agent, indexed by [`crate::kitchen::Agent::index`].
     pub presses: [u32; 2],
     /// The orders that were served in the trial.
-    pub served: Vec<Served>,
+    pub served: Vec<ServedOrder>,
     /// State of the robot.
     pub robot: RobotStatus,
     /// The signal on the participant's display, if there is one.
@@ -62,7 +62,7 @@ pub struct Session {
     /// Whether recommendations become offers to the wizard: not in recordings of format 1.
     pub makes_offers: bool,
     /// The open offer to the wizard, and the closed ones.
-    pub offers: OfferBook,
+    pub offers: OfferHistory,
     /// Whether a console shows the session to a person.
     pub has_console: bool,
     /// Sequence number of the latest event that the display marks with a flash (trial start, signal).
@@ -86,14 +86,14 @@ pub struct Session {
     /// All entries of the session's timeline (events without gaze samples).
     pub timeline: Vec<TimelineEntry>,
     /// The freeze probes of the trial.
-    pub probes: ProbeBook,
+    pub probes: TrialProbes,
     /// Progress within the recording's phases, if it belongs to a plan.
-    pub protocol: Option<Protocol>,
+    pub protocol: Option<StudyProtocolState>,
 }
 
 /// An order that was served.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Served {
+pub struct ServedOrder {
     /// Session time at which the order was served.
     pub time: SessionTime,
     /// The dish that the order wanted.
@@ -127,13 +127,13 @@ impl Session {
     /// A session before its first event.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64) -> Session {
         let state = kitchen.empty_state();
-        let protocol = spec.step.as_ref().map(|_| Protocol::default());
+        let protocol = spec.step.as_ref().map(|_| StudyProtocolState::default());
         Session {
             kitchen,
             spec,
             trial,
             time: SessionTime::ZERO,
-            phase: Phase::Ready,
+            phase: TrialPhase::Ready,
             trial_start: SessionTime::ZERO,
             paused_total: SessionTime::ZERO,
             paused_at: SessionTime::ZERO,
@@ -146,7 +146,7 @@ impl Session {
             shown: None,
             advice: None,
             makes_offers: true,
-            offers: OfferBook::default(),
+            offers: OfferHistory::default(),
             has_console: false,
             cue: None,
             signalled_at: None,
@@ -158,7 +158,7 @@ impl Session {
             calibration: None,
             calibrated: None,
             timeline: Vec::new(),
-            probes: ProbeBook::default(),
+            probes: TrialProbes::default(),
             protocol,
         }
     }
@@ -166,18 +166,18 @@ impl Session {
     /// The time on the trial's clock at `now`: time since the trial's start without pauses; zero before the start.
     pub fn trial_clock(&self, now: SessionTime) -> SessionTime {
         match self.phase {
-            Phase::Ready => SessionTime::ZERO,
-            Phase::Running => now - self.trial_start - self.paused_total,
-            Phase::Paused => self.paused_at - self.trial_start - self.paused_total,
-            Phase::Over(_) | Phase::Closed => self.paused_at - self.trial_start - self.paused_total,
+            TrialPhase::Ready => SessionTime::ZERO,
+            TrialPhase::Running => now - self.trial_start - self.paused_total,
+            TrialPhase::Paused => self.paused_at - self.trial_start - self.paused_total,
+            TrialPhase::Over(_) | TrialPhase::Closed => self.paused_at - self.trial_start - self.paused_total,
         }
     }
 
     /// Time from `at` to `now` on the trial's clock, without pauses and without the time after the trial's end.
     pub fn age(&self, at: SessionTime, now: SessionTime) -> SessionTime {
         let end = match self.phase {
-            Phase::Ready | Phase::Running => now,
-            Phase::Paused | Phase::Over(_) | Phase::Closed => self.paused_at,
+            TrialPhase::Ready | TrialPhase::Running => now,
+            TrialPhase::Paused | TrialPhase::Over(_) | TrialPhase::Closed => self.paused_at,
         };
         let paused = self.pauses.iter().map(|&(from, until)| until.min(end) - from.max(at));
         paused.fold(end - at, |age, pause| age - pause)
@@ -207,7 +207,7 @@ impl Session {
         match spec.wizard.kind {
             WizardKind::Scripted => spec.script_reads_offers(),
             WizardKind::Person => {
-                let is_shown = self.unblinded || spec.console.visibility == Visibility::Recommendation;
+                let is_shown = self.unblinded || spec.console.visibility == WizardVisibility::Recommendation;
                 spec.trial.condition == Condition::Wizard && is_shown
             }
         }
@@ -225,7 +225,7 @@ impl Session {
 
     /// Whether the trial is running.
     pub fn is_running(&self) -> bool {
-        self.phase == Phase::Running
+        self.phase == TrialPhase::Running
     }
 
     /// Adds an entry to the timeline.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 pub use super::condition::Condition;
-pub use super::console_settings::{ConsoleSpec, MAX_NOTES, ThemeChoice, Visibility};
+pub use super::console_settings::{ColourTheme, ConsoleSpec, MAX_NOTES, WizardVisibility};
 use super::fitted_parameters::ParametersOf;
 pub use super::lsl_settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 pub use super::participant_settings::{GazeSenders, GazeSource, ParticipantKind, ParticipantSpec};
@@ -15,7 +15,7 @@ pub use super::setting_checks::{SettingError, is_code};
 use super::stream_settings::RerunSpec;
 use super::tracker::TrackerSpec;
 use super::wall_display::DisplaySpec;
-use crate::communication::settings::{AssistantSpec, Shadow};
+use crate::communication::settings::{AssistantSpec, ShadowMode};
 use crate::mind::fitted_people::FittedPeople;
 use crate::mind::model::HumanModel;
 use crate::participant::population::Population;
@@ -174,7 +174,7 @@ impl SessionSpec {
 
     /// Whether the assistant computes recommendations: in the assistant condition, and with `shadow = "on"`.
     pub fn asks_assistant(&self) -> bool {
-        self.trial.condition == Condition::Assistant || self.assistant.shadow == Shadow::On
+        self.trial.condition == Condition::Assistant || self.assistant.shadow == ShadowMode::On
     }
 
     /// Whether unusually long silence of the human is recorded: where the assistant is then asked for advice, or where
@@ -195,7 +195,7 @@ impl SessionSpec {
 
     /// Whether a scripted wizard reads the assistant's offers: there are offers, and the session shows recommendations.
     pub fn script_reads_offers(&self) -> bool {
-        let is_shown = self.asks_assistant() && self.console.visibility == Visibility::Recommendation;
+        let is_shown = self.asks_assistant() && self.console.visibility == WizardVisibility::Recommendation;
         self.scripts_wizard() && self.wizard.offers.is_some() && is_shown
     }
 

@@ -1,11 +1,11 @@
 //! Entries of a session's timeline.
 
-use super::event::SignalEnd;
-use super::phase::Phase;
+use super::event::SignalEndReason;
+use super::phase::TrialPhase;
 use super::probe_event::ProbeEvent;
 use crate::base::time::SessionTime;
 use crate::communication::{Sender, Signal};
-use crate::kitchen::no_effect::NoEffect;
+use crate::kitchen::no_effect::NoEffectReason;
 use crate::kitchen::{Agent, ButtonId, LocationId};
 use crate::robot::safety::SafetyMode;
 
@@ -28,7 +28,7 @@ pub enum TimelineEvent {
         /// The pressed button, as an index into that agent's buttons.
         button: ButtonId,
         /// Why the press had no effect, and the location that the reason is about; `None` if it had an effect.
-        no_effect: Option<(NoEffect, LocationId)>,
+        no_effect: Option<(NoEffectReason, LocationId)>,
     },
     /// A signal appeared on the participant's display.
     Signal {
@@ -38,7 +38,7 @@ pub enum TimelineEvent {
         signal: Signal,
     },
     /// The signal disappeared, for this reason.
-    SignalEnded(SignalEnd),
+    SignalEnded(SignalEndReason),
     /// An order was served.
     Served {
         /// The order's location.
@@ -83,7 +83,7 @@ pub enum TimelineEvent {
         location: LocationId,
     },
     /// The trial entered this phase (running, paused, over).
-    Trial(Phase),
+    Trial(TrialPhase),
     /// An event of a freeze probe, other than a question or an answer.
     Probe(ProbeEvent),
     /// The trial was excluded from the analysis, for this reason.

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::participant_settings::GazeSource;
 use super::setting_checks::SettingError;
 use crate::base::time::SessionTime;
-use crate::gaze::quality::DropCounts;
-use crate::gaze::surface::SurfaceMap;
+use crate::gaze::quality::DroppedInputCounts;
+use crate::gaze::surface::SurfaceHomography;
 
 /// Settings of the eye tracker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -95,7 +95,7 @@ impl TrackerSpec {
             return Err(SettingError::new("tracker.surface", found, remedy));
         }
         if let Some(corners) = self.corners
-            && SurfaceMap::new(corners).is_none()
+            && SurfaceHomography::new(corners).is_none()
         {
             let remedy = "four corners in fractions of the display: top left, top right, bottom right, bottom left";
             return Err(SettingError::new("tracker.corners", format!("corners = {corners:?}"), remedy));
@@ -137,7 +137,7 @@ pub enum TrackerEvent {
         state: TrackerRecording,
     },
     /// Number of inputs from the tracker that could not be recorded since the session began; at most once per second.
-    Dropped(DropCounts),
+    Dropped(DroppedInputCounts),
     /// A finished fixation that the eye tracker detected.
     Fixation {
         /// Position of the fixation in fractions of the display, if it was on the display.
@@ -220,7 +220,7 @@ pub struct TrackerStatus {
     /// Number of lost connections to the tracker's program.
     pub losses: u64,
     /// Numbers of inputs that could not be recorded, by kind.
-    pub dropped: DropCounts,
+    pub dropped: DroppedInputCounts,
     /// How often the clock of the tracker's time stamps was set.
     pub clock_steps: u64,
     /// Number of fixations that the tracker detected.

@@ -1,21 +1,21 @@
 //! The trial's clock: how it stops and continues. It stands still in pauses and freeze probes.
 
-use super::phase::Phase;
+use super::phase::TrialPhase;
 use super::session_state::Session;
 use crate::base::time::SessionTime;
 
 /// Pauses the trial and stops its clock.
 pub(super) fn pause(session: &mut Session, now: SessionTime) {
     stop(session, now);
-    session.phase = Phase::Paused;
+    session.phase = TrialPhase::Paused;
     session.gaze.steady_since = None;
 }
 
 /// Stops the trial's clock, if it is running.
 pub(super) fn stop(session: &mut Session, now: SessionTime) {
     match session.phase {
-        Phase::Running => session.paused_at = now,
-        Phase::Ready => {
+        TrialPhase::Running => session.paused_at = now,
+        TrialPhase::Ready => {
             session.trial_start = now;
             session.paused_at = now;
         }
@@ -29,7 +29,7 @@ pub(super) fn resume(session: &mut Session, now: SessionTime) -> SessionTime {
     session.pauses.push((session.paused_at, now));
     session.gaze.steady_since = None;
     session.paused_total = session.paused_total + by;
-    session.phase = Phase::Running;
+    session.phase = TrialPhase::Running;
     if let Some((_, _, until)) = &mut session.robot.intention {
         *until = *until + by;
     }

@@ -1,7 +1,7 @@
 //! State of the participant's tutorial: its step, its kitchen, and the answers so far.
 
 use super::plan::{Tutorial, TutorialStep, TutorialStepKind};
-use crate::kitchen::no_effect::NoEffect;
+use crate::kitchen::no_effect::NoEffectReason;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, State};
 
 /// A press of the participant in a tutorial.
@@ -15,7 +15,7 @@ pub struct TutorialPress {
     pub is_right: bool,
     /// Why the press has no effect by the rules of the kitchen, and the location that the reason is about; none if it
     /// has an effect.
-    pub no_effect: Option<(NoEffect, LocationId)>,
+    pub no_effect: Option<(NoEffectReason, LocationId)>,
 }
 
 /// State of the participant's tutorial.

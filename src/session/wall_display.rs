@@ -25,7 +25,7 @@ pub struct DisplaySpec {
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub words: BTreeMap<String, String>,
     /// Which pictures on the page have names beside them.
-    pub names: Names,
+    pub names: DisplayedNames,
     /// Whether each button on the page shows its keyboard key.
     pub keys: bool,
     /// Whether the page shows the robot's next press. The paper does not show it, since a shown intention is
@@ -52,7 +52,7 @@ pub struct DisplaySpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub served: Option<bool>,
     /// Where questionnaires are answered: on the display or at the console.
-    pub questionnaire: Answering,
+    pub questionnaire: AnswerEntry,
 }
 
 impl Default for DisplaySpec {
@@ -62,7 +62,7 @@ impl Default for DisplaySpec {
             port: 50022,
             language: "en".to_string(),
             words: BTreeMap::new(),
-            names: Names::Orders,
+            names: DisplayedNames::Orders,
             keys: true,
             intention: false,
             arm: None,
@@ -72,7 +72,7 @@ impl Default for DisplaySpec {
             sound: false,
             clock: false,
             served: None,
-            questionnaire: Answering::Console,
+            questionnaire: AnswerEntry::Console,
         }
     }
 }
@@ -112,7 +112,7 @@ impl DisplaySpec {
 /// salmon from tuna is part of the task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Names {
+pub enum DisplayedNames {
     /// No picture has a name beside it.
     None,
     /// Pictures of storages have names beside them.
@@ -147,7 +147,7 @@ impl DisplayedArm {
 /// Where answers are entered, and by whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Answering {
+pub enum AnswerEntry {
     /// At the console: the wizard reads the items out and enters the answers.
     Console,
     /// On the display: the participant answers there; the wizard can also enter answers.

@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::console_settings::Visibility;
+use super::console_settings::WizardVisibility;
 
 /// Visible content of the wizard's screen.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct VisibleScreen {
+pub struct WizardScreenContent {
     /// How much the wizard may see in this session.
-    pub visibility: Visibility,
+    pub visibility: WizardVisibility,
     /// Size class of the screen: `small`, `medium`, `large`, or `too_small` for anything but questions.
     pub room: String,
     /// The names of the visible panels, from top to bottom.

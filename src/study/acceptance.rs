@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::trial_statistics::{QuestionnaireAnswer, Trial, mean};
-use crate::session::plan::ItemKind;
+use super::trial_statistics::{QuestionnaireAnswer, TrialStatistics, mean};
+use crate::session::plan::QuestionnaireItemKind;
 use crate::session::study_arm::StudyArm;
 
 /// Acceptance of the assistance: each participant's mean answer, after assisted trials, to the items about acceptance,
@@ -40,7 +40,7 @@ pub struct ItemSummary {
     /// Whether agreement with the statement counts against the construct.
     pub reversed: bool,
     /// Kind of answer that the item takes.
-    pub kind: ItemKind,
+    pub kind: QuestionnaireItemKind,
     /// Condition of the trial after which the item was asked; `None` for items asked before the trials.
     pub condition: Option<StudyArm>,
     /// Number of points of the rating scale; `None` for other kinds of item.
@@ -73,12 +73,12 @@ pub struct ScoreSummary {
 }
 
 /// Condition of the trial after which an answer was given; `None` for answers before the trials.
-fn asked_after(trial: &Trial, answered: &QuestionnaireAnswer) -> Option<StudyArm> {
+fn asked_after(trial: &TrialStatistics, answered: &QuestionnaireAnswer) -> Option<StudyArm> {
     (!answered.before).then_some(trial.study_arm)
 }
 
 /// Scores of all questionnaires by condition, in the order in which they occur.
-pub(super) fn scores(trials: &[&Trial]) -> Vec<ScoreSummary> {
+pub(super) fn scores(trials: &[&TrialStatistics]) -> Vec<ScoreSummary> {
     let mut found: Vec<ScoreSummary> = Vec::new();
     for trial in trials {
         let mut occasions: Vec<(&str, bool)> = Vec::new();
@@ -117,7 +117,7 @@ fn sample_sd(values: &[f64]) -> Option<f64> {
 }
 
 /// Answers to all questionnaires' items by condition, in the order in which they occur.
-pub(super) fn items(trials: &[&Trial]) -> Vec<ItemSummary> {
+pub(super) fn items(trials: &[&TrialStatistics]) -> Vec<ItemSummary> {
     let mut items: Vec<(ItemSummary, Vec<f64>)> = Vec::new();
     for trial in trials {
         for answered in &trial.answers {
@@ -177,7 +177,7 @@ impl ItemSummary {
 }
 
 /// Acceptance from the answers in assisted trials; `None` without answers.
-pub(super) fn acceptance(trials: &[&Trial]) -> Option<Acceptance> {
+pub(super) fn acceptance(trials: &[&TrialStatistics]) -> Option<Acceptance> {
     let mut by_participant: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     for trial in trials.iter().filter(|trial| trial.is_assisted()) {
         for answered in trial.answers.iter().filter(|one| one.about.as_deref() == Some("acceptance")) {

@@ -10,7 +10,7 @@ pub type ActorName = &'static str;
 
 /// Sender of the signals in a simulated trial, with the parameter of its concept.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ActingArm {
+pub struct ActingStudyArm {
     /// Name of the sender: `none`, `wizard` or `wizard+advice` (scripted wizard), or a concept.
     #[serde(deserialize_with = "actor")]
     pub concept: ActorName,
@@ -19,11 +19,11 @@ pub struct ActingArm {
     pub parameter: Option<f64>,
 }
 
-impl ActingArm {
+impl ActingStudyArm {
     /// The sender in trials of a study arm; `parameter` is that of the concept that acts in the arm.
-    pub fn from_settings(arm: StudyArm, parameter: f64) -> ActingArm {
+    pub fn from_settings(arm: StudyArm, parameter: f64) -> ActingStudyArm {
         let concept = arm.concept();
-        ActingArm { concept: concept.map_or(arm.name(), ConceptName::name), parameter: concept.map(|_| parameter) }
+        ActingStudyArm { concept: concept.map_or(arm.name(), ConceptName::name), parameter: concept.map(|_| parameter) }
     }
 
     /// Sort key of senders in tables: without signals, wizard, then the concepts by parameter.

@@ -2,14 +2,14 @@
 
 use maud::Markup;
 
-use super::arm_comparison::ArmContrast;
+use super::arm_comparison::StudyArmContrast;
 use super::svg::{PlotAxis, SvgChart};
 
 /// Ratios up to this value are drawn to scale; longer intervals end at the border of the chart.
 const LARGEST: f64 = 4.0;
 
 /// Chart of ratios of rates with their confidence intervals; a line marks equal rates.
-pub fn ratios(contrasts: &[ArmContrast]) -> Option<Markup> {
+pub fn ratios(contrasts: &[StudyArmContrast]) -> Option<Markup> {
     if contrasts.is_empty() {
         return None;
     }

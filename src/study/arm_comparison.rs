@@ -9,18 +9,18 @@
 
 use serde::Serialize;
 
-use super::arm_design::{ArmDesign, ArmTrial, pairs};
+use super::arm_design::{StudyArmDesign, StudyArmTrial, pairs};
 use super::effect::LEVEL;
 use super::group_orders::{GroupOrder, group_orders};
-use super::linear_mixed_model::{Contrast, LinearMixedModel};
+use super::linear_mixed_model::{LinearMixedModel, MixedModelContrast};
 use super::negative_binomial_model::WaldContrast;
-use super::trial_statistics::Trial;
+use super::trial_statistics::TrialStatistics;
 use crate::session::plan::{PrimaryOutcome, StudyAims};
 use crate::session::study_arm::StudyArm;
 
 /// Comparison of the arms of a study by the primary outcome.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ArmComparison {
+pub struct StudyArmComparison {
     /// Primary outcome: the event whose rate is compared between arms.
     pub outcome: PrimaryOutcome,
     /// Number of participants in the comparison.
@@ -28,16 +28,16 @@ pub struct ArmComparison {
     /// Number of trials in the comparison.
     pub trials: usize,
     /// Numbers of trials, events and presses of each arm, in the order of tables.
-    pub arms: Vec<ArmOutcome>,
+    pub arms: Vec<StudyArmOutcome>,
     /// Standard deviations of log rates: between participants, and residual.
     pub standard_deviations: [f64; 2],
     /// Contrasts of the primary model: arms against the arm without signals and against the wizard.
-    pub contrasts: Vec<ArmContrast>,
+    pub contrasts: Vec<StudyArmContrast>,
     /// Contrasts of the model that includes the effect of the previous arm (carry-over); empty with fewer than three
     /// arms, or where the model cannot be estimated.
-    pub with_carry_over: Vec<ArmContrast>,
+    pub with_carry_over: Vec<StudyArmContrast>,
     /// Comparison by the mixed negative binomial model; null where the model cannot be estimated.
-    pub negative_binomial: Option<CountComparison>,
+    pub negative_binomial: Option<NegativeBinomialComparison>,
     /// Non-inferiority of the assistant's arms to the wizard's.
     pub non_inferiority: Vec<NonInferiority>,
     /// Starting groups with their orders of conditions.
@@ -46,7 +46,7 @@ pub struct ArmComparison {
 
 /// Counts over the trials of one study arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ArmOutcome {
+pub struct StudyArmOutcome {
     /// Study arm of the counts.
     pub arm: StudyArm,
     /// Number of trials of the arm.
@@ -57,7 +57,7 @@ pub struct ArmOutcome {
     pub presses: u64,
 }
 
-impl ArmOutcome {
+impl StudyArmOutcome {
     /// Events per 100 presses of the human, over all trials together.
     pub fn per_100(&self) -> f64 {
         100.0 * self.events as f64 / self.presses as f64
@@ -66,7 +66,7 @@ impl ArmOutcome {
 
 /// Comparison of one arm with another in the primary model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ArmContrast {
+pub struct StudyArmContrast {
     /// Study arm that is compared.
     pub arm: StudyArm,
     /// Study arm that it is compared with.
@@ -79,24 +79,24 @@ pub struct ArmContrast {
     pub p_holm: f64,
     /// Contrast of the log rates.
     #[serde(flatten)]
-    pub contrast: Contrast,
+    pub contrast: MixedModelContrast,
 }
 
 /// Comparison of study arms by the mixed negative binomial model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CountComparison {
+pub struct NegativeBinomialComparison {
     /// Standard deviation of log rates between participants.
     pub between_sd: f64,
     /// Size parameter of the negative binomial distribution: the variance of a count is mu + mu^2 / size; null where
     /// counts vary no more than under a Poisson distribution.
     pub size: Option<f64>,
     /// Contrasts between the same arms as in the primary model.
-    pub contrasts: Vec<CountContrast>,
+    pub contrasts: Vec<NegativeBinomialContrast>,
 }
 
 /// Comparison of one arm with another in the negative binomial model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct CountContrast {
+pub struct NegativeBinomialContrast {
     /// Study arm that is compared.
     pub arm: StudyArm,
     /// Study arm that it is compared with.
@@ -130,7 +130,7 @@ pub struct NonInferiority {
 }
 
 /// Number of events of the outcome in a trial; `None` if that is unknown for the trial.
-fn events(outcome: PrimaryOutcome, trial: &Trial) -> Option<u64> {
+fn events(outcome: PrimaryOutcome, trial: &TrialStatistics) -> Option<u64> {
     match outcome {
         PrimaryOutcome::Errors => Some(trial.errors),
         PrimaryOutcome::BeliefRelatedErrors => trial.beliefs.as_ref().map(|beliefs| beliefs.errors),
@@ -139,8 +139,8 @@ fn events(outcome: PrimaryOutcome, trial: &Trial) -> Option<u64> {
 }
 
 /// The trials that have a period and the outcome. If a participant repeated a period, the last trial counts.
-fn counted(trials: &[&Trial], outcome: PrimaryOutcome) -> Vec<ArmTrial> {
-    let mut rows: Vec<(&Trial, ArmTrial)> = Vec::new();
+fn counted(trials: &[&TrialStatistics], outcome: PrimaryOutcome) -> Vec<StudyArmTrial> {
+    let mut rows: Vec<(&TrialStatistics, StudyArmTrial)> = Vec::new();
     for trial in trials.iter().copied().filter(|trial| trial.human_presses > 0) {
         let (Some(period), Some(events)) = (trial.period, events(outcome, trial)) else { continue };
         let mut participant = 0;
@@ -151,37 +151,37 @@ fn counted(trials: &[&Trial], outcome: PrimaryOutcome) -> Vec<ArmTrial> {
             }
         }
         let (arm, presses) = (trial.study_arm, trial.human_presses);
-        rows.push((trial, ArmTrial { participant, period, arm, events, presses }));
+        rows.push((trial, StudyArmTrial { participant, period, arm, events, presses }));
     }
     rows.into_iter().map(|(_, row)| row).collect()
 }
 
 /// Contrasts of the primary model, with Holm's correction.
-fn contrasts(design: &ArmDesign, model: &LinearMixedModel) -> Vec<ArmContrast> {
+fn contrasts(design: &StudyArmDesign, model: &LinearMixedModel) -> Vec<StudyArmContrast> {
     let contrast = |pair: (StudyArm, StudyArm)| {
         let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
         let (arm, against) = pair;
         let interval = contrast.interval(LEVEL).map(f64::exp);
-        Some(ArmContrast { arm, against, ratio: contrast.estimate.exp(), interval, p_holm: contrast.p, contrast })
+        Some(StudyArmContrast { arm, against, ratio: contrast.estimate.exp(), interval, p_holm: contrast.p, contrast })
     };
-    let mut all: Vec<ArmContrast> = pairs(design.arms()).into_iter().filter_map(contrast).collect();
+    let mut all: Vec<StudyArmContrast> = pairs(design.arms()).into_iter().filter_map(contrast).collect();
     let corrected = holm(&all.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
     all.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
     all
 }
 
-fn count_comparison(design: &ArmDesign) -> Option<CountComparison> {
+fn count_comparison(design: &StudyArmDesign) -> Option<NegativeBinomialComparison> {
     let model = design.counts()?;
     let contrast = |pair: (StudyArm, StudyArm)| {
         let contrast = model.contrast(&design.weights(pair, model.estimates.len()))?;
         let (arm, against) = pair;
-        Some(CountContrast { arm, against, ratio: contrast.estimate.exp(), p_holm: contrast.p, contrast })
+        Some(NegativeBinomialContrast { arm, against, ratio: contrast.estimate.exp(), p_holm: contrast.p, contrast })
     };
-    let mut contrasts: Vec<CountContrast> = pairs(design.arms()).into_iter().filter_map(contrast).collect();
+    let mut contrasts: Vec<NegativeBinomialContrast> = pairs(design.arms()).into_iter().filter_map(contrast).collect();
     let corrected = holm(&contrasts.iter().map(|one| one.contrast.p).collect::<Vec<_>>());
     contrasts.iter_mut().zip(corrected).for_each(|(one, p)| one.p_holm = p);
     let size = Some(model.size).filter(|size| size.is_finite());
-    Some(CountComparison { between_sd: model.between_sd, size, contrasts })
+    Some(NegativeBinomialComparison { between_sd: model.between_sd, size, contrasts })
 }
 
 /// Holm's correction of p values for multiple tests: each p value is multiplied by the number of those that are not
@@ -199,23 +199,23 @@ pub fn holm(p: &[f64]) -> Vec<f64> {
 
 /// Contrasts of the primary model alone, for trials ordered by participant and period; empty where the model cannot be
 /// estimated.
-pub fn primary_contrasts(trials: Vec<ArmTrial>) -> Vec<ArmContrast> {
-    let design = ArmDesign::new(trials);
+pub fn primary_contrasts(trials: Vec<StudyArmTrial>) -> Vec<StudyArmContrast> {
+    let design = StudyArmDesign::new(trials);
     let model = if design.is_within() { design.linear(false) } else { None };
     model.map_or_else(Vec::new, |model| contrasts(&design, &model))
 }
 
 /// Compares the arms of these trials, which must be ordered by participant and period; `None` unless participants have
 /// trials in different arms, or where the model cannot be estimated. Outcome and margin are set by the plan.
-pub fn compare_arms(trials: &[&Trial]) -> Option<ArmComparison> {
+pub fn compare_arms(trials: &[&TrialStatistics]) -> Option<StudyArmComparison> {
     let aims = trials.iter().find_map(|trial| trial.aims).unwrap_or_default();
     let compared = compare_counts(counted(trials, aims.outcome), aims)?;
-    Some(ArmComparison { groups: group_orders(trials), ..compared })
+    Some(StudyArmComparison { groups: group_orders(trials), ..compared })
 }
 
 /// Compares arms by counts of the primary outcome that these aims set; without starting groups.
-pub fn compare_counts(trials: Vec<ArmTrial>, aims: StudyAims) -> Option<ArmComparison> {
-    let design = ArmDesign::new(trials);
+pub fn compare_counts(trials: Vec<StudyArmTrial>, aims: StudyAims) -> Option<StudyArmComparison> {
+    let design = StudyArmDesign::new(trials);
     if !design.is_within() {
         return None;
     }
@@ -238,14 +238,14 @@ pub fn compare_counts(trials: Vec<ArmTrial>, aims: StudyAims) -> Option<ArmCompa
     });
     let outcome_of = |arm: StudyArm| {
         let own = || design.trials().iter().filter(|trial| trial.arm == arm);
-        ArmOutcome {
+        StudyArmOutcome {
             arm,
             trials: own().count(),
             events: own().map(|trial| trial.events).sum(),
             presses: own().map(|trial| trial.presses).sum(),
         }
     };
-    Some(ArmComparison {
+    Some(StudyArmComparison {
         outcome: aims.outcome,
         participants: design.trials().last().map_or(0, |trial| trial.participant + 1),
         trials: design.trials().len(),

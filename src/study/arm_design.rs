@@ -1,12 +1,12 @@
 //! Design matrix of a comparison of study arms: the effects of arm, period and previous arm for each trial.
 
-use super::linear_mixed_model::{LinearMixedModel, Measurement};
-use super::negative_binomial_model::{NegativeBinomialModel, TrialCount};
+use super::linear_mixed_model::{LinearMixedModel, MixedModelMeasurement};
+use super::negative_binomial_model::{CountObservation, NegativeBinomialModel};
 use crate::session::study_arm::StudyArm;
 
 /// A trial in the comparison of arms: participant, period, arm, and counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ArmTrial {
+pub struct StudyArmTrial {
     /// Index of the participant.
     pub participant: usize,
     /// Number of the trial in the participant's series, from 1.
@@ -19,7 +19,7 @@ pub struct ArmTrial {
     pub presses: u64,
 }
 
-impl ArmTrial {
+impl StudyArmTrial {
     /// Dependent variable of the primary model: log((events + 0.5) / presses).
     pub fn log_rate(&self) -> f64 {
         ((self.events as f64 + 0.5) / self.presses as f64).ln()
@@ -28,8 +28,8 @@ impl ArmTrial {
 
 /// Design of a comparison of arms: one row of effects per trial.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ArmDesign {
-    trials: Vec<ArmTrial>,
+pub struct StudyArmDesign {
+    trials: Vec<StudyArmTrial>,
     arms: Vec<StudyArm>,
     periods: Vec<u32>,
 }
@@ -48,19 +48,19 @@ pub fn pairs(arms: &[StudyArm]) -> Vec<(StudyArm, StudyArm)> {
     pairs
 }
 
-impl ArmDesign {
+impl StudyArmDesign {
     /// The design for these trials, which must be ordered by participant and period.
-    pub fn new(trials: Vec<ArmTrial>) -> ArmDesign {
+    pub fn new(trials: Vec<StudyArmTrial>) -> StudyArmDesign {
         let has = |arm: &StudyArm| trials.iter().any(|trial| trial.arm == *arm);
         let arms = StudyArm::ALL.into_iter().filter(has).collect();
         let mut periods: Vec<u32> = trials.iter().map(|trial| trial.period).collect();
         periods.sort_unstable();
         periods.dedup();
-        ArmDesign { trials, arms, periods }
+        StudyArmDesign { trials, arms, periods }
     }
 
     /// The trials of the comparison, ordered by participant and period.
-    pub fn trials(&self) -> &[ArmTrial] {
+    pub fn trials(&self) -> &[StudyArmTrial] {
         &self.trials
     }
 
@@ -94,7 +94,7 @@ impl ArmDesign {
     /// The primary model, with `carry_over` including the effect of the previous arm; `None` where it cannot be
     /// estimated.
     pub fn linear(&self, carry_over: bool) -> Option<LinearMixedModel> {
-        let measurement = |(index, trial): (usize, &ArmTrial)| Measurement {
+        let measurement = |(index, trial): (usize, &StudyArmTrial)| MixedModelMeasurement {
             participant: trial.participant,
             effects: self.effects(index, carry_over),
             value: trial.log_rate(),
@@ -104,7 +104,7 @@ impl ArmDesign {
 
     /// The negative binomial model of counts; `None` where it cannot be estimated.
     pub fn counts(&self) -> Option<NegativeBinomialModel> {
-        let count = |(index, trial): (usize, &ArmTrial)| TrialCount {
+        let count = |(index, trial): (usize, &StudyArmTrial)| CountObservation {
             participant: trial.participant,
             effects: self.effects(index, false),
             count: trial.events,

@@ -2,26 +2,26 @@
 
 use serde::Serialize;
 
-use super::robot_tally::RobotSummary;
-use super::trial_statistics::Trial;
+use super::robot_tally::RobotEventSummary;
+use super::trial_statistics::TrialStatistics;
 use crate::session::settings::ArmKind;
 
 /// Robot statistics summed over the trials with one kind of robot arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ArmGroup {
+pub struct RobotArmGroup {
     /// Kind of the robot's arm: timed or physical.
     pub kind: ArmKind,
     /// Number of trials.
     pub trials: u64,
     /// Sums of the robot statistics over the trials.
     #[serde(flatten)]
-    pub robot: RobotSummary,
+    pub robot: RobotEventSummary,
 }
 
 /// Groups trials by kind of robot arm; kinds without trials are left out.
-pub fn by_arm(trials: &[&Trial]) -> Vec<ArmGroup> {
+pub fn by_arm(trials: &[&TrialStatistics]) -> Vec<RobotArmGroup> {
     let of = |kind: ArmKind| {
-        let mut group = ArmGroup { kind, trials: 0, robot: RobotSummary::default() };
+        let mut group = RobotArmGroup { kind, trials: 0, robot: RobotEventSummary::default() };
         for trial in trials.iter().filter(|trial| trial.arm == kind) {
             group.trials += 1;
             group.robot.add(&trial.robot);

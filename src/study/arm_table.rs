@@ -3,9 +3,9 @@
 
 use serde::Serialize;
 
-use super::arm_comparison::{ArmComparison, compare_counts};
-use super::arm_design::ArmTrial;
-use super::simulation_pool::{SimulationPool, TrialCounts};
+use super::arm_comparison::{StudyArmComparison, compare_counts};
+use super::arm_design::StudyArmTrial;
+use super::simulation_pool::{PoolTrialCounts, SimulationPool};
 use crate::analysis::trial_bootstrap::interval_where_known;
 use crate::session::plan::{PrimaryOutcome, StudyAims};
 use crate::session::study_arm::StudyArm;
@@ -15,7 +15,7 @@ const SEED: u64 = 1;
 
 /// A statistic of one arm with its 95 % confidence interval, by a bootstrap over participants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ArmFigure {
+pub struct StudyArmStatistic {
     /// The statistic over all trials of the arm; null where it cannot be computed.
     pub value: Option<f64>,
     /// Confidence interval of the statistic; null with fewer than five participants.
@@ -24,28 +24,28 @@ pub struct ArmFigure {
 
 /// Row of the table of arms: rates of one study arm.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ArmRow {
+pub struct StudyArmRow {
     /// Study arm of the row.
     pub arm: StudyArm,
     /// Number of trials of the arm.
     pub trials: u64,
     /// Errors per 100 presses of the human.
-    pub errors_per_100: ArmFigure,
+    pub errors_per_100: StudyArmStatistic,
     /// Errors that follow from false beliefs, per 100 presses of the human.
-    pub related_per_100: ArmFigure,
+    pub related_per_100: StudyArmStatistic,
     /// Mean number of errors in a sequence that follows from the same false belief.
-    pub sequence_length: ArmFigure,
+    pub sequence_length: StudyArmStatistic,
     /// Orders served per minute.
-    pub orders_per_minute: ArmFigure,
+    pub orders_per_minute: StudyArmStatistic,
     /// Signals per 100 presses of the human.
-    pub signals_per_100: ArmFigure,
+    pub signals_per_100: StudyArmStatistic,
     /// Share of the trials' time with a signal on the display.
-    pub signal_time: ArmFigure,
+    pub signal_time: StudyArmStatistic,
 }
 
 /// Comparison of all study arms in simulated trials: the output of `tomcom arms`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ArmTable {
+pub struct StudyArmTable {
     /// Name of the study plan.
     pub plan: String,
     /// Checksum of plan and settings with this seed.
@@ -57,18 +57,18 @@ pub struct ArmTable {
     /// Number of participants.
     pub participants: u32,
     /// One row per arm, in the order of tables.
-    pub arms: Vec<ArmRow>,
+    pub arms: Vec<StudyArmRow>,
     /// Comparisons of arms by errors and by errors from false beliefs; those that cannot be estimated are left out.
-    pub comparisons: Vec<ArmComparison>,
+    pub comparisons: Vec<StudyArmComparison>,
 }
 
-impl ArmRow {
-    fn new(arm: StudyArm, trials: &[&TrialCounts]) -> ArmRow {
-        let figure = |value: fn(&[&TrialCounts]) -> Option<f64>| ArmFigure {
+impl StudyArmRow {
+    fn new(arm: StudyArm, trials: &[&PoolTrialCounts]) -> StudyArmRow {
+        let figure = |value: fn(&[&PoolTrialCounts]) -> Option<f64>| StudyArmStatistic {
             value: value(trials),
             interval: interval_where_known(trials, SEED, value),
         };
-        ArmRow {
+        StudyArmRow {
             arm,
             trials: trials.len() as u64,
             errors_per_100: figure(|trials| per_100(trials, |trial| trial.errors)),
@@ -86,7 +86,7 @@ impl ArmRow {
     }
 }
 
-fn sum(trials: &[&TrialCounts], value: fn(&TrialCounts) -> f64) -> f64 {
+fn sum(trials: &[&PoolTrialCounts], value: fn(&PoolTrialCounts) -> f64) -> f64 {
     trials.iter().map(|trial| value(trial)).sum()
 }
 
@@ -94,23 +94,23 @@ fn ratio(part: f64, whole: f64) -> Option<f64> {
     (whole > 0.0).then(|| part / whole)
 }
 
-fn per_100(trials: &[&TrialCounts], number: fn(&TrialCounts) -> u64) -> Option<f64> {
+fn per_100(trials: &[&PoolTrialCounts], number: fn(&PoolTrialCounts) -> u64) -> Option<f64> {
     let number = trials.iter().map(|trial| number(trial)).sum::<u64>() as f64;
     ratio(100.0 * number, sum(trials, |trial| trial.human_presses as f64))
 }
 
-impl ArmTable {
+impl StudyArmTable {
     /// The table for a pool whose trials were simulated in the arms of its plan.
-    pub fn from_pool(pool: &SimulationPool) -> ArmTable {
+    pub fn from_pool(pool: &SimulationPool) -> StudyArmTable {
         let header = &pool.header;
         let row = |arm: StudyArm| {
             let own = pool.persons.iter().flat_map(|person| &person.trials).filter(|trial| trial.arm == arm);
-            let counts: Vec<&TrialCounts> = own.filter_map(|trial| trial.own.as_ref()).collect();
-            (!counts.is_empty()).then(|| ArmRow::new(arm, &counts))
+            let counts: Vec<&PoolTrialCounts> = own.filter_map(|trial| trial.own.as_ref()).collect();
+            (!counts.is_empty()).then(|| StudyArmRow::new(arm, &counts))
         };
         let outcomes = [PrimaryOutcome::Errors, PrimaryOutcome::BeliefRelatedErrors];
         let compared = |outcome| compare_counts(counted(pool, outcome), StudyAims { outcome, ..header.aims });
-        ArmTable {
+        StudyArmTable {
             plan: header.plan.clone(),
             digest: header.digest.clone(),
             program: header.program.clone(),
@@ -123,20 +123,20 @@ impl ArmTable {
 }
 
 /// The pool's trials in their arms, with counts of the outcome, for the comparison of arms.
-fn counted(pool: &SimulationPool, outcome: PrimaryOutcome) -> Vec<ArmTrial> {
+fn counted(pool: &SimulationPool, outcome: PrimaryOutcome) -> Vec<StudyArmTrial> {
     let persons = pool.persons.iter().enumerate();
     let trials = persons.flat_map(|(participant, person)| {
         person.trials.iter().zip(1..).filter_map(move |(trial, period)| {
             let counts = trial.own.as_ref()?;
             let (events, presses) = (counts.events(outcome), counts.human_presses);
-            Some(ArmTrial { participant, period, arm: trial.arm, events, presses })
+            Some(StudyArmTrial { participant, period, arm: trial.arm, events, presses })
         })
     });
     trials.collect()
 }
 
 /// The table of arms as text, in Markdown.
-pub fn describe(table: &ArmTable) -> String {
+pub fn describe(table: &StudyArmTable) -> String {
     let mut text = format!(
         "plan {} ({}), seed {}: {} simulated participants, each with a trial in every condition\n\n",
         table.plan, table.digest, table.seed, table.participants
@@ -157,7 +157,7 @@ pub fn describe(table: &ArmTable) -> String {
     text + "\nper 100 presses of the participant; in brackets intervals of 95 %, by a bootstrap over participants\n"
 }
 
-fn number(figure: &ArmFigure, scale: f64, digits: usize) -> String {
+fn number(figure: &StudyArmStatistic, scale: f64, digits: usize) -> String {
     let Some(value) = figure.value else { return "-".to_string() };
     let value = format!("{:.digits$}", scale * value);
     match figure.interval {

@@ -1,16 +1,16 @@
 //! Everything in a trial that can change or show the participant's beliefs, in order: changes of the kitchen, looks,
 //! signals and the participant's presses. Neither estimates nor recorded beliefs are part of it.
 
-use crate::analysis::looks::Looks;
+use crate::analysis::looks::LocationDwells;
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::aspects_told;
 use crate::gaze::MIN_CONFIDENCE;
-use crate::kitchen::{Agent, AspectId, Change, LocationId, Press, State};
-use crate::session::{Event, Session, Stamped};
+use crate::kitchen::{Agent, AspectId, KitchenChange, LocationId, Press, State};
+use crate::session::{Event, Session, TimestampedEvent};
 
 /// Event of a trial that can change or show the participant's belief.
 #[derive(Clone, Debug, PartialEq)]
-pub enum TraceEvent {
+pub enum BeliefTraceEvent {
     /// The trial starts in a state that the participant knows.
     Started {
         /// State at the start: the empty kitchen.
@@ -46,15 +46,15 @@ pub enum TraceEvent {
 #[derive(Clone, Debug, Default)]
 pub struct BeliefTrace {
     /// The trial's events with their session times, in order.
-    pub events: Vec<(SessionTime, TraceEvent)>,
-    looks: Looks,
+    pub events: Vec<(SessionTime, BeliefTraceEvent)>,
+    looks: LocationDwells,
     /// For each location, whether the present look at its present content is already in `events`.
     is_noted: Vec<bool>,
 }
 
 impl BeliefTrace {
     /// Adds an event that has just been applied to the session.
-    pub fn note(&mut self, stamped: &Stamped, change: &Change, session: &Session) {
+    pub fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, session: &Session) {
         if !session.is_running() && change.states().is_none() {
             // Participants do not read the display in a pause.
             self.looks.interrupted();
@@ -68,18 +68,18 @@ impl BeliefTrace {
             }
         }
         let traced = match (*change, &stamped.event) {
-            (Change::TrialStarted { after, .. }, _) => Some(TraceEvent::Started { state: after }),
-            (Change::Press { press, .. }, _) if press.agent == Agent::Human => {
-                Some(TraceEvent::Pressed { seq: stamped.seq, press })
+            (KitchenChange::TrialStarted { after, .. }, _) => Some(BeliefTraceEvent::Started { state: after }),
+            (KitchenChange::Press { press, .. }, _) if press.agent == Agent::Human => {
+                Some(BeliefTraceEvent::Pressed { seq: stamped.seq, press })
             }
             (_, Event::SignalShown { signal, .. }) => {
-                Some(TraceEvent::Told { aspects: aspects_told(&session.kitchen, session.state, signal) })
+                Some(BeliefTraceEvent::Told { aspects: aspects_told(&session.kitchen, session.state, signal) })
             }
             (_, Event::Gaze(sample)) if sample.confidence >= MIN_CONFIDENCE && session.gaze.fault.is_none() => {
                 self.looked(stamped.time, session);
                 None
             }
-            _ => change.states().map(|(before, after)| TraceEvent::Changed { before, after }),
+            _ => change.states().map(|(before, after)| BeliefTraceEvent::Changed { before, after }),
         };
         self.events.extend(traced.map(|event| (stamped.time, event)));
     }
@@ -90,7 +90,7 @@ impl BeliefTrace {
             let location = LocationId(index as u8);
             let is_seen = self.looks.sampled(session, location);
             if is_seen && !*is_noted {
-                self.events.push((now, TraceEvent::Looked { location }));
+                self.events.push((now, BeliefTraceEvent::Looked { location }));
             }
             *is_noted = is_seen;
         }
@@ -98,6 +98,6 @@ impl BeliefTrace {
 
     /// Whether the trial has any look; without gaze data it is unknown what the participant saw.
     pub fn has_looks(&self) -> bool {
-        self.events.iter().any(|(_, event)| matches!(event, TraceEvent::Looked { .. }))
+        self.events.iter().any(|(_, event)| matches!(event, BeliefTraceEvent::Looked { .. }))
     }
 }

@@ -4,18 +4,18 @@ use maud::Markup;
 
 use super::effect::{TrialPair, pairs};
 use super::figures::{StudyConditionSummary, StudySummary};
-use super::roc::{Roc, RocPoint};
+use super::roc::{ConceptRocCurve, RocPoint};
 use super::svg::{PlotAxis, SvgChart, minus};
 use super::tables::trials::HEADLINE;
-use super::trial_statistics::{Trial, mean};
-use crate::analysis::probe_figures::ProbeFigures;
+use super::trial_statistics::{TrialStatistics, mean};
+use crate::analysis::probe_figures::ProbeSummary;
 use crate::communication::concept::ConceptName;
 use crate::measures::detection::CalibrationBin;
 use crate::session::study_arm::StudyArm;
 
 /// Chart of errors by condition and participant (after the paper's figure, top left); lines join a participant's two
 /// trials, means are black.
-pub fn errors_by_condition(trials: &[Trial]) -> Option<Markup> {
+pub fn errors_by_condition(trials: &[TrialStatistics]) -> Option<Markup> {
     let pairs = pairs(trials, HEADLINE);
     let values = || pairs.iter().flat_map(|pair| pair.values).map(percent);
     if pairs.is_empty() {
@@ -45,7 +45,7 @@ pub fn errors_by_condition(trials: &[Trial]) -> Option<Markup> {
 
 /// Chart of improvements from the first to the second trial by starting group (after the paper's figure, top right);
 /// the difference of the means is twice the effect of assistance.
-pub fn improvements(trials: &[Trial]) -> Option<Markup> {
+pub fn improvements(trials: &[TrialStatistics]) -> Option<Markup> {
     let pairs = pairs(trials, HEADLINE);
     if pairs.is_empty() {
         return None;
@@ -72,10 +72,12 @@ pub fn improvements(trials: &[Trial]) -> Option<Markup> {
 
 /// Chart of the time between presses of the human, in seconds, by trial and condition (after the paper's figure,
 /// bottom), which indicates experience.
-pub fn press_durations(trials: &[Trial]) -> Option<Markup> {
+pub fn press_durations(trials: &[TrialStatistics]) -> Option<Markup> {
     let cells: Vec<(u32, bool)> = vec![(1, false), (1, true), (2, false), (2, true)];
     let of = |&(period, assisted): &(u32, bool)| -> Vec<(&str, f64)> {
-        let is_it = |trial: &&Trial| trial.counts() && trial.period == Some(period) && trial.is_assisted() == assisted;
+        let is_it = |trial: &&TrialStatistics| {
+            trial.counts() && trial.period == Some(period) && trial.is_assisted() == assisted
+        };
         let found = trials.iter().filter(is_it);
         found.filter_map(|trial| Some((trial.participant.as_str(), trial.press_s?))).collect()
     };
@@ -171,7 +173,7 @@ pub fn equal_signals(figures: &StudySummary) -> Option<Markup> {
 }
 
 /// Draws the points of a concept with x up to `to`, and the line through them.
-fn curve(chart: &mut SvgChart, roc: &Roc, to: f64, of: fn(&RocPoint) -> (f64, f64)) {
+fn curve(chart: &mut SvgChart, roc: &ConceptRocCurve, to: f64, of: fn(&RocPoint) -> (f64, f64)) {
     let class = class_of(roc.concept);
     let is_drawn = |point: &&RocPoint| of(point).0 <= to;
     let mut points: Vec<(f64, f64)> = roc.points.iter().filter(is_drawn).map(of).collect();
@@ -186,7 +188,7 @@ fn curve(chart: &mut SvgChart, roc: &Roc, to: f64, of: fn(&RocPoint) -> (f64, f6
 
 /// Calibration chart of the belief estimate, by answers to freeze probes; `None` if no prediction is in the calibrated
 /// range.
-pub fn probe_calibration(found: &ProbeFigures) -> Option<Markup> {
+pub fn probe_calibration(found: &ProbeSummary) -> Option<Markup> {
     let filled: Vec<&CalibrationBin> = found.detection.calibration.bins.iter().filter(|bin| bin.n > 0).collect();
     filled.first()?;
     let x = PlotAxis::between("predicted probability of a false belief", 0.0, 1.0);

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// Tables that the analysis of a study writes as CSV files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Table {
+pub enum CsvTable {
     /// A row for each participant.
     Participants,
     /// A row for each trial.
@@ -35,83 +35,83 @@ pub enum Table {
     Dictionary,
 }
 
-impl Table {
+impl CsvTable {
     /// All tables.
-    pub const ALL: [Table; 12] = [
-        Table::Participants,
-        Table::Trials,
-        Table::Questionnaires,
-        Table::Tutorial,
-        Table::Concepts,
-        Table::Actions,
-        Table::Communications,
-        Table::Offers,
-        Table::Beliefs,
-        Table::Gaze,
-        Table::Probes,
-        Table::Dictionary,
+    pub const ALL: [CsvTable; 12] = [
+        CsvTable::Participants,
+        CsvTable::Trials,
+        CsvTable::Questionnaires,
+        CsvTable::Tutorial,
+        CsvTable::Concepts,
+        CsvTable::Actions,
+        CsvTable::Communications,
+        CsvTable::Offers,
+        CsvTable::Beliefs,
+        CsvTable::Gaze,
+        CsvTable::Probes,
+        CsvTable::Dictionary,
     ];
     /// Tables whose rows are events of a trial.
-    pub const OF_EVENTS: [Table; 5] =
-        [Table::Actions, Table::Communications, Table::Offers, Table::Beliefs, Table::Gaze];
+    pub const OF_EVENTS: [CsvTable; 5] =
+        [CsvTable::Actions, CsvTable::Communications, CsvTable::Offers, CsvTable::Beliefs, CsvTable::Gaze];
 
     /// File name of the table without `.csv`.
     pub fn name(self) -> &'static str {
         match self {
-            Table::Participants => "participants",
-            Table::Trials => "trials",
-            Table::Questionnaires => "questionnaires",
-            Table::Tutorial => "tutorial",
-            Table::Concepts => "concepts",
-            Table::Actions => "actions",
-            Table::Communications => "communications",
-            Table::Offers => "offers",
-            Table::Beliefs => "beliefs",
-            Table::Gaze => "gaze",
-            Table::Probes => "probes",
-            Table::Dictionary => "dictionary",
+            CsvTable::Participants => "participants",
+            CsvTable::Trials => "trials",
+            CsvTable::Questionnaires => "questionnaires",
+            CsvTable::Tutorial => "tutorial",
+            CsvTable::Concepts => "concepts",
+            CsvTable::Actions => "actions",
+            CsvTable::Communications => "communications",
+            CsvTable::Offers => "offers",
+            CsvTable::Beliefs => "beliefs",
+            CsvTable::Gaze => "gaze",
+            CsvTable::Probes => "probes",
+            CsvTable::Dictionary => "dictionary",
         }
     }
 }
 
 /// Type from which the rows of a table are made.
-pub trait TableRow: Sized {
+pub trait CsvRow: Sized {
     /// Table that the row belongs to.
-    const TABLE: Table;
+    const TABLE: CsvTable;
 
     /// Columns of the table, in file order.
-    fn columns() -> Vec<Column<Self>>;
+    fn columns() -> Vec<CsvColumn<Self>>;
 
     /// Declares a column with its name, unit (empty for none), meaning, and function from row to value.
     fn column(
         name: impl Into<Cow<'static, str>>,
         unit: &'static str,
         meaning: impl Into<Cow<'static, str>>,
-        value: impl Fn(&Self) -> TableCell<'_> + 'static,
-    ) -> Column<Self> {
-        Column { name: name.into(), unit, meaning: meaning.into(), value: Box::new(value) }
+        value: impl Fn(&Self) -> CsvCell<'_> + 'static,
+    ) -> CsvColumn<Self> {
+        CsvColumn { name: name.into(), unit, meaning: meaning.into(), value: Box::new(value) }
     }
 
     /// Cells of this row, one per column.
-    fn cells(&self) -> Vec<TableCell<'_>> {
+    fn cells(&self) -> Vec<CsvCell<'_>> {
         Self::columns().iter().map(|column| column.cell(self)).collect()
     }
 }
 
 /// Declaration of a table's column; `Row` is the type from which rows are made.
-pub struct Column<Row> {
+pub struct CsvColumn<Row> {
     /// Name of the column.
     pub name: Cow<'static, str>,
     /// Unit of the column; empty for none.
     pub unit: &'static str,
     /// Meaning of the column, for the data dictionary.
     pub meaning: Cow<'static, str>,
-    value: Box<dyn Fn(&Row) -> TableCell<'_>>,
+    value: Box<dyn Fn(&Row) -> CsvCell<'_>>,
 }
 
-impl<Row> Column<Row> {
+impl<Row> CsvColumn<Row> {
     /// Value of the column in a row.
-    pub fn cell<'a>(&self, row: &'a Row) -> TableCell<'a> {
+    pub fn cell<'a>(&self, row: &'a Row) -> CsvCell<'a> {
         (self.value)(row)
     }
 }
@@ -119,7 +119,7 @@ impl<Row> Column<Row> {
 /// Value of one table column in one row.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum TableCell<'a> {
+pub enum CsvCell<'a> {
     /// Unknown or missing value, written as an empty field.
     Unknown,
     /// A truth value in a table's cell.
@@ -137,9 +137,9 @@ pub enum TableCell<'a> {
 /// Conversions of numbers and truth values into cells.
 macro_rules! cell_from {
     ($($from:ty => $kind:ident),*) => {
-        $(impl From<$from> for TableCell<'_> {
+        $(impl From<$from> for CsvCell<'_> {
             fn from(value: $from) -> Self {
-                TableCell::$kind(value.into())
+                CsvCell::$kind(value.into())
             }
         })*
     };
@@ -147,26 +147,26 @@ macro_rules! cell_from {
 
 cell_from!(bool => Flag, u8 => Count, u32 => Count, u64 => Count, i32 => Whole, i64 => Whole, f64 => Number);
 
-impl<'a> From<&'a str> for TableCell<'a> {
+impl<'a> From<&'a str> for CsvCell<'a> {
     fn from(text: &'a str) -> Self {
-        TableCell::Text(Cow::Borrowed(text))
+        CsvCell::Text(Cow::Borrowed(text))
     }
 }
 
-impl<'a> From<&'a String> for TableCell<'a> {
+impl<'a> From<&'a String> for CsvCell<'a> {
     fn from(text: &'a String) -> Self {
-        TableCell::Text(Cow::Borrowed(text))
+        CsvCell::Text(Cow::Borrowed(text))
     }
 }
 
-impl From<String> for TableCell<'_> {
+impl From<String> for CsvCell<'_> {
     fn from(text: String) -> Self {
-        TableCell::Text(Cow::Owned(text))
+        CsvCell::Text(Cow::Owned(text))
     }
 }
 
-impl<'a, T: Into<TableCell<'a>>> From<Option<T>> for TableCell<'a> {
+impl<'a, T: Into<CsvCell<'a>>> From<Option<T>> for CsvCell<'a> {
     fn from(value: Option<T>) -> Self {
-        value.map_or(TableCell::Unknown, Into::into)
+        value.map_or(CsvCell::Unknown, Into::into)
     }
 }

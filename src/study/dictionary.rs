@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::column::{Column, Table, TableRow};
+use super::column::{CsvColumn, CsvRow, CsvTable};
 use super::tables::actions::ActionRow;
 use super::tables::aspect_beliefs::BeliefRow;
 use super::tables::communications::CommunicationRow;
@@ -13,13 +13,13 @@ use super::tables::participants::ParticipantRow;
 use super::tables::probe_table::ProbeRow;
 use super::tables::questionnaires::AnswerRow;
 use super::tables::tutorial_answers::TutorialAnswer;
-use super::trial_statistics::Trial;
+use super::trial_statistics::TrialStatistics;
 
 /// Data dictionary entry of one table column.
 #[derive(Clone, Debug, PartialEq)]
-pub struct DictionaryRow {
+pub struct DataDictionaryRow {
     /// Table of the column.
-    pub table: Table,
+    pub table: CsvTable,
     /// Name of the column.
     pub column: Cow<'static, str>,
     /// Unit of the column; empty for none.
@@ -28,10 +28,10 @@ pub struct DictionaryRow {
     pub meaning: Cow<'static, str>,
 }
 
-impl TableRow for DictionaryRow {
-    const TABLE: Table = Table::Dictionary;
+impl CsvRow for DataDictionaryRow {
+    const TABLE: CsvTable = CsvTable::Dictionary;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         vec![
             Self::column("table", "", "name of the table's file without .csv", |row| row.table.name().into()),
             Self::column("column", "", "", |row| row.column.as_ref().into()),
@@ -42,25 +42,25 @@ impl TableRow for DictionaryRow {
 }
 
 /// Data dictionary entries of a table, in the order of its columns.
-pub fn columns(table: Table) -> Vec<DictionaryRow> {
+pub fn columns(table: CsvTable) -> Vec<DataDictionaryRow> {
     match table {
-        Table::Participants => declared::<ParticipantRow>(),
-        Table::Trials => declared::<Trial>(),
-        Table::Questionnaires => declared::<AnswerRow>(),
-        Table::Tutorial => declared::<TutorialAnswer>(),
-        Table::Concepts => declared::<ConceptRow>(),
-        Table::Actions => declared::<ActionRow>(),
-        Table::Communications => declared::<CommunicationRow>(),
-        Table::Offers => declared::<OfferRow>(),
-        Table::Beliefs => declared::<BeliefRow>(),
-        Table::Gaze => declared::<GazeRow>(),
-        Table::Probes => declared::<ProbeRow>(),
-        Table::Dictionary => declared::<DictionaryRow>(),
+        CsvTable::Participants => declared::<ParticipantRow>(),
+        CsvTable::Trials => declared::<TrialStatistics>(),
+        CsvTable::Questionnaires => declared::<AnswerRow>(),
+        CsvTable::Tutorial => declared::<TutorialAnswer>(),
+        CsvTable::Concepts => declared::<ConceptRow>(),
+        CsvTable::Actions => declared::<ActionRow>(),
+        CsvTable::Communications => declared::<CommunicationRow>(),
+        CsvTable::Offers => declared::<OfferRow>(),
+        CsvTable::Beliefs => declared::<BeliefRow>(),
+        CsvTable::Gaze => declared::<GazeRow>(),
+        CsvTable::Probes => declared::<ProbeRow>(),
+        CsvTable::Dictionary => declared::<DataDictionaryRow>(),
     }
 }
 
-fn declared<Row: TableRow>() -> Vec<DictionaryRow> {
-    let row = |Column { name, unit, meaning, .. }: Column<Row>| DictionaryRow {
+fn declared<Row: CsvRow>() -> Vec<DataDictionaryRow> {
+    let row = |CsvColumn { name, unit, meaning, .. }: CsvColumn<Row>| DataDictionaryRow {
         table: Row::TABLE,
         column: name,
         unit,
@@ -70,6 +70,6 @@ fn declared<Row: TableRow>() -> Vec<DictionaryRow> {
 }
 
 /// Data dictionary entries of all tables, by table and column.
-pub fn dictionary() -> impl Iterator<Item = DictionaryRow> {
-    Table::ALL.into_iter().flat_map(columns)
+pub fn dictionary() -> impl Iterator<Item = DataDictionaryRow> {
+    CsvTable::ALL.into_iter().flat_map(columns)
 }

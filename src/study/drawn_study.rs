@@ -15,7 +15,7 @@ use rand::seq::SliceRandom;
 use serde::Serialize;
 
 use super::arm_comparison::primary_contrasts;
-use super::arm_design::{ArmTrial, pairs};
+use super::arm_design::{StudyArmTrial, pairs};
 use super::simulation_pool::SimulationPool;
 use super::statistics::mixed_anova;
 use crate::base::rng::{Stream, stream};
@@ -38,7 +38,7 @@ pub enum DrawnEffect {
 /// Statistical method of a test in a power analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum TestMethod {
+pub enum SignificanceTestMethod {
     /// The paper's test of two conditions: the interaction of period and starting group in a mixed ANOVA of rates.
     MixedAnova,
     /// Contrast of the linear mixed model of log rates, with Holm's correction.
@@ -49,7 +49,7 @@ pub enum TestMethod {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct PowerTest {
     /// Statistical method by which the test is computed.
-    pub method: TestMethod,
+    pub method: SignificanceTestMethod,
     /// Study arm that is tested.
     pub arm: StudyArm,
     /// Study arm that it is tested against.
@@ -58,7 +58,7 @@ pub struct PowerTest {
 
 /// Result of one test in one drawn study.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TestResult {
+pub struct SignificanceTestResult {
     /// Two-sided p value, corrected for the number of contrasts.
     pub p: f64,
     /// Two-sided p value without the correction.
@@ -75,35 +75,36 @@ pub fn reference(conditions: &[StudyArm]) -> StudyArm {
 /// paper's test, then the contrast of the mixed model; otherwise the contrasts of the mixed model.
 pub fn tests(conditions: &[StudyArm]) -> Vec<PowerTest> {
     let arms: Vec<StudyArm> = StudyArm::ALL.into_iter().filter(|arm| conditions.contains(arm)).collect();
-    let test = |method: TestMethod| move |(arm, against): (StudyArm, StudyArm)| PowerTest { method, arm, against };
+    let test =
+        |method: SignificanceTestMethod| move |(arm, against): (StudyArm, StudyArm)| PowerTest { method, arm, against };
     let both = pairs(&arms);
     let papers = both.iter().copied().filter(|_| matches!(arms[..], [StudyArm::None, _]));
     papers
-        .map(test(TestMethod::MixedAnova))
-        .chain(both.iter().copied().map(test(TestMethod::LinearMixedModel)))
+        .map(test(SignificanceTestMethod::MixedAnova))
+        .chain(both.iter().copied().map(test(SignificanceTestMethod::LinearMixedModel)))
         .collect()
 }
 
 /// Results of these tests for one drawn study; `None` where a test cannot be computed.
-pub fn results(tests: &[PowerTest], study: &[ArmTrial]) -> Vec<Option<TestResult>> {
+pub fn results(tests: &[PowerTest], study: &[StudyArmTrial]) -> Vec<Option<SignificanceTestResult>> {
     let contrasts = primary_contrasts(study.to_vec());
     let result = |test: &PowerTest| match test.method {
-        TestMethod::MixedAnova => {
+        SignificanceTestMethod::MixedAnova => {
             let p = papers_p(study)?;
-            Some(TestResult { p, p_uncorrected: p })
+            Some(SignificanceTestResult { p, p_uncorrected: p })
         }
-        TestMethod::LinearMixedModel => {
+        SignificanceTestMethod::LinearMixedModel => {
             let one = contrasts.iter().find(|one| (one.arm, one.against) == (test.arm, test.against))?;
-            Some(TestResult { p: one.p_holm, p_uncorrected: one.contrast.p })
+            Some(SignificanceTestResult { p: one.p_holm, p_uncorrected: one.contrast.p })
         }
     };
     tests.iter().map(result).map(|found| found.filter(|one| one.p.is_finite())).collect()
 }
 
 /// p value of the paper's test, in which each participant has two trials, one of them unassisted.
-fn papers_p(study: &[ArmTrial]) -> Option<f64> {
-    let rate = |trial: &ArmTrial| trial.events as f64 / trial.presses as f64;
-    let row = |trials: &[ArmTrial]| match trials {
+fn papers_p(study: &[StudyArmTrial]) -> Option<f64> {
+    let rate = |trial: &StudyArmTrial| trial.events as f64 / trial.presses as f64;
+    let row = |trials: &[StudyArmTrial]| match trials {
         [first, second] => Some((usize::from(second.arm != StudyArm::None), [rate(first), rate(second)])),
         _ => None,
     };
@@ -113,7 +114,7 @@ fn papers_p(study: &[ArmTrial]) -> Option<f64> {
 
 /// Pool of participants from which studies are drawn.
 #[derive(Clone, Debug)]
-pub struct StudySource<'a> {
+pub struct StudySampler<'a> {
     pool: &'a SimulationPool,
     /// Orders of arms in the plan's design.
     orders: Vec<Vec<StudyArm>>,
@@ -123,12 +124,12 @@ pub struct StudySource<'a> {
     number: u64,
 }
 
-impl<'a> StudySource<'a> {
+impl<'a> StudySampler<'a> {
     /// All participants of a pool.
     ///
     /// # Errors
     /// An order of the conditions has too few participants; the error says how many.
-    pub fn new(pool: &'a SimulationPool) -> Result<StudySource<'a>, String> {
+    pub fn new(pool: &'a SimulationPool) -> Result<StudySampler<'a>, String> {
         let conditions = &pool.header.conditions;
         let order = |order: &Vec<usize>| order.iter().map(|&index| conditions[index]).collect::<Vec<_>>();
         let orders: Vec<Vec<StudyArm>> = orders(conditions.len()).iter().map(order).collect();
@@ -141,20 +142,20 @@ impl<'a> StudySource<'a> {
             let names: Vec<&str> = orders[index].iter().map(|arm| arm.name()).collect();
             return Err(format!("{} in the order {}", by_order[index].len(), names.join(", ")));
         }
-        Ok(StudySource { pool, orders, by_order, number: 0 })
+        Ok(StudySampler { pool, orders, by_order, number: 0 })
     }
 
     /// Bootstrap resample of the pool within its orders of arms, which shows the uncertainty due to the size of the
     /// pool.
-    pub fn resampled(&self, number: u64) -> StudySource<'a> {
+    pub fn resampled(&self, number: u64) -> StudySampler<'a> {
         let mut random = stream(self.pool.header.seed, "resampled pool", number);
         let again = |persons: &Vec<usize>| persons.iter().map(|_| drawn(persons, &mut random)).collect();
-        StudySource { by_order: self.by_order.iter().map(again).collect(), number, ..self.clone() }
+        StudySampler { by_order: self.by_order.iter().map(again).collect(), number, ..self.clone() }
     }
 
     /// Study `number` with `size` participants: one row per trial, ordered by participant and period. Orders of arms
     /// are as equally frequent as the size allows. Empty if the pool was not simulated for this effect.
-    pub fn study(&self, size: usize, effect: DrawnEffect, number: u64) -> Vec<ArmTrial> {
+    pub fn study(&self, size: usize, effect: DrawnEffect, number: u64) -> Vec<StudyArmTrial> {
         let name = format!("study of {size} from pool {}", self.number);
         let mut random = stream(self.pool.header.seed, &name, number);
         let mut places: Vec<usize> = (0..self.orders.len()).collect();
@@ -179,7 +180,7 @@ impl<'a> StudySource<'a> {
         (order, index): (usize, usize),
         effect: DrawnEffect,
         random: &mut Stream,
-    ) -> Option<ArmTrial> {
+    ) -> Option<StudyArmTrial> {
         let (arm, trial) = (self.orders[order][index], &self.pool.persons[person].trials[index]);
         let header = &self.pool.header;
         let counts = match effect {
@@ -196,7 +197,7 @@ impl<'a> StudySource<'a> {
             }
             DrawnEffect::AsSimulated => all,
         };
-        Some(ArmTrial { participant, period: index as u32 + 1, arm, events, presses: counts.human_presses })
+        Some(StudyArmTrial { participant, period: index as u32 + 1, arm, events, presses: counts.human_presses })
     }
 }
 

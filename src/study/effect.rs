@@ -8,9 +8,9 @@
 use serde::{Serialize, Serializer};
 
 use super::statistics::{
-    Correlation, FTest, Interval, MixedAnova, hedges_g, hodges_lehmann, mixed_anova, pearson, permutation_p,
+    ConfidenceInterval, Correlation, FTest, MixedAnova, hedges_g, hodges_lehmann, mixed_anova, pearson, permutation_p,
 };
-use super::trial_statistics::Trial;
+use super::trial_statistics::TrialStatistics;
 use crate::session::study_arm::StudyArm;
 
 /// Confidence level of the report's intervals.
@@ -57,7 +57,7 @@ pub struct StudyMeasure {
     /// Number of decimals of the measure in the report.
     pub digits: usize,
     /// Value of the measure for a trial; `None` if the trial does not have it.
-    pub value: fn(&Trial) -> Option<f64>,
+    pub value: fn(&TrialStatistics) -> Option<f64>,
 }
 
 /// Measures are equal if their names are; names are unique, since they are columns of one table.
@@ -92,7 +92,7 @@ pub struct AssistanceEffect {
     /// Two-sided p value of the permutation test on the groups' improvements.
     pub permutation_p: Option<f64>,
     /// Reduction of the measure by assistance: half the Hodges-Lehmann shift between the groups' improvements.
-    pub reduction: Option<Interval>,
+    pub reduction: Option<ConfidenceInterval>,
     /// Hedges' g: the difference of the groups' mean improvements in pooled standard deviations.
     pub hedges_g: Option<f64>,
 }
@@ -112,7 +112,7 @@ impl AssistanceEffect {
 /// Pairs of one assisted and one unassisted trial that the analysis includes and that have this measure, in the order
 /// of participant codes. If a participant repeated a period, its last trial counts. Empty where the trials have more
 /// than two arms, which are compared together ([`super::arm_comparison`]).
-pub fn pairs(trials: &[Trial], measure: StudyMeasure) -> Vec<TrialPair> {
+pub fn pairs(trials: &[TrialStatistics], measure: StudyMeasure) -> Vec<TrialPair> {
     let mut arms: Vec<StudyArm> = trials.iter().filter(|trial| trial.counts()).map(|trial| trial.study_arm).collect();
     arms.sort_unstable();
     arms.dedup();
@@ -125,9 +125,10 @@ pub fn pairs(trials: &[Trial], measure: StudyMeasure) -> Vec<TrialPair> {
     codes.into_iter().filter_map(|code| pair(code, trials, measure)).collect()
 }
 
-fn pair(code: &str, trials: &[Trial], measure: StudyMeasure) -> Option<TrialPair> {
+fn pair(code: &str, trials: &[TrialStatistics], measure: StudyMeasure) -> Option<TrialPair> {
     let of_period = |period: u32| {
-        let is_it = |trial: &&Trial| trial.participant == code && trial.period == Some(period) && trial.counts();
+        let is_it =
+            |trial: &&TrialStatistics| trial.participant == code && trial.period == Some(period) && trial.counts();
         trials.iter().rfind(is_it)
     };
     let (first, second) = (of_period(1)?, of_period(2)?);
@@ -147,7 +148,7 @@ pub fn effect(measure: StudyMeasure, pairs: &[TrialPair], seed: u64) -> Assistan
     let (with, without) = (improvements(true), improvements(false));
     let codes: Vec<f64> = pairs.iter().map(|pair| group(pair) as f64).collect();
     let all: Vec<f64> = pairs.iter().map(TrialPair::improvement).collect();
-    let half = |interval: Interval| Interval {
+    let half = |interval: ConfidenceInterval| ConfidenceInterval {
         estimate: interval.estimate / 2.0,
         low: interval.low / 2.0,
         high: interval.high / 2.0,

@@ -6,20 +6,20 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, RobotSpec};
-use crate::session::{Header, Session};
+use crate::session::{LogHeader, Session};
 use crate::wizard::settings::{WizardKind, WizardSpec};
 
 /// Settings and circumstances by key, from one or several recordings; every value that occurred is kept.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Facts {
+pub struct RecordingFacts {
     found: BTreeMap<String, BTreeSet<String>>,
 }
 
-impl Facts {
+impl RecordingFacts {
     /// Settings and circumstances of a replayed recording.
-    pub fn from_session(header: &Header, session: &Session) -> Facts {
+    pub fn from_session(header: &LogHeader, session: &Session) -> RecordingFacts {
         let spec = &header.session;
-        let mut facts = Facts::default();
+        let mut facts = RecordingFacts::default();
         let mut is = |key: &'static str, value: String| {
             facts.found.entry(key.to_string()).or_default().insert(value);
         };
@@ -68,7 +68,7 @@ impl Facts {
     }
 
     /// Adds the settings and circumstances of another recording.
-    pub fn add(&mut self, other: Facts) {
+    pub fn add(&mut self, other: RecordingFacts) {
         for (key, values) in other.found {
             self.found.entry(key).or_default().extend(values);
         }

@@ -5,29 +5,29 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::acceptance::{Acceptance, ItemSummary, ScoreSummary, acceptance, items, scores};
-use super::arm_comparison::{ArmComparison, compare_arms};
-use super::arm_group::{ArmGroup, by_arm};
+use super::arm_comparison::{StudyArmComparison, compare_arms};
+use super::arm_group::{RobotArmGroup, by_arm};
 use super::effect::{AssistanceEffect, StudyMeasure, effect, pairs};
-use super::facts::Facts;
-use super::known_beliefs::SharedBeliefs;
-use super::live_arms::{LiveArm, live_arms};
-use super::preregistration::Preregistration;
-use super::roc::{ConceptComparison, Roc, SweptTrial, compare};
+use super::facts::RecordingFacts;
+use super::known_beliefs::FalseBeliefAgreement;
+use super::live_arms::{LiveStudyArm, live_arms};
+use super::preregistration::PreregistrationCheck;
+use super::roc::{ConceptComparison, ConceptRocCurve, PreventedTrialErrors, compare};
 use super::statistics::{Correlation, FTest};
 use super::tables::probe_table::PROBES_WRONG;
 use super::tables::trials::measures;
 use super::tables::tutorial_answers::TutorialAnswer;
-use super::trial_statistics::{Trial, mean};
+use super::trial_statistics::{TrialStatistics, mean};
 use super::trial_totals::TrialTotals;
 use super::tutorial_summary::TutorialSummary;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
-use crate::analysis::probe_figures::ProbeFigures;
+use crate::analysis::probe_figures::ProbeSummary;
 use crate::analysis::probe_record::ProbedTrial;
-use crate::measures::belief_basis::BeliefBasis;
-use crate::measures::cause_codes::{Agreement, AgreementTable, Codes};
+use crate::measures::belief_basis::BeliefSource;
+use crate::measures::cause_codes::{AgreementTable, RaterAgreement, RaterCodes};
 use crate::measures::matching::{MatchCounts, Similarity, WINDOW};
 use crate::measures::wizard_performance::WizardMeasures;
-use crate::session::event::EndReason;
+use crate::session::event::TrialEndReason;
 use crate::session::settings::{Condition, ParticipantKind};
 use crate::session::study_arm::StudyArm;
 
@@ -49,12 +49,12 @@ pub struct StudySummary {
     #[serde(flatten)]
     pub totals: TrialTotals,
     /// Number of trials by the reason why they ended.
-    pub ended: BTreeMap<EndReason, u64>,
+    pub ended: BTreeMap<TrialEndReason, u64>,
     /// Counts of robot events by kind of robot arm.
-    pub robot: Vec<ArmGroup>,
+    pub robot: Vec<RobotArmGroup>,
     /// Agreement of the study with its frozen plan; absent if none was given.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub preregistration: Option<Preregistration>,
+    pub preregistration: Option<PreregistrationCheck>,
     /// Summary of the trials in each condition.
     pub conditions: Vec<StudyConditionSummary>,
     /// Effect of assistance on errors per human press: the interaction of period and starting group.
@@ -67,15 +67,15 @@ pub struct StudySummary {
     pub effects: Vec<AssistanceEffect>,
     /// Comparison of the study arms by the plan's primary outcome; null unless participants have trials in different
     /// arms.
-    pub arms: Option<ArmComparison>,
+    pub arms: Option<StudyArmComparison>,
     /// The receiver operating characteristic of each concept.
-    pub roc: Vec<Roc>,
+    pub roc: Vec<ConceptRocCurve>,
     /// Results of concepts that sent signals by themselves in the same simulated trials; empty unless several arms
     /// share trials.
-    pub live: Vec<LiveArm>,
+    pub live: Vec<LiveStudyArm>,
     /// Source of what participants believed in the trials for the comparison of concepts; with several, the least
     /// reliable.
-    pub roc_beliefs_from: Option<BeliefBasis>,
+    pub roc_beliefs_from: Option<BeliefSource>,
     /// Number of participants in the comparison of concepts.
     pub roc_participants: u64,
     /// Number of unassisted trials in the comparison of concepts.
@@ -94,7 +94,7 @@ pub struct StudySummary {
     pub wizard: Option<WizardMeasures>,
     /// Source of what participants believed in the trials with a wizard; with several, the least reliable. Null where
     /// `wizard` has no hits.
-    pub wizard_beliefs_from: Option<BeliefBasis>,
+    pub wizard_beliefs_from: Option<BeliefSource>,
     /// Offers that wizards could see in trials in which they could send signals; null without such offers.
     pub offers: Option<OfferSummary>,
     /// Acceptance of the assistance by participants.
@@ -108,11 +108,11 @@ pub struct StudySummary {
     pub tutorial: Option<TutorialSummary>,
     /// Results of freeze probes: what participants knew, and the accuracy of the estimate; absent without answers.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub probes: Option<ProbeFigures>,
+    pub probes: Option<ProbeSummary>,
     /// Agreement of two raters, where causes of errors are known from their codes.
-    pub raters: Option<Agreement>,
+    pub raters: Option<RaterAgreement>,
     /// Agreement of the two raters about the false beliefs from which episodes follow.
-    pub shared_beliefs: Option<SharedBeliefs>,
+    pub shared_beliefs: Option<FalseBeliefAgreement>,
     /// Number of trials whose causes of errors are the consensus of two raters, by pair of raters ("R1+R2").
     pub consensus: BTreeMap<String, u64>,
     /// Consensus codes that are ignored, since a rater changed a code afterwards.
@@ -184,16 +184,16 @@ pub struct ExcludedTrial {
 
 impl StudySummary {
     /// Summarises the trials of a study, which must be ordered by participant.
-    pub fn from_trials(trials: &[Trial], facts: &Facts, practice: u64) -> StudySummary {
-        let counting: Vec<&Trial> = trials.iter().filter(|trial| trial.counts()).collect();
+    pub fn from_trials(trials: &[TrialStatistics], facts: &RecordingFacts, practice: u64) -> StudySummary {
+        let counting: Vec<&TrialStatistics> = trials.iter().filter(|trial| trial.counts()).collect();
         let simulated_participants = trials.iter().any(|trial| trial.kind == ParticipantKind::Simulated);
         let effects: Vec<AssistanceEffect> =
             compared(trials).map(|measure| effect(measure, &pairs(trials, measure), SEED)).collect();
         let comparison = concepts(&counting);
         let mut participants: Vec<&str> = counting.iter().map(|trial| trial.participant.as_str()).collect();
         participants.dedup();
-        let blind: Vec<&Trial> = counting.iter().copied().filter(|trial| !trial.wizard_saw_advice).collect();
-        let advised: Vec<&Trial> = counting.iter().copied().filter(|trial| trial.wizard_saw_advice).collect();
+        let blind: Vec<&TrialStatistics> = counting.iter().copied().filter(|trial| !trial.wizard_saw_advice).collect();
+        let advised: Vec<&TrialStatistics> = counting.iter().copied().filter(|trial| trial.wizard_saw_advice).collect();
         let wizards: Vec<&WizardMeasures> = counting.iter().filter_map(|trial| trial.wizard.as_ref()).collect();
         let wizard = (!wizards.is_empty()).then(|| WizardMeasures::sum(wizards));
         let left_out = trials.iter().filter_map(|trial| {
@@ -237,7 +237,7 @@ impl StudySummary {
             questionnaires: items(&counting),
             questionnaire_scores: scores(&counting),
             tutorial: None,
-            probes: ProbeFigures::from_trials(probed(&counting)),
+            probes: ProbeSummary::from_trials(probed(&counting)),
             raters: agreement(&counting),
             shared_beliefs: counting.iter().filter_map(|trial| trial.shared_beliefs).reduce(|sum, one| sum.plus(one)),
             consensus: consensus(&counting),
@@ -248,7 +248,7 @@ impl StudySummary {
     }
 
     /// Adds the study's agreement with its frozen plan, if one was given.
-    pub fn with_preregistration(self, preregistration: Option<Preregistration>) -> StudySummary {
+    pub fn with_preregistration(self, preregistration: Option<PreregistrationCheck>) -> StudySummary {
         StudySummary { preregistration, ..self }
     }
 
@@ -259,29 +259,29 @@ impl StudySummary {
 }
 
 /// The measures that are compared in these trials; those of freeze probes only if there are probes.
-fn compared(trials: &[Trial]) -> impl Iterator<Item = StudyMeasure> {
+fn compared(trials: &[TrialStatistics]) -> impl Iterator<Item = StudyMeasure> {
     let has_probes = trials.iter().any(|trial| trial.probes.is_some());
     measures().into_iter().filter(move |measure| *measure != PROBES_WRONG || has_probes)
 }
 
 /// Freeze probes of these trials, each with its participant's code.
-fn probed<'a>(trials: &[&'a Trial]) -> impl Iterator<Item = (&'a str, &'a ProbedTrial)> {
+fn probed<'a>(trials: &[&'a TrialStatistics]) -> impl Iterator<Item = (&'a str, &'a ProbedTrial)> {
     trials.iter().filter_map(|trial| Some((trial.participant.as_str(), trial.probes.as_ref()?)))
 }
 
 /// The least reliable source of beliefs among these trials.
-fn least_reliable<'a>(trials: impl Iterator<Item = &'a &'a Trial>) -> Option<BeliefBasis> {
+fn least_reliable<'a>(trials: impl Iterator<Item = &'a &'a TrialStatistics>) -> Option<BeliefSource> {
     trials.filter_map(|trial| trial.beliefs.as_ref()).map(|beliefs| beliefs.basis).max()
 }
 
 /// Summary of the offers in wizard trials; `None` if there was none.
-fn offers(trials: &[&Trial]) -> Option<OfferSummary> {
+fn offers(trials: &[&TrialStatistics]) -> Option<OfferSummary> {
     let wizards = trials.iter().filter(|trial| trial.condition == Condition::Wizard);
     let all: Vec<&TimedOffer> = wizards.filter_map(|trial| trial.offers.as_ref()).flatten().collect();
     (!all.is_empty()).then(|| OfferSummary::from_offers(all))
 }
 
-fn title(facts: &Facts, trials: &[Trial], simulated: bool) -> String {
+fn title(facts: &RecordingFacts, trials: &[TrialStatistics], simulated: bool) -> String {
     let kitchen = facts.all("kitchen").unwrap_or_else(|| "No kitchen".to_string());
     let people = trials.iter().any(|trial| trial.kind != ParticipantKind::Simulated);
     match (simulated, people) {
@@ -291,9 +291,10 @@ fn title(facts: &Facts, trials: &[Trial], simulated: bool) -> String {
     }
 }
 
-fn conditions(trials: &[&Trial]) -> Vec<StudyConditionSummary> {
+fn conditions(trials: &[&TrialStatistics]) -> Vec<StudyConditionSummary> {
     let of = |condition: StudyArm| {
-        let trials: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.study_arm == condition).collect();
+        let trials: Vec<&TrialStatistics> =
+            trials.iter().copied().filter(|trial| trial.study_arm == condition).collect();
         let lengths = || trials.iter().filter_map(|trial| trial.beliefs.as_ref()).flat_map(|one| one.lengths.iter());
         let mut sequence_lengths = vec![0; lengths().copied().max().unwrap_or(0) as usize];
         lengths().for_each(|&length| sequence_lengths[length as usize - 1] += 1);
@@ -312,10 +313,10 @@ fn conditions(trials: &[&Trial]) -> Vec<StudyConditionSummary> {
 }
 
 /// Compares concepts over the trials in which they were evaluated; the trials are ordered by participant.
-fn concepts(trials: &[&Trial]) -> ConceptComparison {
-    let tried: Vec<&Trial> = trials.iter().copied().filter(|trial| !trial.swept.is_empty()).collect();
-    let of_participant = |of_one: &[&Trial]| {
-        let mut sum: Vec<SweptTrial> = of_one[0].swept.clone();
+fn concepts(trials: &[&TrialStatistics]) -> ConceptComparison {
+    let tried: Vec<&TrialStatistics> = trials.iter().copied().filter(|trial| !trial.swept.is_empty()).collect();
+    let of_participant = |of_one: &[&TrialStatistics]| {
+        let mut sum: Vec<PreventedTrialErrors> = of_one[0].swept.clone();
         for trial in &of_one[1..] {
             for (sum, one) in sum.iter_mut().zip(&trial.swept) {
                 sum.count = sum.count.plus(&one.count);
@@ -323,26 +324,26 @@ fn concepts(trials: &[&Trial]) -> ConceptComparison {
         }
         sum
     };
-    let participants: Vec<Vec<SweptTrial>> =
+    let participants: Vec<Vec<PreventedTrialErrors>> =
         tried.chunk_by(|a, b| a.participant == b.participant).map(of_participant).collect();
     compare(&participants, tried.len() as u64, SEED)
 }
 
 /// Similarity of wizard and assistant over these trials; `None` if the wizard's signals were compared in none of them.
-fn similarity(trials: &[&Trial]) -> Option<Similarity> {
+fn similarity(trials: &[&TrialStatistics]) -> Option<Similarity> {
     let mut all = MatchCounts::default();
-    let compared: Vec<&Trial> = trials.iter().copied().filter(|trial| trial.lanes.is_some()).collect();
+    let compared: Vec<&TrialStatistics> = trials.iter().copied().filter(|trial| trial.lanes.is_some()).collect();
     compared.iter().for_each(|trial| add_lanes(&mut all, trial));
     (!compared.is_empty()).then(|| all.similarity())
 }
 
-fn add_lanes(tally: &mut MatchCounts, trial: &Trial) {
+fn add_lanes(tally: &mut MatchCounts, trial: &TrialStatistics) {
     if let Some([of, with]) = &trial.lanes {
         tally.add(of, with, trial.human_presses as u32, WINDOW);
     }
 }
 
-fn similarity_of_trial(trial: &Trial) -> Option<TrialSimilarity> {
+fn similarity_of_trial(trial: &TrialStatistics) -> Option<TrialSimilarity> {
     trial.lanes.as_ref()?;
     let mut own = MatchCounts::default();
     add_lanes(&mut own, trial);
@@ -352,7 +353,7 @@ fn similarity_of_trial(trial: &Trial) -> Option<TrialSimilarity> {
 }
 
 /// Number of trials with the consensus of two raters, by pair of raters.
-fn consensus(trials: &[&Trial]) -> BTreeMap<String, u64> {
+fn consensus(trials: &[&TrialStatistics]) -> BTreeMap<String, u64> {
     let mut settled = BTreeMap::new();
     for raters in trials.iter().filter_map(|trial| trial.settled_by.as_ref()) {
         *settled.entry(raters.join("+")).or_default() += 1;
@@ -360,15 +361,15 @@ fn consensus(trials: &[&Trial]) -> BTreeMap<String, u64> {
     settled
 }
 
-fn stale(trial: &Trial) -> Option<StaleConsensus> {
+fn stale(trial: &TrialStatistics) -> Option<StaleConsensus> {
     let reason = trial.stale_consensus.clone()?;
     Some(StaleConsensus { recording: trial.recording.clone(), reason })
 }
 
 /// Agreement of the raters over all trials.
-fn agreement(trials: &[&Trial]) -> Option<Agreement> {
+fn agreement(trials: &[&TrialStatistics]) -> Option<RaterAgreement> {
     let mut table = AgreementTable::default();
-    let coded: Vec<&[Codes; 2]> = trials.iter().filter_map(|trial| trial.raters.as_ref()).collect();
+    let coded: Vec<&[RaterCodes; 2]> = trials.iter().filter_map(|trial| trial.raters.as_ref()).collect();
     coded.iter().for_each(|[one, other]| table.add(one, other));
     (!coded.is_empty()).then(|| table.agreement())
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::trial_statistics::Trial;
+use super::trial_statistics::TrialStatistics;
 use crate::session::study_arm::StudyArm;
 
 /// A starting group with its order of conditions, as its trials show it.
@@ -20,7 +20,7 @@ pub struct GroupOrder {
 }
 
 /// The starting groups of these trials, sorted by name.
-pub fn group_orders(trials: &[&Trial]) -> Vec<GroupOrder> {
+pub fn group_orders(trials: &[&TrialStatistics]) -> Vec<GroupOrder> {
     let mut groups: BTreeMap<&str, (BTreeMap<u32, StudyArm>, BTreeSet<&str>)> = BTreeMap::new();
     for trial in trials {
         let (Some(group), Some(period)) = (&trial.group, trial.period) else { continue };

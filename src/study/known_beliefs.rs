@@ -10,25 +10,25 @@ use super::rater_episodes::rater_episodes;
 use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::measures::JudgedPress;
-use crate::measures::attribution::{Cause, Target};
-use crate::measures::belief_basis::BeliefBasis;
-use crate::measures::cause_codes::Codes;
-use crate::measures::sequences::Episode;
+use crate::measures::attribution::{ErrorCause, FalseBeliefTarget};
+use crate::measures::belief_basis::BeliefSource;
+use crate::measures::cause_codes::RaterCodes;
+use crate::measures::sequences::FalseBeliefEpisode;
 
 /// Known false beliefs of a participant in one trial.
 #[derive(Clone, Debug, PartialEq)]
-pub struct KnownBeliefs {
+pub struct KnownFalseBeliefs {
     /// Source of the false beliefs: recorded beliefs, or raters.
-    pub basis: BeliefBasis,
+    pub basis: BeliefSource,
     /// Target of the false belief behind each error that follows from one, by sequence number of the press.
-    pub targets: BTreeMap<u64, Target>,
+    pub targets: BTreeMap<u64, FalseBeliefTarget>,
     /// False belief episodes; for people, only those that led to errors.
-    pub episodes: Vec<Episode>,
+    pub episodes: Vec<FalseBeliefEpisode>,
 }
 
 /// Agreement of two raters about the false beliefs behind the errors of a trial, by the codes of each alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SharedBeliefs {
+pub struct FalseBeliefAgreement {
     /// Number of errors that both raters attribute to the same false belief.
     pub same: u64,
     /// Number of errors that the raters attribute to different false beliefs.
@@ -37,49 +37,50 @@ pub struct SharedBeliefs {
     pub of_one: u64,
 }
 
-impl KnownBeliefs {
+impl KnownFalseBeliefs {
     /// The false beliefs that a simulated participant recorded; `judged` are the participant's presses.
-    pub fn recorded(judged: &[JudgedPress], episodes: Vec<Episode>) -> KnownBeliefs {
+    pub fn recorded(judged: &[JudgedPress], episodes: Vec<FalseBeliefEpisode>) -> KnownFalseBeliefs {
         let target = |press: &JudgedPress| match press.cause {
-            Some(Cause::Belief { target, .. }) => Some((press.seq, target)),
+            Some(ErrorCause::Belief { target, .. }) => Some((press.seq, target)),
             _ => None,
         };
         let targets = judged.iter().filter_map(target).collect();
-        KnownBeliefs { basis: BeliefBasis::Recorded, targets, episodes }
+        KnownFalseBeliefs { basis: BeliefSource::Recorded, targets, episodes }
     }
 
     /// The false beliefs that follow from codes on which two raters agree (see [`super::rater_episodes::RULE`]).
     pub fn coded(
-        basis: BeliefBasis,
+        basis: BeliefSource,
         kitchen: &Kitchen,
         cost: &mut CostToGo,
         trace: &BeliefTrace,
         judged: &[JudgedPress],
-        codes: &Codes,
-    ) -> KnownBeliefs {
+        codes: &RaterCodes,
+    ) -> KnownFalseBeliefs {
         let errors = judged.iter().filter(|press| press.verdict.error);
         let target = |press: &JudgedPress| Some((press.seq, codes.0.get(&press.seq)?.target(kitchen, press.before)?));
-        let targets: Vec<(u64, Target)> = errors.filter_map(target).collect();
+        let targets: Vec<(u64, FalseBeliefTarget)> = errors.filter_map(target).collect();
         let episodes = rater_episodes(kitchen, cost, trace, judged, &targets);
-        KnownBeliefs { basis, targets: targets.into_iter().collect(), episodes }
+        KnownFalseBeliefs { basis, targets: targets.into_iter().collect(), episodes }
     }
 }
 
-impl KnownBeliefs {
+impl KnownFalseBeliefs {
     /// The false belief episode to which an error belongs.
-    pub fn episode(&self, kitchen: &Kitchen, press: &JudgedPress) -> Option<&Episode> {
+    pub fn episode(&self, kitchen: &Kitchen, press: &JudgedPress) -> Option<&FalseBeliefEpisode> {
         let target = self.targets.get(&press.seq)?;
-        let is_in = |one: &Episode| one.began <= press.time && one.corrected.is_none_or(|end| press.time <= end);
+        let is_in =
+            |one: &FalseBeliefEpisode| one.began <= press.time && one.corrected.is_none_or(|end| press.time <= end);
         self.episodes
             .iter()
             .find(|one| one.errors > 0 && is_in(one) && target.aspects(kitchen).any(|aspect| aspect == one.aspect))
     }
 }
 
-impl SharedBeliefs {
+impl FalseBeliefAgreement {
     /// Counts the agreement over errors that both raters coded.
-    pub fn count([one, other]: &[Codes; 2]) -> SharedBeliefs {
-        let mut shared = SharedBeliefs::default();
+    pub fn count([one, other]: &[RaterCodes; 2]) -> FalseBeliefAgreement {
+        let mut shared = FalseBeliefAgreement::default();
         for (press, code) in &one.0 {
             let Some(of_other) = other.0.get(press) else { continue };
             match (code.aspect(), of_other.aspect()) {
@@ -93,8 +94,8 @@ impl SharedBeliefs {
     }
 
     /// Sum of two counts of agreement about false beliefs.
-    pub fn plus(self, other: SharedBeliefs) -> SharedBeliefs {
-        SharedBeliefs {
+    pub fn plus(self, other: FalseBeliefAgreement) -> FalseBeliefAgreement {
+        FalseBeliefAgreement {
             same: self.same + other.same,
             differing: self.differing + other.differing,
             of_one: self.of_one + other.of_one,

@@ -20,7 +20,7 @@ const PRECISION: f64 = 1e-11;
 
 /// One measurement for the mixed model: participant, fixed effects, and value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measurement {
+pub struct MixedModelMeasurement {
     /// Index of the participant.
     pub participant: usize,
     /// Row of fixed effects in the design matrix.
@@ -50,7 +50,7 @@ pub struct LinearMixedModel {
 
 /// A linear combination of fixed effects, with its t test against zero.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Contrast {
+pub struct MixedModelContrast {
     /// Estimate of the linear combination.
     pub estimate: f64,
     /// Standard error of the estimate.
@@ -63,7 +63,7 @@ pub struct Contrast {
     pub p: f64,
 }
 
-impl Contrast {
+impl MixedModelContrast {
     /// Confidence interval of the estimate; `level` is between 0 and 1.
     pub fn interval(&self, level: f64) -> [f64; 2] {
         let quantile = StudentsT::new(0.0, 1.0, self.df).map_or(f64::NAN, |t| t.inverse_cdf(0.5 + level / 2.0));
@@ -101,7 +101,7 @@ struct Solution {
 }
 
 impl Sums {
-    fn new(measurements: &[Measurement]) -> Sums {
+    fn new(measurements: &[MixedModelMeasurement]) -> Sums {
         let effects = measurements.first().map_or(0, |one| one.effects.len());
         let count = measurements.iter().map(|one| one.participant + 1).max().unwrap_or(0);
         let mut sums = Sums {
@@ -179,7 +179,7 @@ fn golden_section(value: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f6
 impl LinearMixedModel {
     /// Fits the model by REML; `None` if the fixed effects are collinear, or no degrees of freedom are left for the
     /// variances.
-    pub fn fit(measurements: &[Measurement]) -> Option<LinearMixedModel> {
+    pub fn fit(measurements: &[MixedModelMeasurement]) -> Option<LinearMixedModel> {
         let effects = measurements.first()?.effects.len();
         let sums = Sums::new(measurements);
         let has_freedom = measurements.len() > effects;
@@ -217,7 +217,7 @@ impl LinearMixedModel {
     }
 
     /// Linear combination of the fixed effects with these weights.
-    pub fn contrast(&self, weights: &[f64]) -> Option<Contrast> {
+    pub fn contrast(&self, weights: &[f64]) -> Option<MixedModelContrast> {
         let weights = DVector::from_column_slice(weights);
         let estimate = weights.dot(&self.estimates);
         let variance = weights.dot(&(&self.covariance * &weights));
@@ -225,7 +225,7 @@ impl LinearMixedModel {
         let df = self.degrees_of_freedom(&weights, variance);
         let t = estimate / standard_error;
         let p = 2.0 * StudentsT::new(0.0, 1.0, df).ok()?.sf(t.abs());
-        Some(Contrast { estimate, standard_error, df, t, p })
+        Some(MixedModelContrast { estimate, standard_error, df, t, p })
     }
 
     /// Satterthwaite's degrees of freedom 2 v^2 / Var(v), with the variance of v by the delta method.

@@ -9,17 +9,17 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use super::acting_arm::ActingArm;
-use super::roc::Roc;
-use super::trial_statistics::{Trial, mean_length};
+use super::acting_arm::ActingStudyArm;
+use super::roc::ConceptRocCurve;
+use super::trial_statistics::{TrialStatistics, mean_length};
 use crate::session::settings::ParticipantKind;
 
 /// Results of one sender of signals over the simulated trials that all arms have.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct LiveArm {
+pub struct LiveStudyArm {
     /// Sender of the signals, with the parameter of its concept.
     #[serde(flatten)]
-    pub arm: ActingArm,
+    pub arm: ActingStudyArm,
     /// Number of trials.
     pub trials: u64,
     /// Errors that follow from false beliefs, per 100 presses of the human.
@@ -54,14 +54,14 @@ pub struct LiveArm {
 /// Identifies a simulated trial across arms: seed, participant's code and period.
 type TrialKey = (u64, String, Option<u32>);
 
-fn key(trial: &Trial) -> TrialKey {
+fn key(trial: &TrialStatistics) -> TrialKey {
     (trial.seed, trial.participant.clone(), trial.period)
 }
 
 /// Results of all arms over the trials that all of them have; empty unless at least two arms share trials.
-pub fn live_arms(trials: &[&Trial], roc: &[Roc]) -> Vec<LiveArm> {
-    let simulated = |trial: &&Trial| trial.kind == ParticipantKind::Simulated && trial.beliefs.is_some();
-    let mut groups: Vec<(ActingArm, Vec<&Trial>)> = Vec::new();
+pub fn live_arms(trials: &[&TrialStatistics], roc: &[ConceptRocCurve]) -> Vec<LiveStudyArm> {
+    let simulated = |trial: &&TrialStatistics| trial.kind == ParticipantKind::Simulated && trial.beliefs.is_some();
+    let mut groups: Vec<(ActingStudyArm, Vec<&TrialStatistics>)> = Vec::new();
     for trial in trials.iter().copied().filter(simulated) {
         let arm = trial.acting;
         match groups.iter_mut().find(|(other, _)| *other == arm) {
@@ -76,7 +76,8 @@ pub fn live_arms(trials: &[&Trial], roc: &[Roc]) -> Vec<LiveArm> {
         return Vec::new();
     }
     groups.iter_mut().for_each(|(_, group)| group.retain(|trial| shared.contains(&key(trial))));
-    let mut arms: Vec<LiveArm> = groups.iter().map(|(arm, group)| LiveArm::from_trials(*arm, group)).collect();
+    let mut arms: Vec<LiveStudyArm> =
+        groups.iter().map(|(arm, group)| LiveStudyArm::from_trials(*arm, group)).collect();
     let without = arms.iter().find(|arm| arm.arm.concept == "none").and_then(|arm| arm.belief_related_per_100);
     for arm in arms.iter_mut().filter(|arm| arm.arm.concept != "none") {
         let rates = arm.belief_related_per_100.zip(without).filter(|(_, without)| *without > 0.0);
@@ -90,9 +91,9 @@ pub fn live_arms(trials: &[&Trial], roc: &[Roc]) -> Vec<LiveArm> {
     arms
 }
 
-impl LiveArm {
-    fn from_trials(arm: ActingArm, trials: &[&Trial]) -> LiveArm {
-        let sum = |of: fn(&Trial) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
+impl LiveStudyArm {
+    fn from_trials(arm: ActingStudyArm, trials: &[&TrialStatistics]) -> LiveStudyArm {
+        let sum = |of: fn(&TrialStatistics) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
         let beliefs = || trials.iter().filter_map(|trial| trial.beliefs.as_ref());
         let lengths: Vec<u32> = beliefs().flat_map(|one| one.lengths.iter().copied()).collect();
         let (presses, orders) = (sum(|trial| trial.human_presses), sum(|trial| trial.orders));
@@ -105,7 +106,7 @@ impl LiveArm {
         });
         let useless: Option<u64> = judged.sum();
         let seconds: f64 = trials.iter().map(|trial| trial.seconds).sum();
-        LiveArm {
+        LiveStudyArm {
             arm,
             trials: trials.len() as u64,
             belief_related_per_100: per_100(beliefs().map(|one| one.errors).sum()),

@@ -1,7 +1,7 @@
 //! Analysis of a study: from single trials to summary, tables and report. This module does no input or output.
 //!
-//! A `Trial` holds the counts, medians, sequences and answers of one recording; everything else is computed from
-//! trials. Communication concepts are evaluated offline on unassisted trials: ToM-Com plans once and all costs of
+//! A `TrialStatistics` holds the counts, medians, sequences and answers of one recording; everything else is computed
+//! from trials. Communication concepts are evaluated offline on unassisted trials: ToM-Com plans once and all costs of
 //! communication are applied to the same benefits; ToM's thresholds are applied to the same estimate. Causes of errors
 //! come from the recorded beliefs of simulated participants; for people from two raters' codes if both coded every
 //! error, else from the estimate. The summary names the source (`beliefs_from`).

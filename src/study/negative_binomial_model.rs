@@ -23,7 +23,7 @@ const MOST_STEPS: usize = 200;
 
 /// The count of events in one trial, for the negative binomial model.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TrialCount {
+pub struct CountObservation {
     /// Index of the participant.
     pub participant: usize,
     /// Row of fixed effects in the design matrix.
@@ -66,7 +66,7 @@ pub struct WaldContrast {
 impl NegativeBinomialModel {
     /// Fits the model by maximum likelihood; `None` if the fixed effects are collinear, or the search does not
     /// converge.
-    pub fn fit(trials: &[TrialCount]) -> Option<NegativeBinomialModel> {
+    pub fn fit(trials: &[CountObservation]) -> Option<NegativeBinomialModel> {
         let effects = trials.first()?.effects.len();
         let rows: Vec<f64> = trials.iter().flat_map(|one| one.effects.iter().copied()).collect();
         let x = DMatrix::from_row_slice(trials.len(), effects, &rows);
@@ -108,7 +108,7 @@ impl NegativeBinomialModel {
 
 /// The log likelihood of fixed effects, log standard deviation and log size; participants are integrated out by
 /// Laplace's method.
-fn log_likelihood(trials: &[TrialCount], effects: usize, at: &[f64]) -> f64 {
+fn log_likelihood(trials: &[CountObservation], effects: usize, at: &[f64]) -> f64 {
     let (beta, sd, size) = (&at[..effects], at[effects].exp(), at[effects + 1].exp());
     let participants = trials.iter().map(|one| one.participant + 1).max().unwrap_or(0);
     let linear: Vec<f64> = trials

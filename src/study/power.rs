@@ -10,8 +10,10 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use super::arm_design::ArmTrial;
-use super::drawn_study::{DrawnEffect, PowerTest, StudySource, TestMethod, TestResult, results};
+use super::arm_design::StudyArmTrial;
+use super::drawn_study::{
+    DrawnEffect, PowerTest, SignificanceTestMethod, SignificanceTestResult, StudySampler, results,
+};
 use super::effect::LEVEL;
 use super::statistics::wilson;
 
@@ -47,7 +49,7 @@ pub struct RejectionCount {
 }
 
 impl RejectionCount {
-    fn add(&mut self, result: Option<TestResult>) {
+    fn add(&mut self, result: Option<SignificanceTestResult>) {
         let Some(result) = result else {
             self.unknown += 1;
             return;
@@ -76,7 +78,7 @@ impl RejectionCount {
 /// Counts of rejections of each test over the studies with these numbers; the last element counts studies in which any
 /// contrast of the mixed model rejects after correction.
 pub fn count(
-    source: &StudySource,
+    source: &StudySampler,
     tests: &[PowerTest],
     size: usize,
     effect: DrawnEffect,
@@ -84,13 +86,14 @@ pub fn count(
 ) -> Vec<RejectionCount> {
     let mut counts = vec![RejectionCount::default(); tests.len() + 1];
     for number in numbers {
-        let study: Vec<ArmTrial> = source.study(size, effect, number);
+        let study: Vec<StudyArmTrial> = source.study(size, effect, number);
         let found = results(tests, &study);
-        let contrasts = tests.iter().zip(&found).filter(|(test, _)| test.method == TestMethod::LinearMixedModel);
-        let known: Vec<TestResult> = contrasts.filter_map(|(_, result)| *result).collect();
-        let least = |p: fn(&TestResult) -> f64| known.iter().map(p).reduce(f64::min);
+        let contrasts =
+            tests.iter().zip(&found).filter(|(test, _)| test.method == SignificanceTestMethod::LinearMixedModel);
+        let known: Vec<SignificanceTestResult> = contrasts.filter_map(|(_, result)| *result).collect();
+        let least = |p: fn(&SignificanceTestResult) -> f64| known.iter().map(p).reduce(f64::min);
         let any = least(|one| one.p).zip(least(|one| one.p_uncorrected));
-        let any = any.map(|(p, p_uncorrected)| TestResult { p, p_uncorrected });
+        let any = any.map(|(p, p_uncorrected)| SignificanceTestResult { p, p_uncorrected });
         for (count, result) in counts.iter_mut().zip(found.into_iter().chain([any])) {
             count.add(result);
         }

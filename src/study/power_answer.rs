@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::drawn_study::{DrawnEffect, PowerTest, TestMethod, reference, tests};
+use super::drawn_study::{DrawnEffect, PowerTest, SignificanceTestMethod, reference, tests};
 use super::power::{RejectionCount, RejectionShare, WANTED, least_ratio};
 use super::simulation_pool::PoolHeader;
 use crate::base::words::count;
@@ -13,7 +13,7 @@ use crate::session::study_arm::StudyArm;
 /// Counts of rejections for one number of participants; each list has an entry per test and a last one for any
 /// contrast.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SizeCounts {
+pub struct SampleSizeRejections {
     /// Number of participants.
     pub participants: usize,
     /// Counts over studies drawn from the pool.
@@ -45,14 +45,14 @@ pub struct PowerSummary {
     /// Ratio of rates that was imposed on the studies; null if the effect is that of the simulated arms.
     pub ratio: Option<f64>,
     /// Power for each number of participants.
-    pub sizes: Vec<SizePower>,
+    pub sizes: Vec<SampleSizePower>,
     /// Number of participants that each test needs.
-    pub needed: Vec<NeededParticipants>,
+    pub needed: Vec<RequiredSampleSize>,
 }
 
 /// Power of all tests for one number of participants.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SizePower {
+pub struct SampleSizePower {
     /// Number of participants.
     pub participants: usize,
     /// Power of each test; the primary test is the first.
@@ -77,7 +77,7 @@ pub struct TestPower {
 
 /// Number of participants that a test needs for a power of 0.8.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct NeededParticipants {
+pub struct RequiredSampleSize {
     /// Statistical test for which the number is given.
     #[serde(flatten)]
     pub test: PowerTest,
@@ -90,15 +90,16 @@ pub struct NeededParticipants {
 
 impl PowerSummary {
     /// The summary from the counts for each number of participants, the least number first.
-    pub fn new(header: &PoolHeader, effect: DrawnEffect, sizes: &[SizeCounts]) -> PowerSummary {
+    pub fn new(header: &PoolHeader, effect: DrawnEffect, sizes: &[SampleSizeRejections]) -> PowerSummary {
         let tests = tests(&header.conditions);
-        let sizes: Vec<SizePower> = sizes.iter().map(|size| SizePower::new(size, &tests, &header.conditions)).collect();
+        let sizes: Vec<SampleSizePower> =
+            sizes.iter().map(|size| SampleSizePower::new(size, &tests, &header.conditions)).collect();
         let needed = |(index, test): (usize, &PowerTest)| {
             let from = |value: fn(&RejectionShare) -> f64| {
                 let holds = sizes.iter().rev().take_while(|size| value(&size.tests[index].found) >= WANTED);
                 holds.last().map(|size| size.participants)
             };
-            NeededParticipants {
+            RequiredSampleSize {
                 test: *test,
                 participants: from(|found| found.share),
                 surely: from(|found| found.interval[0]),
@@ -127,8 +128,8 @@ impl PowerSummary {
     }
 }
 
-impl SizePower {
-    fn new(size: &SizeCounts, tests: &[PowerTest], conditions: &[StudyArm]) -> SizePower {
+impl SampleSizePower {
+    fn new(size: &SampleSizeRejections, tests: &[PowerTest], conditions: &[StudyArm]) -> SampleSizePower {
         let share = |index: usize| {
             let of_pools: Vec<RejectionCount> = size.of_pools.iter().map(|pool| pool[index]).collect();
             RejectionShare::new(size.counts[index], &of_pools)
@@ -143,8 +144,8 @@ impl SizePower {
                 least_ratio: is_put_in.then(|| least_ratio(&shares)).flatten(),
             }
         };
-        let contrasts = tests.iter().filter(|test| test.method == TestMethod::LinearMixedModel).count();
-        SizePower {
+        let contrasts = tests.iter().filter(|test| test.method == SignificanceTestMethod::LinearMixedModel).count();
+        SampleSizePower {
             participants: size.participants,
             tests: tests.iter().enumerate().map(test_power).collect(),
             any: (contrasts > 1).then(|| share(tests.len())),
@@ -156,8 +157,8 @@ impl PowerTest {
     /// The test as text: "wizard to none, mixed ANOVA (the paper's test)".
     pub fn title(&self) -> String {
         let method = match self.method {
-            TestMethod::MixedAnova => "mixed ANOVA (the paper's test)",
-            TestMethod::LinearMixedModel => "linear mixed model",
+            SignificanceTestMethod::MixedAnova => "mixed ANOVA (the paper's test)",
+            SignificanceTestMethod::LinearMixedModel => "linear mixed model",
         };
         format!("{} to {}, {method}", self.arm.name(), self.against.name())
     }
@@ -218,7 +219,7 @@ fn describe_test(found: &PowerSummary, index: usize) -> String {
 
 /// Sentences on how many participants are needed, and which effect the middle one of the tried numbers of participants
 /// detects.
-fn power_in_words(found: &PowerSummary, needed: &NeededParticipants, index: usize) -> String {
+fn power_in_words(found: &PowerSummary, needed: &RequiredSampleSize, index: usize) -> String {
     let largest = found.sizes.last().map_or(0, |size| size.participants);
     let mut text = match (needed.participants, needed.surely) {
         (Some(enough), Some(surely)) if surely > enough => {

@@ -1,6 +1,6 @@
 //! Chart of the power of a study over its number of participants, as an SVG file.
 
-use super::drawn_study::{TestMethod, reference};
+use super::drawn_study::{SignificanceTestMethod, reference};
 use super::power::{ALPHA, WANTED};
 use super::power_answer::PowerSummary;
 use super::report::STYLE;
@@ -17,7 +17,7 @@ pub fn power(found: &PowerSummary) -> String {
     let sizes: Vec<f64> = found.sizes.iter().map(|size| size.participants as f64).collect();
     let (first, last) = (sizes.first().copied().unwrap_or(0.0), sizes.last().copied().unwrap_or(1.0));
     let mut names: Vec<(f64, &str)> = Vec::new();
-    let has_anova = found.needed.iter().any(|needed| needed.test.method == TestMethod::MixedAnova);
+    let has_anova = found.needed.iter().any(|needed| needed.test.method == SignificanceTestMethod::MixedAnova);
     let (title, label, line, most) = match found.is_null() {
         true => ("Type I error by number of participants", "studies that find an effect", ALPHA, 0.2),
         false => ("Power by number of participants", "power", WANTED, 1.0),
@@ -45,7 +45,7 @@ pub fn power(found: &PowerSummary) -> String {
             chart.point(class, *x, *share, &format!("{}, {x} participants: {share:.3}", test.title()));
         }
         let name = match (test.method, has_anova) {
-            (TestMethod::MixedAnova, _) => "paper's test",
+            (SignificanceTestMethod::MixedAnova, _) => "paper's test",
             (_, true) => "mixed model",
             (_, false) => test.arm.name(),
         };
@@ -69,9 +69,9 @@ fn apart(mut names: Vec<(f64, &str)>, gap: f64, most: f64) -> Vec<(f64, &str)> {
 }
 
 /// CSS class that gives a test its colour; the paper's test and the mixed model differ, and so do arms.
-fn class(arm: StudyArm, method: TestMethod) -> &'static str {
+fn class(arm: StudyArm, method: SignificanceTestMethod) -> &'static str {
     match (method, arm) {
-        (TestMethod::MixedAnova, _) | (_, StudyArm::WizardWithAdvice) => "first",
+        (SignificanceTestMethod::MixedAnova, _) | (_, StudyArm::WizardWithAdvice) => "first",
         (_, StudyArm::None | StudyArm::Wizard) => "second",
         (_, StudyArm::TomCom) => "tom-com",
         (_, StudyArm::Tom) => "tom",

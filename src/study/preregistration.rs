@@ -18,7 +18,7 @@ pub struct RecordedPlan {
 
 /// Result of comparing a study with its frozen plan.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Preregistration {
+pub struct PreregistrationCheck {
     /// SHA-256 digest of the frozen plan, in hexadecimal.
     pub digest: String,
     /// Name of the study plan.
@@ -29,10 +29,10 @@ pub struct Preregistration {
     pub differences: Vec<String>,
 }
 
-impl Preregistration {
+impl PreregistrationCheck {
     /// Compares the recordings of an analysis, and the definitions of this version of the program, with a frozen plan
     /// that has this digest.
-    pub fn new(digest: String, frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> Preregistration {
+    pub fn new(digest: String, frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> PreregistrationCheck {
         let mut differences = frozen.differs_from_program();
         let mut others: BTreeMap<String, u64> = BTreeMap::new();
         for recording in recordings {
@@ -57,7 +57,7 @@ impl Preregistration {
             differences.extend(named(who, &codes));
         }
         let (plan, recordings_before) = (frozen.plan.clone(), frozen.recordings_before);
-        Preregistration { digest, plan, recordings_before, differences }
+        PreregistrationCheck { digest, plan, recordings_before, differences }
     }
 
     /// The result in words: that the study is preregistered, or what differs.

@@ -11,30 +11,30 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::known_beliefs::KnownBeliefs;
+use super::known_beliefs::KnownFalseBeliefs;
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen};
 use crate::measures::JudgedPress;
-use crate::measures::belief_basis::BeliefBasis;
-use crate::measures::sequences::Episode;
+use crate::measures::belief_basis::BeliefSource;
+use crate::measures::sequences::FalseBeliefEpisode;
 
 /// Number of nanoseconds in a millisecond; session time is in nanoseconds.
 const NANOS_PER_MS: u64 = 1_000_000;
 
 /// Errors and false beliefs of a trial, as known from recorded beliefs or raters.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct TrialTruth {
+pub struct TrialGroundTruth {
     /// Presses of the human in the trial, in order.
-    pub presses: Vec<PressTruth>,
+    pub presses: Vec<PressGroundTruth>,
     /// Periods in which the participant held a false belief about an aspect.
-    pub spells: Vec<FalseBeliefTruth>,
+    pub spells: Vec<FalseBeliefGroundTruth>,
     /// Whether `spells` includes false beliefs that led to no error.
     pub knows_harmless: bool,
 }
 
 /// Whether a press of the human was an error, and which false belief caused it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PressTruth {
+pub struct PressGroundTruth {
     /// Session time of the press.
     pub time: SessionTime,
     /// Whether the press was an error.
@@ -46,7 +46,7 @@ pub struct PressTruth {
 
 /// Period in which the participant held a false belief about one aspect.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FalseBeliefTruth {
+pub struct FalseBeliefGroundTruth {
     /// State aspect about which the belief was false.
     pub aspect: AspectId,
     /// Session time at which the false belief began.
@@ -59,7 +59,7 @@ pub struct FalseBeliefTruth {
 
 /// A signal that a concept would have sent in an unassisted trial.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ConceptSignal {
+pub struct HypotheticalSignal {
     /// Session time of the signal.
     pub time: SessionTime,
     /// Number of human presses before the signal.
@@ -166,37 +166,37 @@ impl PreventionCounts {
     }
 }
 
-impl FalseBeliefTruth {
+impl FalseBeliefGroundTruth {
     fn is_open(&self, time: SessionTime) -> bool {
         self.began <= time && self.ended.is_none_or(|end| time < end)
     }
 
     /// Whether this false belief caused the error. A press at the time of the correction was decided before the
     /// correction.
-    fn caused(&self, press: &PressTruth) -> bool {
+    fn caused(&self, press: &PressGroundTruth) -> bool {
         let is_inside = self.began <= press.time && self.ended.is_none_or(|end| press.time <= end);
         is_inside && press.aspects.contains(&self.aspect)
     }
 }
 
-impl TrialTruth {
+impl TrialGroundTruth {
     /// Errors and false beliefs of a trial, from the participant's known beliefs.
-    pub fn new(kitchen: &Kitchen, judged: &[JudgedPress], known: &KnownBeliefs) -> TrialTruth {
-        let press = |press: &JudgedPress| PressTruth {
+    pub fn new(kitchen: &Kitchen, judged: &[JudgedPress], known: &KnownFalseBeliefs) -> TrialGroundTruth {
+        let press = |press: &JudgedPress| PressGroundTruth {
             time: press.time,
             error: press.verdict.error,
             aspects: known.targets.get(&press.seq).map_or(Vec::new(), |target| target.aspects(kitchen).collect()),
         };
-        let false_belief = |episode: &Episode| FalseBeliefTruth {
+        let false_belief = |episode: &FalseBeliefEpisode| FalseBeliefGroundTruth {
             aspect: episode.aspect,
             began: episode.began,
             ended: episode.corrected,
             harmful: episode.errors > 0,
         };
-        TrialTruth {
+        TrialGroundTruth {
             presses: judged.iter().map(press).collect(),
             spells: known.episodes.iter().map(false_belief).collect(),
-            knows_harmless: known.basis == BeliefBasis::Recorded,
+            knows_harmless: known.basis == BeliefSource::Recorded,
         }
     }
 
@@ -217,7 +217,7 @@ impl TrialTruth {
     }
 
     /// Counts for a concept that sends these signals, which are ordered by time.
-    pub fn count_signals(&self, sent: &[ConceptSignal]) -> PreventionCounts {
+    pub fn count_signals(&self, sent: &[HypotheticalSignal]) -> PreventionCounts {
         let mut count = self.empty_count(sent.len() as u64);
         let mut is_prevented = vec![false; self.presses.len()];
         let mut is_told = vec![false; self.spells.len()];

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::belief_trace::{BeliefTrace, TraceEvent};
+use super::belief_trace::{BeliefTrace, BeliefTraceEvent};
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{
@@ -14,8 +14,8 @@ use crate::kitchen::{
     World,
 };
 use crate::measures::JudgedPress;
-use crate::measures::attribution::Target;
-use crate::measures::sequences::Episode;
+use crate::measures::attribution::FalseBeliefTarget;
+use crate::measures::sequences::FalseBeliefEpisode;
 
 /// The rule by which false belief episodes follow from raters' codes, as printed in the report.
 pub const RULE: &str = "Of people, from the codes of two raters: their consensus, else only the false beliefs that both gave to an error \
@@ -37,16 +37,16 @@ pub fn rater_episodes(
     cost: &mut CostToGo,
     trace: &BeliefTrace,
     judged: &[JudgedPress],
-    coded: &[(u64, Target)],
-) -> Vec<Episode> {
-    let targets: BTreeMap<u64, Target> = coded.iter().copied().collect();
+    coded: &[(u64, FalseBeliefTarget)],
+) -> Vec<FalseBeliefEpisode> {
+    let targets: BTreeMap<u64, FalseBeliefTarget> = coded.iter().copied().collect();
     let correct = judged.iter().filter(|press| !press.verdict.error && !press.verdict.race);
     let mut rule = EpisodeRule { kitchen, cost, trace, correct: correct.map(|press| press.seq).collect() };
     let mut episodes = Vec::new();
     for (aspect, errors) in rule.by_aspect(&targets) {
         episodes.extend(rule.episodes(aspect, &errors));
     }
-    episodes.sort_by_key(|episode: &Episode| (episode.began, episode.aspect));
+    episodes.sort_by_key(|episode: &FalseBeliefEpisode| (episode.began, episode.aspect));
     episodes
 }
 
@@ -71,8 +71,8 @@ struct BeliefCourse {
     /// First look or signal, since the last error, change or press, that can have corrected the belief; later events
     /// decide whether it did.
     mended: Option<(SessionTime, usize)>,
-    open: Option<Episode>,
-    done: Vec<Episode>,
+    open: Option<FalseBeliefEpisode>,
+    done: Vec<FalseBeliefEpisode>,
 }
 
 impl BeliefCourse {
@@ -84,7 +84,7 @@ impl BeliefCourse {
     /// Notes that the belief is right at this time, about this value.
     fn right(&mut self, time: SessionTime, value: usize) {
         (self.since, self.value, self.changed, self.mended) = (time, value, None, None);
-        self.done.extend(self.open.take().map(|episode| Episode { corrected: Some(time), ..episode }));
+        self.done.extend(self.open.take().map(|episode| FalseBeliefEpisode { corrected: Some(time), ..episode }));
     }
 
     /// Notes that a look or signal has shown this value. The next error or press tells whether the participant
@@ -110,7 +110,7 @@ impl BeliefCourse {
     fn erred(&mut self) {
         self.mended = None;
         let (aspect, began) = (self.aspect, self.changed.unwrap_or(self.since));
-        self.open.get_or_insert(Episode { aspect, began, corrected: None, errors: 0 }).errors += 1;
+        self.open.get_or_insert(FalseBeliefEpisode { aspect, began, corrected: None, errors: 0 }).errors += 1;
     }
 }
 
@@ -144,26 +144,30 @@ fn after(signal: SessionTime) -> SessionTime {
 
 impl EpisodeRule<'_> {
     /// Coded errors, grouped by the state aspect that they are about.
-    fn by_aspect(&mut self, targets: &BTreeMap<u64, Target>) -> BTreeMap<AspectId, BTreeSet<u64>> {
+    fn by_aspect(&mut self, targets: &BTreeMap<u64, FalseBeliefTarget>) -> BTreeMap<AspectId, BTreeSet<u64>> {
         let (trace, has_looks) = (self.trace, self.trace.has_looks());
         let mut unseen: BTreeSet<LocationId> = BTreeSet::new();
         let mut errors: BTreeMap<AspectId, BTreeSet<u64>> = BTreeMap::new();
         for (_, event) in &trace.events {
             match event {
-                TraceEvent::Started { .. } => unseen.clear(),
-                TraceEvent::Changed { before, after } => unseen.extend(self.kitchen.changed(*before, *after)),
-                TraceEvent::Looked { location } => {
+                BeliefTraceEvent::Started { .. } => unseen.clear(),
+                BeliefTraceEvent::Changed { before, after } => unseen.extend(self.kitchen.changed(*before, *after)),
+                BeliefTraceEvent::Looked { location } => {
                     unseen.remove(location);
                 }
-                TraceEvent::Told { aspects } => unseen.retain(|one| !aspects.contains(&AspectId::of_location(*one))),
-                TraceEvent::Pressed { seq, press } => {
+                BeliefTraceEvent::Told { aspects } => {
+                    unseen.retain(|one| !aspects.contains(&AspectId::of_location(*one)))
+                }
+                BeliefTraceEvent::Pressed { seq, press } => {
                     if let Some(&target) = targets.get(seq) {
                         let aspect = match target {
-                            Target::Order(order, Some(dish)) if !(has_looks && unseen.contains(&order)) => {
+                            FalseBeliefTarget::Order(order, Some(dish)) if !(has_looks && unseen.contains(&order)) => {
                                 self.kitchen.aspect_of_dish(dish)
                             }
-                            Target::Order(location, _) | Target::Place(location) => AspectId::of_location(location),
-                            Target::Recipe(dish) => self.kitchen.aspect_of_dish(dish),
+                            FalseBeliefTarget::Order(location, _) | FalseBeliefTarget::Place(location) => {
+                                AspectId::of_location(location)
+                            }
+                            FalseBeliefTarget::Recipe(dish) => self.kitchen.aspect_of_dish(dish),
                         };
                         errors.entry(aspect).or_default().insert(*seq);
                     } else if self.correct.contains(seq) {
@@ -185,30 +189,32 @@ impl EpisodeRule<'_> {
     }
 
     /// Episodes about one state aspect that caused the errors with these sequence numbers.
-    fn episodes(&mut self, aspect: AspectId, errors: &BTreeSet<u64>) -> Vec<Episode> {
+    fn episodes(&mut self, aspect: AspectId, errors: &BTreeSet<u64>) -> Vec<FalseBeliefEpisode> {
         let (kitchen, trace, wrong) = (self.kitchen, self.trace, self.confusions(aspect, errors));
         let value = |state: State| kitchen.true_value(state, aspect);
         let mut now = kitchen.empty_state();
         let mut course = BeliefCourse::new(aspect);
         for (time, event) in &trace.events {
             match event {
-                TraceEvent::Started { state } => {
+                BeliefTraceEvent::Started { state } => {
                     now = *state;
                     course.right(*time, value(now));
                 }
-                TraceEvent::Changed { before, after } => {
+                BeliefTraceEvent::Changed { before, after } => {
                     now = *after;
                     if value(*before) != value(now) {
                         course.uphold();
                         course.changed(*time, value(now));
                     }
                 }
-                TraceEvent::Looked { location } if AspectId::of_location(*location) == aspect => {
+                BeliefTraceEvent::Looked { location } if AspectId::of_location(*location) == aspect => {
                     course.told(*time, value(now));
                 }
-                TraceEvent::Told { aspects } if aspects.contains(&aspect) => course.told(after(*time), value(now)),
-                TraceEvent::Looked { .. } | TraceEvent::Told { .. } => {}
-                TraceEvent::Pressed { seq, press } => {
+                BeliefTraceEvent::Told { aspects } if aspects.contains(&aspect) => {
+                    course.told(after(*time), value(now))
+                }
+                BeliefTraceEvent::Looked { .. } | BeliefTraceEvent::Told { .. } => {}
+                BeliefTraceEvent::Pressed { seq, press } => {
                     now = press.after;
                     if errors.contains(seq) {
                         course.erred();
@@ -252,8 +258,8 @@ impl EpisodeRule<'_> {
         let (kitchen, trace) = (self.kitchen, self.trace);
         let one = &kitchen.aspects[aspect.index()];
         let AspectKind::Recipe(_) = one.kind else { return Vec::new() };
-        let of_error = |(_, event): &'_ (SessionTime, TraceEvent)| match event {
-            TraceEvent::Pressed { seq, press } if errors.contains(seq) => Some(*press),
+        let of_error = |(_, event): &'_ (SessionTime, BeliefTraceEvent)| match event {
+            BeliefTraceEvent::Pressed { seq, press } if errors.contains(seq) => Some(*press),
             _ => None,
         };
         let presses: Vec<Press> = trace.events.iter().filter_map(of_error).collect();

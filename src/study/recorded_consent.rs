@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::session::wall_display::Answering;
+use crate::session::wall_display::AnswerEntry;
 
 /// A consent, as the first event of a recording says it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -11,7 +11,7 @@ pub struct RecordedConsent {
     /// The participant's code.
     pub participant: String,
     /// Where it was given; none: the recording does not say.
-    pub on: Option<Answering>,
+    pub on: Option<AnswerEntry>,
     /// Wall clock time at which the recording that begins with it began (UTC, RFC 3339).
     pub started: Option<String>,
     /// Digest of the text that was agreed to.
@@ -22,8 +22,8 @@ impl RecordedConsent {
     /// Where it was given, as tables name it.
     pub fn place(&self) -> Option<&'static str> {
         self.on.map(|on| match on {
-            Answering::Console => "console",
-            Answering::Display => "display",
+            AnswerEntry::Console => "console",
+            AnswerEntry::Display => "display",
         })
     }
 }

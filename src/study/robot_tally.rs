@@ -10,14 +10,14 @@ use crate::communication::Sender;
 use crate::robot::AbortReason;
 use crate::robot::safety::SafetyMode;
 use crate::session::Event;
-use crate::session::event::EndReason;
+use crate::session::event::TrialEndReason;
 use crate::session::settings::ArmKind;
 
 /// Robot statistics of a trial from its start to its end, pauses included.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct RobotSummary {
+pub struct RobotEventSummary {
     /// Contact statistics of a simulated physical arm; `None` for a timed arm, which has no contacts.
-    pub arm: Option<ArmSummary>,
+    pub arm: Option<RobotArmSummary>,
     /// Number of emergency stops by the wizard.
     pub emergency_stops: u64,
     /// Number of aborted robot presses by reason; reasons that did not occur are absent.
@@ -34,7 +34,7 @@ pub struct RobotSummary {
 
 /// Safety and contact statistics of a simulated physical arm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ArmSummary {
+pub struct RobotArmSummary {
     /// Number of protective stops: the arm stopped because of a contact force.
     pub protective_stops: u64,
     /// Number of stops because a joint did not follow its commanded motion.
@@ -49,14 +49,14 @@ pub struct ArmSummary {
     pub safeguard_s: f64,
 }
 
-impl ArmSummary {
+impl RobotArmSummary {
     /// Counts a contact, with its force in newtons if the log has it.
     fn felt(&mut self, force_n: Option<f64>) {
         self.peak_force_n = self.peak_force_n.into_iter().chain(force_n).reduce(f64::max);
     }
 }
 
-impl RobotSummary {
+impl RobotEventSummary {
     /// Number of presses aborted for a reason; `None` if the reason cannot occur with this kind of arm.
     pub fn given_up(&self, reason: AbortReason) -> Option<u64> {
         let count = self.given_up.get(&reason).copied();
@@ -64,7 +64,7 @@ impl RobotSummary {
     }
 
     /// Adds the robot statistics of another trial.
-    pub fn add(&mut self, other: &RobotSummary) {
+    pub fn add(&mut self, other: &RobotEventSummary) {
         self.emergency_stops += other.emergency_stops;
         for (&reason, count) in &other.given_up {
             *self.given_up.entry(reason).or_default() += count;
@@ -87,21 +87,21 @@ impl RobotSummary {
 
 /// Counts robot events while a recording is replayed.
 #[derive(Clone, Debug)]
-pub struct RobotTally {
-    figures: RobotSummary,
+pub struct RobotEventTally {
+    figures: RobotEventSummary,
     /// Reason why the trial ended; `None` before its end.
-    pub ended: Option<EndReason>,
+    pub ended: Option<TrialEndReason>,
     mode: SafetyMode,
     /// Time on the trial's clock up to which the durations of safety modes have been counted.
     clock: SessionTime,
 }
 
-impl RobotTally {
+impl RobotEventTally {
     /// An empty tally for a trial with this kind of arm.
-    pub fn new(arm: ArmKind) -> RobotTally {
-        let arm = (arm == ArmKind::Physics).then(ArmSummary::default);
-        let figures = RobotSummary { arm, ..RobotSummary::default() };
-        RobotTally { figures, ended: None, mode: SafetyMode::Normal, clock: SessionTime::ZERO }
+    pub fn new(arm: ArmKind) -> RobotEventTally {
+        let arm = (arm == ArmKind::Physics).then(RobotArmSummary::default);
+        let figures = RobotEventSummary { arm, ..RobotEventSummary::default() };
+        RobotEventTally { figures, ended: None, mode: SafetyMode::Normal, clock: SessionTime::ZERO }
     }
 
     /// Counts an event at this time of the trial's clock; `was_on`: the trial had started and not ended before the
@@ -132,7 +132,7 @@ impl RobotTally {
         let figures = &mut self.figures;
         match event {
             Event::TrialEnded { reason } => self.ended = Some(*reason),
-            Event::TrialAborted { .. } => self.ended = Some(EndReason::Aborted),
+            Event::TrialAborted { .. } => self.ended = Some(TrialEndReason::Aborted),
             Event::RobotStopped => figures.emergency_stops += 1,
             Event::RobotAborts { reason, .. } => *figures.given_up.entry(*reason).or_default() += 1,
             Event::RobotHeld { by: Sender::Wizard } => figures.held += 1,
@@ -155,7 +155,7 @@ impl RobotTally {
     }
 
     /// The statistics counted so far.
-    pub fn into_figures(self) -> RobotSummary {
+    pub fn into_figures(self) -> RobotEventSummary {
         self.figures
     }
 }

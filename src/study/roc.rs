@@ -46,7 +46,7 @@ pub const CONCEPTS: [ConceptName; 3] = [ConceptName::TomCom, ConceptName::Tom, C
 
 /// Prevention counts of a concept with one parameter value in one unassisted trial.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SweptTrial {
+pub struct PreventedTrialErrors {
     /// Communication concept that would have sent the signals.
     pub concept: ConceptName,
     /// Value of the concept's parameter, such as the cost of communication.
@@ -88,7 +88,7 @@ pub struct BootstrapInterval {
 
 /// The receiver operating characteristic of a concept.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Roc {
+pub struct ConceptRocCurve {
     /// Communication concept whose curve this is.
     pub concept: ConceptName,
     /// Mean true positive rate over the false positive rates that all concepts reach: partial area divided by the
@@ -121,7 +121,7 @@ pub struct ConceptComparison {
     /// Largest false positive rate that all concepts reach.
     pub common_fpr: Option<f64>,
     /// The concepts' curves, in the order in which concepts are compared.
-    pub concepts: Vec<Roc>,
+    pub concepts: Vec<ConceptRocCurve>,
 }
 
 /// Curves of all concepts for one bootstrap sample of participants.
@@ -132,10 +132,10 @@ struct Curves {
 }
 
 /// Sum of each concept's counts over participants; each participant is weighted by its number of draws in `times`.
-fn summed(participants: &[Vec<SweptTrial>], times: &[u32]) -> Vec<SweptTrial> {
+fn summed(participants: &[Vec<PreventedTrialErrors>], times: &[u32]) -> Vec<PreventedTrialErrors> {
     let Some(first) = participants.first() else { return Vec::new() };
-    let mut sum: Vec<SweptTrial> =
-        first.iter().map(|one| SweptTrial { count: PreventionCounts::default(), ..*one }).collect();
+    let mut sum: Vec<PreventedTrialErrors> =
+        first.iter().map(|one| PreventedTrialErrors { count: PreventionCounts::default(), ..*one }).collect();
     for (participant, &times) in participants.iter().zip(times) {
         for (sum, one) in sum.iter_mut().zip(participant) {
             for _ in 0..times {
@@ -147,7 +147,7 @@ fn summed(participants: &[Vec<SweptTrial>], times: &[u32]) -> Vec<SweptTrial> {
 }
 
 impl Curves {
-    fn from_counts(sum: &[SweptTrial]) -> Curves {
+    fn from_counts(sum: &[PreventedTrialErrors]) -> Curves {
         let curve = |concept: ConceptName, point: fn(&PreventionRates) -> (f64, f64)| {
             let points = sum.iter().filter(|one| one.concept == concept).filter_map(|one| one.count.rates());
             // A concept that sends no signals is at the point (0, 0), where every curve begins.
@@ -201,7 +201,7 @@ fn area(curve: &[(f64, f64)], to: f64) -> Option<f64> {
 /// Compares the concepts. `participants` has, for each participant, the sums over their trials for every concept and
 /// parameter value, in the same order. The percentile bootstrap (Efron 1979) resamples participants; its random stream
 /// is seeded by `seed`.
-pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> ConceptComparison {
+pub fn compare(participants: &[Vec<PreventedTrialErrors>], trials: u64, seed: u64) -> ConceptComparison {
     let once = vec![1; participants.len()];
     let sum = summed(participants, &once);
     if sum.is_empty() {
@@ -213,7 +213,7 @@ pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> Conc
         resamples(participants.len(), seed).map(|times| Curves::from_counts(&summed(participants, &times))).collect();
     let roc = |(index, &concept): (usize, &ConceptName)| {
         let of_concept = sum.iter().filter(|one| one.concept == concept);
-        let point = |one: &SweptTrial| {
+        let point = |one: &PreventedTrialErrors| {
             let PreventionRates { fpr, tpr, signals_per_100 } = one.count.rates()?;
             Some(RocPoint {
                 parameter: one.parameter,
@@ -232,7 +232,7 @@ pub fn compare(participants: &[Vec<SweptTrial>], trials: u64, seed: u64) -> Conc
         let behind = |signals: f64| {
             move |curves: &Curves| Some(height(&curves.of[0][1], signals)? - height(&curves.of[index][1], signals)?)
         };
-        Roc {
+        ConceptRocCurve {
             concept,
             auc: area.value,
             auc_low: area.low,

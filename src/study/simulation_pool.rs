@@ -62,12 +62,12 @@ pub struct PoolTrial {
     pub arm: StudyArm,
     /// Counts of presses, errors, signals and orders in the trial.
     #[serde(flatten)]
-    pub counts: TrialCounts,
+    pub counts: PoolTrialCounts,
 }
 
 /// Counts of presses, errors, signals and orders in a simulated trial of a pool.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct TrialCounts {
+pub struct PoolTrialCounts {
     /// Number of the human's presses.
     pub human_presses: u64,
     /// Number of the robot's presses.
@@ -88,7 +88,7 @@ pub struct TrialCounts {
     pub seconds: f64,
 }
 
-impl TrialCounts {
+impl PoolTrialCounts {
     /// Number of events of the primary outcome.
     pub fn events(&self, outcome: PrimaryOutcome) -> u64 {
         match outcome {
@@ -101,24 +101,24 @@ impl TrialCounts {
 
 /// A participant of a pool with all of their trials.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PoolPerson {
+pub struct PoolParticipant {
     /// Index of the participant in the plan, from 0.
     pub participant: u32,
     /// Starting group of the participant.
     pub group: String,
     /// Trials of the participant, in the order of periods.
-    pub trials: Vec<PersonTrial>,
+    pub trials: Vec<PoolParticipantPeriod>,
 }
 
 /// A period of a pool's participant, with its counts in the planned arm and without signals.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PersonTrial {
+pub struct PoolParticipantPeriod {
     /// Study arm that the plan gives to the period.
     pub arm: StudyArm,
     /// Counts in the planned arm, if that trial was simulated.
-    pub own: Option<TrialCounts>,
+    pub own: Option<PoolTrialCounts>,
     /// Counts in the trial without signals, if it was simulated.
-    pub unassisted: Option<TrialCounts>,
+    pub unassisted: Option<PoolTrialCounts>,
 }
 
 /// A pool of simulated participants, or a shard of it.
@@ -127,7 +127,7 @@ pub struct SimulationPool {
     /// Plan, settings and seed that the participants have in common.
     pub header: PoolHeader,
     /// The participants, in the order of the plan.
-    pub persons: Vec<PoolPerson>,
+    pub persons: Vec<PoolParticipant>,
 }
 
 /// Mismatch in the lines of a pool's file, or between shards that are joined.
@@ -153,7 +153,7 @@ impl SimulationPool {
     /// # Errors
     /// A trial is missing, occurs twice, or does not fit the header.
     pub fn from_trials(header: PoolHeader, trials: Vec<PoolTrial>) -> Result<SimulationPool, PoolMismatch> {
-        let mut persons: Vec<PoolPerson> = Vec::new();
+        let mut persons: Vec<PoolParticipant> = Vec::new();
         let count = trials.len();
         for (index, trial) in trials.into_iter().enumerate() {
             let wrong = |found: String, remedy: &str| Err(PoolMismatch::new(index, found, remedy));
@@ -164,14 +164,14 @@ impl SimulationPool {
             let next = persons.last().map_or(0, |person| person.participant + 1);
             if trial.participant >= next && trial.participant < header.participants {
                 let (participant, group) = (trial.participant, trial.group.clone());
-                persons.push(PoolPerson { participant, group, trials: Vec::new() });
+                persons.push(PoolParticipant { participant, group, trials: Vec::new() });
             }
             let Some(person) = persons.last_mut().filter(|person| person.participant == trial.participant) else {
                 let found = format!("participant {} after {}", trial.participant, next.saturating_sub(1));
                 return wrong(found, "participants in order, each once, from 0");
             };
             if person.trials.len() + 1 == trial.period as usize {
-                person.trials.push(PersonTrial { arm: trial.planned, own: None, unassisted: None });
+                person.trials.push(PoolParticipantPeriod { arm: trial.planned, own: None, unassisted: None });
             }
             let is_last = person.trials.len() == trial.period as usize;
             let Some(slot) = person.trials.last_mut().filter(|slot| is_last && slot.arm == trial.planned) else {
@@ -186,11 +186,12 @@ impl SimulationPool {
                 }
             }
         }
-        let is_whole = |trial: &PersonTrial| {
+        let is_whole = |trial: &PoolParticipantPeriod| {
             (trial.own.is_some() || !header.arms) && (trial.unassisted.is_some() || !header.unassisted)
         };
-        let is_complete =
-            |person: &PoolPerson| person.trials.len() == header.conditions.len() && person.trials.iter().all(is_whole);
+        let is_complete = |person: &PoolParticipant| {
+            person.trials.len() == header.conditions.len() && person.trials.iter().all(is_whole)
+        };
         match persons.iter().find(|person| !is_complete(person)) {
             Some(person) => {
                 let found = format!("participant {} without all trials", person.participant);
@@ -204,7 +205,7 @@ impl SimulationPool {
     pub fn trials(&self) -> impl Iterator<Item = PoolTrial> + '_ {
         self.persons.iter().flat_map(|person| {
             person.trials.iter().zip(1..).flat_map(move |(trial, period)| {
-                let line = |arm: StudyArm, counts: &TrialCounts| PoolTrial {
+                let line = |arm: StudyArm, counts: &PoolTrialCounts| PoolTrial {
                     participant: person.participant,
                     group: person.group.clone(),
                     period,
@@ -228,7 +229,7 @@ impl SimulationPool {
             return Err(PoolMismatch::new(0, "no part".to_string(), "at least one"));
         };
         let whole = PoolHeader { shard: 1, shards: 1, ..first.clone() };
-        let mut persons: Vec<(usize, PoolPerson)> = Vec::new();
+        let mut persons: Vec<(usize, PoolParticipant)> = Vec::new();
         for (index, part) in parts.into_iter().enumerate() {
             if (PoolHeader { shard: 1, shards: 1, ..part.header.clone() }) != whole
                 || part.header.shards != first.shards

@@ -161,7 +161,7 @@ fn for_each_choice(n: usize, m: usize, mut visit: impl FnMut(&[usize])) {
 
 /// An estimate with its confidence interval and level.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Interval {
+pub struct ConfidenceInterval {
     /// Point estimate, such as a mean or a share.
     pub estimate: f64,
     /// The lower end of the interval.
@@ -175,7 +175,7 @@ pub struct Interval {
 /// Hodges-Lehmann estimate of the shift from `b` to `a` (median of all differences) with the Mann-Whitney test's
 /// confidence interval (exact distribution of U without ties; Hollander and Wolfe 1999, section 4.2). `None` with an
 /// empty group.
-pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<Interval> {
+pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<ConfidenceInterval> {
     let mut differences: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| a - b)).collect();
     differences.sort_by(f64::total_cmp);
     let estimate = crate::measures::median(differences.clone())?;
@@ -186,7 +186,7 @@ pub fn hodges_lehmann(a: &[f64], b: &[f64], level: f64) -> Option<Interval> {
     let last = differences.len() - 1;
     let low = if left_out == 0 { f64::NEG_INFINITY } else { differences[left_out - 1] };
     let high = if left_out == 0 { f64::INFINITY } else { differences[last + 1 - left_out] };
-    Some(Interval { estimate, low, high, level: covered })
+    Some(ConfidenceInterval { estimate, low, high, level: covered })
 }
 
 /// P(U <= u) for u = 0, 1, …, m n: U of two samples of these sizes from the same distribution, without ties.
@@ -236,7 +236,7 @@ pub fn hedges_g(a: &[f64], b: &[f64]) -> Option<f64> {
 }
 
 /// Mean with its confidence interval by Student's t.
-pub fn mean_interval(values: &[f64], level: f64) -> Option<Interval> {
+pub fn mean_interval(values: &[f64], level: f64) -> Option<ConfidenceInterval> {
     let n = values.len() as f64;
     if values.len() < 2 {
         return None;
@@ -244,24 +244,24 @@ pub fn mean_interval(values: &[f64], level: f64) -> Option<Interval> {
     let estimate = mean(values.iter().copied());
     let variance = values.iter().map(|value| (value - estimate).powi(2)).sum::<f64>() / (n - 1.0);
     let reach = StudentsT::new(0.0, 1.0, n - 1.0).ok()?.inverse_cdf(0.5 + level / 2.0) * (variance / n).sqrt();
-    Some(Interval { estimate, low: estimate - reach, high: estimate + reach, level })
+    Some(ConfidenceInterval { estimate, low: estimate - reach, high: estimate + reach, level })
 }
 
 /// Proportion with its Wilson score interval (Wilson 1927); `None` if `whole` is 0.
-pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<Interval> {
+pub fn share_interval(part: u64, whole: u64, level: f64) -> Option<ConfidenceInterval> {
     wilson(part as f64 / whole as f64, whole as f64, level)
 }
 
 /// The proportion `p` of `n` observations with its Wilson score interval; `n` may be the fractional number of
 /// independent observations with the same variance. `None` if `n` is 0.
-pub fn wilson(p: f64, n: f64, level: f64) -> Option<Interval> {
+pub fn wilson(p: f64, n: f64, level: f64) -> Option<ConfidenceInterval> {
     if n <= 0.0 {
         return None;
     }
     let z = Normal::new(0.0, 1.0).ok()?.inverse_cdf(0.5 + level / 2.0);
     let (centre, reach) = ((p + z * z / (2.0 * n)), z * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt());
     let scale = 1.0 + z * z / n;
-    Some(Interval { estimate: p, low: (centre - reach) / scale, high: (centre + reach) / scale, level })
+    Some(ConfidenceInterval { estimate: p, low: (centre - reach) / scale, high: (centre + reach) / scale, level })
 }
 
 /// Mean of the values; 0 without values.

@@ -16,12 +16,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::facts::Facts;
+use super::facts::RecordingFacts;
 use super::preregistration::RecordedPlan;
 use super::recorded_consent::RecordedConsent;
 use super::tables::tutorial_answers::TutorialAnswer;
-use super::trial_statistics::Trial;
-use crate::session::header::FileText;
+use super::trial_statistics::TrialStatistics;
+use crate::session::header::RecordedFile;
 use crate::session::plan::StepSpec;
 
 /// Version of the format.
@@ -48,7 +48,7 @@ pub struct PartHeader {
 }
 
 /// The second line of a part: layout and recipes of the kitchen; `None` in a part without recordings.
-pub type PartKitchen = Option<[FileText; 2]>;
+pub type PartKitchen = Option<[RecordedFile; 2]>;
 
 /// The options of an analysis that change the results of a recording.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -75,7 +75,7 @@ pub struct AnalysedRecording {
     /// The answers to the questions of its tutorial.
     pub tutorial: Vec<TutorialAnswer>,
     /// The trial, with what the report tells about the recording; `None` for practice.
-    pub trial: Option<(Trial, Facts)>,
+    pub trial: Option<(TrialStatistics, RecordingFacts)>,
 }
 
 /// What is wrong with parts that are joined.

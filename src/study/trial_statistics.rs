@@ -2,27 +2,27 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::acting_arm::ActingArm;
-use super::known_beliefs::SharedBeliefs;
-use super::robot_tally::RobotSummary;
-use super::roc::SweptTrial;
+use super::acting_arm::ActingStudyArm;
+use super::known_beliefs::FalseBeliefAgreement;
+use super::robot_tally::RobotEventSummary;
+use super::roc::PreventedTrialErrors;
 use crate::analysis::offer_summary::{OfferSummary, TimedOffer};
 use crate::analysis::probe_record::ProbedTrial;
-use crate::measures::belief_basis::BeliefBasis;
-use crate::measures::cause_codes::Codes;
+use crate::measures::belief_basis::BeliefSource;
+use crate::measures::cause_codes::RaterCodes;
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::CommunicationEvent;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::session::answer_value::AnswerValue;
-use crate::session::event::EndReason;
-use crate::session::plan::{ItemKind, ItemOption, StudyAims};
-use crate::session::settings::{ArmKind, Condition, ParticipantKind, Visibility};
+use crate::session::event::TrialEndReason;
+use crate::session::plan::{ItemOption, QuestionnaireItemKind, StudyAims};
+use crate::session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
 use crate::session::study_arm::StudyArm;
 use crate::session::wall_display::DisplayedArm;
 
 /// Statistics of one trial of a study: conditions, counts, medians, answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trial {
+pub struct TrialStatistics {
     /// Path of the recording's folder, relative to the folder given by the user.
     pub recording: String,
     /// Participant code; prefixed by the seed if several seeds have simulated participants with the same codes.
@@ -48,17 +48,17 @@ pub struct Trial {
     /// Primary outcome and margin that the study's plan sets.
     pub aims: Option<StudyAims>,
     /// Information that the wizard was allowed to see.
-    pub wizard_sees: Visibility,
+    pub wizard_sees: WizardVisibility,
     /// Sender of the signals in a trial without a person as wizard.
-    pub acting: ActingArm,
+    pub acting: ActingStudyArm,
     /// Reason for excluding the trial from the analysis; `None` if the trial is included.
     pub left_out: Option<String>,
     /// Reason why the trial ended; `None` if the recording is incomplete.
-    pub ended: Option<EndReason>,
+    pub ended: Option<TrialEndReason>,
     /// Kind of the robot's arm.
     pub arm: ArmKind,
     /// Counts of robot events and of interventions in the robot.
-    pub robot: RobotSummary,
+    pub robot: RobotEventSummary,
     /// Number of the human's presses.
     pub human_presses: u64,
     /// Number of the robot's presses.
@@ -68,7 +68,7 @@ pub struct Trial {
     /// Number of human presses that the robot may have overtaken (races).
     pub races: u64,
     /// Statistics of errors from false beliefs; `None` if the human's beliefs are unknown.
-    pub beliefs: Option<BeliefErrors>,
+    pub beliefs: Option<FalseBeliefErrors>,
     /// Number of orders served.
     pub orders: u64,
     /// Median time from the appearance of an order to its serving, in seconds.
@@ -101,11 +101,11 @@ pub struct Trial {
     /// In wizard trials: the communications sent, and the hypothetical ones of the assistant.
     pub lanes: Option<[Vec<CommunicationEvent>; 2]>,
     /// In unassisted trials with known beliefs: what each concept would have prevented, by parameter value.
-    pub swept: Vec<SweptTrial>,
+    pub swept: Vec<PreventedTrialErrors>,
     /// Codes of two raters, if these codes or the raters' consensus determine the causes of errors.
-    pub raters: Option<[Codes; 2]>,
+    pub raters: Option<[RaterCodes; 2]>,
     /// Agreement of the two raters about false beliefs.
-    pub shared_beliefs: Option<SharedBeliefs>,
+    pub shared_beliefs: Option<FalseBeliefAgreement>,
     /// The two raters whose consensus determines the causes of errors.
     pub settled_by: Option<[String; 2]>,
     /// Why a consensus is not used: a rater's code changed after the raters settled it.
@@ -116,9 +116,9 @@ pub struct Trial {
 
 /// Errors of a trial that follow from false beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BeliefErrors {
+pub struct FalseBeliefErrors {
     /// Source of what the human believed: recorded beliefs, raters or the estimate.
-    pub basis: BeliefBasis,
+    pub basis: BeliefSource,
     /// Number of errors that follow from false beliefs.
     pub errors: u64,
     /// Number of errors that only two false beliefs together explain.
@@ -150,7 +150,7 @@ pub struct QuestionnaireAnswer {
     /// Whether agreement with the statement counts against the construct.
     pub reversed: bool,
     /// Kind of answer that the item takes.
-    pub kind: ItemKind,
+    pub kind: QuestionnaireItemKind,
     /// The answer; `None` if the participant skipped the item.
     pub answer: Option<AnswerValue>,
     /// Number of points of the item's rating scale; `None` for other kinds of item.
@@ -165,7 +165,7 @@ pub struct QuestionnaireAnswer {
     pub score: Option<f64>,
 }
 
-impl Trial {
+impl TrialStatistics {
     /// Summary of the offers that a wizard could see; `None` in recordings without offers.
     pub fn offer_summary(&self) -> Option<OfferSummary> {
         self.offers.as_ref().map(OfferSummary::from_offers)
@@ -237,17 +237,19 @@ pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 /// Sets participant names, and periods where no study plan defines them, and sorts the trials by participant and
 /// period. Without a plan, a live trial is the participant's first or second by wall clock, if exactly two of the
 /// participant's trials count.
-pub fn arrange(trials: &mut [Trial]) {
+pub fn arrange(trials: &mut [TrialStatistics]) {
     let mut seeds: Vec<u64> = simulated(trials).map(|trial| trial.seed).collect();
     seeds.sort_unstable();
     seeds.dedup();
     for trial in trials.iter_mut().filter(|trial| trial.started.is_none() && seeds.len() > 1) {
         trial.participant = format!("seed{}-{}", trial.seed, trial.participant);
     }
-    let key = |trial: &Trial| (trial.participant.clone(), trial.period, trial.started.clone(), trial.recording.clone());
+    let key = |trial: &TrialStatistics| {
+        (trial.participant.clone(), trial.period, trial.started.clone(), trial.recording.clone())
+    };
     trials.sort_by_cached_key(key);
     for of_one in trials.chunk_by_mut(|a, b| a.participant == b.participant) {
-        let unplanned = |trial: &Trial| trial.counts() && !trial.is_planned && trial.started.is_some();
+        let unplanned = |trial: &TrialStatistics| trial.counts() && !trial.is_planned && trial.started.is_some();
         if of_one.iter().filter(|trial| unplanned(trial)).count() == 2 {
             let mut period = 0;
             for trial in of_one.iter_mut().filter(|trial| unplanned(trial)) {
@@ -259,6 +261,6 @@ pub fn arrange(trials: &mut [Trial]) {
 }
 
 /// Fully simulated trials, in which every seed reuses the same participant codes.
-fn simulated(trials: &[Trial]) -> impl Iterator<Item = &Trial> {
+fn simulated(trials: &[TrialStatistics]) -> impl Iterator<Item = &TrialStatistics> {
     trials.iter().filter(|trial| trial.started.is_none())
 }

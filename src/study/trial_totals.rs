@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::effect::LEVEL;
-use super::statistics::{Interval, share_interval};
-use super::trial_statistics::{BeliefErrors, Trial, mean, mean_length};
-use crate::measures::belief_basis::BeliefBasis;
+use super::statistics::{ConfidenceInterval, share_interval};
+use super::trial_statistics::{FalseBeliefErrors, TrialStatistics, mean, mean_length};
+use crate::measures::belief_basis::BeliefSource;
 use crate::measures::cause_kinds::CauseKindCounts;
 
 /// Sums and rates over trials of a study: presses, errors, sequences, signals, orders.
@@ -26,7 +26,7 @@ pub struct TrialTotals {
     /// Errors per press of the human.
     pub error_rate_human: Option<f64>,
     /// Source of the participants' beliefs; null if beliefs are unknown in some trial.
-    pub beliefs_from: Option<BeliefBasis>,
+    pub beliefs_from: Option<BeliefSource>,
     /// Number of errors that are attributed to a false belief.
     pub belief_related_errors: Option<u64>,
     /// Errors from false beliefs, by kind of state aspect.
@@ -34,7 +34,7 @@ pub struct TrialTotals {
     /// Share of the errors that follow from false beliefs, from 0 to 1.
     pub belief_related_share: Option<f64>,
     /// 95 % interval of `belief_related_share`.
-    pub belief_related_interval: Option<Interval>,
+    pub belief_related_interval: Option<ConfidenceInterval>,
     /// Number of sequences of errors from the same false belief.
     pub sequences: Option<u64>,
     /// Mean number of errors in a sequence of errors from the same false belief.
@@ -58,10 +58,10 @@ pub struct TrialTotals {
 }
 
 impl TrialTotals {
-    pub(super) fn from_trials(trials: &[&Trial]) -> TrialTotals {
-        let sum = |of: fn(&Trial) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
+    pub(super) fn from_trials(trials: &[&TrialStatistics]) -> TrialTotals {
+        let sum = |of: fn(&TrialStatistics) -> u64| trials.iter().map(|trial| of(trial)).sum::<u64>();
         let (actions, human_actions, errors) =
-            (sum(Trial::presses), sum(|trial| trial.human_presses), sum(|t| t.errors));
+            (sum(TrialStatistics::presses), sum(|trial| trial.human_presses), sum(|t| t.errors));
         let rate = |presses: u64| (presses > 0).then(|| errors as f64 / presses as f64);
         let totals = TrialTotals {
             actions,
@@ -75,7 +75,7 @@ impl TrialTotals {
             orders_served: sum(|trial| trial.orders),
             ..TrialTotals::default()
         };
-        let beliefs: Option<Vec<&BeliefErrors>> = trials.iter().map(|trial| trial.beliefs.as_ref()).collect();
+        let beliefs: Option<Vec<&FalseBeliefErrors>> = trials.iter().map(|trial| trial.beliefs.as_ref()).collect();
         let Some(beliefs) = beliefs.filter(|beliefs| !beliefs.is_empty()) else { return totals };
         let related = beliefs.iter().map(|one| one.errors).sum::<u64>();
         let lengths: Vec<u32> = beliefs.iter().flat_map(|one| one.lengths.iter().copied()).collect();

@@ -9,7 +9,7 @@ use rand_distr::{Distribution, StandardNormal};
 use super::offer_reader::OfferReader;
 use super::seen::{ObservedPress, SeenKitchen, explain, misleads};
 use super::settings::WizardSpec;
-use super::thought::Thought;
+use super::thought::SuspectedFalseBelief;
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::communication::{self, Signal};
@@ -39,7 +39,7 @@ pub struct ScriptedWizard {
     /// The participant's last presses, newest last.
     presses: VecDeque<ObservedPress>,
     /// The planned signal: its time, and the suspected false belief that it is about.
-    about_to: Option<(SessionTime, Thought)>,
+    about_to: Option<(SessionTime, SuspectedFalseBelief)>,
     /// Locations changed by others, with the times at which the wizard checks whether the participant has seen the
     /// change.
     watched: Vec<(SessionTime, LocationId)>,
@@ -155,10 +155,10 @@ impl ScriptedWizard {
         let is_overlooked = !self.seen.knows(location, state);
         if is_overlooked
             && self.about_to.is_none()
-            && misleads(&self.kitchen, cost, &self.seen, state, Thought::Place(location))
+            && misleads(&self.kitchen, cost, &self.seen, state, SuspectedFalseBelief::Place(location))
             && self.chance(self.spec.sees_overlooked)
         {
-            self.think_of(now, Thought::Place(location), state);
+            self.think_of(now, SuspectedFalseBelief::Place(location), state);
         }
         None
     }
@@ -182,7 +182,7 @@ impl ScriptedWizard {
     }
 
     /// Plans a signal about a suspected false belief, or, with a set probability, about another aspect.
-    fn think_of(&mut self, now: SessionTime, cause: Thought, state: State) {
+    fn think_of(&mut self, now: SessionTime, cause: SuspectedFalseBelief, state: State) {
         let thought = match self.chance(self.spec.guesses_wrong) {
             true => self.another(cause, state).unwrap_or(cause),
             false => cause,
@@ -194,7 +194,7 @@ impl ScriptedWizard {
 
     /// Another aspect that the participant may be wrong about: a different requested recipe, or a location that it has
     /// not seen since its last change.
-    fn another(&mut self, cause: Thought, state: State) -> Option<Thought> {
+    fn another(&mut self, cause: SuspectedFalseBelief, state: State) -> Option<SuspectedFalseBelief> {
         let suspected = cause.location();
         let could_be = |at: LocationId| match state.order(at) {
             OrderContent::Dish(_) if self.kitchen.orders.contains(&at) => true,
@@ -210,21 +210,29 @@ impl ScriptedWizard {
             .collect();
         match others.is_empty() {
             true => None,
-            false => Some(Thought::Guess(others[self.random.random_range(0..others.len())])),
+            false => Some(SuspectedFalseBelief::Guess(others[self.random.random_range(0..others.len())])),
         }
     }
 
     /// Sends the planned signal, unless the false belief has ended, its order is gone, or it would no longer mislead
     /// anybody.
-    fn say(&mut self, now: SessionTime, thought: Thought, state: State, cost: &mut CostToGo) -> Option<Signal> {
+    fn say(
+        &mut self,
+        now: SessionTime,
+        thought: SuspectedFalseBelief,
+        state: State,
+        cost: &mut CostToGo,
+    ) -> Option<Signal> {
         let holds = match thought {
-            Thought::Place(location) => !self.seen.knows(location, state),
-            Thought::Recipe(order, dish, _) => state.order(order) == OrderContent::Dish(dish),
-            Thought::Guess(_) => true,
+            SuspectedFalseBelief::Place(location) => !self.seen.knows(location, state),
+            SuspectedFalseBelief::Recipe(order, dish, _) => state.order(order) == OrderContent::Dish(dish),
+            SuspectedFalseBelief::Guess(_) => true,
         };
         let matters = |cost: &mut CostToGo| match thought {
-            Thought::Place(_) | Thought::Recipe(..) => misleads(&self.kitchen, cost, &self.seen, state, thought),
-            Thought::Guess(_) => true,
+            SuspectedFalseBelief::Place(_) | SuspectedFalseBelief::Recipe(..) => {
+                misleads(&self.kitchen, cost, &self.seen, state, thought)
+            }
+            SuspectedFalseBelief::Guess(_) => true,
         };
         if !holds || !matters(cost) {
             return None;

@@ -1,7 +1,7 @@
 //! What an observer of kitchen and gaze can infer about the participant's knowledge, and false beliefs that explain a
 //! press.
 
-use super::thought::Thought;
+use super::thought::SuspectedFalseBelief;
 use crate::base::time::SessionTime;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, ButtonId, Kitchen, LocationId, Recipes, State};
@@ -65,36 +65,42 @@ pub struct ObservedPress {
 /// Finds single false beliefs that explain the last press, because it would be useful under them: the last seen content
 /// of a location, or another version of a requested recipe. Of these, the ones that explain most of the presses are
 /// returned; an empty list if no single false belief explains the last press.
-pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]) -> Vec<Thought> {
+pub fn explain(kitchen: &Kitchen, cost: &mut CostToGo, presses: &[ObservedPress]) -> Vec<SuspectedFalseBelief> {
     let Some(last) = presses.last() else { return Vec::new() };
-    let places = kitchen.changed(last.seen, last.truth).map(Thought::Place);
+    let places = kitchen.changed(last.seen, last.truth).map(SuspectedFalseBelief::Place);
     let recipes = kitchen.wanted(last.truth).flat_map(|(order, dish)| {
-        kitchen.dish(dish).variants[1..].iter().map(move |&variant| Thought::Recipe(order, dish, variant))
+        kitchen.dish(dish).variants[1..].iter().map(move |&variant| SuspectedFalseBelief::Recipe(order, dish, variant))
     });
-    let mut explains = |thought: Thought, press: &ObservedPress| {
+    let mut explains = |thought: SuspectedFalseBelief, press: &ObservedPress| {
         let (state, recipes) = believed(kitchen, thought, press.truth, press.seen);
         helps(kitchen, cost, state, &recipes, press.button)
     };
-    let mut causes: Vec<(usize, Thought)> = Vec::new();
+    let mut causes: Vec<(usize, SuspectedFalseBelief)> = Vec::new();
     for thought in places.chain(recipes) {
         if explains(thought, last) {
             causes.push((presses.iter().filter(|press| explains(thought, press)).count(), thought));
         }
     }
     let most = causes.iter().map(|(explained, _)| *explained).max();
-    let mut best: Vec<Thought> =
+    let mut best: Vec<SuspectedFalseBelief> =
         causes.into_iter().filter(|(explained, _)| Some(*explained) == most).map(|(_, thought)| thought).collect();
     // One signal corrects all false versions of a recipe.
     best.dedup_by_key(|thought| thought.location());
     // False beliefs about several locations together explain the press; the first of them is returned.
     if best.is_empty() && helps(kitchen, cost, last.seen, &kitchen.true_recipes(), last.button) {
-        best.extend(kitchen.changed(last.seen, last.truth).next().map(Thought::Place));
+        best.extend(kitchen.changed(last.seen, last.truth).next().map(SuspectedFalseBelief::Place));
     }
     best
 }
 
 /// Whether a press seems useful with this one false belief but does not reduce the true cost to go.
-pub fn misleads(kitchen: &Kitchen, cost: &mut CostToGo, seen: &SeenKitchen, truth: State, thought: Thought) -> bool {
+pub fn misleads(
+    kitchen: &Kitchen,
+    cost: &mut CostToGo,
+    seen: &SeenKitchen,
+    truth: State,
+    thought: SuspectedFalseBelief,
+) -> bool {
     let (state, recalled) = believed(kitchen, thought, truth, seen.state);
     let recipes = kitchen.true_recipes();
     let mut presses = (0..kitchen.buttons[Agent::Human.index()].len()).map(|index| ButtonId(index as u8));
@@ -103,12 +109,12 @@ pub fn misleads(kitchen: &Kitchen, cost: &mut CostToGo, seen: &SeenKitchen, trut
 }
 
 /// Believed state and recipes of a person with this one false belief.
-fn believed(kitchen: &Kitchen, thought: Thought, truth: State, seen: State) -> (State, Recipes) {
+fn believed(kitchen: &Kitchen, thought: SuspectedFalseBelief, truth: State, seen: State) -> (State, Recipes) {
     let (mut state, mut recipes) = (truth, kitchen.true_recipes());
     match thought {
-        Thought::Place(location) => state.set_code(location, seen.code(location)),
-        Thought::Recipe(_, dish, variant) => recipes.set(dish, variant),
-        Thought::Guess(_) => {}
+        SuspectedFalseBelief::Place(location) => state.set_code(location, seen.code(location)),
+        SuspectedFalseBelief::Recipe(_, dish, variant) => recipes.set(dish, variant),
+        SuspectedFalseBelief::Guess(_) => {}
     }
     (state, recipes)
 }

@@ -4,7 +4,7 @@ use crate::kitchen::{ContentId, DishId, LocationId};
 
 /// A false belief that the wizard suspects and wants to correct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Thought {
+pub enum SuspectedFalseBelief {
     /// A false belief about the content of a location.
     Place(LocationId),
     /// A false belief about a recipe: the order, its dish, and the stack that the participant takes for the recipe.
@@ -13,11 +13,13 @@ pub enum Thought {
     Guess(LocationId),
 }
 
-impl Thought {
+impl SuspectedFalseBelief {
     /// The location that a signal correcting the false belief would be about.
     pub fn location(self) -> LocationId {
         match self {
-            Thought::Place(location) | Thought::Recipe(location, ..) | Thought::Guess(location) => location,
+            SuspectedFalseBelief::Place(location)
+            | SuspectedFalseBelief::Recipe(location, ..)
+            | SuspectedFalseBelief::Guess(location) => location,
         }
     }
 }

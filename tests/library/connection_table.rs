@@ -4,7 +4,7 @@ use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use tomcom::edge::connection_table::{ConnectionLimits, ConnectionPlace, ConnectionTable, network_of};
+use tomcom::edge::connection_table::{ConnectionHandle, ConnectionLimits, ConnectionTable, network_of};
 
 const LIMITS: ConnectionLimits = ConnectionLimits {
     most: 10,
@@ -29,18 +29,18 @@ impl Arrivals {
         Arrivals { table: ConnectionTable::new(LIMITS), now: Instant::now() }
     }
 
-    fn arrive(&mut self, from: &str) -> Option<ConnectionPlace> {
+    fn arrive(&mut self, from: &str) -> Option<ConnectionHandle> {
         self.now += Duration::from_secs(1);
         self.table.arrive(address(from), self.now).map(|arrival| arrival.place)
     }
 
-    fn several(&mut self, from: &str, count: usize) -> Vec<ConnectionPlace> {
+    fn several(&mut self, from: &str, count: usize) -> Vec<ConnectionHandle> {
         (0..count).map(|_| self.arrive(from).expect("a place")).collect()
     }
 }
 
 /// Which of these have to give way.
-async fn closed(places: &[ConnectionPlace]) -> Vec<usize> {
+async fn closed(places: &[ConnectionHandle]) -> Vec<usize> {
     let mut found = Vec::new();
     for (index, place) in places.iter().enumerate() {
         tokio::select! {
@@ -87,7 +87,7 @@ async fn what_was_admitted_stays_unless_it_is_silent_and_nothing_else_gives_way(
     let limits = ConnectionLimits { admitted_per_address: 4, ..LIMITS };
     let mut arrivals = Arrivals { table: ConnectionTable::new(limits), now: Instant::now() };
     let trackers = arrivals.several("127.0.0.1", 4);
-    assert!(trackers.iter().all(ConnectionPlace::admit));
+    assert!(trackers.iter().all(ConnectionHandle::admit));
     assert!(arrivals.arrive("127.0.0.1").is_none(), "they all sent something of late");
     trackers[1..].iter().for_each(|tracker| tracker.heard(arrivals.now + Duration::from_secs(4)));
     arrivals.now += Duration::from_secs(4);
@@ -101,14 +101,14 @@ async fn a_reserved_place_is_kept_and_counts_for_nobody() {
     let acting = arrivals.several("10.0.0.1", 1);
     acting[0].reserve(true);
     let watching = arrivals.several("10.0.0.1", 2);
-    assert!(watching.iter().all(ConnectionPlace::admit), "beside the one that is reserved");
+    assert!(watching.iter().all(ConnectionHandle::admit), "beside the one that is reserved");
     arrivals.now += Duration::from_secs(3600);
     arrivals.several("10.0.0.1", 5);
     arrivals.several("10.0.0.2", 5);
     arrivals.several("10.0.0.3", 5);
     assert!(closed(&acting).await.is_empty(), "silent for an hour, and reserved");
     acting[0].reserve(false);
-    assert!(watching.iter().all(ConnectionPlace::admit), "those that are admitted stay so");
+    assert!(watching.iter().all(ConnectionHandle::admit), "those that are admitted stay so");
 }
 
 #[test]

@@ -13,9 +13,9 @@ use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::options::session_or_default;
-use tomcom::session::{Event, Phase};
+use tomcom::session::{Event, TrialPhase};
 
 use crate::oracle::Oracle;
 
@@ -52,10 +52,10 @@ fn met(kitchen: &Arc<Kitchen>) -> Vec<State> {
     spec.seed = 3;
     let mut states: Vec<State> = Vec::new();
     for trial in 0.. {
-        let mut engine = Engine::new(kitchen.clone(), spec.clone(), trial, CostToGo::new(kitchen.clone()));
+        let mut engine = SessionEngine::new(kitchen.clone(), spec.clone(), trial, CostToGo::new(kitchen.clone()));
         let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
         let mut of_trial = Vec::new();
-        while engine.session().phase == Phase::Running {
+        while engine.session().phase == TrialPhase::Running {
             engine.fire();
             let state = engine.session().state;
             if of_trial.last() != Some(&state) && kitchen.wanted(state).next().is_some() {

@@ -14,13 +14,13 @@ use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::edge::parse::parse;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen};
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::verify::verify;
-use tomcom::session::event::EndReason;
+use tomcom::session::event::TrialEndReason;
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use tomcom::session::wall_display::{Answering, DisplayEvent, DisplaySpec};
-use tomcom::session::{Event, Header, Session};
+use tomcom::session::wall_display::{AnswerEntry, DisplayEvent, DisplaySpec};
+use tomcom::session::{Event, LogHeader, Session};
 
 const SESSIONS: [&str; 2] = ["sessions/default.toml", "sessions/burger.toml"];
 
@@ -32,21 +32,21 @@ pub(super) fn files(path: &str) -> SessionFiles {
     files
 }
 
-pub(super) fn engine(files: SessionFiles) -> Engine {
+pub(super) fn engine(files: SessionFiles) -> SessionEngine {
     let kitchen = Arc::new(files.kitchen.kitchen);
-    Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
+    SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
 }
 
 /// Lets a session run until its trial is over, or so many seconds; after each step the wizard does something, and somebody
 /// looks at what the page is told.
 fn run(
-    engine: &mut Engine,
+    engine: &mut SessionEngine,
     seconds: f64,
     mut wizard: impl FnMut(u32, &Session) -> Option<Event>,
     mut look: impl FnMut(&Session),
 ) {
     let mut advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
-    let give = |engine: &mut Engine, event| drop(engine.input(engine.session().time, event));
+    let give = |engine: &mut SessionEngine, event| drop(engine.input(engine.session().time, event));
     give(engine, Event::TrialStarted);
     let end = SessionTime::from_secs_f64(seconds);
     for step in 0.. {
@@ -254,19 +254,19 @@ fn phases_of_a_plan_are_those_of_the_display() {
     let mut files = files("sessions/study.toml");
     files.spec.participant.kind = ParticipantKind::Display;
     files.spec.participant.gaze = GazeSource::Mouse;
-    files.spec.display.questionnaire = Answering::Display;
+    files.spec.display.questionnaire = AnswerEntry::Display;
     let study = files.study().expect("a plan");
     // The second trial of somebody: trial, questionnaire, debriefing of the wizard.
     let wanted = tomcom::session::plan::WantedRecording { participant: 0, slot: 2, attempt: 1, instructed: true };
     let (spec, trial) = study.settings(wanted);
     let kitchen = Arc::new(files.kitchen.kitchen);
-    let mut engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
-    let give = |engine: &mut Engine, event: Event| {
+    let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
+    let give = |engine: &mut SessionEngine, event: Event| {
         let outcome = engine.input(engine.session().time, event.clone());
         assert_eq!(outcome.refused, None, "{event:?}");
     };
     let phase = |phase, number| Event::Protocol(ProtocolEvent::PhaseStarted { phase, number });
-    let stage = |engine: &Engine| sight(engine.session()).stage;
+    let stage = |engine: &SessionEngine| sight(engine.session()).stage;
     assert_eq!(stage(&engine), DisplayStage::Welcome);
     give(&mut engine, phase(StudyPhase::Trial, 1));
     assert_eq!(stage(&engine), DisplayStage::Ready);
@@ -274,7 +274,7 @@ fn phases_of_a_plan_are_those_of_the_display() {
     assert_eq!(stage(&engine), DisplayStage::Running);
     give(&mut engine, Event::TrialPaused);
     assert_eq!(stage(&engine), DisplayStage::Paused);
-    give(&mut engine, Event::TrialEnded { reason: EndReason::Wizard });
+    give(&mut engine, Event::TrialEnded { reason: TrialEndReason::Wizard });
     assert_eq!(stage(&engine), DisplayStage::Over);
     give(&mut engine, phase(StudyPhase::Questionnaire, 2));
     assert_eq!(stage(&engine), DisplayStage::Questionnaire);
@@ -296,7 +296,7 @@ fn what_the_display_tells_is_recorded_and_verified() {
     let mut files = files(SESSIONS[0]);
     files.spec.participant.kind = ParticipantKind::Display;
     files.spec.participant.gaze = GazeSource::Mouse;
-    let header = Header::new(files.spec.clone(), 0, files.kitchen.layout.clone(), files.kitchen.recipes.clone());
+    let header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout.clone(), files.kitchen.recipes.clone());
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("display");
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
@@ -317,7 +317,7 @@ fn what_the_display_tells_is_recorded_and_verified() {
         (3.0, press("cooking_pot", 2.995)),
         (3.5, Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: None }),
         (4.0, Event::Display(DisplayEvent::Lost)),
-        (5.0, Event::TrialEnded { reason: EndReason::Wizard }),
+        (5.0, Event::TrialEnded { reason: TrialEndReason::Wizard }),
         (5.0, Event::SessionEnded),
     ] {
         let outcome = engine.input(at(seconds), event);

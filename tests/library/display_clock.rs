@@ -2,9 +2,9 @@
 
 use tomcom::base::time::SessionTime;
 use tomcom::display::{DisplayedClock, scene, sight, time_left};
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
-use tomcom::session::event::EndReason;
+use tomcom::session::event::TrialEndReason;
 use tomcom::session::wall_display::DisplaySpec;
 
 use super::display::{engine, files};
@@ -17,13 +17,13 @@ fn clock_and_number_of_served_orders_are_shown_where_the_session_says_so() {
         (files.spec.display.clock, files.spec.display.served) = (shown, Some(shown));
         files.spec.trial.seconds = 600.0;
         let mut engine = engine(files);
-        let expect = |engine: &Engine, now_s: f64, clock, left_s| {
+        let expect = |engine: &SessionEngine, now_s: f64, clock, left_s| {
             let (seen, left) = (sight(engine.session()), time_left(engine.session(), at(now_s)));
             let wanted = shown.then_some(clock).flatten();
             assert_eq!((seen.clock, seen.served), (wanted, shown.then_some(0)), "at {now_s} s");
             assert_eq!(left.map(SessionTime::as_secs_f64), shown.then_some(left_s), "at {now_s} s");
         };
-        let give = |engine: &mut Engine, now_s, event| assert_eq!(engine.input(at(now_s), event).refused, None);
+        let give = |engine: &mut SessionEngine, now_s, event| assert_eq!(engine.input(at(now_s), event).refused, None);
         expect(&engine, 1.0, None, 600.0);
         give(&mut engine, 2.0, Event::TrialStarted);
         expect(&engine, 12.0, Some(DisplayedClock::Goes), 590.0);
@@ -32,7 +32,7 @@ fn clock_and_number_of_served_orders_are_shown_where_the_session_says_so() {
         expect(&engine, 50.0, Some(DisplayedClock::Stands), 590.0);
         give(&mut engine, 62.0, Event::TrialResumed);
         expect(&engine, 72.0, Some(DisplayedClock::Goes), 580.0);
-        give(&mut engine, 72.0, Event::TrialEnded { reason: EndReason::Wizard });
+        give(&mut engine, 72.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
         expect(&engine, 99.0, Some(DisplayedClock::Stands), 580.0);
         let scene = scene(engine.session());
         assert_eq!((scene.clock, scene.served, scene.sound), (shown, shown, false));

@@ -6,10 +6,10 @@ use serde_json::Value;
 use tomcom::base::time::SessionTime;
 use tomcom::display::{DisplayStage, choice_made_of, probe_left, probe_wording, sight};
 use tomcom::kitchen::{AspectId, AspectKind, Kitchen};
-use tomcom::session::probes::{ProbeEnd, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
+use tomcom::session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
 use tomcom::session::settings::ParticipantKind;
-use tomcom::session::wall_display::Answering;
-use tomcom::session::{Event, Session, Stamped, apply};
+use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::{Event, Session, TimestampedEvent, apply};
 
 use super::display::{engine, files};
 
@@ -39,7 +39,7 @@ impl Probed {
     }
 
     fn at(&mut self, seconds: f64, event: Event) {
-        let stamped = Stamped { seq: self.seq, time: SessionTime::from_secs_f64(seconds), event };
+        let stamped = TimestampedEvent { seq: self.seq, time: SessionTime::from_secs_f64(seconds), event };
         apply(&mut self.session, &stamped).unwrap_or_else(|error| panic!("{error:?}: {stamped:?}"));
         self.seq += 1;
     }
@@ -139,7 +139,7 @@ fn the_page_is_told_the_question_and_nothing_of_the_kitchen() {
                 .map(|answer| {
                     let confidence = answer.as_ref().map(|_| 2);
                     let mut other = Probed { session: probed.session.clone(), seq: probed.seq };
-                    let on = Answering::Display;
+                    let on = AnswerEntry::Display;
                     other.probe(
                         seconds + 0.05,
                         ProbeEvent::Answered { probe: 1, question: number, answer, confidence, on },
@@ -153,10 +153,10 @@ fn the_page_is_told_the_question_and_nothing_of_the_kitchen() {
                 })
                 .collect();
             assert!(after.iter().all(|one| *one == after[0]), "the answer shows on the page: {after:?}");
-            let (answer, confidence, on) = (None, None, Answering::Display);
+            let (answer, confidence, on) = (None, None, AnswerEntry::Display);
             probed.probe(seconds + 0.05, ProbeEvent::Answered { probe: 1, question: number, answer, confidence, on });
         }
-        probed.probe(50.0, ProbeEvent::Closed { probe: 1, reason: ProbeEnd::Answered });
+        probed.probe(50.0, ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::Answered });
         check(&probed, None);
         assert_eq!(probed.told()["probe"]["closed"], true);
         probed.probe(53.0, ProbeEvent::Ended { probe: 1 });
@@ -182,7 +182,7 @@ fn a_pause_hides_the_question_and_stops_its_time() {
     probed.at(46.0, Event::TrialResumed);
     assert_eq!((probed.told(), left_s(&probed, 46.0)), (shown, Some(19.0)));
     probed.probe(47.0, ProbeEvent::Skipped { probe: 1, reason: "a question".to_string() });
-    probed.probe(47.0, ProbeEvent::Closed { probe: 1, reason: ProbeEnd::Skipped });
+    probed.probe(47.0, ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::Skipped });
     assert_eq!(left_s(&probed, 48.0), Some(2.0));
 }
 
@@ -218,7 +218,7 @@ fn every_choice_can_be_made_by_a_touch_or_of_its_items() {
                 items.reverse();
                 assert_eq!(choice_made_of(&kitchen, asked, &items).as_ref(), Some(name));
             }
-            let (answer, confidence, on) = (None, None, Answering::Display);
+            let (answer, confidence, on) = (None, None, AnswerEntry::Display);
             probed.probe(31.0, ProbeEvent::Answered { probe: 1, question: number, answer, confidence, on });
         }
         let none = choice_made_of(&kitchen, &questions[0], &["no such item".to_string()]);

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 use tomcom::display::page_language::DisplayWords;
-use tomcom::edge::display::Display;
+use tomcom::edge::display::DisplayServer;
 use tomcom::session::wall_display::DisplaySpec;
 
 /// Nothing that is waited for takes longer; that it does not come is the failure.
@@ -15,10 +15,10 @@ pub const LOCAL: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 const ALL: IpAddr = IpAddr::V4(Ipv4Addr::UNSPECIFIED);
 
 /// Serves the display; it is there until this is dropped.
-pub fn serve(listen: IpAddr) -> (Display, SocketAddr) {
+pub fn serve(listen: IpAddr) -> (DisplayServer, SocketAddr) {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime");
     let words = DisplayWords::for_display(&DisplaySpec::default());
-    let display = runtime.block_on(Display::open(listen, 0, &words)).expect("a free port");
+    let display = runtime.block_on(DisplayServer::open(listen, 0, &words)).expect("a free port");
     let port = display.url().rsplit_once(':').and_then(|(_, port)| port.parse().ok()).expect("a port");
     (display, SocketAddr::new(LOCAL, port))
 }

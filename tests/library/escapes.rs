@@ -8,12 +8,12 @@ use miette::{GraphicalReportHandler, GraphicalTheme};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use tomcom::analysis::event_lines;
-use tomcom::analysis::follower::Follower;
+use tomcom::analysis::follower::SessionFollower;
 use tomcom::base::printable::{printable, printable_lines};
 use tomcom::base::time::SessionTime;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleModel, KeyBindings, KeyMap, view};
+use tomcom::console::{ConsoleModel, KeyBindings, KeyFileBindings, view};
 use tomcom::edge::file_error::FileError;
 use tomcom::edge::files::read_kitchen;
 use tomcom::edge::parse::parse;
@@ -21,7 +21,7 @@ use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::layout::LayoutSpec;
 use tomcom::session::tracker::TrackerEvent;
-use tomcom::session::{Event, Session, SessionSpec, Stamped, apply};
+use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent, apply};
 
 /// Clears the screen, sets the title of the window, reverses the direction of writing, and begins a sequence in one byte.
 const HOSTILE: &str = "a\x1b[2J\x1b]0;title\x07b\u{202e}c\u{9b}31md\r\ne";
@@ -57,7 +57,8 @@ fn control_characters_are_written_out_and_all_else_stays() {
 #[test]
 fn the_console_shows_notes_devices_and_messages_written_out() {
     let mut session = session();
-    let keys = KeyBindings::live(&session.kitchen, &session.spec, &KeyMap::default()).expect("the keys are free");
+    let keys =
+        KeyBindings::live(&session.kitchen, &session.spec, &KeyFileBindings::default()).expect("the keys are free");
     let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
     let mut model = ConsoleModel::new(keys, theme, (200, 60));
     let events = [
@@ -66,7 +67,7 @@ fn the_console_shows_notes_devices_and_messages_written_out() {
         Event::Marker { note: HOSTILE.to_string() },
     ];
     for (seq, event) in events.into_iter().enumerate() {
-        let stamped = Stamped { seq: seq as u64, time: SessionTime(seq as u64), event };
+        let stamped = TimestampedEvent { seq: seq as u64, time: SessionTime(seq as u64), event };
         apply(&mut session, &stamped).expect("the event fits");
     }
     model.say(NoticeLevel::Alarm, format!("cannot write {HOSTILE}"));
@@ -84,14 +85,14 @@ fn the_console_shows_notes_devices_and_messages_written_out() {
 fn a_recording_is_told_with_notes_and_devices_written_out() {
     let session = session();
     let cost = CostToGo::new(session.kitchen.clone());
-    let mut follower = Follower::new(session, cost);
+    let mut follower = SessionFollower::new(session, cost);
     let told = [
         (Event::Marker { note: HOSTILE.to_string() }, "marker: "),
         (Event::Tracker(TrackerEvent::Connected { device: HOSTILE.to_string() }), "eye tracker connected: "),
         (Event::Tracker(TrackerEvent::Lost { reason: HOSTILE.to_string() }), "eye tracker lost: "),
     ];
     for (seq, (event, words)) in told.into_iter().enumerate() {
-        let stamped = Stamped { seq: seq as u64, time: SessionTime::ZERO, event };
+        let stamped = TimestampedEvent { seq: seq as u64, time: SessionTime::ZERO, event };
         follower.apply(&stamped).expect("the event fits");
         let line = event_lines::line(&stamped, &follower).expect("a line");
         assert!(line.ends_with(&format!("{words}{WRITTEN_OUT}")), "{line}");

@@ -8,13 +8,13 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpStream, UdpSocket};
 use tokio::time::timeout;
 use tomcom::console::console_model::ConsoleModel;
-use tomcom::console::keymap::KeyMap;
+use tomcom::console::keymap::KeyFileBindings;
 use tomcom::console::keys::KeyBindings;
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::edge::datagram_holder::{DatagramHolder, RELEASE};
+use tomcom::edge::datagram_holder::{ExclusiveDatagramSender, RELEASE};
 use tomcom::edge::files::{read_kitchen, read_session};
-use tomcom::edge::gaze_input::{GazeNews, SenderRefusal};
+use tomcom::edge::gaze_input::{GazeSenderRejection, TrackerMessage};
 use tomcom::edge::gaze_json::{GazeListener, listen};
 use tomcom::gaze::GazeSample;
 use tomcom::session::SessionSpec;
@@ -29,12 +29,12 @@ async fn open(senders: GazeSenders) -> GazeListener {
 }
 
 /// What comes next.
-async fn next(listener: &mut GazeListener) -> GazeNews {
+async fn next(listener: &mut GazeListener) -> TrackerMessage {
     timeout(PATIENCE, listener.news.recv()).await.expect("news").expect("a listener")
 }
 
-fn sample() -> GazeNews {
-    GazeNews::Sample(GazeSample::new(0.25, 0.5, 0.9), None)
+fn sample() -> TrackerMessage {
+    TrackerMessage::Sample(GazeSample::new(0.25, 0.5, 0.9), None)
 }
 
 /// Sends this over a connection of its own, and waits until the other end closes it.
@@ -65,7 +65,7 @@ async fn a_connection_that_begins_with_no_object_is_closed_and_nothing_of_it_is_
     ];
     for pieces in broken {
         send_until_closed(listener.address, pieces).await;
-        assert_eq!(next(&mut listener).await, GazeNews::Rejected(1), "{:?}", String::from_utf8_lossy(pieces[0]));
+        assert_eq!(next(&mut listener).await, TrackerMessage::Rejected(1), "{:?}", String::from_utf8_lossy(pieces[0]));
     }
     assert!(listener.news.try_recv().is_err(), "nothing else is told of them");
 }
@@ -79,11 +79,11 @@ async fn a_tracker_may_begin_in_pieces_or_with_a_sample_that_is_none() {
         tokio::time::sleep(Duration::from_millis(5)).await;
     }
     for _ in 0..3 {
-        assert_eq!(next(&mut listener).await, GazeNews::Malformed(1));
+        assert_eq!(next(&mut listener).await, TrackerMessage::Malformed(1));
     }
     tracker.write_all(SAMPLE).await.expect("sent");
     // Its clock begins with its first sample.
-    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (TrackerMessage::Began, sample()));
 }
 
 #[tokio::test]
@@ -92,7 +92,7 @@ async fn who_connects_and_says_nothing_is_no_sender() {
     drop(TcpStream::connect(listener.address).await.expect("connected"));
     let mut tracker = TcpStream::connect(listener.address).await.expect("connected");
     tracker.write_all(SAMPLE).await.expect("sent");
-    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (TrackerMessage::Began, sample()));
 }
 
 #[tokio::test]
@@ -100,7 +100,7 @@ async fn silent_connections_keep_no_tracker_out_and_one_that_sent_stays() {
     let mut listener = open(GazeSenders::First).await;
     let mut tracker = TcpStream::connect(listener.address).await.expect("connected");
     tracker.write_all(SAMPLE).await.expect("sent");
-    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (TrackerMessage::Began, sample()));
     let mut silent = Vec::new();
     for _ in 0..300 {
         silent.push(TcpStream::connect(listener.address).await.expect("connected"));
@@ -111,7 +111,7 @@ async fn silent_connections_keep_no_tracker_out_and_one_that_sent_stays() {
     while news.last() != Some(&sample()) {
         news.push(next(&mut listener).await);
     }
-    let rejected = news.iter().filter(|news| **news == GazeNews::Rejected(1)).count();
+    let rejected = news.iter().filter(|news| **news == TrackerMessage::Rejected(1)).count();
     assert!((250..300).contains(&rejected), "{rejected} silent connections gave way");
     tracker.write_all(SAMPLE).await.expect("the tracker that sent before is still connected");
     while next(&mut listener).await != sample() {}
@@ -131,18 +131,18 @@ async fn datagrams_are_taken_from_the_address_that_sent_first() {
     let (tracker, other) = (socket(1).await, socket(2).await);
     // A datagram that is no sample makes nobody the tracker.
     other.send_to(b"{\"x\": 0.5}", listener.address).await.expect("sent");
-    assert_eq!(next(&mut listener).await, GazeNews::Malformed(1));
+    assert_eq!(next(&mut listener).await, TrackerMessage::Malformed(1));
     tracker.send_to(SAMPLE, listener.address).await.expect("sent");
-    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (TrackerMessage::Began, sample()));
     for _ in 0..3 {
         other.send_to(SAMPLE, listener.address).await.expect("sent");
-        assert_eq!(next(&mut listener).await, GazeNews::Rejected(1));
+        assert_eq!(next(&mut listener).await, TrackerMessage::Rejected(1));
     }
     tracker.send_to(&SAMPLE.repeat(2), listener.address).await.expect("sent");
     assert_eq!((next(&mut listener).await, next(&mut listener).await), (sample(), sample()));
     // A browser's own datagrams (STUN, RFC 8489) begin with no object, whoever sends.
     tracker.send_to(b"\x00\x01\x00\x08\x21\x12\xa4\x42", listener.address).await.expect("sent");
-    assert_eq!(next(&mut listener).await, GazeNews::Rejected(1));
+    assert_eq!(next(&mut listener).await, TrackerMessage::Rejected(1));
 }
 
 #[tokio::test]
@@ -150,7 +150,7 @@ async fn datagrams_of_all_addresses_are_taken_where_the_session_says_so() {
     let mut listener = open(GazeSenders::Any).await;
     for sender in [socket(1).await, socket(2).await, socket(3).await] {
         sender.send_to(SAMPLE, listener.address).await.expect("sent");
-        assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+        assert_eq!((next(&mut listener).await, next(&mut listener).await), (TrackerMessage::Began, sample()));
     }
 }
 
@@ -170,7 +170,7 @@ async fn from_other_addresses_only_listed_ones_are_read_and_the_others_are_told(
     let mut listener = listen(anywhere, GazeSenders::Any, &[elsewhere]).await.expect("a free port");
     let to = SocketAddr::new(outer, listener.address.port());
     send_until_closed(to, &[SAMPLE]).await;
-    let unlisted = GazeNews::Refused { from: outer, why: SenderRefusal::Unlisted, senders: 1 };
+    let unlisted = TrackerMessage::Refused { from: outer, why: GazeSenderRejection::Unlisted, senders: 1 };
     assert_eq!(next(&mut listener).await, unlisted);
     assert_eq!(listener.code, None, "a list asks for no code");
     tokio::time::sleep(Duration::from_millis(200)).await;
@@ -180,15 +180,15 @@ async fn from_other_addresses_only_listed_ones_are_read_and_the_others_are_told(
     // This computer itself needs no entry.
     let here = SocketAddr::from((Ipv4Addr::LOCALHOST, to.port()));
     socket(1).await.send_to(SAMPLE, here).await.expect("sent");
-    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (TrackerMessage::Began, sample()));
 
     let mut listener = listen(anywhere, GazeSenders::Any, &[outer]).await.expect("a free port");
     let to = SocketAddr::new(outer, listener.address.port());
     sender.send_to(SAMPLE, to).await.expect("sent");
-    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (TrackerMessage::Began, sample()));
     let mut tracker = TcpStream::connect(to).await.expect("connected");
     tracker.write_all(SAMPLE).await.expect("sent");
-    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (TrackerMessage::Began, sample()));
 }
 
 /// Sends these lines over a connection of its own; the lines that it is answered until it is closed.
@@ -213,18 +213,18 @@ async fn another_computer_pairs_with_the_code_and_sends_then() {
     let code = listener.code.clone().expect("a code, since no address is listed");
     let to = listener.reachable();
     assert_eq!(to, SocketAddr::new(outer, listener.address.port()));
-    let refused = |why, senders| GazeNews::Refused { from: outer, why, senders };
+    let refused = |why, senders| TrackerMessage::Refused { from: outer, why, senders };
     let pairing = format!("{{\"pair\": \"{}\"}}\n", code.to_lowercase());
 
     // Nothing is read of who does not know it, and a wrong code is told to both ends.
     assert_eq!(answers(to, &[SAMPLE]).await, "{\"paired\": false, \"checked\": false, \"wait_s\": 0}\n");
-    assert_eq!(next(&mut listener).await, refused(SenderRefusal::Unpaired, 1));
+    assert_eq!(next(&mut listener).await, refused(GazeSenderRejection::Unpaired, 1));
     tokio::time::sleep(Duration::from_millis(150)).await;
     assert_eq!(
         answers(to, &[b"{\"pair\": \"WRONG2\"}\n"]).await,
         "{\"paired\": false, \"checked\": true, \"wait_s\": 1}\n"
     );
-    assert_eq!(next(&mut listener).await, refused(SenderRefusal::WrongCode, 1));
+    assert_eq!(next(&mut listener).await, refused(GazeSenderRejection::WrongCode, 1));
     assert_eq!(
         answers(to, &[pairing.as_bytes()]).await,
         "{\"paired\": false, \"checked\": false, \"wait_s\": 1}\n",
@@ -234,20 +234,20 @@ async fn another_computer_pairs_with_the_code_and_sends_then() {
 
     let mut tracker = TcpStream::connect(to).await.expect("connected");
     tracker.write_all(&[pairing.as_bytes(), SAMPLE].concat()).await.expect("sent");
-    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (TrackerMessage::Began, sample()));
     let mut answer = [0; 17];
     tracker.read_exact(&mut answer).await.expect("an answer");
     assert_eq!(&answer, b"{\"paired\": true}\n");
     // A later pairing line is a line that is no sample.
     tracker.write_all(pairing.as_bytes()).await.expect("sent");
-    assert_eq!(next(&mut listener).await, GazeNews::Malformed(1));
+    assert_eq!(next(&mut listener).await, TrackerMessage::Malformed(1));
 
     // That one connection is paired pairs no datagram.
     let datagrams = UdpSocket::bind((outer, 0)).await.expect("the address of this machine");
     datagrams.send_to(SAMPLE, to).await.expect("sent");
-    assert_eq!(next(&mut listener).await, refused(SenderRefusal::Unpaired, 1));
+    assert_eq!(next(&mut listener).await, refused(GazeSenderRejection::Unpaired, 1));
     datagrams.send_to(&[pairing.as_bytes(), SAMPLE].concat(), to).await.expect("sent");
-    assert_eq!((next(&mut listener).await, next(&mut listener).await), (GazeNews::Began, sample()));
+    assert_eq!((next(&mut listener).await, next(&mut listener).await), (TrackerMessage::Began, sample()));
     datagrams.send_to(SAMPLE, to).await.expect("sent");
     assert_eq!(next(&mut listener).await, sample());
 }
@@ -258,7 +258,7 @@ fn an_address_that_is_silent_for_five_seconds_is_the_trackers_no_more() {
     let start = Instant::now();
     let after = |seconds: f64| start + Duration::from_secs_f64(seconds);
     assert_eq!(RELEASE, Duration::from_secs(5));
-    let mut holder = DatagramHolder::new(GazeSenders::First);
+    let mut holder = ExclusiveDatagramSender::new(GazeSenders::First);
     assert!(holder.admits(one, start) && holder.admits(other, start));
     holder.heard(one, start);
     holder.heard(one, after(3.0));
@@ -266,7 +266,7 @@ fn an_address_that_is_silent_for_five_seconds_is_the_trackers_no_more() {
     assert!(holder.admits(other, after(8.0)));
     holder.heard(other, after(8.0));
     assert!(!holder.admits(one, after(9.0)) && holder.admits(other, after(9.0)));
-    let mut any = DatagramHolder::new(GazeSenders::Any);
+    let mut any = ExclusiveDatagramSender::new(GazeSenders::Any);
     any.heard(one, start);
     assert!(any.admits(other, start));
 }
@@ -293,7 +293,8 @@ fn the_setting_is_read_and_only_kept_where_it_says_something() {
 fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
     let files = read_session(Path::new("sessions/default.toml")).expect("the default session");
     let kitchen = read_kitchen(Path::new("layouts/sushi.toml")).unwrap_or_else(|error| panic!("{error}")).kitchen;
-    let keys = KeyBindings::live(&kitchen, &files.spec, &KeyMap::default()).expect("the layout's keys are free");
+    let keys =
+        KeyBindings::live(&kitchen, &files.spec, &KeyFileBindings::default()).expect("the layout's keys are free");
     let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
     let mut model = ConsoleModel::new(keys, theme, (120, 40));
     let mut told = Vec::new();
@@ -312,7 +313,7 @@ fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
     assert_eq!(model.rejected_senders, 109);
     assert_eq!(model.notice.map(|notice| notice.level), Some(NoticeLevel::Alarm));
     model.notice = None;
-    let unlisted = SenderRefusal::Unlisted.words();
+    let unlisted = GazeSenderRejection::Unlisted.words();
     for address in ["192.168.1.7", "192.168.1.7", "192.168.1.8"] {
         model.refuse_sender(address, unlisted, 1);
     }
@@ -322,7 +323,7 @@ fn the_wizard_is_told_of_rejected_senders_and_keeps_an_alarm() {
     model.notice = None;
     model.refuse_sender("192.168.1.7", unlisted, 8);
     assert_eq!(model.notice.as_ref().map(|notice| &notice.text), None, "each is told once");
-    model.refuse_sender("192.168.1.7", SenderRefusal::WrongCode.words(), 1);
+    model.refuse_sender("192.168.1.7", GazeSenderRejection::WrongCode.words(), 1);
     let text = model.notice.as_ref().map(|notice| notice.text.as_str());
     assert_eq!(text, Some("gaze from 192.168.1.7 is rejected: the pairing code is wrong"), "for each reason");
     assert_eq!(model.rejected_senders, 121);

@@ -6,8 +6,10 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use tomcom::analysis::follower::Follower;
-use tomcom::analysis::lsl::{SampleMaker, SampleValues, StreamDescription, StreamSample, code, describe, event_text};
+use tomcom::analysis::follower::SessionFollower;
+use tomcom::analysis::lsl::{
+    LslSampleConverter, LslSampleValues, StreamDescription, StreamSample, code, describe, event_text,
+};
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogReader;
@@ -18,7 +20,7 @@ use tomcom::session::answer_value::AnswerValue;
 use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::settings::{GazeOrigin, GazeUnit, LslGazeSpec, LslOutlet, LslSpec};
 use tomcom::session::tracker::TrackerEvent;
-use tomcom::session::{Event, Session, SessionSpec, Stamped};
+use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
 
 /// Name of the recording.
 const RECORDING: &str = "2026-03-14-P07-1";
@@ -31,8 +33,8 @@ fn spec(outlets: &[LslOutlet]) -> SessionSpec {
     spec
 }
 
-fn stamped(event: Event) -> Stamped {
-    Stamped { seq: 7, time: SessionTime(1_500_000_000), event }
+fn stamped(event: Event) -> TimestampedEvent {
+    TimestampedEvent { seq: 7, time: SessionTime(1_500_000_000), event }
 }
 
 /// All samples of a golden recording with these streams, with the log's events and the session at its end.
@@ -40,10 +42,10 @@ fn sent(name: &str, outlets: &[LslOutlet]) -> (Vec<StreamSample>, Vec<Value>, Se
     let path = format!("tests/golden/{name}.jsonl");
     let mut log = LogReader::open(Path::new(&path)).expect("a golden recording");
     let session = log.session();
-    let mut follower = Follower::new(session.clone(), CostToGo::new(session.kitchen.clone())).without_causes();
+    let mut follower = SessionFollower::new(session.clone(), CostToGo::new(session.kitchen.clone())).without_causes();
     let mut wanted = session;
     wanted.spec.lsl = spec(outlets).lsl;
-    let (mut maker, mut samples) = (SampleMaker::new(&wanted, RECORDING), Vec::new());
+    let (mut maker, mut samples) = (LslSampleConverter::new(&wanted, RECORDING), Vec::new());
     while let Some(line) = log.next_line().expect("a line") {
         let event = line.stamped;
         follower.apply(&event).expect("it applies");
@@ -59,15 +61,15 @@ fn sent(name: &str, outlets: &[LslOutlet]) -> (Vec<StreamSample>, Vec<Value>, Se
 
 fn texts(sample: &StreamSample) -> &[String] {
     match &sample.values {
-        SampleValues::Texts(texts) => texts,
-        SampleValues::Numbers(_) => panic!("numbers in {:?}", sample.outlet),
+        LslSampleValues::Texts(texts) => texts,
+        LslSampleValues::Numbers(_) => panic!("numbers in {:?}", sample.outlet),
     }
 }
 
 fn numbers(sample: &StreamSample) -> &[f64] {
     match &sample.values {
-        SampleValues::Numbers(numbers) => numbers,
-        SampleValues::Texts(_) => panic!("texts in {:?}", sample.outlet),
+        LslSampleValues::Numbers(numbers) => numbers,
+        LslSampleValues::Texts(_) => panic!("texts in {:?}", sample.outlet),
     }
 }
 
@@ -76,8 +78,8 @@ fn every_event_but_samples_is_a_marker_with_the_fields_of_the_log() {
     for name in ["format-1-hand", "format-1-people", "format-2-offers", "format-2-probes"] {
         let (samples, events, _) = sent(name, &LslOutlet::ALL);
         let is_event = |sample: &&StreamSample| match &sample.values {
-            SampleValues::Texts(texts) => !texts[0].contains(RECORDING),
-            SampleValues::Numbers(_) => true,
+            LslSampleValues::Texts(texts) => !texts[0].contains(RECORDING),
+            LslSampleValues::Numbers(_) => true,
         };
         let of = |outlet| samples.iter().filter(is_event).filter(move |sample| sample.outlet == outlet);
         let is_sample = |event: &&Value| event["kind"] == "gaze" || event["kind"] == "robot_moves";
@@ -253,7 +255,7 @@ fn streams_are_named_after_the_participant_and_described_with_the_layout() {
     assert!(!samples.is_empty() && samples.iter().all(|sample| sample.outlet == LslOutlet::Gaze));
     let mut session = LogReader::open(Path::new("tests/golden/format-1-people.jsonl")).expect("a recording").session();
     session.spec.lsl = spec(&[LslOutlet::Markers]).lsl;
-    let opening = SampleMaker::new(&session, RECORDING).opening(&session, session.time);
+    let opening = LslSampleConverter::new(&session, RECORDING).opening(&session, session.time);
     assert_eq!(
         opening.iter().map(|sample| texts(sample)[0].as_str()).collect::<Vec<_>>(),
         [format!("recording/{RECORDING}")]

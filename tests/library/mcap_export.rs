@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use mcap::MessageStream;
 use serde_json::Value;
-use tomcom::analysis::foxglove::MessageChannel;
+use tomcom::analysis::foxglove::McapChannel;
 use tomcom::arm::kinematics::UR5;
 use tomcom::robot::moment::JOINT_NAMES;
 use tomcom::run::mcap_export::export;
@@ -60,7 +60,7 @@ fn fits(schema: &Value, value: &Value) -> bool {
 #[test]
 fn every_event_is_a_message_at_its_session_time_and_as_its_schema_says() {
     let schemas: BTreeMap<&str, Value> =
-        MessageChannel::ALL.into_iter().map(|channel| (channel.topic(), channel.schema())).collect();
+        McapChannel::ALL.into_iter().map(|channel| (channel.topic(), channel.schema())).collect();
     for name in ["format-1-hand", "format-1-people", "format-2-offers"] {
         let folder = golden(name, "messages");
         let text = fs::read_to_string(folder.join("events.jsonl")).expect("the log");

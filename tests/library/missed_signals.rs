@@ -7,7 +7,7 @@ use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::{Concept, DecisionPoint};
 use tomcom::communication::planner::Planner;
 use tomcom::communication::reference::ReferencePlanner;
-use tomcom::communication::repeats::Repeats;
+use tomcom::communication::repeats::SignalRepeatRule;
 use tomcom::communication::settings::AssistantSpec;
 use tomcom::communication::situation::{RobotIntent, Situation};
 use tomcom::communication::{Signal, signals};
@@ -106,7 +106,7 @@ fn the_planner_and_its_plain_reference_agree_on_a_signal_that_can_be_missed() {
 #[test]
 fn a_signal_that_was_probably_missed_may_be_repeated_and_one_that_was_read_may_not() {
     let WrongRecipe { kitchen, state, belief, signal, recipe } = WrongRecipe::new();
-    let may = |repeats: &Repeats| repeats.allowed(&kitchen, false).contains(&signal);
+    let may = |repeats: &SignalRepeatRule| repeats.allowed(&kitchen, false).contains(&signal);
     let location = kitchen.orders[0];
     let mut known = belief.clone();
     known.aspects[recipe.index()] =
@@ -115,7 +115,7 @@ fn a_signal_that_was_probably_missed_may_be_repeated_and_one_that_was_read_may_n
     let values = known.aspects[recipe.index()].mean().len();
     known.aspects[recipe.index()].learn(0.95, (0..values).map(|value| f64::from(u8::from(value == truth))));
 
-    let mut missed = Repeats::default();
+    let mut missed = SignalRepeatRule::default();
     missed.shown(&kitchen, state, &signal);
     missed.update(&kitchen, state, &belief);
     assert!(!may(&missed), "not while it stands on the display");
@@ -123,7 +123,7 @@ fn a_signal_that_was_probably_missed_may_be_repeated_and_one_that_was_read_may_n
     missed.update(&kitchen, state, &belief);
     assert!(may(&missed), "it was missed");
 
-    let mut read = Repeats::default();
+    let mut read = SignalRepeatRule::default();
     read.shown(&kitchen, state, &signal);
     read.update(&kitchen, state, &known);
     read.over(location, 0.95);
@@ -132,7 +132,7 @@ fn a_signal_that_was_probably_missed_may_be_repeated_and_one_that_was_read_may_n
     read.update(&kitchen, state, &belief);
     assert!(may(&read), "and is forgotten");
 
-    let mut doubtful = Repeats::default();
+    let mut doubtful = SignalRepeatRule::default();
     doubtful.shown(&kitchen, state, &signal);
     doubtful.over(location, 0.6);
     doubtful.update(&kitchen, state, &belief);

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use tomcom::session::participant_code::{FILE_WORDS, TABLE_WORDS, is_participant_code, without_seed};
-use tomcom::study::column::Table;
+use tomcom::study::column::CsvTable;
 use tomcom::study::dictionary::dictionary;
 
 #[test]
 fn the_words_of_the_studys_tables_are_those_of_its_dictionary() {
     let columns = dictionary().map(|row| row.column.into_owned());
-    let words: BTreeSet<String> = columns.chain(Table::ALL.map(|table| table.name().to_string())).collect();
+    let words: BTreeSet<String> = columns.chain(CsvTable::ALL.map(|table| table.name().to_string())).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     assert_eq!(TABLE_WORDS, words, "the names of tables and columns, in the order of the alphabet");
     assert!(FILE_WORDS.iter().all(|word| !words.contains(word)), "a word stands in one of the lists");

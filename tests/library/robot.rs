@@ -6,9 +6,9 @@ use std::sync::Arc;
 use rand::RngExt;
 use tomcom::arm::clearance::{ArmSurroundings, Obstruction};
 use tomcom::arm::inverse::{twist, wrapped};
-use tomcom::arm::kinematics::Arm;
+use tomcom::arm::kinematics::SerialArm;
 use tomcom::arm::motion::JointMotion;
-use tomcom::arm::reach::{BUTTON_M, ButtonPoses, Unreachable, out_of_reach};
+use tomcom::arm::reach::{BUTTON_M, ButtonPoses, UnreachableReason, out_of_reach};
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_kitchen;
@@ -96,14 +96,14 @@ fn it_frees_what_it_blocks() {
 }
 
 /// Where the tip of the arm is at this time, in metres.
-fn tip_m(arm: &Arm, motion: &JointMotion, now_s: f64) -> [f64; 3] {
+fn tip_m(arm: &SerialArm, motion: &JointMotion, now_s: f64) -> [f64; 3] {
     let places = arm.forward(&motion.at(SessionTime::from_secs_f64(now_s)));
     places.last().expect("links").translation.vector.into()
 }
 
 #[test]
 fn the_arm_touches_the_button_when_the_press_is_due_and_goes_over_the_others() {
-    let arm = Arm::ur5();
+    let arm = SerialArm::ur5();
     for layout in ["sushi", "burger"] {
         let path = Path::new("layouts").join(layout).with_extension("toml");
         let kitchen = read_kitchen(&path).expect("a layout of the project").kitchen;
@@ -135,7 +135,7 @@ fn the_arm_touches_the_button_when_the_press_is_due_and_goes_over_the_others() {
 
 #[test]
 fn an_arm_that_stands_stays_where_it_is() {
-    let (arm, kitchen) = (Arm::ur5(), sushi());
+    let (arm, kitchen) = (SerialArm::ur5(), sushi());
     let mut motion = JointMotion::new(&kitchen, &arm);
     let at = SessionTime::from_secs_f64;
     motion.set_out(at(1.0), ButtonId(3), at(3.0));
@@ -147,7 +147,7 @@ fn an_arm_that_stands_stays_where_it_is() {
 
 #[test]
 fn every_inverse_solution_reproduces_the_pose_and_the_joints_it_came_from_are_among_them() {
-    let arm = Arm::ur5();
+    let arm = SerialArm::ur5();
     let (mut worst, mut solutions, mut missing) = (0.0_f64, 0, 0);
     let mut random = stream(9, "poses", 0);
     for _ in 0..10_000 {
@@ -166,7 +166,7 @@ fn every_inverse_solution_reproduces_the_pose_and_the_joints_it_came_from_are_am
 
 #[test]
 fn every_button_of_every_layout_is_within_reach_with_clearance() {
-    let arm = Arm::ur5();
+    let arm = SerialArm::ur5();
     for layout in ["layouts/sushi.toml", "layouts/burger.toml", "tests/kitchens/tiny.toml"] {
         let kitchen = read_kitchen(Path::new(layout)).expect("a layout of the project").kitchen;
         assert_eq!(out_of_reach(&kitchen), None, "{layout}");
@@ -184,15 +184,15 @@ fn every_button_of_every_layout_is_within_reach_with_clearance() {
 
 #[test]
 fn a_place_that_the_arm_cannot_press_at_is_told_with_the_reason() {
-    let arm = Arm::ur5();
-    let check = |at_m: [f64; 2], table_m: f64, expected: Unreachable| {
+    let arm = SerialArm::ur5();
+    let check = |at_m: [f64; 2], table_m: f64, expected: UnreachableReason| {
         let around = ArmSurroundings { table_m, obstacles: Vec::new() };
         assert_eq!(arm.at_button(at_m, &around), Err(expected), "{at_m:?}");
     };
-    check([1.1, 0.2], 0.0, Unreachable::TooFar);
-    check([0.05, 0.05], 0.0, Unreachable::TooFar);
-    check([0.89, 0.0], 0.0, Unreachable::Singular);
-    check([0.4, 0.0], 0.3, Unreachable::Blocked(Obstruction::Table));
+    check([1.1, 0.2], 0.0, UnreachableReason::TooFar);
+    check([0.05, 0.05], 0.0, UnreachableReason::TooFar);
+    check([0.89, 0.0], 0.0, UnreachableReason::Singular);
+    check([0.4, 0.0], 0.3, UnreachableReason::Blocked(Obstruction::Table));
 }
 
 /// Random joint angles and where the tip is then: x, y, z and the rotation's columns, in the frame of the base. For
@@ -200,7 +200,7 @@ fn a_place_that_the_arm_cannot_press_at_is_told_with_the_reason() {
 #[test]
 #[ignore = "prints, and checks nothing"]
 fn print_poses() {
-    let arm = Arm::ur5();
+    let arm = SerialArm::ur5();
     let mut random = stream(3, "poses", 0);
     for _ in 0..2000 {
         let joints: JointAngles = std::array::from_fn(|_| (random.random::<f64>() * 2.0 - 1.0) * std::f64::consts::TAU);

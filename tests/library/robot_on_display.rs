@@ -2,10 +2,10 @@
 
 use serde_json::json;
 use tomcom::base::time::SessionTime;
-use tomcom::display::{RobotHand, RobotPose, scene};
+use tomcom::display::{RobotHand, RobotHandPose, scene};
 use tomcom::edge::files::read_session;
 use tomcom::kitchen::{Agent, ButtonAction, Kitchen};
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::settings::ArmKind;
 use tomcom::session::wall_display::DisplayedArm;
 use tomcom::session::{Event, Session, SessionSpec, TimelineEvent};
@@ -15,7 +15,7 @@ use super::display::{engine, files};
 /// Time from pose to pose, in seconds, as in a live session.
 const STEP_S: f64 = 0.05;
 
-fn session_with(arm: ArmKind, shown: DisplayedArm) -> Engine {
+fn session_with(arm: ArmKind, shown: DisplayedArm) -> SessionEngine {
     let mut files = files("sessions/default.toml");
     files.spec.robot.arm = arm;
     files.spec.display.arm = Some(shown);
@@ -23,7 +23,11 @@ fn session_with(arm: ArmKind, shown: DisplayedArm) -> Engine {
 }
 
 /// Lets a trial run, and returns the hand's poses with the number of the robot's presses at each.
-fn poses(engine: &mut Engine, seconds: f64, mut each: impl FnMut(u32, &mut Engine)) -> Vec<(RobotPose, u32)> {
+fn poses(
+    engine: &mut SessionEngine,
+    seconds: f64,
+    mut each: impl FnMut(u32, &mut SessionEngine),
+) -> Vec<(RobotHandPose, u32)> {
     let mut hand = RobotHand::new(engine.session()).expect("it is shown");
     assert_eq!(engine.input(SessionTime::ZERO, Event::TrialStarted).refused, None);
     let mut poses = Vec::new();
@@ -53,7 +57,8 @@ fn middle(kitchen: &Kitchen, action: ButtonAction) -> [f64; 2] {
     let hand = kitchen.hands[Agent::Robot.index()];
     let location = match action {
         ButtonAction::Take(item) => {
-            let is_it = |storage: &&tomcom::kitchen::Storage| storage.agent == Agent::Robot && storage.item == item;
+            let is_it =
+                |storage: &&tomcom::kitchen::IngredientStorage| storage.agent == Agent::Robot && storage.item == item;
             return kitchen.storages.iter().find(is_it).expect("a storage").display.centre();
         }
         ButtonAction::Use(location) | ButtonAction::Serve(location) => location,
@@ -98,7 +103,7 @@ fn the_page_is_told_a_pose_and_nothing_of_what_comes() {
         assert!([pose.x, pose.y, pose.down].iter().all(|value| (0.0..=1.0).contains(value)), "{told}");
     }
     // Until it sets out, two presses with different goals look alike: the pose is that of the last one.
-    let setting_out = |engine: &Engine| engine.session().robot.intention.map(|(_, since, _)| since);
+    let setting_out = |engine: &SessionEngine| engine.session().robot.intention.map(|(_, since, _)| since);
     let mut engine = session_with(ArmKind::Timed, DisplayedArm::Hand);
     let mut hand = RobotHand::new(engine.session()).expect("it is shown");
     let rest = hand.at(engine.session(), SessionTime::ZERO);

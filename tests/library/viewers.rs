@@ -10,13 +10,13 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use tomcom::base::time::SessionTime;
-use tomcom::communication::settings::Shadow;
+use tomcom::communication::settings::ShadowMode;
 use tomcom::edge::files::read_session;
 use tomcom::edge::rerun::StreamIdentity;
 use tomcom::edge::rrd;
 use tomcom::edge::stream::RerunStream;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::scene::{DerivedData, EntityData, EntityUpdate, SceneUpdate, SessionScene};
 use tomcom::session::Event;
 use tomcom::session::settings::Condition;
@@ -195,8 +195,8 @@ fn two_hours_of_a_session_stay_below_200_mb() {
     let kitchen = Arc::new(files.kitchen.kitchen);
     let mut spec = files.spec;
     (spec.trial.seconds, spec.trial.presses) = (7200.0, u32::MAX);
-    (spec.trial.condition, spec.assistant.shadow) = (Condition::None, Shadow::Off);
-    let mut engine = Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen)).without_causes();
+    (spec.trial.condition, spec.assistant.shadow) = (Condition::None, ShadowMode::Off);
+    let mut engine = SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen)).without_causes();
     let mut scene = SessionScene::new(engine.session(), 0);
     let free = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).and_then(|one| one.local_addr()).expect("a port");
     let identity = StreamIdentity { id: rrd::mark(), name: "two hours".to_string() };

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use serial_test::serial;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::RecordingLock;
-use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 
 use crate::tmux::TOMCOM;
 
@@ -35,7 +35,7 @@ impl RecordingsFolder {
         let made = RecordingsFolder::empty(name);
         let mut files = read_session(Path::new("sessions/paper.toml")).expect("the paper's session");
         files.spec.trial.presses = 10;
-        let simulation = SimulationRequest { files, trials: 4, shard: Shard::WHOLE, out: made.root.clone() };
+        let simulation = SimulationRequest { files, trials: 4, shard: SimulationShard::WHOLE, out: made.root.clone() };
         simulate(&simulation, || ()).expect("the folder can be written");
         made
     }

@@ -5,7 +5,7 @@ use std::fs;
 use serial_test::serial;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogWriter;
-use tomcom::session::Header;
+use tomcom::session::LogHeader;
 
 use crate::forgetting::RecordingsFolder;
 
@@ -207,7 +207,7 @@ fn a_recording_that_was_saved_elsewhere_is_found_by_where_it_belongs() {
     let lab = RecordingsFolder::of_two_people("rescued");
     let rescue = |root: &str| {
         let files = read_session(std::path::Path::new("sessions/default.toml")).expect("a session");
-        let header = Header::new(files.spec, 0, files.kitchen.layout, files.kitchen.recipes);
+        let header = LogHeader::new(files.spec, 0, files.kitchen.layout, files.kitchen.recipes);
         let mut log = LogWriter::create_live(&lab.at(root), "2026-03-14", &header).expect("a recording");
         fs::remove_dir_all(lab.at(root)).expect("removed");
         // Nothing can be saved where it was.

@@ -10,12 +10,12 @@ use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogWriter;
 use tomcom::edge::parse::parse;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::answer_value::AnswerValue;
-use tomcom::session::plan::{ItemForm, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
+use tomcom::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
 use tomcom::session::protocol::ProtocolEvent;
-use tomcom::session::wall_display::Answering;
-use tomcom::session::{Event, Header, Phase};
+use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::{Event, LogHeader, TrialPhase};
 
 use crate::forgetting::RecordingsFolder;
 
@@ -38,21 +38,21 @@ fn record(root: &Path, participant: usize, words: &str) {
     }
     let study = files.study().expect("a plan");
     let (spec, trial) = study.settings(WantedRecording { participant, slot: 1, attempt: 1, instructed: true });
-    let mut header = Header::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
+    let mut header = LogHeader::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
     header.started = Some("2026-03-14T09:00:00.000Z".to_string());
     let mut log = LogWriter::create_live(root, "2026-03-14", &header).expect("the folder can be written");
     let kitchen = Arc::new(files.kitchen.kitchen);
-    let mut engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
-    let mut tell = |engine: &mut Engine, event: Event| {
+    let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
+    let mut tell = |engine: &mut SessionEngine, event: Event| {
         let time = engine.session().time + SessionTime::from_secs_f64(0.5);
         let outcome = engine.input(time, event.clone());
         assert_eq!(outcome.refused, None, "{event:?}");
         outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
-        while engine.session().phase == Phase::Running {
+        while engine.session().phase == TrialPhase::Running {
             engine.fire().iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
         }
     };
-    tell(&mut engine, Event::Protocol(study.consent_given(Answering::Display)));
+    tell(&mut engine, Event::Protocol(study.consent_given(AnswerEntry::Display)));
     let mut number = 0;
     while let Some(phase) = engine.session().next_phase() {
         number += 1;
@@ -80,9 +80,9 @@ fn answer(questionnaire: &Questionnaire, index: usize, words: &str) -> AnswerVal
     match (questionnaire.name.as_str(), questionnaire.form(index).expect("a form")) {
         ("nasa-tlx", _) => AnswerValue::Number(tlx[index]),
         ("sus", _) => AnswerValue::Number(sus[index]),
-        (_, ItemForm::Scale(_)) => AnswerValue::Number(3),
-        (_, ItemForm::Number { .. }) => AnswerValue::Number(31),
-        (_, ItemForm::Text { .. }) => AnswerValue::Text(words.to_string()),
+        (_, AnswerFormat::Scale(_)) => AnswerValue::Number(3),
+        (_, AnswerFormat::Number { .. }) => AnswerValue::Number(31),
+        (_, AnswerFormat::Text { .. }) => AnswerValue::Text(words.to_string()),
         (_, form) => form.choose(1, None).expect("an option"),
     }
 }

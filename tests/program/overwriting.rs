@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use serial_test::serial;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LogWriter;
-use tomcom::session::Header;
+use tomcom::session::LogHeader;
 
 use crate::forgetting::RecordingsFolder;
 
 /// The header of a trial of the default session.
-fn header() -> Header {
+fn header() -> LogHeader {
     let files = read_session(Path::new("sessions/default.toml")).expect("a session");
-    Header::new(files.spec, 0, files.kitchen.layout, files.kitchen.recipes)
+    LogHeader::new(files.spec, 0, files.kitchen.layout, files.kitchen.recipes)
 }
 
 #[test]

@@ -8,7 +8,7 @@ use serial_test::serial;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LOG_NAME;
 use tomcom::run::verify::verify;
-use tomcom::session::Header;
+use tomcom::session::LogHeader;
 use tomcom::session::plan::{StepSpec, Study, WantedRecording};
 use tomcom::session::settings::Condition;
 
@@ -35,7 +35,7 @@ fn json(arguments: &[&str]) -> Value {
 /// The step of a recording, from its header.
 fn step(recording: &Path) -> (String, Condition, StepSpec) {
     let text = fs::read_to_string(recording.join(LOG_NAME)).expect("a log");
-    let header: Header = serde_json::from_str(text.lines().next().expect("a header")).expect("a header");
+    let header: LogHeader = serde_json::from_str(text.lines().next().expect("a header")).expect("a header");
     let step = header.session.step.expect("a step of the plan");
     (header.session.participant.code, header.session.trial.condition, step)
 }

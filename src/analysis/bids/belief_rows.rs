@@ -1,7 +1,7 @@
 //! Tables of beliefs for the BIDS export: beliefs that simulated participants had, and the assistant's estimates.
 
 use super::tsv::{self, BidsColumn, BidsFile, TaskFacts};
-use crate::session::Stamped;
+use crate::session::TimestampedEvent;
 use crate::session::event::Event;
 
 const SOURCES: &[(&str, &str)] = &[
@@ -31,7 +31,7 @@ pub(super) struct BeliefRows {
 }
 
 impl BeliefRows {
-    pub(super) fn note(&mut self, stamped: &Stamped) {
+    pub(super) fn note(&mut self, stamped: &TimestampedEvent) {
         match &stamped.event {
             Event::ParticipantBelieves(belief) => {
                 for about in &belief.aspects {

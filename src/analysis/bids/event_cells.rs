@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::tsv::{or_nothing, seconds};
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::communication::offer::OfferedAct;
-use crate::session::accuracy_check::CalibrationEvent;
+use crate::communication::offer::OfferedCommunication;
+use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::answer_value::AnswerValue;
 use crate::session::event::Event;
 use crate::session::probes::{ProbeEvent, ProbeSubject};
@@ -191,8 +191,8 @@ impl EventCells {
                 (self.refers_to, self.value) = (Some(offer.for_seq), offer.worth.map(|worth| worth.net));
                 self.item = offer.reason.as_ref().map(|reason| reason.aspect.clone()).unwrap_or_default();
                 match &offer.what {
-                    OfferedAct::Signal(signal) => self.take_signal(signal),
-                    OfferedAct::Presses(presses) => self.button = presses.join(", "),
+                    OfferedCommunication::Signal(signal) => self.take_signal(signal),
+                    OfferedCommunication::Presses(presses) => self.button = presses.join(", "),
                 }
             }
             _ => {}
@@ -272,16 +272,16 @@ impl EventCells {
         }
     }
 
-    fn take_calibration(&mut self, event: &CalibrationEvent) {
+    fn take_calibration(&mut self, event: &GazeCheckEvent) {
         self.what = tag(event, "what");
         self.value = match event {
-            CalibrationEvent::Begun { targets } => Some(targets.len() as f64),
-            CalibrationEvent::TargetShown { target } => Some(*target as f64),
-            CalibrationEvent::Measured { found } => found.as_ref().map(|found| found.accuracy_deg),
-            CalibrationEvent::Carried { found, .. } => Some(found.accuracy_deg),
+            GazeCheckEvent::Begun { targets } => Some(targets.len() as f64),
+            GazeCheckEvent::TargetShown { target } => Some(*target as f64),
+            GazeCheckEvent::Measured { found } => found.as_ref().map(|found| found.accuracy_deg),
+            GazeCheckEvent::Carried { found, .. } => Some(found.accuracy_deg),
             _ => None,
         };
-        if let CalibrationEvent::Accepted { corrected } | CalibrationEvent::Carried { corrected, .. } = event {
+        if let GazeCheckEvent::Accepted { corrected } | GazeCheckEvent::Carried { corrected, .. } = event {
             self.answer = if *corrected { "corrected" } else { "as it is" }.to_string();
         }
     }

@@ -13,12 +13,12 @@ pub fn letters_and_digits(name: &str) -> String {
 /// BIDS labels by name. Labels that differ only in capitals count as alike, since they would be one folder on some
 /// disks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Labels(BTreeMap<String, String>);
+pub struct BidsLabels(BTreeMap<String, String>);
 
-impl Labels {
+impl BidsLabels {
     /// The labels of these names: a name of letters and digits is its own label, otherwise its letters and digits are.
     /// A label that another name has already is followed by `x2`, `x3` and so on.
-    pub fn from_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Labels {
+    pub fn from_names<'a>(names: impl IntoIterator<Item = &'a str>) -> BidsLabels {
         let all: BTreeSet<&str> = names.into_iter().collect();
         let (plain, others): (Vec<&str>, Vec<&str>) =
             all.into_iter().partition(|name| letters_and_digits(name) == *name);
@@ -27,7 +27,7 @@ impl Labels {
         for name in plain.into_iter().chain(others) {
             labels.insert(name.to_string(), free(&letters_and_digits(name), "x", &mut taken));
         }
-        Labels(labels)
+        BidsLabels(labels)
     }
 
     /// The BIDS label that a name got.

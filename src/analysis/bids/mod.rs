@@ -21,8 +21,8 @@ pub use self::dataset::{
     BidsParticipant, CODE_COLUMN, DESCRIPTION_NAME, PARTICIPANTS_NAME, PROGRAM_NAME, dataset_files,
 };
 pub use self::event_levels::LEVELS;
-pub use self::labels::{Labels, letters_and_digits, session_label};
-pub use self::phenotype::Phenotypes;
-pub use self::recording_tables::{PressOutcome, RecordingTables, TableCounts};
-pub use self::session_rows::{SessionRow, sessions_files};
+pub use self::labels::{BidsLabels, letters_and_digits, session_label};
+pub use self::phenotype::QuestionnairePhenotypes;
+pub use self::recording_tables::{BidsRowCounts, PressOutcome, RecordingTables};
+pub use self::session_rows::{BidsSessionRow, sessions_files};
 pub use self::tsv::BidsFile;

@@ -9,7 +9,7 @@ use super::labels::free;
 use super::tsv::{self, BidsFile};
 use crate::session::Session;
 use crate::session::answer_value::AnswerValue;
-use crate::session::plan::{Item, ItemForm, Questionnaire};
+use crate::session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem};
 
 /// A questionnaire that a participant has filled in.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,14 +23,15 @@ struct FilledIn {
 
 /// All questionnaires that were filled in, in the order of the recordings, for BIDS phenotype tables.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Phenotypes(Vec<FilledIn>);
+pub struct QuestionnairePhenotypes(Vec<FilledIn>);
 
-impl Phenotypes {
+impl QuestionnairePhenotypes {
     /// Adds the questionnaire that was just confirmed. `participant`, `session_label`: BIDS labels of the participant
     /// and the session.
     pub fn note(&mut self, participant: &str, session_label: &str, session: &Session) {
         let (Some(asked), Some(protocol)) = (session.questionnaire(), &session.protocol) else { return };
-        let given = |(index, item): (usize, &Item)| Some((item.id.clone(), protocol.given(index)?.clone()));
+        let given =
+            |(index, item): (usize, &QuestionnaireItem)| Some((item.id.clone(), protocol.given(index)?.clone()));
         self.0.push(FilledIn {
             participant: participant.to_string(),
             session: session_label.to_string(),
@@ -68,7 +69,7 @@ fn table(name: &str, time: usize, filled: &[&FilledIn], with_words: bool) -> [Bi
     about.insert("session_id".to_string(), json!({ "Description": "The session in which it was filled in" }));
     for FilledIn { asked, .. } in filled {
         for (index, item) in asked.items.iter().enumerate() {
-            let Some(form) = asked.form(index).filter(|form| with_words || !matches!(form, ItemForm::Text { .. }))
+            let Some(form) = asked.form(index).filter(|form| with_words || !matches!(form, AnswerFormat::Text { .. }))
             else {
                 continue;
             };
@@ -90,10 +91,10 @@ fn table(name: &str, time: usize, filled: &[&FilledIn], with_words: bool) -> [Bi
 }
 
 /// The description of a questionnaire's item in a sidecar file.
-fn described(item: &Item, form: &ItemForm) -> Value {
+fn described(item: &QuestionnaireItem, form: &AnswerFormat) -> Value {
     let mut about = json!({ "Description": item.text });
     match form {
-        ItemForm::Scale(scale) => {
+        AnswerFormat::Scale(scale) => {
             let meaning = |point: u8| match point {
                 1 => scale.low.clone(),
                 point if point == scale.points => scale.high.clone(),
@@ -104,7 +105,7 @@ fn described(item: &Item, form: &ItemForm) -> Value {
                 (1..=scale.points).map(|point| (point.to_string(), json!(meaning(point)))).collect();
             about["Levels"] = Value::Object(levels);
         }
-        ItemForm::Choice { options, several } => {
+        AnswerFormat::Choice { options, several } => {
             let levels: Map<String, Value> =
                 options.iter().map(|option| (option.id.clone(), json!(option.text))).collect();
             about["Levels"] = Value::Object(levels);
@@ -112,11 +113,11 @@ fn described(item: &Item, form: &ItemForm) -> Value {
                 about["Delimiter"] = json!(" ");
             }
         }
-        ItemForm::Number { unit, .. } if !unit.is_empty() => about["Units"] = json!(unit),
-        ItemForm::Slider { low, high, .. } => {
+        AnswerFormat::Number { unit, .. } if !unit.is_empty() => about["Units"] = json!(unit),
+        AnswerFormat::Slider { low, high, .. } => {
             about["Description"] = json!(format!("{} (0: {low}; 100: {high})", item.text));
         }
-        ItemForm::Number { .. } | ItemForm::Text { .. } => {}
+        AnswerFormat::Number { .. } | AnswerFormat::Text { .. } => {}
     }
     if let Some(construct) = &item.about {
         about["Construct"] = json!(construct);

@@ -7,14 +7,14 @@ use super::sample_rows::{SampleRows, ViewingFacts};
 use super::spans::OpenSpans;
 use super::tsv::{self, BidsFile, TaskFacts, or_nothing, seconds, yes};
 use crate::base::time::SessionTime;
-use crate::session::accuracy_check::CalibrationEvent;
-use crate::session::event::{EndReason, Event};
-use crate::session::plan::ItemForm;
+use crate::session::accuracy_check::GazeCheckEvent;
+use crate::session::event::{Event, TrialEndReason};
+use crate::session::plan::AnswerFormat;
 use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
 use crate::session::wall_display::DisplayEvent;
-use crate::session::{Phase, Session, Stamped};
+use crate::session::{Session, TimestampedEvent, TrialPhase};
 
 /// Whether a press had an effect, and whether it was an error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub struct PressOutcome {
 
 /// Number of rows in each BIDS table of a recording; together as many as the log has events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct TableCounts {
+pub struct BidsRowCounts {
     /// Number of rows in the table of events.
     pub events: u64,
     /// Number of rows in the table of gaze samples.
@@ -64,7 +64,7 @@ pub struct RecordingTables {
     beliefs: BeliefRows,
     viewing: ViewingFacts,
     words_left_out: u64,
-    ended: Option<EndReason>,
+    ended: Option<TrialEndReason>,
 }
 
 impl RecordingTables {
@@ -84,20 +84,20 @@ impl RecordingTables {
     }
 
     /// Why the trial ended; `None` if it did not end.
-    pub fn ended(&self) -> Option<EndReason> {
+    pub fn ended(&self) -> Option<TrialEndReason> {
         self.ended
     }
 
     /// Adds an event that was applied to the session. `outcome`: effect and judgement, for presses only.
-    pub fn note(&mut self, stamped: &Stamped, session: &Session, outcome: Option<PressOutcome>) {
+    pub fn note(&mut self, stamped: &TimestampedEvent, session: &Session, outcome: Option<PressOutcome>) {
         let mut is_of_eyes = false;
         match &stamped.event {
             Event::Gaze(sample) => return self.samples.note_gaze(stamped, sample),
             Event::RobotMoves(sample) => return self.samples.note_arm(stamped, sample),
             Event::Tracker(event) => is_of_eyes = self.samples.note_found(stamped, event),
             Event::TrialEnded { reason } => self.ended = Some(*reason),
-            Event::TrialAborted { .. } => self.ended = Some(EndReason::Aborted),
-            Event::Calibration(CalibrationEvent::Measured { found: Some(_) }) => self.viewing.gaze_checks += 1,
+            Event::TrialAborted { .. } => self.ended = Some(TrialEndReason::Aborted),
+            Event::Calibration(GazeCheckEvent::Measured { found: Some(_) }) => self.viewing.gaze_checks += 1,
             Event::Display(DisplayEvent::Connected { width_px, height_px }) => {
                 self.viewing.resolution = Some([*width_px, *height_px]);
             }
@@ -112,7 +112,7 @@ impl RecordingTables {
         self.rows.push(EventRow { onset: stamped.time, duration, rest, is_of_eyes });
     }
 
-    fn rest(&mut self, stamped: &Stamped, session: &Session, outcome: Option<PressOutcome>) -> String {
+    fn rest(&mut self, stamped: &TimestampedEvent, session: &Session, outcome: Option<PressOutcome>) -> String {
         let mut cells = EventCells::from_event(&stamped.event, is_words(&stamped.event, session));
         if let Event::Probe(ProbeEvent::Asked { question, .. } | ProbeEvent::Answered { question, .. }) = &stamped.event
             && let Some(open) = &session.probes.open
@@ -120,7 +120,7 @@ impl RecordingTables {
         {
             cells.ask_about(&asked.about);
         }
-        let is_on = matches!(session.phase, Phase::Running | Phase::Paused)
+        let is_on = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused)
             || matches!(stamped.event, Event::TrialEnded { .. } | Event::TrialAborted { .. });
         let clock = is_on.then(|| seconds(session.trial_clock(stamped.time)));
         let mut all = vec![stamped.event.kind().to_string(), stamped.seq.to_string(), or_nothing(clock)];
@@ -136,12 +136,12 @@ impl RecordingTables {
     }
 
     /// The files of the recording, after the last event, with the numbers of their rows.
-    pub fn into_files(self, session: &Session) -> (Vec<BidsFile>, TableCounts) {
+    pub fn into_files(self, session: &Session) -> (Vec<BidsFile>, BidsRowCounts) {
         let task = TaskFacts { name: session.kitchen.name.clone(), title: session.kitchen.title.clone() };
         let has_gaze = self.samples.has_gaze();
         let [gaze, found, arm] = self.samples.counts();
         let rows: Vec<&EventRow> = self.rows.iter().filter(|row| !(has_gaze && row.is_of_eyes)).collect();
-        let counts = TableCounts {
+        let counts = BidsRowCounts {
             events: rows.len() as u64,
             gaze,
             eye_events: if has_gaze { found } else { 0 },
@@ -172,5 +172,5 @@ impl RecordingTables {
 fn is_words(event: &Event, session: &Session) -> bool {
     let Event::Protocol(ProtocolEvent::ItemAnswered { item, .. }) = event else { return false };
     let form = session.questionnaire().and_then(|asked| asked.form(asked.position(item)?));
-    matches!(form, Some(ItemForm::Text { .. }))
+    matches!(form, Some(AnswerFormat::Text { .. }))
 }

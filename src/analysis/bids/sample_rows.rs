@@ -9,7 +9,7 @@ use crate::gaze::GazeSample;
 use crate::robot::moment::ArmSample;
 use crate::session::settings::GazeSource;
 use crate::session::tracker::TrackerEvent;
-use crate::session::{Session, Stamped};
+use crate::session::{Session, TimestampedEvent};
 
 /// Longer intervals between samples count as gaps and are left out of the sampling rate, in seconds.
 const GAP_S: f64 = 0.5;
@@ -88,7 +88,7 @@ pub(super) struct SampleRows {
 }
 
 impl SampleRows {
-    pub(super) fn note_gaze(&mut self, stamped: &Stamped, sample: &GazeSample) {
+    pub(super) fn note_gaze(&mut self, stamped: &TimestampedEvent, sample: &GazeSample) {
         let taken = sample.taken_ns.unwrap_or(stamped.time);
         let device = or_nothing(sample.device_ns.map(|ns| seconds(SessionTime(ns))));
         let (x, y, confidence) = (sample.x.to_string(), sample.y.to_string(), sample.confidence.to_string());
@@ -96,7 +96,7 @@ impl SampleRows {
         self.gaze.push((taken, tsv::line(cells)));
     }
 
-    pub(super) fn note_arm(&mut self, stamped: &Stamped, sample: &ArmSample) {
+    pub(super) fn note_arm(&mut self, stamped: &TimestampedEvent, sample: &ArmSample) {
         let joints = sample.joints.iter().map(f64::to_string);
         let hand = sample.hand_m.iter().map(f64::to_string);
         let cells = [seconds(stamped.time), event_cells::name(&sample.phase)].into_iter().chain(joints);
@@ -106,7 +106,7 @@ impl SampleRows {
     }
 
     /// Adds a fixation or a blink that the eye tracker found; returns `false` for every other event of the tracker.
-    pub(super) fn note_found(&mut self, stamped: &Stamped, event: &TrackerEvent) -> bool {
+    pub(super) fn note_found(&mut self, stamped: &TimestampedEvent, event: &TrackerEvent) -> bool {
         let (onset, cells) = match event {
             TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, began_ns, .. } => {
                 let [x, y] = [at.map(|at| at[0]), at.map(|at| at[1])].map(or_nothing);

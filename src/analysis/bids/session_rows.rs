@@ -3,9 +3,9 @@
 use super::event_cells;
 use super::tsv::{self, BidsColumn, BidsFile, or_nothing, seconds, yes};
 use crate::base::time::SessionTime;
-use crate::session::event::EndReason;
+use crate::session::event::TrialEndReason;
 use crate::session::study_arm::StudyArm;
-use crate::session::{Header, Session};
+use crate::session::{LogHeader, Session};
 
 const YES: &[(&str, &str)] = &[("0", "No"), ("1", "Yes")];
 const CONDITIONS: &[(&str, &str)] = &[
@@ -54,21 +54,21 @@ const COLUMNS: [BidsColumn; 21] = [
 
 /// Row of a recording in the BIDS table of sessions.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SessionRow(String);
+pub struct BidsSessionRow(String);
 
-impl SessionRow {
+impl BidsSessionRow {
     /// The row of a recording that was read to its end. `label`: BIDS label of its session; `ended`: why the trial
     /// ended; `is_complete`: the log is complete; `counts`: analyses include the trial.
     pub fn new(
         (label, recording): (&str, &str),
-        header: &Header,
+        header: &LogHeader,
         session: &Session,
-        ended: Option<EndReason>,
+        ended: Option<TrialEndReason>,
         [is_complete, counts]: [bool; 2],
-    ) -> SessionRow {
+    ) -> BidsSessionRow {
         let (spec, step) = (&session.spec, session.spec.step.as_ref());
         let clock = session.trial_clock(session.time);
-        SessionRow(tsv::line([
+        BidsSessionRow(tsv::line([
             format!("ses-{label}"),
             or_nothing(header.started.clone()),
             recording.to_string(),
@@ -83,7 +83,7 @@ impl SessionRow {
             event_cells::name(&spec.participant.gaze),
             event_cells::name(&spec.robot.arm),
             or_nothing((clock > SessionTime::ZERO).then(|| seconds(clock))),
-            or_nothing(ended.map(EndReason::name)),
+            or_nothing(ended.map(TrialEndReason::name)),
             yes(is_complete),
             yes(!counts),
             session.seed().to_string(),
@@ -95,7 +95,7 @@ impl SessionRow {
 }
 
 /// The table of sessions of the participant with this label, with its sidecar file.
-pub fn sessions_files(participant: &str, rows: &[SessionRow]) -> [BidsFile; 2] {
+pub fn sessions_files(participant: &str, rows: &[BidsSessionRow]) -> [BidsFile; 2] {
     let path = format!("sub-{participant}/sub-{participant}_sessions");
     let text: String = rows.iter().map(|row| row.0.as_str()).collect();
     let text = tsv::line(tsv::names(&COLUMNS)) + &text;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::base::time::SessionTime;
 use crate::kitchen::Agent;
-use crate::session::accuracy_check::CalibrationEvent;
+use crate::session::accuracy_check::GazeCheckEvent;
 use crate::session::event::Event;
 use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
@@ -98,7 +98,7 @@ fn begun(event: &Event) -> Option<Span> {
         Event::SignalShown { .. } => Span::Signal,
         Event::OfferOpened(_) => Span::Offer,
         Event::Probe(ProbeEvent::Begun { .. }) => Span::Probe,
-        Event::Calibration(CalibrationEvent::TargetShown { .. }) => Span::Target,
+        Event::Calibration(GazeCheckEvent::TargetShown { .. }) => Span::Target,
         Event::Tracker(TrackerEvent::Lost { .. }) => Span::TrackerLoss,
         Event::Tracker(TrackerEvent::DisplayLost | TrackerEvent::OtherSurfaces { .. }) => Span::DisplayUnseen,
         Event::Tracker(TrackerEvent::Blink { closed: true, .. }) => Span::EyesClosed,
@@ -123,7 +123,7 @@ fn ended(event: &Event) -> Vec<Span> {
         Event::OfferClosed { .. } => vec![Span::Offer],
         Event::Probe(ProbeEvent::Ended { .. }) => vec![Span::Probe],
         Event::Calibration(
-            CalibrationEvent::TargetsHidden | CalibrationEvent::Dismissed | CalibrationEvent::Begun { .. },
+            GazeCheckEvent::TargetsHidden | GazeCheckEvent::Dismissed | GazeCheckEvent::Begun { .. },
         ) => vec![Span::Target],
         Event::Tracker(TrackerEvent::Connected { .. }) => vec![Span::TrackerLoss],
         Event::Tracker(TrackerEvent::DisplayFound) => vec![Span::DisplayUnseen],

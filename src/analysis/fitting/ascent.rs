@@ -51,7 +51,7 @@ pub struct FittedVariable {
 
 /// Result of a search for the maximum of a log likelihood.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Maximum {
+pub struct LikelihoodMaximum {
     /// Estimates of the variables, in the order in which they were passed.
     pub variables: Vec<FittedVariable>,
     /// Number of evaluations of the log likelihood.
@@ -61,18 +61,18 @@ pub struct Maximum {
 }
 
 /// Maximises a log likelihood within bounds as [`ascend`] does, without errors and intervals, which take most of its evaluations.
-pub fn climb(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> Maximum {
+pub fn climb(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> LikelihoodMaximum {
     let mut search = Search::begin(loss, start, bounds, most);
     let free: Vec<usize> = (0..start.len()).collect();
     let converged = search.climb(&free).is_some();
     let variable = |&at: &f64| FittedVariable { at, standard_error: None, end: None, limit: None };
     let variables = search.at.iter().map(variable).collect();
-    Maximum { variables, evaluations: search.evaluations, converged }
+    LikelihoodMaximum { variables, evaluations: search.evaluations, converged }
 }
 
 /// Maximises a log likelihood within bounds; `loss` is its negative in nats. Stops after about `most` evaluations of
 /// `loss`.
-pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> Maximum {
+pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> LikelihoodMaximum {
     let mut search = Search::begin(loss, start, bounds, most);
     let count = start.len();
     let mut held = vec![None; count];
@@ -110,7 +110,7 @@ pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]
         end: held[index].filter(|_| converged),
         limit: limits[index],
     };
-    Maximum { variables: (0..count).map(variable).collect(), evaluations: search.evaluations, converged }
+    LikelihoodMaximum { variables: (0..count).map(variable).collect(), evaluations: search.evaluations, converged }
 }
 
 struct Search<'a, F> {

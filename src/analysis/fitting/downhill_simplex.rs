@@ -14,7 +14,7 @@ type Corner = (f64, Vec<f64>);
 
 /// The smallest value of a function that a search found, and where.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Minimum {
+pub struct FunctionMinimum {
     /// The point of the minimum, one value per argument of the function.
     pub at: Vec<f64>,
     /// Value of the function at the minimum.
@@ -34,7 +34,7 @@ pub fn minimise(
     steps: &[f64],
     tolerance: f64,
     most: usize,
-) -> Minimum {
+) -> FunctionMinimum {
     let asked = Cell::new(0);
     let mut ask = |at: Vec<f64>| -> Corner {
         asked.set(asked.get() + 1);
@@ -56,7 +56,7 @@ pub fn minimise(
     }
     corners.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (value, at) = corners.swap_remove(0);
-    Minimum { at, value, evaluations: asked.get(), converged }
+    FunctionMinimum { at, value, evaluations: asked.get(), converged }
 }
 
 /// Replaces the worst corner of a sorted simplex by a better one, or shrinks the simplex towards its best corner.

@@ -3,11 +3,11 @@
 use serde::Serialize;
 
 use crate::base::words::count;
-use crate::mind::fitting::{Likelihood, Parameter};
+use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
 
 /// Effect of the answers to freeze probes on a fit of the human model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct FittedAnswers {
+pub struct ProbeAnswerFit {
     /// Number of answers to freeze probes.
     pub answers: u64,
     /// Log likelihood per answer with the parameters before the fit, in nats.
@@ -32,11 +32,11 @@ pub struct IntervalShrinkage {
     pub ratio: Option<f64>,
 }
 
-impl FittedAnswers {
+impl ProbeAnswerFit {
     /// The answers under the parameters before the fit and under the fitted ones.
-    pub fn from_likelihoods(before: Likelihood, after: Likelihood) -> FittedAnswers {
+    pub fn from_likelihoods(before: TrialLikelihood, after: TrialLikelihood) -> ProbeAnswerFit {
         let answers = before.answers.max(1) as f64;
-        FittedAnswers {
+        ProbeAnswerFit {
             answers: before.answers,
             log_likelihood_before: before.log_p_answers / answers,
             log_likelihood: after.log_p_answers / answers,
@@ -49,7 +49,7 @@ impl IntervalShrinkage {
     /// Compares two intervals of a parameter: from presses alone (with the value of that fit), and from presses and
     /// answers.
     pub fn between(
-        parameter: Parameter,
+        parameter: HumanModelParameter,
         value: f64,
         alone: Option<[Option<f64>; 2]>,
         with: Option<[Option<f64>; 2]>,
@@ -64,7 +64,7 @@ impl IntervalShrinkage {
 }
 
 /// What the answers to freeze probes add to the fit, as text.
-pub(super) fn describe(answers: &FittedAnswers) -> String {
+pub(super) fn describe(answers: &ProbeAnswerFit) -> String {
     let mut text = format!(
         "\n{} to probes: log likelihood per answer {:.4}, before {:.4}\n{:<24}{:>16}{:>24}\n",
         count(answers.answers, "answer", "answers"),

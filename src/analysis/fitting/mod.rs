@@ -22,11 +22,11 @@ pub mod response_surface;
 
 use serde::Serialize;
 
-use self::ascent::{BoundReached, FittedVariable, Maximum, ascend};
-pub use self::fitted_answers::FittedAnswers;
+use self::ascent::{BoundReached, FittedVariable, LikelihoodMaximum, ascend};
+pub use self::fitted_answers::ProbeAnswerFit;
 use self::parameter_scale::{bounds_of, is_possible, model_at, point_of};
 use crate::base::words::count;
-use crate::mind::fitting::{Likelihood, Parameter};
+use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
 use crate::mind::model::HumanModel;
 
 /// Half width of a 95 % interval, in standard errors.
@@ -45,9 +45,9 @@ pub struct FittedRecordings<'a> {
 
 /// Which parameters of the human model to fit, from which start, and with how many evaluations.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FitPlan {
+pub struct FitSettings {
     /// The parameters of the human model to fit.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<HumanModelParameter>,
     /// Start of the search, and value of parameters that are not fitted. `None` for the parameters in the recordings.
     pub start: Option<HumanModel>,
     /// Largest number of evaluations of the likelihood.
@@ -82,7 +82,7 @@ pub struct FitSummary {
     pub model: HumanModel,
     /// Effect of the answers to freeze probes on the fit, if they were used.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub answers: Option<FittedAnswers>,
+    pub answers: Option<ProbeAnswerFit>,
 }
 
 /// Result of a fit for one parameter.
@@ -107,7 +107,7 @@ pub struct FittedParameter {
 }
 
 impl FittedParameter {
-    fn from_variable(parameter: Parameter, before: f64, found: &FittedVariable) -> FittedParameter {
+    fn from_variable(parameter: HumanModelParameter, before: f64, found: &FittedVariable) -> FittedParameter {
         let value = parameter.from_scale(found.at);
         let [low, high] = parameter.bounds().map(|end| parameter.to_scale(end));
         let told = |end: f64| (low..=high).contains(&end).then(|| parameter.from_scale(end));
@@ -148,8 +148,8 @@ impl FittedParameter {
 /// called after each evaluation.
 pub fn fit(
     trials: FittedRecordings<'_>,
-    plan: &FitPlan,
-    likelihood: impl Fn(&HumanModel) -> Likelihood,
+    plan: &FitSettings,
+    likelihood: impl Fn(&HumanModel) -> TrialLikelihood,
     tried: impl Fn(),
 ) -> FitSummary {
     let begin = plan.start.as_ref().unwrap_or(trials.model);
@@ -164,7 +164,7 @@ pub fn fit(
     let start = point_of(begin, &plan.parameters);
     let bounds = bounds_of(&plan.parameters);
     let before = likelihood(begin);
-    let Maximum { mut variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
+    let LikelihoodMaximum { mut variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
     let mut model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
     let mut after = likelihood(&model);
     // A search that did not converge may end at a point worse than its start.
@@ -186,7 +186,7 @@ pub fn fit(
         converged,
         parameters: fitted.map(|(one, found)| FittedParameter::from_variable(*one, one.get(begin), found)).collect(),
         model,
-        answers: (before.answers > 0).then(|| FittedAnswers::from_likelihoods(before, after)),
+        answers: (before.answers > 0).then(|| ProbeAnswerFit::from_likelihoods(before, after)),
     }
 }
 

@@ -1,23 +1,23 @@
 //! The scale on which parameters are searched: points on it, the human models that they stand for, and the bounds of a search.
 
-use crate::mind::fitting::Parameter;
+use crate::mind::fitting::HumanModelParameter;
 use crate::mind::model::HumanModel;
 use crate::session::ranges;
 
 /// The model with these parameters at a point on the scale of the fit, and otherwise as `base`.
-pub fn model_at(base: &HumanModel, parameters: &[Parameter], at: &[f64]) -> HumanModel {
+pub fn model_at(base: &HumanModel, parameters: &[HumanModelParameter], at: &[f64]) -> HumanModel {
     let mut model = base.clone();
     parameters.iter().zip(at).for_each(|(parameter, &scaled)| parameter.set(&mut model, parameter.from_scale(scaled)));
     model
 }
 
 /// The point on the scale of the fit that a model stands at.
-pub fn point_of(model: &HumanModel, parameters: &[Parameter]) -> Vec<f64> {
+pub fn point_of(model: &HumanModel, parameters: &[HumanModelParameter]) -> Vec<f64> {
     parameters.iter().map(|one| one.to_scale(one.get(model))).collect()
 }
 
 /// Bounds of the search, on the scale of the fit.
-pub fn bounds_of(parameters: &[Parameter]) -> Vec<[f64; 2]> {
+pub fn bounds_of(parameters: &[HumanModelParameter]) -> Vec<[f64; 2]> {
     parameters.iter().map(|one| one.bounds().map(|end| one.to_scale(end))).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::FitPlan;
+use super::FitSettings;
 use super::ascent::climb;
 use super::parameter_scale::{bounds_of, is_possible, model_at, point_of};
 use super::people_search::{FoundPeople, PeopleSearch, PersonTry, TrialPart, search};
@@ -10,7 +10,7 @@ use super::people_summary::{
     FittedPerson, HeldOut, HeldOutPerson, PeopleSummary, PersonSummary, PooledParameter, PopulationParameter,
 };
 use crate::mind::fitted_people::{FittedPeople, HumanModelFile};
-use crate::mind::fitting::Likelihood;
+use crate::mind::fitting::TrialLikelihood;
 use crate::mind::model::HumanModel;
 
 /// The search of one part of the trials: one set of parameters for all, population and persons.
@@ -27,8 +27,8 @@ struct PartFit {
 pub fn fit_people(
     people: &[FittedPerson],
     model: &HumanModel,
-    plan: &FitPlan,
-    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+    plan: &FitSettings,
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> PeopleSummary {
     let base = plan.start.as_ref().unwrap_or(model);
     let start = point_of(base, &plan.parameters);
@@ -69,9 +69,9 @@ pub fn fit_people(
 fn fit_part(
     people: usize,
     base: &HumanModel,
-    plan: &FitPlan,
+    plan: &FitSettings,
     (start, part): (&[f64], TrialPart),
-    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> PartFit {
     let loss = |at: &[f64]| {
         let model = model_at(base, &plan.parameters, at);
@@ -93,34 +93,34 @@ fn fit_part(
 /// Likelihood of each person's trials at its own point.
 fn at_each(
     base: &HumanModel,
-    plan: &FitPlan,
+    plan: &FitSettings,
     points: &[Vec<f64>],
     part: TrialPart,
-    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
-) -> Vec<Likelihood> {
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
+) -> Vec<TrialLikelihood> {
     let model = |at: &Vec<f64>| model_at(base, &plan.parameters, at);
     let tries = points.iter().enumerate().map(|(person, at)| PersonTry { person, part, model: model(at) });
     likelihoods(&tries.collect::<Vec<PersonTry>>())
 }
 
-fn sums(each: &[Likelihood]) -> Likelihood {
-    each.iter().copied().fold(Likelihood::default(), Likelihood::plus)
+fn sums(each: &[TrialLikelihood]) -> TrialLikelihood {
+    each.iter().copied().fold(TrialLikelihood::default(), TrialLikelihood::plus)
 }
 
 /// How likely the presses of the trials are that were left out.
 fn judge(
     people: &[FittedPerson],
     base: &HumanModel,
-    plan: &FitPlan,
+    plan: &FitSettings,
     training: &PartFit,
-    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> HeldOut {
     let same = |at: &[f64]| vec![at.to_vec(); people.len()];
     let by = |points: &[Vec<f64>]| at_each(base, plan, points, TrialPart::HeldOut, &likelihoods);
     let [pooled, population, own] =
         [same(&training.pooled), same(&training.people.mean), training.people.modes.clone()].map(|points| by(&points));
     let judged = (0..people.len()).filter(|&one| pooled[one].presses > 0);
-    let per_press = |found: &Likelihood| found.log_p / found.presses as f64;
+    let per_press = |found: &TrialLikelihood| found.log_p / found.presses as f64;
     let by_person: Vec<HeldOutPerson> = judged
         .map(|one| HeldOutPerson {
             code: people[one].code.clone(),
@@ -136,7 +136,7 @@ fn judge(
 }
 
 /// The file of parameters: the median person of the population, and every person.
-fn file(people: &[FittedPerson], base: &HumanModel, plan: &FitPlan, found: &FoundPeople) -> HumanModelFile {
+fn file(people: &[FittedPerson], base: &HumanModel, plan: &FitSettings, found: &FoundPeople) -> HumanModelFile {
     let values = |at: &Vec<f64>| plan.parameters.iter().zip(at).map(|(one, at)| (*one, one.from_scale(*at))).collect();
     let own: BTreeMap<_, _> =
         people.iter().zip(&found.modes).map(|(person, at)| (person.code.clone(), values(at))).collect();

@@ -8,7 +8,7 @@ use super::gaussian_likelihood::GaussianLikelihood;
 use super::parameter_scale::{bounds_of, is_possible, model_at};
 use super::population_estimate::{PopulationEstimate, estimate};
 use super::response_surface::{REACH, points_around, surface};
-use crate::mind::fitting::{Likelihood, Parameter};
+use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
 use crate::mind::model::HumanModel;
 
 /// Largest number of rounds.
@@ -52,7 +52,7 @@ pub struct PeopleSearch<'a> {
     /// Parameters that are not searched.
     pub base: &'a HumanModel,
     /// The parameters in which persons differ.
-    pub parameters: &'a [Parameter],
+    pub parameters: &'a [HumanModelParameter],
     /// Number of persons.
     pub people: usize,
     /// Which trials are used.
@@ -78,7 +78,7 @@ pub struct FoundPeople {
 pub fn search(
     what: PeopleSearch<'_>,
     start: &[f64],
-    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> FoundPeople {
     let bounds = bounds_of(what.parameters);
     let mut surveys = vec![Survey { centre: start.to_vec(), steps: vec![FIRST_STEP; start.len()] }; what.people];
@@ -110,7 +110,7 @@ pub fn search(
 fn likelihoods_at(
     what: PeopleSearch<'_>,
     surveys: &[Survey],
-    likelihoods: impl Fn(&[PersonTry]) -> Vec<Likelihood>,
+    likelihoods: impl Fn(&[PersonTry]) -> Vec<TrialLikelihood>,
 ) -> Vec<Vec<f64>> {
     let (mut tries, mut places) = (Vec::new(), Vec::new());
     let mut losses: Vec<Vec<f64>> = Vec::new();

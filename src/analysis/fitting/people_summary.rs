@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::population_estimate::{PersonPosterior, PopulationEstimate};
 use crate::base::words::count;
 use crate::mind::fitted_people::HumanModelFile;
-use crate::mind::fitting::Parameter;
+use crate::mind::fitting::HumanModelParameter;
 
 /// Half width of a 95 % interval, in standard errors or standard deviations.
 const HALF_WIDTH: f64 = 1.96;
@@ -60,7 +60,7 @@ pub struct PooledParameter {
 
 impl PooledParameter {
     /// A parameter with its value on the scale of the fit.
-    pub fn new(parameter: Parameter, at: f64) -> PooledParameter {
+    pub fn new(parameter: HumanModelParameter, at: f64) -> PooledParameter {
         PooledParameter { name: parameter.name(), value: parameter.from_scale(at) }
     }
 }
@@ -92,8 +92,8 @@ pub struct PopulationParameter {
 
 impl PopulationParameter {
     /// All parameters of a population.
-    pub fn all(parameters: &[Parameter], population: &PopulationEstimate) -> Vec<PopulationParameter> {
-        let one = |(index, parameter): (usize, &Parameter)| {
+    pub fn all(parameters: &[HumanModelParameter], population: &PopulationEstimate) -> Vec<PopulationParameter> {
+        let one = |(index, parameter): (usize, &HumanModelParameter)| {
             let (mean, error) = (population.mean[index], population.mean_error[index]);
             let sd = population.sd[index];
             let people = population.people.len().max(1) as f64;
@@ -148,10 +148,10 @@ impl PersonSummary {
     pub fn from_posterior(
         person: &FittedPerson,
         human_actions: u64,
-        parameters: &[Parameter],
+        parameters: &[HumanModelParameter],
         posterior: &PersonPosterior,
     ) -> PersonSummary {
-        let one = |(index, parameter): (usize, &Parameter)| {
+        let one = |(index, parameter): (usize, &HumanModelParameter)| {
             let (mode, sd) = (posterior.mode[index], posterior.sd[index]);
             PersonParameter {
                 name: parameter.name(),
@@ -167,13 +167,13 @@ impl PersonSummary {
 }
 
 /// Value at a point on the scale of the fit, within the bounds of the search.
-fn value_inside(parameter: Parameter, at: f64) -> f64 {
+fn value_inside(parameter: HumanModelParameter, at: f64) -> f64 {
     let [low, high] = parameter.bounds().map(|end| parameter.to_scale(end));
     parameter.from_scale(at.clamp(low, high))
 }
 
 /// The values 1.96 standard deviations below and above a point.
-fn around(parameter: Parameter, at: f64, sd: f64) -> [f64; 2] {
+fn around(parameter: HumanModelParameter, at: f64, sd: f64) -> [f64; 2] {
     [-HALF_WIDTH, HALF_WIDTH].map(|width| value_inside(parameter, at + width * sd))
 }
 

@@ -6,7 +6,7 @@ use super::schemas;
 
 /// Channel of messages in an MCAP file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum MessageChannel {
+pub enum McapChannel {
     /// Joint angles of the arm.
     Joints,
     /// Poses of the arm's links and of the participant's hand.
@@ -23,54 +23,54 @@ pub enum MessageChannel {
     Beliefs,
 }
 
-impl MessageChannel {
+impl McapChannel {
     /// All channels of an MCAP file, in their order.
-    pub const ALL: [MessageChannel; 7] = [
-        MessageChannel::Joints,
-        MessageChannel::Frames,
-        MessageChannel::Arm,
-        MessageChannel::Log,
-        MessageChannel::Events,
-        MessageChannel::Gaze,
-        MessageChannel::Beliefs,
+    pub const ALL: [McapChannel; 7] = [
+        McapChannel::Joints,
+        McapChannel::Frames,
+        McapChannel::Arm,
+        McapChannel::Log,
+        McapChannel::Events,
+        McapChannel::Gaze,
+        McapChannel::Beliefs,
     ];
 
     /// Name of the channel, called its topic.
     pub fn topic(self) -> &'static str {
         match self {
-            MessageChannel::Joints => "/robot/joints",
-            MessageChannel::Frames => "/tf",
-            MessageChannel::Arm => "/robot/arm",
-            MessageChannel::Log => "/log",
-            MessageChannel::Events => "/events",
-            MessageChannel::Gaze => "/gaze",
-            MessageChannel::Beliefs => "/beliefs",
+            McapChannel::Joints => "/robot/joints",
+            McapChannel::Frames => "/tf",
+            McapChannel::Arm => "/robot/arm",
+            McapChannel::Log => "/log",
+            McapChannel::Events => "/events",
+            McapChannel::Gaze => "/gaze",
+            McapChannel::Beliefs => "/beliefs",
         }
     }
 
     /// Name of the type of the channel's messages.
     pub fn schema_name(self) -> &'static str {
         match self {
-            MessageChannel::Joints => "foxglove.JointStates",
-            MessageChannel::Frames => "foxglove.FrameTransforms",
-            MessageChannel::Arm => "tomcom.Arm",
-            MessageChannel::Log => "foxglove.Log",
-            MessageChannel::Events => "tomcom.Event",
-            MessageChannel::Gaze => "tomcom.Gaze",
-            MessageChannel::Beliefs => "tomcom.Beliefs",
+            McapChannel::Joints => "foxglove.JointStates",
+            McapChannel::Frames => "foxglove.FrameTransforms",
+            McapChannel::Arm => "tomcom.Arm",
+            McapChannel::Log => "foxglove.Log",
+            McapChannel::Events => "tomcom.Event",
+            McapChannel::Gaze => "tomcom.Gaze",
+            McapChannel::Beliefs => "tomcom.Beliefs",
         }
     }
 
     /// JSON Schema of the channel's messages.
     pub fn schema(self) -> Value {
         let mut schema = match self {
-            MessageChannel::Joints => schemas::joints(),
-            MessageChannel::Frames => schemas::frames(),
-            MessageChannel::Arm => schemas::arm(),
-            MessageChannel::Log => schemas::log(),
-            MessageChannel::Events => schemas::event(),
-            MessageChannel::Gaze => schemas::gaze(),
-            MessageChannel::Beliefs => schemas::beliefs(),
+            McapChannel::Joints => schemas::joints(),
+            McapChannel::Frames => schemas::frames(),
+            McapChannel::Arm => schemas::arm(),
+            McapChannel::Log => schemas::log(),
+            McapChannel::Events => schemas::event(),
+            McapChannel::Gaze => schemas::gaze(),
+            McapChannel::Beliefs => schemas::beliefs(),
         };
         schema["title"] = self.schema_name().into();
         schema

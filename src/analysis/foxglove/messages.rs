@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use super::channels::MessageChannel;
+use super::channels::McapChannel;
 use crate::analysis::event_lines;
-use crate::analysis::follower::Follower;
-use crate::arm::kinematics::Arm;
+use crate::analysis::follower::SessionFollower;
+use crate::arm::kinematics::SerialArm;
 use crate::base::time::SessionTime;
 use crate::robot::moment::{ArmSample, JOINT_NAMES};
-use crate::session::Stamped;
+use crate::session::TimestampedEvent;
 use crate::session::event::Event;
 
 /// Name of the coordinate frame of the arm's base.
@@ -21,9 +21,9 @@ const WARNING: u8 = 3;
 
 /// A message on a channel of an MCAP file.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ChannelMessage {
+pub struct McapMessage {
     /// The channel on which the message is sent.
-    pub channel: MessageChannel,
+    pub channel: McapChannel,
     /// Session time at which the event was recorded.
     pub logged: SessionTime,
     /// Session time at which the event happened; for gaze, the time at which the sample was taken.
@@ -34,21 +34,21 @@ pub struct ChannelMessage {
 
 /// Converts the events of a session into messages.
 #[derive(Debug)]
-pub struct MessageMaker {
-    arm: Arm,
+pub struct McapMessageConverter {
+    arm: SerialArm,
 }
 
-impl Default for MessageMaker {
-    fn default() -> MessageMaker {
-        MessageMaker { arm: Arm::ur5() }
+impl Default for McapMessageConverter {
+    fn default() -> McapMessageConverter {
+        McapMessageConverter { arm: SerialArm::ur5() }
     }
 }
 
-impl MessageMaker {
+impl McapMessageConverter {
     /// The messages of an event that was just applied.
-    pub fn messages(&self, stamped: &Stamped, follower: &Follower) -> Vec<ChannelMessage> {
+    pub fn messages(&self, stamped: &TimestampedEvent, follower: &SessionFollower) -> Vec<McapMessage> {
         let now = stamped.time;
-        let message = |channel, content| ChannelMessage { channel, logged: now, published: now, content };
+        let message = |channel, content| McapMessage { channel, logged: now, published: now, content };
         match &stamped.event {
             Event::Gaze(sample) => {
                 let taken = sample.taken_ns.unwrap_or(now);
@@ -58,23 +58,23 @@ impl MessageMaker {
                 if let Some(device_ns) = sample.device_ns {
                     content["device_ns"] = json!(device_ns);
                 }
-                let logged = message(MessageChannel::Gaze, content);
-                vec![ChannelMessage { published: taken, ..logged }]
+                let logged = message(McapChannel::Gaze, content);
+                vec![McapMessage { published: taken, ..logged }]
             }
             Event::RobotMoves(sample) => {
                 self.moves(now, sample).map(|(channel, content)| message(channel, content)).into()
             }
             _ => {
-                let mut all = vec![message(MessageChannel::Events, event(stamped))];
-                all.extend(beliefs(stamped).map(|content| message(MessageChannel::Beliefs, content)));
-                all.extend(words(stamped, follower).map(|content| message(MessageChannel::Log, content)));
+                let mut all = vec![message(McapChannel::Events, event(stamped))];
+                all.extend(beliefs(stamped).map(|content| message(McapChannel::Beliefs, content)));
+                all.extend(words(stamped, follower).map(|content| message(McapChannel::Log, content)));
                 all
             }
         }
     }
 
     /// The messages of an arm sample: joint angles, coordinate frames, and what the arm does.
-    fn moves(&self, now: SessionTime, sample: &ArmSample) -> [(MessageChannel, Value); 3] {
+    fn moves(&self, now: SessionTime, sample: &ArmSample) -> [(McapChannel, Value); 3] {
         let joint = |(name, angle): (&&str, &f64)| json!({ "name": name, "position": angle });
         let joints: Vec<Value> = JOINT_NAMES.iter().zip(&sample.joints).map(joint).collect();
         let links = self.arm.links.iter().zip(self.arm.forward(&sample.joints)).skip(1);
@@ -89,9 +89,9 @@ impl MessageMaker {
             "timestamp": time(now), "phase": sample.phase, "force_n": sample.force_n, "hand_away_m": sample.hand_away_m,
         });
         [
-            (MessageChannel::Joints, json!({ "timestamp": time(now), "joints": joints })),
-            (MessageChannel::Frames, json!({ "transforms": frames })),
-            (MessageChannel::Arm, arm),
+            (McapChannel::Joints, json!({ "timestamp": time(now), "joints": joints })),
+            (McapChannel::Frames, json!({ "transforms": frames })),
+            (McapChannel::Arm, arm),
         ]
     }
 }
@@ -111,7 +111,7 @@ fn time(time: SessionTime) -> Value {
 }
 
 /// The message with an event as in the log.
-fn event(stamped: &Stamped) -> Value {
+fn event(stamped: &TimestampedEvent) -> Value {
     let mut fields = match serde_json::to_value(&stamped.event) {
         Ok(Value::Object(fields)) => fields,
         _ => Map::new(),
@@ -121,7 +121,7 @@ fn event(stamped: &Stamped) -> Value {
 }
 
 /// The message about beliefs, for the two kinds of events that record beliefs.
-fn beliefs(stamped: &Stamped) -> Option<Value> {
+fn beliefs(stamped: &TimestampedEvent) -> Option<Value> {
     let values = |values: &BTreeMap<String, f64>| -> Vec<Value> {
         values.iter().map(|(value, p)| json!({ "value": value, "p": p })).collect()
     };
@@ -154,7 +154,7 @@ fn beliefs(stamped: &Stamped) -> Option<Value> {
 }
 
 /// The message that says in words what happened.
-fn words(stamped: &Stamped, follower: &Follower) -> Option<Value> {
+fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<Value> {
     let line = event_lines::line(stamped, follower)?;
     let is_error = || follower.judged.last().is_some_and(|press| press.seq == stamped.seq && press.verdict.error);
     let level = match &stamped.event {

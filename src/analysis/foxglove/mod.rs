@@ -6,5 +6,5 @@ mod channels;
 mod messages;
 mod schemas;
 
-pub use self::channels::MessageChannel;
-pub use self::messages::{ChannelMessage, MessageMaker};
+pub use self::channels::McapChannel;
+pub use self::messages::{McapMessage, McapMessageConverter};

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::session::Stamped;
+use crate::session::TimestampedEvent;
 use crate::session::event::Event;
 use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
@@ -18,7 +18,7 @@ const LEFT_OUT: &str = "left_out";
 
 /// Code of an event: its kind and what it is about, with slashes between: `press/human/take rice`. Tools such as MNE
 /// select events by parts of such codes.
-pub fn code(stamped: &Stamped) -> String {
+pub fn code(stamped: &TimestampedEvent) -> String {
     let fields = fields(&stamped.event);
     let parts = PARTS.iter().filter_map(|part| part_text(fields.get(*part)?));
     std::iter::once(stamped.event.kind().to_string()).chain(parts).collect::<Vec<_>>().join("/")
@@ -26,7 +26,7 @@ pub fn code(stamped: &Stamped) -> String {
 
 /// The event as in the log, without text that people typed or answered and without names of devices; `left_out` lists
 /// the missing fields.
-pub fn event_text(stamped: &Stamped) -> String {
+pub fn event_text(stamped: &TimestampedEvent) -> String {
     let mut text = json!({ "seq": stamped.seq, "t_ns": stamped.time });
     if let Value::Object(text) = &mut text {
         text.extend(fields(&stamped.event));

@@ -7,4 +7,4 @@ mod stream_samples;
 
 pub use self::marker_text::{code, event_text};
 pub use self::stream_description::{MetadataNode, SOURCE, StreamChannel, StreamDescription, describe};
-pub use self::stream_samples::{SampleMaker, SampleValues, StreamSample};
+pub use self::stream_samples::{LslSampleConverter, LslSampleValues, StreamSample};

@@ -12,7 +12,7 @@ use crate::kitchen::Agent;
 use crate::measures::JudgedPress;
 use crate::session::event::Event;
 use crate::session::settings::LslOutlet;
-use crate::session::{Session, Stamped, TimelineEvent};
+use crate::session::{Session, TimelineEvent, TimestampedEvent};
 
 /// Least time between two belief samples if only gaze has changed the beliefs, in seconds.
 const BELIEF_STEP_S: f64 = 0.1;
@@ -25,12 +25,12 @@ pub struct StreamSample {
     /// Session time of what the sample reports.
     pub time: SessionTime,
     /// Values of the sample, one for each channel.
-    pub values: SampleValues,
+    pub values: LslSampleValues,
 }
 
 /// The values of an LSL sample, one for each channel.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SampleValues {
+pub enum LslSampleValues {
     /// Values in a stream of numbers; NaN stands for a missing value.
     Numbers(Vec<f64>),
     /// Values in a stream of texts.
@@ -39,7 +39,7 @@ pub enum SampleValues {
 
 /// Converts the events of a session into samples of its LSL streams.
 #[derive(Clone, Debug)]
-pub struct SampleMaker {
+pub struct LslSampleConverter {
     outlets: Vec<LslOutlet>,
     /// Name of the recording to which the samples belong.
     recording: String,
@@ -49,11 +49,11 @@ pub struct SampleMaker {
     believed: Option<(SessionTime, Vec<f32>)>,
 }
 
-impl SampleMaker {
+impl LslSampleConverter {
     /// A converter for the streams that the session sends; `recording` is the name of the recording.
-    pub fn new(session: &Session, recording: &str) -> SampleMaker {
+    pub fn new(session: &Session, recording: &str) -> LslSampleConverter {
         let outlets = session.spec.lsl.as_ref().map_or(Vec::new(), |lsl| lsl.outlets.clone());
-        SampleMaker {
+        LslSampleConverter {
             outlets,
             recording: recording.to_string(),
             signals: session_signals(&session.spec, &session.kitchen),
@@ -72,7 +72,7 @@ impl SampleMaker {
             "participant": spec.participant.code,
             "condition": spec.trial.condition.name(),
         });
-        let text = |outlet, text: String| StreamSample { outlet, time, values: SampleValues::Texts(vec![text]) };
+        let text = |outlet, text: String| StreamSample { outlet, time, values: LslSampleValues::Texts(vec![text]) };
         let all =
             [text(LslOutlet::Markers, format!("recording/{recording}")), text(LslOutlet::Events, told.to_string())];
         all.into_iter().filter(|sample| self.outlets.contains(&sample.outlet)).collect()
@@ -82,7 +82,7 @@ impl SampleMaker {
     /// the estimate after the last event.
     pub fn samples(
         &mut self,
-        events: &[Stamped],
+        events: &[TimestampedEvent],
         session: &Session,
         judged: &[JudgedPress],
         belief: &BeliefSnapshot,
@@ -100,24 +100,29 @@ impl SampleMaker {
         samples
     }
 
-    fn event_samples(&self, stamped: &Stamped, session: &Session, judged: &[JudgedPress]) -> Vec<StreamSample> {
+    fn event_samples(
+        &self,
+        stamped: &TimestampedEvent,
+        session: &Session,
+        judged: &[JudgedPress],
+    ) -> Vec<StreamSample> {
         let sample = |outlet, time, values| StreamSample { outlet, time, values };
-        let (now, texts) = (stamped.time, |texts: Vec<String>| SampleValues::Texts(texts));
+        let (now, texts) = (stamped.time, |texts: Vec<String>| LslSampleValues::Texts(texts));
         let mut samples = match &stamped.event {
             Event::Gaze(gaze) => {
                 let read = session.corrected(*gaze);
-                let values = SampleValues::Numbers(vec![read.x, read.y, read.confidence]);
+                let values = LslSampleValues::Numbers(vec![read.x, read.y, read.confidence]);
                 return vec![sample(LslOutlet::Gaze, gaze.taken_ns.unwrap_or(now), values)];
             }
             Event::RobotMoves(arm) => {
-                return vec![sample(LslOutlet::Arm, now, SampleValues::Numbers(arm.joints.to_vec()))];
+                return vec![sample(LslOutlet::Arm, now, LslSampleValues::Numbers(arm.joints.to_vec()))];
             }
             Event::Press { agent, button, at_ns } => {
                 let values = texts(press_texts(*agent, button, stamped, session, judged));
                 vec![sample(LslOutlet::Presses, at_ns.unwrap_or(now), values)]
             }
             Event::Advised(advice) => {
-                vec![sample(LslOutlet::NetBenefit, advice.for_ns, SampleValues::Numbers(self.net_benefits(advice)))]
+                vec![sample(LslOutlet::NetBenefit, advice.for_ns, LslSampleValues::Numbers(self.net_benefits(advice)))]
             }
             _ => Vec::new(),
         };
@@ -139,7 +144,7 @@ impl SampleMaker {
         if !self.believed.as_ref().is_none_or(|last| is_due(last) && last.1 != held) {
             return None;
         }
-        let values = SampleValues::Numbers(held.iter().map(|p_truth| f64::from(*p_truth)).collect());
+        let values = LslSampleValues::Numbers(held.iter().map(|p_truth| f64::from(*p_truth)).collect());
         self.believed = Some((belief.time, held));
         Some(StreamSample { outlet: LslOutlet::Beliefs, time: belief.time, values })
     }
@@ -150,7 +155,7 @@ impl SampleMaker {
 fn press_texts(
     agent: Agent,
     button: &str,
-    stamped: &Stamped,
+    stamped: &TimestampedEvent,
     session: &Session,
     judged: &[JudgedPress],
 ) -> Vec<String> {

@@ -16,7 +16,7 @@ use rapier3d::prelude::{
     SoftBodySet, Vector,
 };
 
-use super::kinematics::Arm;
+use super::kinematics::SerialArm;
 use crate::robot::moment::{JOINTS, JointAngles};
 use button::PhysicalButton;
 use hand_body::{HandPose, PhysicalHand, double, single};
@@ -47,7 +47,7 @@ const APART_M: f64 = 0.05;
 
 /// The contact forces measured in one controller cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CycleForces {
+pub struct ContactForces {
     /// The greatest force between arm and human, in newtons.
     pub human_n: f64,
     /// The greatest force of the stick on the button, in newtons.
@@ -56,7 +56,7 @@ pub struct CycleForces {
     pub clicked: bool,
 }
 
-impl Arm {
+impl SerialArm {
     /// The distance between a hand and the arm at these joint angles, in metres.
     pub fn distance(&self, joints: &JointAngles, hand: &HandPose) -> f64 {
         let human = hand.capsules();
@@ -68,7 +68,7 @@ impl Arm {
 
 /// The simulated world: arm, buttons and hand as bodies of the physics engine.
 pub struct PhysicsWorld {
-    arm: Arm,
+    arm: SerialArm,
     parameters: IntegrationParameters,
     islands: IslandManager,
     broad_phase: BroadPhaseBvh,
@@ -130,7 +130,7 @@ impl std::fmt::Debug for PhysicsWorld {
 
 impl PhysicsWorld {
     /// A simulated arm with these joint angles, above buttons at these positions on a table of this height.
-    pub fn new(arm: &Arm, joints: &JointAngles, buttons: &[[f64; 2]], table_m: f64) -> PhysicsWorld {
+    pub fn new(arm: &SerialArm, joints: &JointAngles, buttons: &[[f64; 2]], table_m: f64) -> PhysicsWorld {
         let mut world = PhysicsWorld {
             arm: arm.clone(),
             parameters: IntegrationParameters {
@@ -218,11 +218,11 @@ impl PhysicsWorld {
 
     /// Runs a cycle of the controller: the joints move towards `command` (radians), the hand to where the person wants
     /// it.
-    pub fn cycle(&mut self, command: &JointAngles, hand: Option<HandPose>) -> CycleForces {
+    pub fn cycle(&mut self, command: &JointAngles, hand: Option<HandPose>) -> ContactForces {
         let before = self.commanded;
         self.set_hand(hand);
         let near = self.hand().is_some_and(|hand| self.distance(&hand) < APART_M);
-        let mut felt = CycleForces::default();
+        let mut felt = ContactForces::default();
         for step in 1..=STEPS_A_CYCLE {
             let share = step as f64 / STEPS_A_CYCLE as f64;
             self.drive(

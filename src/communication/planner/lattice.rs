@@ -21,14 +21,14 @@ const RATIO: f64 = 1.085_070_245_491_450_8;
 
 /// Quasi-random points of the unit cube, one per rollout.
 #[derive(Clone, Debug)]
-pub struct Lattice {
+pub struct QuasiRandomLattice {
     shift: [f64; NUMBERS],
 }
 
-impl Lattice {
+impl QuasiRandomLattice {
     /// The quasi-random points with a random shift.
-    pub fn shifted(random: &mut Stream) -> Lattice {
-        Lattice { shift: std::array::from_fn(|_| random.random()) }
+    pub fn shifted(random: &mut Stream) -> QuasiRandomLattice {
+        QuasiRandomLattice { shift: std::array::from_fn(|_| random.random()) }
     }
 
     /// Point `number`, each coordinate from 0 to below 1.

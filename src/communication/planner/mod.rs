@@ -15,13 +15,13 @@ mod tally;
 
 use std::sync::Arc;
 
-use self::lattice::{Lattice, PER_DECISION};
+use self::lattice::{PER_DECISION, QuasiRandomLattice};
 use self::rollout::{BaselineRollout, Rollout, RolloutContext, RolloutDraws, RolloutState, UnreadSignal};
 use self::rollout_robot::RobotPolicy;
 use self::sample::BeliefSamples;
 use self::tally::PairedDifferences;
 use super::concept::{Concept, DecisionPoint};
-use super::recommendation::{Reason, Recommendation, SignalOption, aspects_told};
+use super::recommendation::{Recommendation, SignalOption, SignalReason, aspects_told};
 use super::settings::AssistantSpec;
 use super::signal::{Signal, unavailable};
 use super::situation::Situation;
@@ -117,7 +117,7 @@ impl Planner {
         situation: &Situation,
         candidates: &mut [Candidate],
         number: usize,
-        lattice: &Lattice,
+        lattice: &QuasiRandomLattice,
         random: &mut Stream,
     ) {
         let model = &self.spec.rollout;
@@ -203,7 +203,8 @@ impl Planner {
             rollouts: candidate.tally.count(),
         };
         let reason = candidates.first().filter(|candidate| candidate.tally.mean() > 0.0).and_then(|candidate| {
-            let mut reason = Reason::for_signal(&self.kitchen, situation.state, situation.belief, &candidate.signal)?;
+            let mut reason =
+                SignalReason::for_signal(&self.kitchen, situation.state, situation.belief, &candidate.signal)?;
             if let Some((prevents, instead)) = candidate.tally.turning_point() {
                 let name = |button: ButtonId| self.kitchen.button(Agent::Human, button).name.clone();
                 reason.prevents = Some(name(prevents));
@@ -225,7 +226,7 @@ impl Concept for Planner {
         let mut candidates = self.candidates(situation, moment.signals);
         let rollouts = self.spec.rollout.rollouts;
         self.samples.prepare(situation.belief, rollouts, self.spec.rollout.states, &mut random);
-        let lattice = Lattice::shifted(&mut random);
+        let lattice = QuasiRandomLattice::shifted(&mut random);
         for number in 0..rollouts {
             self.roll_out(cost, situation, &mut candidates, number, &lattice, &mut random);
             if (number + 1) % BATCH == 0 && self.is_decided(&mut candidates, number + 1) {

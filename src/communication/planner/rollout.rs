@@ -9,7 +9,7 @@ use rand::RngExt;
 use super::rollout_human::choice_weights;
 use super::rollout_robot::{self, OngoingRobotPress, RobotChoices, RobotPolicy};
 use crate::base::rng::Stream;
-use crate::communication::settings::RolloutModel;
+use crate::communication::settings::RolloutSettings;
 use crate::communication::situation::{RobotIntent, Situation};
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::state::MAX_LOCATIONS;
@@ -63,7 +63,7 @@ pub struct RolloutContext<'a> {
     /// For each button of the human, the aspects at which the human looks before the press.
     pub watched: &'a [Vec<AspectId>],
     /// Settings of the rollouts: horizon, number and accuracy.
-    pub model: &'a RolloutModel,
+    pub model: &'a RolloutSettings,
     /// Duration of a press of the robot, in seconds.
     pub robot_press_s: f64,
     /// Probability that the human looks at a needed location before a press.

@@ -4,13 +4,13 @@
 use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorlds, World};
 use crate::mind::dirichlet::DirichletBelief;
-use crate::mind::filter::urn::Urn;
+use crate::mind::filter::urn::PolyaUrn;
 
 /// Belief samples for the rollouts of one recommendation. First draws are stratified over the samples by the mean of
 /// each aspect.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefSamples {
-    urns: Vec<Urn>,
+    urns: Vec<PolyaUrn>,
     /// First draws of all samples: `[aspect * samples + sample]`.
     firsts: Vec<u8>,
     /// All draws of the present sample: `[aspect * states + draw]`.
@@ -26,7 +26,7 @@ impl BeliefSamples {
     pub fn prepare(&mut self, belief: &DirichletBelief, samples: usize, states: usize, random: &mut Stream) {
         (self.samples, self.states) = (samples, states);
         let aspects = belief.aspects.len();
-        self.urns.resize(aspects, Urn::default());
+        self.urns.resize(aspects, PolyaUrn::default());
         self.firsts.resize(aspects * samples, 0);
         self.drawn.resize(aspects * states, 0);
         for (index, dirichlet) in belief.aspects.iter().enumerate() {

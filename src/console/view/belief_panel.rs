@@ -4,13 +4,13 @@
 use ratatui::layout::Rect;
 
 use super::paint::{Painter, fit, width, wrap};
-use super::regions::Regions;
+use super::regions::PanelAreas;
 use super::theme::TextRole;
 use super::timeline::ticks;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
 use crate::console::beliefs::{
-    BeliefStanding, EstimatedBelief, are_by_cost, beliefs, name, percent, value, visibility,
+    BeliefCorrectness, EstimatedBelief, are_by_cost, beliefs, name, percent, value, visibility,
 };
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
@@ -19,7 +19,7 @@ use crate::history::belief_track::{self, BeliefSnapshot, SHOWN_S};
 use crate::kitchen::AspectId;
 use crate::measures::sequences::FALSE_BELOW;
 use crate::session::Session;
-use crate::session::settings::Visibility;
+use crate::session::settings::WizardVisibility;
 
 /// Least width, in columns, of a panel that shows each belief in one line.
 const ONE_LINE: u16 = 66;
@@ -47,9 +47,9 @@ struct Panel<'a> {
 }
 
 /// Draws the belief panel.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.belief;
-    if area.area() == 0 || visibility(session, model) < Visibility::Belief {
+    if area.area() == 0 || visibility(session, model) < WizardVisibility::Belief {
         return;
     }
     let now = if session.is_running() { model.now } else { model.now.min(session.time) };
@@ -73,13 +73,13 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
 }
 
 impl Panel<'_> {
-    fn of_standing(&self, standing: BeliefStanding) -> impl Iterator<Item = &EstimatedBelief> {
+    fn of_standing(&self, standing: BeliefCorrectness) -> impl Iterator<Item = &EstimatedBelief> {
         self.beliefs.iter().filter(move |belief| belief.standing == standing)
     }
 
     fn remark(&self) -> String {
         let order = if are_by_cost(self.session) { "most costly first" } else { "oldest first" };
-        match self.of_standing(BeliefStanding::False).count() {
+        match self.of_standing(BeliefCorrectness::False).count() {
             0 => "estimated".to_string(),
             number => format!("{number} false, {order}"),
         }
@@ -88,7 +88,7 @@ impl Panel<'_> {
     /// Draws the list of beliefs, and below it, as far as there is room, charts of the first beliefs over time.
     fn list(&self, brush: &mut Painter, area: Rect) {
         let mut y = area.y;
-        let is_false = |belief: &EstimatedBelief| belief.standing == BeliefStanding::False;
+        let is_false = |belief: &EstimatedBelief| belief.standing == BeliefCorrectness::False;
         let is_wide = area.width >= ONE_LINE;
         if !self.beliefs.iter().any(is_false) {
             let quiet = brush.style(TextRole::Quiet);
@@ -96,7 +96,7 @@ impl Panel<'_> {
             y += 1;
         }
         let told: Vec<&EstimatedBelief> =
-            self.beliefs.iter().filter(|belief| belief.standing != BeliefStanding::Right).collect();
+            self.beliefs.iter().filter(|belief| belief.standing != BeliefCorrectness::Right).collect();
         let right = self.beliefs.len() - told.len();
         for (index, belief) in told.iter().enumerate() {
             let lines = if is_wide { Vec::new() } else { self.told(belief, area.width - 2) };
@@ -127,7 +127,7 @@ impl Panel<'_> {
             y += 2;
         }
         // Charts beside the kitchen show only false and unsure beliefs; a wide panel also shows right ones.
-        for belief in self.beliefs.iter().filter(|belief| is_wide || belief.standing != BeliefStanding::Right) {
+        for belief in self.beliefs.iter().filter(|belief| is_wide || belief.standing != BeliefCorrectness::Right) {
             if y + CHART_ROWS > area.bottom() {
                 return;
             }
@@ -141,7 +141,7 @@ impl Panel<'_> {
     /// What the participant believes and what is true, in as few lines as the columns allow.
     fn told(&self, belief: &EstimatedBelief, columns: u16) -> Vec<String> {
         let (thinks, truth) = self.values(belief);
-        if belief.standing == BeliefStanding::Unsure {
+        if belief.standing == BeliefCorrectness::Unsure {
             return vec![format!("unsure, perhaps {thinks}")];
         }
         let whole = format!("thinks {thinks}, is {truth}");
@@ -169,7 +169,7 @@ impl Panel<'_> {
     fn title(&self, belief: &EstimatedBelief) -> String {
         let name = name(self.session, belief.aspect);
         match belief.standing {
-            BeliefStanding::Unsure => format!("unsure: {name}, perhaps {}", self.values(belief).0),
+            BeliefCorrectness::Unsure => format!("unsure: {name}, perhaps {}", self.values(belief).0),
             _ => name,
         }
     }
@@ -199,7 +199,7 @@ impl Panel<'_> {
         brush.text_right(area.right(), y, area.width, &end, style);
         let (thinks, truth) = self.values(belief);
         let (head, is) = match belief.standing {
-            BeliefStanding::Unsure => (self.title(belief), String::new()),
+            BeliefCorrectness::Unsure => (self.title(belief), String::new()),
             _ => (format!("{}: thinks {thinks}, ", self.title(belief)), format!("is {truth}")),
         };
         // Words have priority over the probability bar, since the number shows the same.
@@ -219,7 +219,7 @@ impl Panel<'_> {
         let x = brush.text(area.x, area.y, area.width, " beliefs  ", quiet);
         let room = area.width.saturating_sub(11);
         let told: Vec<&EstimatedBelief> =
-            self.beliefs.iter().filter(|belief| belief.standing != BeliefStanding::Right).collect();
+            self.beliefs.iter().filter(|belief| belief.standing != BeliefCorrectness::Right).collect();
         if told.is_empty() {
             let words = if self.beliefs.is_empty() { BEFORE } else { QUIET };
             brush.text(x, area.y, room, words, quiet);
@@ -234,11 +234,11 @@ impl Panel<'_> {
             let columns = room.saturating_sub(width(&end) + 1);
             let (thinks, truth) = self.values(belief);
             let line = match belief.standing {
-                BeliefStanding::Unsure => self.title(belief),
+                BeliefCorrectness::Unsure => self.title(belief),
                 _ => format!("{}: thinks {thinks}, is {truth}", self.title(belief)),
             };
             // What is believed and what is true have priority over the words between them.
-            let line = match width(&line) > columns && belief.standing != BeliefStanding::Unsure {
+            let line = match width(&line) > columns && belief.standing != BeliefCorrectness::Unsure {
                 true => format!("{}: {thinks}, is {truth}", self.title(belief)),
                 false => line,
             };
@@ -254,7 +254,7 @@ impl Panel<'_> {
         let quiet = brush.style(TextRole::Quiet);
         let name = name(self.session, belief.aspect);
         let thought = match belief.standing {
-            BeliefStanding::Right => format!("{name}: {truth}"),
+            BeliefCorrectness::Right => format!("{name}: {truth}"),
             _ => format!("{name}: thinks {thinks} {}, is {truth}", percent(belief.p.into())),
         };
         // The curve is the probability of the truth; if there is no room for both, the title says this instead of what
@@ -316,8 +316,8 @@ impl Panel<'_> {
 /// Style of a belief: yellow is reserved for false beliefs.
 fn role(belief: &EstimatedBelief) -> TextRole {
     match belief.standing {
-        BeliefStanding::False => TextRole::FalseBelief,
-        BeliefStanding::Unsure => TextRole::Text,
-        BeliefStanding::Right => TextRole::Quiet,
+        BeliefCorrectness::False => TextRole::FalseBelief,
+        BeliefCorrectness::Unsure => TextRole::Text,
+        BeliefCorrectness::Right => TextRole::Quiet,
     }
 }

@@ -7,7 +7,7 @@ use super::footer::onward;
 use super::head;
 use super::paint::{Painter, width};
 use super::popup::open;
-use super::regions::{Regions, ScreenSize};
+use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::base::words::count;
@@ -17,11 +17,11 @@ use crate::console::console_model::ConsoleModel;
 use crate::console::form::sheet;
 use crate::console::key_action::{KeyAction, KeyLayer, ManualAction};
 use crate::console::possible::can_redo;
-use crate::history::signal_judge::SignalTally;
+use crate::history::signal_judge::SignalJudgementCounts;
 use crate::history::wording;
 use crate::kitchen::{Agent, Dish};
-use crate::session::settings::{ParticipantKind, Visibility};
-use crate::session::{Phase, Session};
+use crate::session::settings::{ParticipantKind, WizardVisibility};
+use crate::session::{Session, TrialPhase};
 
 /// Width of a card, and least width of the names in its left column.
 const COLUMNS: u16 = 62;
@@ -42,18 +42,18 @@ struct Card {
 }
 
 /// Draws the card of the trial's start or end, unless a dialog or sheet covers the console.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     // The results of a trial are shown even while a single panel is at full size.
-    let is_alone = model.alone.is_some() && !matches!(session.phase, Phase::Over(_));
+    let is_alone = model.alone.is_some() && !matches!(session.phase, TrialPhase::Over(_));
     let is_covered = model.dialog.is_some() || is_alone || sheet(session).is_some();
     let has_trial = session.study_phase().is_none_or(|phase| phase.phase().has_trial());
     if is_covered || !has_trial || model.playback.is_some() || model.lesson.is_some() || session.is_calibrating() {
         return;
     }
     let card = match session.phase {
-        Phase::Ready => before(session, model),
-        Phase::Paused if model.layer == KeyLayer::Participant => recipes(session, model),
-        Phase::Over(_) => after(session, model),
+        TrialPhase::Ready => before(session, model),
+        TrialPhase::Paused if model.layer == KeyLayer::Participant => recipes(session, model),
+        TrialPhase::Over(_) => after(session, model),
         _ => return,
     };
     card.draw(brush, regions.middle());
@@ -137,7 +137,7 @@ fn after(session: &Session, model: &ConsoleModel) -> Card {
 /// or needless. The latter line is left out where the wizard may not see the belief estimate.
 fn signals(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
     let is_simulated = session.spec.participant.kind == ParticipantKind::Simulated;
-    let may_tell = is_simulated || session.spec.console.visibility >= Visibility::Belief;
+    let may_tell = is_simulated || session.spec.console.visibility >= WizardVisibility::Belief;
     let mut facts = Vec::new();
     for by in [Sender::Wizard, Sender::Assistant] {
         let tally = model.signals.tally(by);
@@ -149,7 +149,7 @@ fn signals(session: &Session, model: &ConsoleModel) -> Vec<Fact> {
         facts.push(fact(if facts.is_empty() { "signals" } else { "" }, sent, TextRole::Text));
         if may_tell {
             let basis = if is_simulated { "" } else { "  estimated" };
-            let SignalTally { hits, late, needless, .. } = tally;
+            let SignalJudgementCounts { hits, late, needless, .. } = tally;
             let judged = format!("{hits} about a false belief, {late} late, {needless} needless");
             facts.push(fact(basis, judged, TextRole::Text));
         }

@@ -3,16 +3,16 @@
 use ratatui::layout::Rect;
 
 use super::paint::{Painter, fit, width, wrap};
-use super::regions::{Regions, ScreenSize};
+use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::analysis::error_list::ListedError;
 use crate::console::click::ClickAction;
 use crate::console::codebook::{self, CodebookEntry};
-use crate::console::coding_list::CodingList;
+use crate::console::coding_list::ErrorListLayout;
 use crate::console::console_model::ConsoleModel;
-use crate::console::rater_session::{CodingParty, RaterSession};
+use crate::console::rater_session::{CodingRaters, RaterSession};
 use crate::history::wording;
-use crate::measures::cause_codes::Code;
+use crate::measures::cause_codes::ErrorCauseCode;
 use crate::session::Session;
 
 /// Columns of the number of an error in a rater's list, and of the error's time.
@@ -27,7 +27,7 @@ const SHORT_CODE: u16 = 14;
 const BAR: u16 = 16;
 
 /// Draws the codebook and the list of errors, while a rater codes errors.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let Some(coding) = &model.coding else { return };
     let events = model.playback.as_ref().map_or(0, |playback| playback.event);
     let is_panel = regions.room != ScreenSize::Small && model.alone.is_none();
@@ -64,12 +64,12 @@ fn draw_codebook(brush: &mut Painter, area: Rect, session: &Session, model: &Con
     }
 }
 
-fn draw_errors(brush: &mut Painter, regions: &Regions, coding: &RaterSession, events: usize) {
+fn draw_errors(brush: &mut Painter, regions: &PanelAreas, coding: &RaterSession, events: usize) {
     let area = regions.errors;
     if area.area() == 0 {
         return;
     }
-    let list = CodingList::new(regions, coding, events);
+    let list = ErrorListLayout::new(regions, coding, events);
     match list.head.y > area.y {
         true => {
             brush.panel(area, &coding.progress(), "");
@@ -124,8 +124,8 @@ fn draw_head(brush: &mut Painter, head: Rect, coding: &RaterSession, events: usi
         let code = RaterSession::words(coding.code(error));
         lines.push((format!("{} {}", error.error, error.words()), TextRole::Strong));
         match coding.party {
-            CodingParty::Rater(_) => lines.push((format!("  {code}"), TextRole::Text)),
-            CodingParty::Pair { .. } => {
+            CodingRaters::Rater(_) => lines.push((format!("  {code}"), TextRole::Text)),
+            CodingRaters::Pair { .. } => {
                 let own = coding.own(error);
                 let beside = own.join("   ");
                 let lines_of_own = if width(&beside) + 2 <= columns { vec![beside] } else { own };
@@ -186,8 +186,8 @@ fn draw_row(brush: &mut Painter, line: Rect, coding: &RaterSession, error: &List
 }
 
 /// An error's code in few columns: for a false belief, only the place.
-fn short(code: Option<&Code>) -> String {
-    match code.and_then(Code::aspect) {
+fn short(code: Option<&ErrorCauseCode>) -> String {
+    match code.and_then(ErrorCauseCode::aspect) {
         Some(place) => wording::location(place),
         None => RaterSession::words(code),
     }

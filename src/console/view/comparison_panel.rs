@@ -5,14 +5,14 @@ use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
 use super::paint::{Painter, width};
-use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
+use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
 use super::timeline::{axis, columns_ago};
 use crate::base::time::SessionTime;
-use crate::console::compared::ComparisonKey;
+use crate::console::compared::ComparisonAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
-use crate::history::comparison::{Communication, CommunicationContent, LaneComparison, UnmatchedCommunication};
+use crate::history::comparison::{Communication, CommunicationContent, SenderComparison, UnmatchedCommunication};
 use crate::session::Session;
 
 /// Time that one terminal column of the comparison stands for, in seconds.
@@ -22,7 +22,7 @@ const LABELS: u16 = 10;
 const TITLE: &str = "Wizard and assistant";
 
 /// Draws the comparison of wizard and assistants.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.comparison;
     let Some(compared) = model.comparison.as_ref().filter(|_| area.area() > 0) else { return };
     let is_small = regions.room == ScreenSize::Small;
@@ -67,7 +67,7 @@ struct View<'a> {
     session: &'a Session,
     model: &'a ConsoleModel,
     plot: Rect,
-    seen: &'a LaneComparison,
+    seen: &'a SenderComparison,
     chosen: Option<UnmatchedCommunication>,
 }
 
@@ -128,7 +128,7 @@ impl View<'_> {
 }
 
 /// Draws how similar the communications of this lane are to those of the first lane.
-fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &LaneComparison, lane: usize) {
+fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &SenderComparison, lane: usize) {
     let name = format!("{:<9}", seen.lanes[lane].name);
     if seen.lanes[0].spoken.is_empty() {
         let text = "no signal was sent yet: nothing to compare with";
@@ -155,7 +155,7 @@ fn figures_line(brush: &mut Painter, inside: Rect, y: u16, seen: &LaneComparison
 fn differences(
     brush: &mut Painter,
     area: Rect,
-    seen: &LaneComparison,
+    seen: &SenderComparison,
     chosen: Option<(usize, UnmatchedCommunication)>,
     model: &ConsoleModel,
 ) {
@@ -174,7 +174,7 @@ fn differences(
         let is_chosen = index == at;
         let number = format!("{:>3}/{}  ", index + 1, seen.differences.len());
         let role = if is_chosen { TextRole::Strong } else { TextRole::Quiet };
-        let open = model.keys.chord_for(&KeyAction::Differ(ComparisonKey::Open)).filter(|_| is_chosen);
+        let open = model.keys.chord_for(&KeyAction::Differ(ComparisonAction::Open)).filter(|_| is_chosen);
         let open = open.map_or(String::new(), |key| format!("  {key} details"));
         let headline = seen.headline(difference);
         let room = area.width.saturating_sub(width(&open) + 1);

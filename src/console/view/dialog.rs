@@ -7,16 +7,16 @@ use super::hands;
 use super::paint::{Painter, width, wrap};
 use super::picker;
 use super::popup::open;
-use super::regions::Regions;
+use super::regions::PanelAreas;
 use super::theme::{Glyphs, TextRole, Theme};
 use crate::console::chord::KeyChord;
 use crate::console::console_model::{ConsoleModel, Dialog};
 use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer};
 use crate::console::keys::KeyBindings;
-use crate::session::{Phase, Session};
+use crate::session::{Session, TrialPhase};
 
 /// Draws the open dialog, if there is one.
-pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, screen: Rect, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     match &model.dialog {
         // The question whether to send a clicked signal stands in the line of messages.
         None | Some(Dialog::Send(_)) => {}
@@ -33,7 +33,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Sess
         Some(Dialog::Quit) => {
             let lines: &[&str] = match session.phase {
                 _ if model.lesson.is_some() => &["The training ends without a saved result."],
-                Phase::Running | Phase::Paused => {
+                TrialPhase::Running | TrialPhase::Paused => {
                     &["The trial is not over. Only y ends it.", "The session ends, the recording is kept."]
                 }
                 _ if !session.is_step_done() => {
@@ -41,7 +41,7 @@ pub fn draw(brush: &mut Painter, screen: Rect, regions: &Regions, session: &Sess
                 }
                 _ => &["The session ends, the recording is kept."],
             };
-            let is_running = matches!(session.phase, Phase::Running | Phase::Paused);
+            let is_running = matches!(session.phase, TrialPhase::Running | TrialPhase::Paused);
             let again = model.keys.chord_for(&KeyAction::Quit).filter(|_| !is_running);
             let yes = again.map_or("y".to_string(), |chord| format!("y or {chord}"));
             ask(brush, screen, "Quit tomcom?", lines, &yes);

@@ -1,7 +1,7 @@
 //! List of events in words with their times on the trial's clock, newest first, shown on large terminals.
 
 use super::paint::Painter;
-use super::regions::Regions;
+use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::console::console_model::ConsoleModel;
 use crate::history::wording;
@@ -12,7 +12,7 @@ use crate::session::{Session, TimelineEvent};
 const WHO: u16 = 10;
 
 /// Draws the list of events.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     if regions.events.area() == 0 {
         return;
     }

@@ -7,17 +7,17 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::paint::{Painter, width};
-use super::regions::Regions;
+use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::console::click::ClickAction;
 use crate::console::console_model::{ConsoleModel, Dialog, Notice};
-use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, PanelKey, RaterKey};
+use crate::console::key_action::{KeyAction, KeyBinding, KeyLayer, ManualAction, RaterAction, ViewAction};
 use crate::console::notice::NoticeLevel;
-use crate::console::playback::ReplayKey;
+use crate::console::playback::ReplayAction;
 use crate::console::possible::{can_redo, is_possible};
 use crate::history::wording;
 use crate::session::settings::ParticipantKind;
-use crate::session::{Phase, Session};
+use crate::session::{Session, TrialPhase};
 
 /// A key hint in the console's lowest line: keys, the action of a click on each, and a label.
 struct Hint<'a> {
@@ -27,7 +27,7 @@ struct Hint<'a> {
 }
 
 /// Draws the line of key hints.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.footer;
     if !model.focused && model.playback.is_none() {
         let alarm = brush.theme.badge(TextRole::Alarm);
@@ -49,14 +49,14 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let is_over = is_over(session, model);
     let is_late = |binding: &&KeyBinding| match is_over {
         true => !matches!(binding.action, KeyAction::Advance | KeyAction::Quit | KeyAction::Hand(ManualAction::Redo)),
-        false => matches!(binding.action, KeyAction::EndTrial | KeyAction::Look(PanelKey::Next)),
+        false => matches!(binding.action, KeyAction::EndTrial | KeyAction::Look(ViewAction::Next)),
     };
     let (late, mut first): (Vec<&KeyBinding>, Vec<&KeyBinding>) = model.keys.bindings.iter().partition(is_late);
     // The first hint is the robot stop, the second is the key back to all panels while one is at full size, then follow
     // a rater's keys.
     first.sort_by_key(|binding| match binding.action {
         KeyAction::StopRobot => 0,
-        KeyAction::Look(PanelKey::All) => 1,
+        KeyAction::Look(ViewAction::All) => 1,
         KeyAction::Rate(_) => 2,
         _ => 3,
     });
@@ -104,7 +104,7 @@ fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel)
         Some((chord.to_string(), Some(ClickAction::Key(chord))))
     };
     // Keys for two opposite directions share a key hint, and so do keys of one kind.
-    let pair = |[back, on]: [ReplayKey; 2]| {
+    let pair = |[back, on]: [ReplayAction; 2]| {
         let parts = [back, on].map(KeyAction::Move).iter().filter_map(part).collect::<Vec<_>>();
         match parts.as_slice() {
             [back, on] => vec![back.clone(), ("/".to_string(), None), on.clone()],
@@ -116,11 +116,11 @@ fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel)
         KeyAction::Note(_) if session.spec.console.notes.len() > 1 => {
             group(format!("1-{}", session.spec.console.notes.len()), "markers")
         }
-        KeyAction::Rate(RaterKey::Belief(_)) => group("letters".to_string(), "wrongabout"),
-        KeyAction::Move(ReplayKey::StepForward) => pair([ReplayKey::StepBack, ReplayKey::StepForward]),
-        KeyAction::Move(ReplayKey::SeekForward) => pair([ReplayKey::SeekBack, ReplayKey::SeekForward]),
-        KeyAction::Move(ReplayKey::Faster) => pair([ReplayKey::Faster, ReplayKey::Slower]),
-        KeyAction::Move(ReplayKey::ToEnd) => pair([ReplayKey::ToStart, ReplayKey::ToEnd]),
+        KeyAction::Rate(RaterAction::Belief(_)) => group("letters".to_string(), "wrongabout"),
+        KeyAction::Move(ReplayAction::StepForward) => pair([ReplayAction::StepBack, ReplayAction::StepForward]),
+        KeyAction::Move(ReplayAction::SeekForward) => pair([ReplayAction::SeekBack, ReplayAction::SeekForward]),
+        KeyAction::Move(ReplayAction::Faster) => pair([ReplayAction::Faster, ReplayAction::Slower]),
+        KeyAction::Move(ReplayAction::ToEnd) => pair([ReplayAction::ToStart, ReplayAction::ToEnd]),
         _ => part(&binding.action).into_iter().collect(),
     };
     (!keys.is_empty()).then_some(Hint { keys, label, role })
@@ -128,7 +128,7 @@ fn hint<'a>(binding: &'a KeyBinding, session: &Session, model: &'a ConsoleModel)
 
 /// Draws the line of messages: the question whether to send a clicked signal, or the latest notice, or else, as long as
 /// the robot arm stands after it stopped itself, the reason.
-pub fn message(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn message(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.message;
     if area.area() == 0 {
         return;
@@ -163,12 +163,12 @@ fn style_of(brush: &Painter, notice: &Notice) -> Style {
 
 /// Whether the trial of a live session is over.
 fn is_over(session: &Session, model: &ConsoleModel) -> bool {
-    model.playback.is_none() && matches!(session.phase, Phase::Over(_) | Phase::Closed)
+    model.playback.is_none() && matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed)
 }
 
 /// The next step of the study plan after a trial, in words.
 pub(super) fn onward(session: &Session) -> Option<String> {
-    session.protocol.as_ref().filter(|_| session.phase != Phase::Closed)?;
+    session.protocol.as_ref().filter(|_| session.phase != TrialPhase::Closed)?;
     Some(match session.next_phase() {
         _ if session.aborted.is_some() => "repeat the trial".to_string(),
         Some(phase) => format!("next: {}", phase.name()),
@@ -199,18 +199,18 @@ fn label<'a>(binding: &'a KeyBinding, session: &Session, model: &ConsoleModel) -
         }
         KeyAction::Advance if is_over => return onward(session).map(Cow::Owned),
         KeyAction::Advance => match session.phase {
-            Phase::Running => Some("pause"),
-            Phase::Paused => Some("resume"),
+            TrialPhase::Running => Some("pause"),
+            TrialPhase::Paused => Some("resume"),
             _ => Some("start"),
         },
-        KeyAction::Move(ReplayKey::PlayPause) => Some(if plays { "pause" } else { "play" }),
+        KeyAction::Move(ReplayAction::PlayPause) => Some(if plays { "pause" } else { "play" }),
         KeyAction::Quit if is_over && session.is_step_done() => Some("close the session"),
         // After the trial the robot rests, and the line of key hints offers only the next step.
         KeyAction::StopRobot
         | KeyAction::ResumeRobot
         | KeyAction::SwitchLayer
         | KeyAction::TakeBack
-        | KeyAction::Look(PanelKey::Next)
+        | KeyAction::Look(ViewAction::Next)
             if is_over =>
         {
             None

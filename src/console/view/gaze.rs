@@ -4,7 +4,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
 use super::paint::{Painter, fit, width};
-use super::regions::{Regions, ScreenSize};
+use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::console::arrange::KitchenMap;
 use crate::console::console_model::ConsoleModel;
@@ -20,7 +20,7 @@ const GAZE_S: f64 = 3.0;
 const TRAIL_S: f64 = 2.0;
 
 /// Draws the gaze panel: place, age and quality of the gaze.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.gaze;
     if area.area() == 0 {
         return;
@@ -89,7 +89,7 @@ fn quality(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
 
 /// Draws the gaze map: the wall display to scale with the trail of recent gaze, and the time since the last look at
 /// each place.
-pub fn draw_map(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw_map(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     if regions.gaze_map.area() == 0 {
         return;
     }

@@ -9,7 +9,7 @@ use super::theme::TextRole;
 use crate::console::arrange::KitchenMap;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
-use crate::console::gaze_advice::CalibrationAdvice;
+use crate::console::gaze_advice::AccuracyCheckAction;
 use crate::console::gaze_targets::{AS_IT_IS, CORRECTED, REPEAT, chosen};
 use crate::gaze::calibration::{GOOD_DEG, GazeAccuracy, USABLE_DEG};
 use crate::session::Session;
@@ -72,9 +72,9 @@ pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &Consol
     line(brush, "targets", &targets(found), TextRole::Text);
     let taken = chosen(model, Some(found));
     let rows = [
-        (CORRECTED, "accept with the offset subtracted", CalibrationAdvice::Corrected),
-        (AS_IT_IS, "accept without correction", CalibrationAdvice::AsItIs),
-        (REPEAT, "repeat the check", CalibrationAdvice::Repeat),
+        (CORRECTED, "accept with the offset subtracted", AccuracyCheckAction::Corrected),
+        (AS_IT_IS, "accept without correction", AccuracyCheckAction::AsItIs),
+        (REPEAT, "repeat the check", AccuracyCheckAction::Repeat),
     ];
     y += 1;
     for (key, does, is) in rows {

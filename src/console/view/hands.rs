@@ -12,7 +12,7 @@ use crate::console::key_action::KeyAction;
 use crate::console::note::TextInput;
 use crate::console::preflight::{OVERRIDE, all_ok, checks};
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
-use crate::session::{Phase, Session};
+use crate::session::{Session, TrialPhase};
 
 const COLUMNS: u16 = 76;
 /// Label before the remedy of a failed preflight check.
@@ -51,7 +51,7 @@ pub fn preflight(brush: &mut Painter, screen: Rect, session: &Session, model: &C
     };
     let esc = ("esc", "close", Some(KeyChord::plain(KeyCode::Esc)));
     let hints = [(key.as_str(), does, chord), esc];
-    let hints = if session.phase == Phase::Ready { &hints[..] } else { &hints[1..] };
+    let hints = if session.phase == TrialPhase::Ready { &hints[..] } else { &hints[1..] };
     brush.hints(inside.x + 1, inside.bottom().saturating_sub(1), inside.width.saturating_sub(2), hints);
 }
 

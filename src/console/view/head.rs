@@ -3,19 +3,19 @@
 use ratatui::style::Style;
 
 use super::paint::{Painter, width};
-use super::regions::{ROOMY_COLUMNS, Regions, ScreenSize};
+use super::regions::{PanelAreas, ROOMY_COLUMNS, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
-use crate::console::console_model::{ConsoleModel, RecordingStatus, ViewerStreamStatus};
+use crate::console::console_model::{ConsoleModel, RecordingStatus, RerunStreamStatus};
 use crate::console::probe_keys;
 use crate::history::wording;
 use crate::robot::safety::SafetyMode;
 use crate::session::settings::{Condition, GazeSource};
 use crate::session::tracker::TrackerConnection;
-use crate::session::{Phase, Session};
+use crate::session::{Session, TrialPhase};
 
 /// Draws the head line of the console: phase, clock, condition, devices.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.head;
     // The head line is as wide as the screen even if one panel is at full size.
     let room = if area.width < ROOMY_COLUMNS { ScreenSize::Small } else { ScreenSize::Medium };
@@ -29,13 +29,13 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let is_replayed = is_replayed(model);
     let stage = match (model.lesson.is_some(), session.phase) {
         (true, _) => "TRAINING".to_string(),
-        (false, Phase::Running) if is_replayed => "REPLAY".to_string(),
-        (false, Phase::Paused) if session.is_frozen() && !session.can_be_paused() => "PROBE PAUSED".to_string(),
-        (false, Phase::Paused) if session.is_frozen() => "PROBE".to_string(),
+        (false, TrialPhase::Running) if is_replayed => "REPLAY".to_string(),
+        (false, TrialPhase::Paused) if session.is_frozen() && !session.can_be_paused() => "PROBE PAUSED".to_string(),
+        (false, TrialPhase::Paused) if session.is_frozen() => "PROBE".to_string(),
         _ => wording::stage(session),
     };
     let (mark, style) = match session.phase {
-        Phase::Running if is_replayed => (" ".to_string(), strong),
+        TrialPhase::Running if is_replayed => (" ".to_string(), strong),
         phase => stage_mark(brush, phase),
     };
     x = brush.text(x, area.y, 19, &format!("{mark}{stage} "), style) + gap;
@@ -84,11 +84,11 @@ fn is_replayed(model: &ConsoleModel) -> bool {
 }
 
 /// Sign and style of the trial's phase: inconspicuous while the trial runs, conspicuous in a pause.
-fn stage_mark(brush: &Painter, phase: Phase) -> (String, Style) {
+fn stage_mark(brush: &Painter, phase: TrialPhase) -> (String, Style) {
     let signs = brush.theme.signs();
     match phase {
-        Phase::Running => (format!("{} ", signs.to), brush.style(TextRole::Text)),
-        Phase::Paused => (format!(" {} ", signs.pause), brush.theme.badge(TextRole::Strong)),
+        TrialPhase::Running => (format!("{} ", signs.to), brush.style(TextRole::Text)),
+        TrialPhase::Paused => (format!(" {} ", signs.pause), brush.theme.badge(TextRole::Strong)),
         _ => (" ".to_string(), brush.style(TextRole::Strong)),
     }
 }
@@ -173,7 +173,7 @@ pub(super) fn healths(session: &Session, model: &ConsoleModel, room: ScreenSize)
     if let Some((text, is_fine)) = model.display.as_ref().map(|display| display.line()) {
         healths.push((text, if is_fine { TextRole::Text } else { TextRole::Alarm }));
     }
-    if let Some(ViewerStreamStatus { dropped: dropped @ 1.., .. }) = &model.viewers {
+    if let Some(RerunStreamStatus { dropped: dropped @ 1.., .. }) = &model.viewers {
         healths.push((format!("RERUN {dropped} DROPPED"), TextRole::Alarm));
     }
     let robot = match (session.robot.stopped, session.robot.held) {

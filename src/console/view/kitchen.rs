@@ -8,10 +8,10 @@ use super::gaze;
 use super::offer_line;
 use super::paint::{Painter, squeeze, width, wrap, wrap_to};
 use super::place_buttons;
-use super::regions::{Regions, ScreenSize};
+use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
-use crate::console::arrange::{KitchenMap, MapElement};
+use crate::console::arrange::{KitchenMap, KitchenMapElement};
 use crate::console::beliefs::beliefs;
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
@@ -30,7 +30,7 @@ const LOUD_S: f64 = 1.2;
 const FADING_S: f64 = 3.0;
 
 /// Draws the kitchen panel.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.kitchen;
     if area.area() == 0 {
         return;
@@ -54,12 +54,12 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
     let offered = offer_line::shown(session, model).and_then(|offer| offer.place(session));
     for spot in &plan.spots {
         match spot.thing {
-            MapElement::Location(location) => {
+            KitchenMapElement::Location(location) => {
                 let place = Place::new(session, model, location);
                 let thinks = offer_line::thinks(session, &believed, location);
                 Place { thinks, is_offered: offered == Some(location), ..place }.draw(brush, spot.cells);
             }
-            MapElement::Storage(index) => storage(brush, session, model, index, spot.cells),
+            KitchenMapElement::Storage(index) => storage(brush, session, model, index, spot.cells),
         }
     }
     gaze::mark(brush, &plan, area, session, model);

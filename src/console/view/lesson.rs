@@ -1,7 +1,7 @@
 //! The wizard training's panel: the task, then feedback on signals, newest first.
 
 use super::paint::{Painter, wrap};
-use super::regions::{Regions, ScreenSize};
+use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::console::console_model::ConsoleModel;
 use crate::console::lesson::{TrainingFeedback, TrainingPanel};
@@ -11,7 +11,7 @@ use crate::console::notice::NoticeLevel;
 const CLOCK: u16 = 6;
 
 /// Draws the panel of a wizard training.
-pub fn draw(brush: &mut Painter, regions: &Regions, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, model: &ConsoleModel) {
     let area = regions.lesson;
     let Some(lesson) = model.lesson.as_ref().filter(|_| area.area() > 0) else { return };
     let inside = match regions.room {

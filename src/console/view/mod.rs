@@ -36,7 +36,7 @@ use super::click::ClickTarget;
 use super::console_model::{ConsoleModel, Dialog};
 use crate::session::Session;
 use paint::Painter;
-use regions::{LEAST, Regions};
+use regions::{LEAST, PanelAreas};
 use theme::TextRole;
 
 /// Draws the console.
@@ -55,7 +55,7 @@ fn draw(brush: &mut Painter, session: &Session, model: &ConsoleModel) {
         too_small(brush, session, model);
         return;
     }
-    let regions = Regions::showing((area.width, area.height), session, model);
+    let regions = PanelAreas::showing((area.width, area.height), session, model);
     head::draw(brush, &regions, session, model);
     offer_line::draw(brush, &regions, session, model);
     kitchen::draw(brush, &regions, session, model);

@@ -4,35 +4,35 @@
 use super::belief_panel::QUIET;
 use super::paint::{Painter, width, wrap};
 use super::recommendation_panel::NOTHING;
-use super::regions::Regions;
+use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::base::words::count;
 use crate::communication::Signal;
 use crate::communication::concept::ConceptName;
-use crate::communication::offer::OfferedAct;
-use crate::communication::recommendation::Reason;
-use crate::console::beliefs::{self, BeliefStanding, EstimatedBelief, beliefs, percent};
+use crate::communication::offer::OfferedCommunication;
+use crate::communication::recommendation::SignalReason;
+use crate::console::beliefs::{self, BeliefCorrectness, EstimatedBelief, beliefs, percent};
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::{KeyAction, KeyLayer};
 use crate::history::wording;
 use crate::kitchen::LocationId;
 use crate::session::offers;
-use crate::session::settings::{Condition, Visibility};
-use crate::session::{Phase, Session};
+use crate::session::settings::{Condition, WizardVisibility};
+use crate::session::{Session, TrialPhase};
 
 /// The offer as it is drawn: the open offer or, in recordings that have no offers, the best signal.
 pub(super) struct ShownOffer<'a> {
-    act: OfferedAct,
+    act: OfferedCommunication,
     benefit: Option<f64>,
-    reason: Option<&'a Reason>,
+    reason: Option<&'a SignalReason>,
 }
 
 /// The offer of a signal that is shown to the wizard now, if any.
 pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<ShownOffer<'a>> {
-    if beliefs::visibility(session, model) < Visibility::Recommendation
+    if beliefs::visibility(session, model) < WizardVisibility::Recommendation
         || session.spec.trial.condition == Condition::Assistant
-        || !matches!(session.phase, Phase::Running | Phase::Paused)
+        || !matches!(session.phase, TrialPhase::Running | TrialPhase::Paused)
     {
         return None;
     }
@@ -44,8 +44,8 @@ pub(super) fn shown<'a>(session: &'a Session, model: &ConsoleModel) -> Option<Sh
     }
     let advice = session.advice.as_ref()?;
     let (act, benefit) = match (&advice.best, &advice.proposal) {
-        (Some(signal), _) => (OfferedAct::Signal(signal.clone()), advice.top().map(|option| option.benefit)),
-        (None, Some(proposal)) => (OfferedAct::Presses(proposal.presses.clone()), None),
+        (Some(signal), _) => (OfferedCommunication::Signal(signal.clone()), advice.top().map(|option| option.benefit)),
+        (None, Some(proposal)) => (OfferedCommunication::Presses(proposal.presses.clone()), None),
         (None, None) => return None,
     };
     Some(ShownOffer { act, benefit, reason: advice.reason.as_ref() })
@@ -55,17 +55,17 @@ impl ShownOffer<'_> {
     /// The kitchen location that the offered signal is about.
     pub(super) fn place(&self, session: &Session) -> Option<LocationId> {
         match &self.act {
-            OfferedAct::Signal(signal) => signal.location(&session.kitchen),
-            OfferedAct::Presses(_) => None,
+            OfferedCommunication::Signal(signal) => signal.location(&session.kitchen),
+            OfferedCommunication::Presses(_) => None,
         }
     }
 
     /// Label of the offer with its keys: " enter SHOW RECIPE OF ORDER 1 [q] ".
     fn label(&self, session: &Session, model: &ConsoleModel) -> String {
         let words = match &self.act {
-            OfferedAct::Signal(signal @ Signal::ShowRecipe(_)) => format!("show {}", wording::signal(signal)),
-            OfferedAct::Signal(signal) => wording::signal(signal),
-            OfferedAct::Presses(_) => return format!(" {} ", wording::offered(&self.act)),
+            OfferedCommunication::Signal(signal @ Signal::ShowRecipe(_)) => format!("show {}", wording::signal(signal)),
+            OfferedCommunication::Signal(signal) => wording::signal(signal),
+            OfferedCommunication::Presses(_) => return format!(" {} ", wording::offered(&self.act)),
         };
         let own = self.place(session).and_then(|place| model.keys.mark(place));
         let own = own.map_or(String::new(), |key| format!(" [{key}]"));
@@ -112,7 +112,7 @@ impl ShownOffer<'_> {
 }
 
 /// Draws the line of the offer, or why there is no offer.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.offer;
     if area.area() == 0 {
         return;
@@ -163,11 +163,11 @@ fn silence(session: &Session, model: &ConsoleModel) -> String {
         return "The assistant does not advise in this session (shadow = \"off\")".to_string();
     }
     match session.phase {
-        Phase::Running | Phase::Paused => {}
-        Phase::Ready => return "The assistant advises while the trial runs".to_string(),
-        Phase::Over(_) | Phase::Closed => return "The trial is over".to_string(),
+        TrialPhase::Running | TrialPhase::Paused => {}
+        TrialPhase::Ready => return "The assistant advises while the trial runs".to_string(),
+        TrialPhase::Over(_) | TrialPhase::Closed => return "The trial is over".to_string(),
     }
-    let wrong = beliefs(session, model).iter().filter(|belief| belief.standing == BeliefStanding::False).count();
+    let wrong = beliefs(session, model).iter().filter(|belief| belief.standing == BeliefCorrectness::False).count();
     match wrong {
         0 => QUIET.to_string(),
         _ => format!("{}, {}", count(wrong as u64, "false belief", "false beliefs"), too_little(session)),
@@ -192,7 +192,7 @@ fn too_little(session: &Session) -> String {
 /// The value that the participant falsely believes about a location, if any.
 pub(super) fn thinks(session: &Session, believed: &[EstimatedBelief], place: LocationId) -> Option<String> {
     let wrong = believed.iter().find(|belief| {
-        belief.standing == BeliefStanding::False && beliefs::place(session, belief.aspect) == Some(place)
+        belief.standing == BeliefCorrectness::False && beliefs::place(session, belief.aspect) == Some(place)
     })?;
     Some(beliefs::value(&session.kitchen, wrong.aspect, wrong.thinks).to_string())
 }

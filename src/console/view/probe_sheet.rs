@@ -10,14 +10,14 @@ use super::sheet_page::{Page, Pen, plain};
 use super::theme::TextRole;
 use crate::console::beliefs::visibility;
 use crate::console::console_model::ConsoleModel;
-use crate::console::display_status::{DisplayHealth, is_wanted};
+use crate::console::display_status::{ParticipantDisplayHealth, is_wanted};
 use crate::console::key_action::{KeyAction, ManualAction};
 use crate::console::probe_entry::ProbeEntry;
 use crate::console::probe_keys::{ProbeAnswerer, answerer, status};
 use crate::display::{ProbeWording, probe_left, probe_wording};
 use crate::session::probes::{OpenProbe, ProbeAnswer, ProbeQuestion};
-use crate::session::settings::Visibility;
-use crate::session::{Phase, Session};
+use crate::session::settings::WizardVisibility;
+use crate::session::{Session, TrialPhase};
 
 /// Confidence of the participant in an answer, in words.
 const SURE: [&str; 3] = ["a guess", "fairly sure", "certain"];
@@ -25,7 +25,7 @@ const SURE: [&str; 3] = ["a guess", "fairly sure", "certain"];
 /// Clears the area under a freeze probe's sheet where the participant answers at the console, so that the state that is
 /// asked about is not visible.
 pub(super) fn hide(brush: &mut Painter, area: Rect, session: &Session, model: &ConsoleModel) {
-    let is_open = session.probes.open.is_some() && session.phase == Phase::Paused;
+    let is_open = session.probes.open.is_some() && session.phase == TrialPhase::Paused;
     if is_open && model.playback.is_none() && answerer(session, model) == ProbeAnswerer::Console {
         blank(brush, area);
     }
@@ -35,7 +35,9 @@ pub(super) fn hide(brush: &mut Painter, area: Rect, session: &Session, model: &C
 pub(super) fn draw(pen: &mut Pen, screen: Rect, open: &OpenProbe, session: &Session, model: &ConsoleModel) {
     let mut page = Page::new(screen);
     let who = answerer(session, model);
-    if let Some(address) = model.display.as_ref().and_then(DisplayHealth::to_open).filter(|_| is_wanted(session)) {
+    if let Some(address) =
+        model.display.as_ref().and_then(ParticipantDisplayHealth::to_open).filter(|_| is_wanted(session))
+    {
         page.text(0, &format!("the participant's page is not connected: {address}"), TextRole::Alarm);
     }
     let question =
@@ -135,7 +137,7 @@ fn sure(page: &mut Page, entry: ProbeEntry) {
 /// Draws the progress of the answers. Their content is shown only where the study shows beliefs to the wizard, and
 /// never to raters.
 fn answers(page: &mut Page, open: &OpenProbe, session: &Session, model: &ConsoleModel) {
-    let is_shown = visibility(session, model) >= Visibility::Belief && model.coding.is_none();
+    let is_shown = visibility(session, model) >= WizardVisibility::Belief && model.coding.is_none();
     let given =
         open.questions.iter().zip(&open.answers).filter_map(|(question, given)| Some((question, given.as_ref()?)));
     for (index, (question, given)) in given.enumerate() {

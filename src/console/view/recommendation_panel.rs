@@ -4,7 +4,7 @@
 use ratatui::layout::Rect;
 
 use super::paint::{Painter, wrap};
-use super::regions::Regions;
+use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::base::words::count;
 use crate::communication::Sender;
@@ -31,7 +31,7 @@ const LONGEST_SIGNAL: u16 = 28;
 const OFFERED: &str = "offered";
 
 /// Draws the list of signals, ranked by benefit.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.recommendation;
     if area.area() == 0 {
         return;

@@ -8,7 +8,7 @@ use crate::console::compared::ComparisonView;
 use crate::console::console_model::ConsoleModel;
 use crate::console::panel::Panel;
 use crate::session::Session;
-use crate::session::settings::Visibility;
+use crate::session::settings::WizardVisibility;
 
 /// Smallest terminal that the console supports: columns and rows.
 pub const LEAST: (u16, u16) = (72, 22);
@@ -29,7 +29,7 @@ pub enum ScreenSize {
 
 /// Screen areas of the console's panels; a panel with an empty area is not drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Regions {
+pub struct PanelAreas {
     /// Size class of the terminal: small, medium or large.
     pub room: ScreenSize,
     /// Screen area of the head line.
@@ -100,9 +100,9 @@ struct LineRows {
     scrubs: bool,
 }
 
-impl Regions {
+impl PanelAreas {
     /// Computes the arrangement of panels on a terminal with `size` columns and rows, for this session and console.
-    pub fn showing(size: (u16, u16), session: &Session, model: &ConsoleModel) -> Regions {
+    pub fn showing(size: (u16, u16), session: &Session, model: &ConsoleModel) -> PanelAreas {
         let assistants = |compared: &ComparisonView| compared.seen.as_ref().map_or(1, |seen| seen.pairs.len()) as u16;
         let compared = model.comparison.as_ref().map(assistants);
         let codebook = model.coding.as_ref().map(|_| {
@@ -111,32 +111,32 @@ impl Regions {
             [compact, codebook::full(keys, kitchen, CODEBOOK_COLUMNS).len() as u16]
         });
         let lines = LineRows { codebook, comparison: compared, scrubs: model.playback.is_some() };
-        let regions = Regions::with(size, visibility(session, model), model.alone, lines);
+        let regions = PanelAreas::with(size, visibility(session, model), model.alone, lines);
         if model.lesson.is_some() { regions.teaching() } else { regions }
     }
 
     /// Adds the wizard training's panel: below the gaze map, or else above the timeline.
-    fn teaching(self) -> Regions {
+    fn teaching(self) -> PanelAreas {
         match self.gaze_map.area() {
             0 if self.kitchen.area() == 0 => self,
             0 => {
                 let (kitchen, lesson) = bottom(self.kitchen, if self.room == ScreenSize::Small { 3 } else { 7 });
-                Regions { kitchen, lesson, ..self }
+                PanelAreas { kitchen, lesson, ..self }
             }
             _ => {
                 let (gaze_map, lesson) = bottom(self.gaze_map, self.gaze_map.height / 2);
-                Regions { gaze_map, lesson, ..self }
+                PanelAreas { gaze_map, lesson, ..self }
             }
         }
     }
 
     /// Computes the arrangement of all panels without the comparison, or of one panel at full size.
-    pub fn new(size: (u16, u16), visibility: Visibility, alone: Option<Panel>) -> Regions {
-        Regions::with(size, visibility, alone, LineRows::default())
+    pub fn new(size: (u16, u16), visibility: WizardVisibility, alone: Option<Panel>) -> PanelAreas {
+        PanelAreas::with(size, visibility, alone, LineRows::default())
     }
 
     /// Computes the arrangement of panels with these additional rows.
-    fn with(size: (u16, u16), visibility: Visibility, alone: Option<Panel>, lines: LineRows) -> Regions {
+    fn with(size: (u16, u16), visibility: WizardVisibility, alone: Option<Panel>, lines: LineRows) -> PanelAreas {
         let room = match size {
             (columns, rows) if columns >= 168 && rows >= 46 => ScreenSize::Large,
             (columns, rows) if columns >= ROOMY_COLUMNS && rows >= 34 => ScreenSize::Medium,
@@ -145,7 +145,7 @@ impl Regions {
         let all = Rect::new(0, 0, size.0, size.1);
         let (head, rest) = top(all, 1);
         let offer_rows = if size.0 < OFFER_COLUMNS { 2 } else { 1 };
-        let (offer, rest) = top(rest, if visibility == Visibility::Recommendation { offer_rows } else { 0 });
+        let (offer, rest) = top(rest, if visibility == WizardVisibility::Recommendation { offer_rows } else { 0 });
         let (rest, footer) = bottom(rest, 1);
         let (rest, message) = bottom(rest, 1);
         let (rest, scrub) = bottom(rest, u16::from(lines.scrubs));
@@ -161,7 +161,7 @@ impl Regions {
         };
         let rows = lines.comparison.filter(|_| alone.is_none()).map_or(0, |number| comparison_rows(room, number));
         let (rest, comparison) = bottom(rest, rows);
-        let bare = Regions {
+        let bare = PanelAreas {
             room,
             head,
             offer,
@@ -192,7 +192,7 @@ impl Regions {
     }
 
     /// Gives the codebook and the error list the areas of panels that a rater must not see: signals and estimates.
-    fn coding(self, codebook_rows: u16) -> Regions {
+    fn coding(self, codebook_rows: u16) -> PanelAreas {
         let blank = Rect::default();
         match self.room {
             // On small terminals the robot's state and the gaze share a line, and the timeline has one row less.
@@ -201,26 +201,26 @@ impl Regions {
                 let robot = Rect { y: self.gaze.y + 1, ..self.robot };
                 let gaze = Rect { y: robot.y, ..self.shown };
                 let kitchen = Rect { height: self.kitchen.height + 2, ..self.kitchen };
-                Regions { kitchen, robot, gaze, timeline, shown: blank, ..self }
+                PanelAreas { kitchen, robot, gaze, timeline, shown: blank, ..self }
             }
             ScreenSize::Medium => {
                 let (codebook, errors) = codes_and_errors(self.gaze_map.union(self.shown), codebook_rows);
-                Regions { codebook, errors, gaze_map: blank, shown: blank, ..self }
+                PanelAreas { codebook, errors, gaze_map: blank, shown: blank, ..self }
             }
             ScreenSize::Large => {
                 let (codebook, errors) = codes_and_errors(self.gaze_map, codebook_rows);
                 let gaze = self.shown.union(self.gaze);
                 let gaze_map =
                     Rect { x: gaze.right(), width: self.kitchen.right().saturating_sub(gaze.right()), ..gaze };
-                Regions { codebook, errors, gaze, gaze_map, shown: blank, ..self }
+                PanelAreas { codebook, errors, gaze, gaze_map, shown: blank, ..self }
             }
         }
     }
 
-    fn alone(self, panel: Panel) -> Regions {
+    fn alone(self, panel: Panel) -> PanelAreas {
         let blank = Rect::default();
         let body = self.kitchen;
-        let mut regions = Regions { kitchen: blank, room: self.room.max(ScreenSize::Medium), ..self };
+        let mut regions = PanelAreas { kitchen: blank, room: self.room.max(ScreenSize::Medium), ..self };
         match panel {
             Panel::Kitchen => regions.kitchen = body,
             Panel::Belief => regions.belief = body,
@@ -252,30 +252,30 @@ impl Regions {
     }
 
     /// Arrangement for small terminals: panels as single lines below the kitchen, with only the worst beliefs.
-    fn small(self, visibility: Visibility) -> Regions {
+    fn small(self, visibility: WizardVisibility) -> PanelAreas {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(4));
         let beliefs = if rest.height >= 15 { 2 } else { 1 };
-        let (rest, belief) = bottom(rest, if visibility >= Visibility::Belief { beliefs } else { 0 });
+        let (rest, belief) = bottom(rest, if visibility >= WizardVisibility::Belief { beliefs } else { 0 });
         let (rest, gaze) = bottom(rest, 1);
         let (kitchen, agents) = bottom(rest, 1);
         let (robot, shown) = left(agents, agents.width / 2);
-        Regions { kitchen, robot, shown, gaze, belief, timeline, ..self }
+        PanelAreas { kitchen, robot, shown, gaze, belief, timeline, ..self }
     }
 
     /// Arrangement for medium terminals: the kitchen at the left; beliefs, display, gaze and robot at the right.
-    fn medium(self, visibility: Visibility) -> Regions {
+    fn medium(self, visibility: WizardVisibility) -> PanelAreas {
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(TIMELINE_ROWS));
         let (kitchen, side) = left(rest, (rest.width * 13 / 20).max(KITCHEN_COLUMNS));
         let (side, robot) = bottom(side, 4);
         let (side, gaze) = bottom(side, 3);
         let (side, shown) = bottom(side, 4);
-        Regions { kitchen, shown, robot, gaze, timeline, ..self }.judge(side, visibility)
+        PanelAreas { kitchen, shown, robot, gaze, timeline, ..self }.judge(side, visibility)
     }
 
     /// Arrangement for large terminals in three columns: kitchen and gaze map, beliefs and recommendations, events.
-    fn large(self, visibility: Visibility) -> Regions {
+    fn large(self, visibility: WizardVisibility) -> PanelAreas {
         // The timeline has one more row where offers are shown.
-        let rows = TIMELINE_ROWS + u16::from(visibility == Visibility::Recommendation);
+        let rows = TIMELINE_ROWS + u16::from(visibility == WizardVisibility::Recommendation);
         let (rest, timeline) = bottom(self.kitchen, self.timeline_rows(rows));
         let (rest, events) = right(rest, 44);
         let (kitchen, side) = left(rest, (rest.width * 11 / 20).max(KITCHEN_COLUMNS));
@@ -283,22 +283,22 @@ impl Regions {
         let (participant, map) = left(below, below.width * 2 / 5);
         let (shown, gaze) = top(participant, 5);
         let (side, robot) = bottom(side, 6);
-        let regions = Regions { kitchen, shown, gaze, robot, events, timeline, ..self };
+        let regions = PanelAreas { kitchen, shown, gaze, robot, events, timeline, ..self };
         match visibility {
-            Visibility::State => Regions { gaze_map: side, ..regions },
-            Visibility::Belief => Regions { gaze_map: map, ..regions.judge(side, visibility) },
-            Visibility::Recommendation => {
+            WizardVisibility::State => PanelAreas { gaze_map: side, ..regions },
+            WizardVisibility::Belief => PanelAreas { gaze_map: map, ..regions.judge(side, visibility) },
+            WizardVisibility::Recommendation => {
                 let (side, recommendation) = bottom(side, RECOMMENDATION_ROWS);
-                Regions { gaze_map: map, recommendation, ..regions.judge(side, visibility) }
+                PanelAreas { gaze_map: map, recommendation, ..regions.judge(side, visibility) }
             }
         }
     }
 
     /// Gives the side area to the belief panel, or to the gaze map where the wizard may not see beliefs.
-    fn judge(self, side: Rect, visibility: Visibility) -> Regions {
+    fn judge(self, side: Rect, visibility: WizardVisibility) -> PanelAreas {
         match visibility {
-            Visibility::State => Regions { gaze_map: side, ..self },
-            Visibility::Belief | Visibility::Recommendation => Regions { belief: side, ..self },
+            WizardVisibility::State => PanelAreas { gaze_map: side, ..self },
+            WizardVisibility::Belief | WizardVisibility::Recommendation => PanelAreas { belief: side, ..self },
         }
     }
 

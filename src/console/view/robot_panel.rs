@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::paint::Painter;
-use super::regions::{Regions, ScreenSize};
+use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::base::words::count;
 use crate::console::console_model::ConsoleModel;
@@ -15,10 +15,10 @@ use crate::robot::IdleReason;
 use crate::robot::moment::ArmSample;
 use crate::robot::safety::{SLOWS_M, SafetyMode};
 use crate::session::settings::ArmKind;
-use crate::session::{Phase, Session};
+use crate::session::{Session, TrialPhase};
 
 /// Draws the robot panel.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.robot;
     if area.area() == 0 {
         return;
@@ -76,7 +76,7 @@ fn arm(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mom
     let signs = brush.theme.signs();
     let bar = |angle: &f64| signs.levels[((angle / TAU + 0.5) * 8.0).clamp(0.0, 7.0) as usize];
     let bars: String = moment.joints.iter().map(bar).collect();
-    let is_over = matches!(session.phase, Phase::Over(_) | Phase::Closed);
+    let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
     let phase = if session.robot.stopped || is_over { "stopped" } else { wording::arm_phase(moment.phase) };
     let phase = format!("{phase:<10} ");
     let hand = match moment.hand_away_m {
@@ -106,7 +106,7 @@ fn stopped(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session,
         mode if mode.has_stopped_itself() => (format!(" {} ", mode.name()), "resume"),
         _ => (" STOPPED ".to_string(), "resume"),
     };
-    let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != Phase::Closed);
+    let key = model.keys.chord_for(&KeyAction::ResumeRobot).filter(|_| session.phase != TrialPhase::Closed);
     let resume = key.map(|key| format!(" {key} {goes_on}")).unwrap_or_default();
     let force = arm.stopped_by_n.map(|force_n| format!(" {force_n:.0} N")).unwrap_or_default();
     let badge = brush.theme.badge(TextRole::Alarm);
@@ -133,7 +133,7 @@ fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, mo
         SafetyMode::Safeguard => badge(brush, x, y, columns, " WAITS ", " until the hand is farther away "),
         _ => (x, columns),
     };
-    if matches!(session.phase, Phase::Over(_) | Phase::Closed) {
+    if matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed) {
         brush.parts(x, y, columns, &[("stopped: the trial is over", TextRole::Quiet)]);
         return;
     }

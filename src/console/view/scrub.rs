@@ -3,7 +3,7 @@
 use ratatui::layout::Rect;
 
 use super::paint::{Painter, width};
-use super::regions::Regions;
+use super::regions::PanelAreas;
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::console::click::ClickAction;
@@ -11,7 +11,7 @@ use crate::console::console_model::ConsoleModel;
 use crate::session::Session;
 
 /// Draws the bar of the position in the recording.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let (area, Some(playback)) = (regions.scrub, &model.playback) else { return };
     if area.area() == 0 {
         return;

@@ -11,32 +11,30 @@ use super::sheet_page::{Page, Pen, plain};
 use super::theme::{TextRole, Theme};
 use crate::console::chord::KeyChord;
 use crate::console::console_model::ConsoleModel;
-use crate::console::display_status::DisplayHealth;
-use crate::console::form::{SheetContent, WAIVERS, sheet};
-use crate::console::question::QuestionPage;
+use crate::console::display_status::ParticipantDisplayHealth;
+use crate::console::form::{FormContent, WAIVERS, sheet};
+use crate::console::question::StartQuestion;
 use crate::session::Session;
 use crate::session::answer_value::AnswerValue;
-use crate::session::plan::{ItemForm, Questionnaire, SLIDER_END, Scale, Tutorial, TutorialStepKind};
-use crate::session::protocol::{ItemAnswer, Protocol};
+use crate::session::plan::{AnswerFormat, Questionnaire, RatingScale, SLIDER_END, Tutorial, TutorialStepKind};
+use crate::session::protocol::{ItemAnswer, StudyProtocolState};
 
 /// Draws the sheet of the session's present phase, if that phase has one.
 pub fn draw(brush: &mut Painter, screen: Rect, session: &Session, model: &ConsoleModel) {
     // In a replay, the sheet shows no keys, since keys have other meanings there.
     let pen = &mut Pen { brush, with_keys: model.playback.is_none() };
     let sheet = sheet(session);
-    if let Some(SheetContent::Probe(open)) = sheet {
+    if let Some(FormContent::Probe(open)) = sheet {
         return probe_sheet::draw(pen, screen, open, session, model);
     }
     let (Some(sheet), Some((step, protocol))) = (sheet, session.step()) else { return };
     let where_ = format!("{}  {}", session.spec.participant.code, step.label());
     match sheet {
-        SheetContent::Probe(_) => {}
-        SheetContent::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
-        SheetContent::Tutorial(tutorial) => draw_tutorial(pen, screen, &where_, tutorial, (session, model)),
-        SheetContent::Questions(questionnaire) => {
-            draw_questions(pen, screen, &where_, questionnaire, protocol, session)
-        }
-        SheetContent::Failed => draw_failed(pen, screen, &where_, session, model.waiver),
+        FormContent::Probe(_) => {}
+        FormContent::Steps { title, steps } => draw_steps(pen, screen, (title, &where_), steps, protocol, session),
+        FormContent::Tutorial(tutorial) => draw_tutorial(pen, screen, &where_, tutorial, (session, model)),
+        FormContent::Questions(questionnaire) => draw_questions(pen, screen, &where_, questionnaire, protocol, session),
+        FormContent::Failed => draw_failed(pen, screen, &where_, session, model.waiver),
     }
 }
 
@@ -54,7 +52,7 @@ fn draw_steps(
     screen: Rect,
     heads: (&str, &str),
     steps: &[String],
-    protocol: &Protocol,
+    protocol: &StudyProtocolState,
     session: &Session,
 ) {
     let mut page = Page::new(screen);
@@ -92,7 +90,7 @@ fn draw_tutorial(
 ) {
     let mut page = Page::new(screen);
     let Some((_, state)) = session.tutorial() else { return };
-    if let Some(address) = model.display.as_ref().and_then(DisplayHealth::to_open) {
+    if let Some(address) = model.display.as_ref().and_then(ParticipantDisplayHealth::to_open) {
         page.text(0, &format!("the participant's page is not connected: {address}"), TextRole::Alarm);
     }
     for (index, step) in tutorial.steps.iter().enumerate() {
@@ -131,7 +129,7 @@ fn draw_questions(
     screen: Rect,
     where_: &str,
     questionnaire: &Questionnaire,
-    protocol: &Protocol,
+    protocol: &StudyProtocolState,
     session: &Session,
 ) {
     let items = questionnaire.items.len();
@@ -151,7 +149,7 @@ fn draw_questions(
             page.text(0, "no answer", TextRole::Strong);
         }
         let skip = match questionnaire.form(protocol.item) {
-            Some(ItemForm::Scale(_) | ItemForm::Choice { .. }) => ("0", "no answer", plain(KeyCode::Char('0'))),
+            Some(AnswerFormat::Scale(_) | AnswerFormat::Choice { .. }) => ("0", "no answer", plain(KeyCode::Char('0'))),
             _ => ("del", "no answer", plain(KeyCode::Delete)),
         };
         let keys = [
@@ -191,13 +189,13 @@ fn draw_questions(
 
 /// Draws how a questionnaire item is answered, with the answer so far; returns the keys that answer it, and what they
 /// do.
-fn item_form(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) -> (String, &'static str) {
+fn item_form(page: &mut Page, form: &AnswerFormat, given: Option<&AnswerValue>) -> (String, &'static str) {
     match form {
-        ItemForm::Scale(of) => {
+        AnswerFormat::Scale(of) => {
             scale(page, of, given);
             (format!("1-{}", of.points), "answer")
         }
-        ItemForm::Choice { options, several } => {
+        AnswerFormat::Choice { options, several } => {
             let chosen = given.map_or(&[][..], AnswerValue::options);
             for (index, option) in options.iter().enumerate() {
                 let is_chosen = chosen.contains(&option.id);
@@ -206,18 +204,18 @@ fn item_form(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) -> (
             }
             (format!("1-{}", options.len()), if *several { "choose any" } else { "choose" })
         }
-        ItemForm::Number { range: [least, most], unit } => {
+        AnswerFormat::Number { range: [least, most], unit } => {
             let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
             page.text(0, &format!("{least} to {most}{unit}"), TextRole::Quiet);
             typed(page, form, given);
             ("0-9".to_string(), "type the number")
         }
-        ItemForm::Text { length } => {
+        AnswerFormat::Text { length } => {
             page.text(0, &format!("words, at most {length} characters"), TextRole::Quiet);
             typed(page, form, given);
             ("letters".to_string(), "type the answer")
         }
-        ItemForm::Slider { low, high, step } => {
+        AnswerFormat::Slider { low, high, step } => {
             let by = if *step > 1 { format!(", in steps of {step}") } else { String::new() };
             page.text(0, &format!("0 {low}   to   {SLIDER_END} {high}{by}"), TextRole::Quiet);
             typed(page, form, given);
@@ -227,13 +225,13 @@ fn item_form(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) -> (
 }
 
 /// Adds the typed answer to the questionnaire page, if there is one.
-fn typed(page: &mut Page, form: &ItemForm, given: Option<&AnswerValue>) {
+fn typed(page: &mut Page, form: &AnswerFormat, given: Option<&AnswerValue>) {
     page.space();
     page.text(0, &given.map_or_else(|| "_".to_string(), |given| form.words(given)), TextRole::Strong);
 }
 
 /// Draws a rating scale with the given answer marked. The scale's end labels stand under its first and last point.
-fn scale(page: &mut Page, of: &Scale, given: Option<&AnswerValue>) {
+fn scale(page: &mut Page, of: &RatingScale, given: Option<&AnswerValue>) {
     let point = |point: u8| match given == Some(&AnswerValue::from(point)) {
         true => format!("[{point}]"),
         false => format!(" {point} "),
@@ -274,7 +272,7 @@ fn draw_failed(pen: &mut Pen, screen: Rect, where_: &str, session: &Session, wai
 }
 
 /// Draws a question to the user before a recording, on an otherwise empty screen.
-pub fn draw_question(question: &QuestionPage, theme: Theme, frame: &mut Frame) {
+pub fn draw_question(question: &StartQuestion, theme: Theme, frame: &mut Frame) {
     let screen = frame.area();
     let mut brush = Painter::new(frame.buffer_mut(), theme);
     let mut page = Page::new(screen);

@@ -1,16 +1,16 @@
 //! Panel of the participant's side: the signal on the display, its content and its remaining time.
 
 use super::paint::{Painter, width, wrap};
-use super::regions::{Regions, ScreenSize};
+use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::communication::Signal;
 use crate::console::console_model::ConsoleModel;
 use crate::console::key_action::KeyAction;
 use crate::history::wording;
-use crate::session::{Phase, Session, ShownSignal, proposals};
+use crate::session::{Session, ShownSignal, TrialPhase, proposals};
 
 /// Draws the panel that tells which signal the participant sees now.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.shown;
     if area.area() == 0 {
         return;
@@ -35,7 +35,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
 
 /// Draws the present signal with its remaining time in one line.
 fn line(brush: &mut Painter, x: u16, y: u16, columns: u16, session: &Session, model: &ConsoleModel) {
-    let start = model.keys.chord_for(&KeyAction::Advance).filter(|_| session.phase == Phase::Ready);
+    let start = model.keys.chord_for(&KeyAction::Advance).filter(|_| session.phase == TrialPhase::Ready);
     if let Some(key) = start {
         let key = key.to_string();
         let parts = [("press ", TextRole::Strong), (&key, TextRole::Signal), (" to start the trial", TextRole::Strong)];

@@ -4,20 +4,20 @@
 use ratatui::layout::Rect;
 
 use super::paint::{Painter, width};
-use super::regions::{Regions, ScreenSize};
+use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
-use crate::communication::offer::OfferUse;
+use crate::communication::offer::OfferKeyUse;
 use crate::console::beliefs::visibility;
 use crate::console::click::ClickAction;
 use crate::console::console_model::ConsoleModel;
 use crate::kitchen::Agent;
-use crate::session::event::SignalEnd;
+use crate::session::event::SignalEndReason;
 use crate::session::offers;
 use crate::session::probes::ProbeEvent;
-use crate::session::settings::Visibility;
-use crate::session::{Phase, Session, TimelineEntry, TimelineEvent};
+use crate::session::settings::WizardVisibility;
+use crate::session::{Session, TimelineEntry, TimelineEvent, TrialPhase};
 
 /// Time that one terminal column of the timeline stands for, in seconds.
 const COLUMN_S: f64 = 0.5;
@@ -27,7 +27,7 @@ const LABEL_COLUMNS: f64 = 8.0;
 const LABELS: u16 = 10;
 
 /// Draws the timeline of presses, signals, orders and notes.
-pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &ConsoleModel) {
+pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model: &ConsoleModel) {
     let area = regions.timeline;
     if area.area() == 0 {
         return;
@@ -75,7 +75,7 @@ pub fn draw(brush: &mut Painter, regions: &Regions, session: &Session, model: &C
 
 /// Whether the timeline has room for a row of offers, and the wizard may see them.
 fn has_offers(inside: Rect, session: &Session, model: &ConsoleModel) -> bool {
-    let may_see = visibility(session, model) == Visibility::Recommendation;
+    let may_see = visibility(session, model) == WizardVisibility::Recommendation;
     inside.height > 6 && may_see && offers::are_made(session)
 }
 
@@ -99,7 +99,7 @@ fn offers(brush: &mut Painter, row: Rect, session: &Session, model: &ConsoleMode
         let role = if used.is_some() { TextRole::Signal } else { TextRole::Quiet };
         let style = brush.style(role);
         let key = offer.signal().map_or("!".to_string(), |signal| signal_sign(session, model, signal));
-        let is_taken = used.is_some_and(|used| used.how == OfferUse::Taken);
+        let is_taken = used.is_some_and(|used| used.how == OfferKeyUse::Taken);
         for at in from.max(row.x.into())..=to.min(i64::from(row.right()) - 1) {
             let sign = match at {
                 at if at == from => key.as_str(),
@@ -230,8 +230,8 @@ fn mark(
         TimelineEvent::RobotDriven(_) => (2, signs.by_hand.to_string(), TextRole::Signal),
         TimelineEvent::Corrected { .. } => (4, signs.by_hand.to_string(), TextRole::Signal),
         TimelineEvent::Signal { signal, .. } => (3, signal_sign(session, model, signal), TextRole::Signal),
-        TimelineEvent::SignalEnded(SignalEnd::TakenBack) => (3, signs.taken_back.to_string(), TextRole::Signal),
-        TimelineEvent::SignalEnded(SignalEnd::Elapsed | SignalEnd::Outdated) => return None,
+        TimelineEvent::SignalEnded(SignalEndReason::TakenBack) => (3, signs.taken_back.to_string(), TextRole::Signal),
+        TimelineEvent::SignalEnded(SignalEndReason::Elapsed | SignalEndReason::Outdated) => return None,
         TimelineEvent::Served { .. } => (4, signs.served.to_string(), TextRole::Strong),
         TimelineEvent::OrderShown { .. } => (4, "+".to_string(), TextRole::Quiet),
         TimelineEvent::Probe(ProbeEvent::Begun { .. }) => (5, "?".to_string(), TextRole::Strong),
@@ -246,8 +246,8 @@ fn mark(
                 session.spec.console.notes.iter().position(|known| known == note).map(|index| (index + 1).to_string());
             (5, number.unwrap_or("*".to_string()), TextRole::Strong)
         }
-        TimelineEvent::Trial(Phase::Over(_)) => (5, signs.frame[5].to_string(), TextRole::Strong),
-        TimelineEvent::Trial(Phase::Paused) => (5, signs.pause.to_string(), TextRole::Strong),
+        TimelineEvent::Trial(TrialPhase::Over(_)) => (5, signs.frame[5].to_string(), TextRole::Strong),
+        TimelineEvent::Trial(TrialPhase::Paused) => (5, signs.pause.to_string(), TextRole::Strong),
         TimelineEvent::Trial(_) => (5, signs.to.to_string(), TextRole::Strong),
     })
 }

@@ -10,12 +10,12 @@ use axum::extract::ws::{Message, Utf8Bytes, WebSocket};
 use tokio::sync::watch;
 use tokio::time::{sleep_until, timeout};
 
-use super::message::{FromPage, ToPage, read, text};
+use super::message::{MessageFromPage, MessageToPage, read, text};
 use super::page_input::PageInput;
 use super::page_life::PageLife;
 use super::server_state::{PageFeed, ServerState};
 use super::status::{ActivePage, count};
-use crate::edge::connection_table::ConnectionPlace;
+use crate::edge::connection_table::ConnectionHandle;
 use crate::edge::pairing::PairingVerdict;
 
 /// Time limit for the first message of a participant page.
@@ -35,7 +35,7 @@ const BOUNCE_MS: f64 = 50.0;
 struct Talk {
     socket: WebSocket,
     hub: Arc<ServerState>,
-    place: Arc<ConnectionPlace>,
+    place: Arc<ConnectionHandle>,
     life: PageLife,
     page: String,
     size: ActivePage,
@@ -49,7 +49,7 @@ struct Talk {
 }
 
 /// Serves a participant page until one side closes the connection.
-pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<ConnectionPlace>) {
+pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<ConnectionHandle>) {
     let now = Instant::now();
     let (page, size, life) = (String::new(), ActivePage::default(), PageLife::new(now));
     let (faults, allowed, pressed) = (0, (PER_SECOND, now), 0);
@@ -70,7 +70,7 @@ impl Talk {
     /// Sends the display texts to a new page, and waits until the page has identified itself and, if required, sent the
     /// right pairing code. Returns whether the page wants to watch while another page takes part.
     async fn greet(&mut self) -> Option<bool> {
-        self.say(&ToPage::Words { words: self.hub.words.clone() }).await?;
+        self.say(&MessageToPage::Words { words: self.hub.words.clone() }).await?;
         let hello_by = tokio::time::Instant::now() + HELLO;
         let (mut has_said, mut attempts) = (false, 0);
         loop {
@@ -86,7 +86,7 @@ impl Talk {
             };
             match self.message(message)? {
                 None => {}
-                Some(FromPage::Hello { page, width, height, upright, code, waits }) => {
+                Some(MessageFromPage::Hello { page, width, height, upright, code, waits }) => {
                     self.page = page;
                     self.note_size(width, height, upright);
                     if !self.hub.has_code() {
@@ -102,8 +102,10 @@ impl Talk {
                     }
                 }
                 // A page that shows the form for the pairing code also sends pings.
-                Some(FromPage::Ping { t, hidden, .. }) if has_said => self.pong(t, hidden).await?,
-                Some(FromPage::Size { width, height, upright }) if has_said => self.note_size(width, height, upright),
+                Some(MessageFromPage::Ping { t, hidden, .. }) if has_said => self.pong(t, hidden).await?,
+                Some(MessageFromPage::Size { width, height, upright }) if has_said => {
+                    self.note_size(width, height, upright)
+                }
                 Some(_) => self.fault()?,
             }
         }
@@ -112,7 +114,7 @@ impl Talk {
     /// Checks the page's pairing code, and tells the page if the code is wrong; returns whether the code is right.
     async fn pair(&mut self, code: Option<String>) -> Option<bool> {
         let Some(code) = code else {
-            self.say(&ToPage::Pairing { why: "code", wait_s: 0 }).await?;
+            self.say(&MessageToPage::Pairing { why: "code", wait_s: 0 }).await?;
             return Some(false);
         };
         let (why, wait) = match self.hub.pair(self.place.address(), &self.page, &code) {
@@ -122,13 +124,13 @@ impl Talk {
         };
         count(&self.hub.status.refused);
         let wait_s = wait.as_secs_f64().ceil() as u64;
-        self.say(&ToPage::Pairing { why, wait_s }).await?;
+        self.say(&MessageToPage::Pairing { why, wait_s }).await?;
         Some(false)
     }
 
     /// Parses the page's message, if the WebSocket frame contains one that is to be handled; outer `None` ends the
     /// connection.
-    fn message(&mut self, message: Message) -> Option<Option<FromPage>> {
+    fn message(&mut self, message: Message) -> Option<Option<MessageFromPage>> {
         let now = Instant::now();
         self.life.heard(now, matches!(message, Message::Text(_)));
         self.place.heard(now);
@@ -160,7 +162,7 @@ impl Talk {
 
     async fn pong(&mut self, t: f64, is_hidden: bool) -> Option<()> {
         self.life.hide(is_hidden);
-        self.say(&ToPage::Pong { t, at: self.hub.now_ms() }).await
+        self.say(&MessageToPage::Pong { t, at: self.hub.now_ms() }).await
     }
 
     /// Counts a malformed message; `None` if the page has sent too many of them.
@@ -241,7 +243,7 @@ impl Talk {
                     changed.ok()?;
                     let free = acting.borrow_and_update().is_none();
                     self.place.reserve(self.acts());
-                    self.say(&ToPage::Role { acts: self.acts(), free }).await?;
+                    self.say(&MessageToPage::Role { acts: self.acts(), free }).await?;
                 }
                 changed = sight.changed() => {
                     changed.ok()?;
@@ -261,7 +263,7 @@ impl Talk {
         if text.is_empty() { Some(()) } else { self.send(&text).await }
     }
 
-    async fn say(&mut self, message: &ToPage) -> Option<()> {
+    async fn say(&mut self, message: &MessageToPage) -> Option<()> {
         self.send(&text(message)).await
     }
 
@@ -274,18 +276,18 @@ impl Talk {
     async fn hear(&mut self, message: Message) -> Option<()> {
         match self.message(message)? {
             None => Some(()),
-            Some(FromPage::Ping { t, took, hidden }) => {
+            Some(MessageFromPage::Ping { t, took, hidden }) => {
                 if self.acts() {
                     let change = |page: &mut ActivePage| page.round_trip_ms = took.or(page.round_trip_ms);
                     self.hub.status.page(|page| page.iter_mut().for_each(change));
                 }
                 self.pong(t, hidden).await
             }
-            Some(FromPage::Size { width, height, upright }) => {
+            Some(MessageFromPage::Size { width, height, upright }) => {
                 self.note_size(width, height, upright);
                 if self.acts() { self.tell_size().await } else { Some(()) }
             }
-            Some(FromPage::TakePart) => {
+            Some(MessageFromPage::TakePart) => {
                 self.take_seat(false).await;
                 Some(())
             }
@@ -308,9 +310,9 @@ impl Talk {
     }
 
     /// Passes inputs of the page that takes part on to the session.
-    async fn act(&mut self, message: FromPage) -> Option<()> {
+    async fn act(&mut self, message: MessageFromPage) -> Option<()> {
         let input = match message {
-            FromPage::Press { number, button, at } => {
+            MessageFromPage::Press { number, button, at } => {
                 if !self.is_new(number, &button, at) {
                     count(&self.hub.status.refused);
                     return Some(());
@@ -318,18 +320,21 @@ impl Talk {
                 PageInput::Press { button, at: self.hub.moment(at) }
             }
             // Pointer positions may be dropped, since newer ones follow at once.
-            FromPage::Pointer { x, y } => {
+            MessageFromPage::Pointer { x, y } => {
                 let _ = self.hub.inputs.try_send(PageInput::Pointer { x, y });
                 return Some(());
             }
-            FromPage::Reply(reply) => PageInput::Reply(reply),
-            FromPage::Drawn { cue, at } => PageInput::Drawn { cue, at: self.hub.moment(at) },
-            FromPage::Redrawn { took } => {
+            MessageFromPage::Reply(reply) => PageInput::Reply(reply),
+            MessageFromPage::Drawn { cue, at } => PageInput::Drawn { cue, at: self.hub.moment(at) },
+            MessageFromPage::Redrawn { took } => {
                 let change = |page: &mut ActivePage| page.redraw_ms = Some(took);
                 self.hub.status.page(|page| page.iter_mut().for_each(change));
                 return Some(());
             }
-            FromPage::Hello { .. } | FromPage::Ping { .. } | FromPage::Size { .. } | FromPage::TakePart => {
+            MessageFromPage::Hello { .. }
+            | MessageFromPage::Ping { .. }
+            | MessageFromPage::Size { .. }
+            | MessageFromPage::TakePart => {
                 return self.fault();
             }
         };

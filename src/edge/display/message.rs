@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::page_input::PageReply;
-use crate::display::{DisplayScene, DisplayUpdate, RobotPose};
+use super::page_input::ParticipantResponse;
+use crate::display::{DisplayScene, DisplayUpdate, RobotHandPose};
 use crate::session::answer_value::AnswerValue;
 
 /// Longest message of a participant page, in bytes.
@@ -24,7 +24,7 @@ const MAX_PIXELS: u32 = 100_000;
 /// A message from the participant's page to the program.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum FromPage {
+pub enum MessageFromPage {
     /// First message of a page, with which it identifies itself.
     Hello {
         /// Random name of the page, which it keeps when it is loaded again.
@@ -94,13 +94,13 @@ pub enum FromPage {
     },
     /// What the participant does on the page apart from the task: consent, answers, tutorial pages.
     #[serde(untagged)]
-    Reply(PageReply),
+    Reply(ParticipantResponse),
 }
 
 /// A message to the participant's page other than scene and state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
-pub(super) enum ToPage {
+pub(super) enum MessageToPage {
     /// Answer to a page's ping: the time in the ping, and the server's time.
     Pong { t: f64, at: f64 },
     /// Texts of the page in the participant's language.
@@ -113,22 +113,22 @@ pub(super) enum ToPage {
 }
 
 /// Parses a message of the page; `None` if it is malformed.
-pub fn read(text: &str) -> Option<FromPage> {
-    let message: FromPage = serde_json::from_str(text).ok()?;
+pub fn read(text: &str) -> Option<MessageFromPage> {
+    let message: MessageFromPage = serde_json::from_str(text).ok()?;
     let is_time = |ms: &f64| ms.is_finite() && ms.abs() < 1e13;
     let is_size = |width: u32, height: u32| (1..=MAX_PIXELS).contains(&width) && (1..=MAX_PIXELS).contains(&height);
     let is_fine = match &message {
-        FromPage::Hello { page, width, height, code, .. } => {
+        MessageFromPage::Hello { page, width, height, code, .. } => {
             is_text(page) && is_size(*width, *height) && code.as_ref().is_none_or(|code| code.len() <= MAX_TEXT)
         }
-        FromPage::Ping { t, took, .. } => is_time(t) && took.is_none_or(|took| (0.0..1e6).contains(&took)),
-        FromPage::Press { button, at, .. } => is_text(button) && is_time(at),
-        FromPage::Pointer { x, y } => (-1.0..=2.0).contains(x) && (-1.0..=2.0).contains(y),
-        FromPage::Reply(reply) => is_reply(reply),
-        FromPage::Drawn { at, .. } => is_time(at),
-        FromPage::Redrawn { took } => (0.0..1e6).contains(took),
-        FromPage::Size { width, height, .. } => is_size(*width, *height),
-        FromPage::TakePart => true,
+        MessageFromPage::Ping { t, took, .. } => is_time(t) && took.is_none_or(|took| (0.0..1e6).contains(&took)),
+        MessageFromPage::Press { button, at, .. } => is_text(button) && is_time(at),
+        MessageFromPage::Pointer { x, y } => (-1.0..=2.0).contains(x) && (-1.0..=2.0).contains(y),
+        MessageFromPage::Reply(reply) => is_reply(reply),
+        MessageFromPage::Drawn { at, .. } => is_time(at),
+        MessageFromPage::Redrawn { took } => (0.0..1e6).contains(took),
+        MessageFromPage::Size { width, height, .. } => is_size(*width, *height),
+        MessageFromPage::TakePart => true,
     };
     is_fine.then_some(message)
 }
@@ -139,20 +139,20 @@ fn is_text(text: &str) -> bool {
 }
 
 /// Whether a participant's reply has plausible lengths, names and numbers.
-fn is_reply(reply: &PageReply) -> bool {
+fn is_reply(reply: &ParticipantResponse) -> bool {
     match reply {
-        PageReply::Answer { item, answer } => is_text(item) && answer.as_ref().is_none_or(is_answer),
-        PageReply::Back { item: name }
-        | PageReply::Turn { step: name, .. }
-        | PageReply::Choose { step: name, .. }
-        | PageReply::CardsShown { step: name } => is_text(name),
-        PageReply::Believe { choice, items, sure, .. } => {
+        ParticipantResponse::Answer { item, answer } => is_text(item) && answer.as_ref().is_none_or(is_answer),
+        ParticipantResponse::Back { item: name }
+        | ParticipantResponse::Turn { step: name, .. }
+        | ParticipantResponse::Choose { step: name, .. }
+        | ParticipantResponse::CardsShown { step: name } => is_text(name),
+        ParticipantResponse::Believe { choice, items, sure, .. } => {
             *choice != Some(0)
                 && items.len() <= MAX_ITEMS
                 && items.iter().all(|item| is_text(item))
                 && sure.is_none_or(|sure| (1..=3).contains(&sure))
         }
-        PageReply::Next | PageReply::Consent | PageReply::Confirm => true,
+        ParticipantResponse::Next | ParticipantResponse::Consent | ParticipantResponse::Confirm => true,
     }
 }
 
@@ -193,11 +193,11 @@ pub(super) fn sight(sight: &DisplayUpdate, left: Option<(f64, f64)>) -> Arc<str>
 }
 
 /// The message to the page with the robot's pose.
-pub(super) fn robot(pose: &RobotPose) -> Arc<str> {
+pub(super) fn robot(pose: &RobotHandPose) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {
         kind: &'static str,
-        robot: &'a RobotPose,
+        robot: &'a RobotHandPose,
     }
     text(&Message { kind: "robot", robot: pose })
 }

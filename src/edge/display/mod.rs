@@ -22,13 +22,13 @@ use tokio::net::TcpListener;
 use tokio::sync::mpsc::{Receiver, channel};
 use tokio::sync::watch;
 
-pub use self::page_input::{PageInput, PageReply};
+pub use self::page_input::{PageInput, ParticipantResponse};
 use self::server::serve;
 use self::server_state::{PageFeed, ServerState};
 use self::status::DisplayStatus;
 pub use self::status::{ActivePage, DisplayCounts};
 use crate::display::page_language::DisplayWords;
-use crate::display::{DisplayScene, DisplayUpdate, RobotPose};
+use crate::display::{DisplayScene, DisplayUpdate, RobotHandPose};
 use crate::edge::outer_address::reachable;
 use crate::edge::pairing_code::pairing_code;
 
@@ -36,16 +36,16 @@ use crate::edge::pairing_code::pairing_code;
 const WAITING: usize = 1024;
 
 /// Server of the participant's display: its address and its inputs. Dropping it stops the server.
-pub struct Display {
+pub struct DisplayServer {
     address: SocketAddr,
     code: Option<String>,
     inputs: Receiver<PageInput>,
-    screen: PageConnection,
+    screen: DisplayHandle,
 }
 
 /// Handle with which the program sends content to all pages of the display and reads their counters.
 #[derive(Clone)]
-pub struct PageConnection {
+pub struct DisplayHandle {
     scene: watch::Sender<Arc<str>>,
     sight: watch::Sender<Arc<str>>,
     robot: watch::Sender<Arc<str>>,
@@ -54,20 +54,20 @@ pub struct PageConnection {
     began: Instant,
 }
 
-impl Display {
+impl DisplayServer {
     /// Serves the participant's page at an address, with these texts. Addresses other than localhost need a pairing
     /// code.
     ///
     /// # Errors
     /// The program cannot listen at the address.
-    pub async fn open(listen: IpAddr, port: u16, words: &DisplayWords) -> io::Result<Display> {
+    pub async fn open(listen: IpAddr, port: u16, words: &DisplayWords) -> io::Result<DisplayServer> {
         let listener = TcpListener::bind((listen, port)).await?;
         let address = listener.local_addr()?;
         let listener = listener.into_std()?;
         let code = (!listen.is_loopback()).then(pairing_code);
         let (send, inputs) = channel(WAITING);
         let status = Arc::new(DisplayStatus::default());
-        let screen = PageConnection {
+        let screen = DisplayHandle {
             scene: watch::Sender::new(Arc::from("")),
             sight: watch::Sender::new(Arc::from("")),
             robot: watch::Sender::new(Arc::from("")),
@@ -84,7 +84,7 @@ impl Display {
         std::thread::Builder::new()
             .name("display".to_string())
             .spawn(move || runtime.block_on(serve(listener, hub)))?;
-        Ok(Display { address, code, inputs, screen })
+        Ok(DisplayServer { address, code, inputs, screen })
     }
 
     /// Waits for the next input of the page that takes part.
@@ -104,12 +104,12 @@ impl Display {
     }
 
     /// Handle with which content is sent to the pages.
-    pub fn screen(&self) -> PageConnection {
+    pub fn screen(&self) -> DisplayHandle {
         self.screen.clone()
     }
 }
 
-impl PageConnection {
+impl DisplayHandle {
     /// Sends a new static scene to the pages.
     pub fn build(&self, scene: &DisplayScene) {
         self.scene.send_replace(message::scene(scene));
@@ -122,7 +122,7 @@ impl PageConnection {
     }
 
     /// Sends the pose of the robot's hand to the pages.
-    pub fn move_robot(&self, pose: &RobotPose) {
+    pub fn move_robot(&self, pose: &RobotHandPose) {
         self.robot.send_replace(message::robot(pose));
     }
 

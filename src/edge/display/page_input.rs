@@ -33,7 +33,7 @@ pub enum PageInput {
         y: f64,
     },
     /// What the participant does on the page apart from the task: consent, answers, tutorial pages.
-    Reply(PageReply),
+    Reply(ParticipantResponse),
     /// Report that the page has drawn an event.
     Drawn {
         /// Sequence number of the drawn event.
@@ -47,7 +47,7 @@ pub enum PageInput {
 /// reads the tutorial.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
-pub enum PageReply {
+pub enum ParticipantResponse {
     /// Answer to a questionnaire item, or leaving it unanswered.
     Answer {
         /// Name of the questionnaire item.

@@ -24,7 +24,7 @@ use super::host_check::{has_own_host, has_own_origin};
 use super::message::MAX_BYTES;
 use super::server_state::ServerState;
 use super::status::count;
-use crate::edge::connection_table::ConnectionPlace;
+use crate::edge::connection_table::ConnectionHandle;
 
 /// Content security policy: the page loads nothing from other servers and must not be framed.
 const POLICY: &str = "default-src 'self'; connect-src 'self' ws:; img-src data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
@@ -107,7 +107,7 @@ async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers:
 
 /// Answers one HTTP request. A WebSocket that the request opens continues in a task of its own; other connections are
 /// then closed.
-async fn answer(stream: TcpStream, place: Arc<ConnectionPlace>, hub: Arc<ServerState>, answers: Answers) {
+async fn answer(stream: TcpStream, place: Arc<ConnectionHandle>, hub: Arc<ServerState>, answers: Answers) {
     let shared = place.clone();
     let service = service_fn(move |mut request: Request<Incoming>| {
         shared.heard(Instant::now());
@@ -129,7 +129,7 @@ async fn answer(stream: TcpStream, place: Arc<ConnectionPlace>, hub: Arc<ServerS
 /// Opens the WebSocket of a page of this server; pages of other websites in the browser are refused.
 async fn connect(
     State(hub): State<Arc<ServerState>>,
-    Extension(place): Extension<Arc<ConnectionPlace>>,
+    Extension(place): Extension<Arc<ConnectionHandle>>,
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response {

@@ -11,7 +11,7 @@ use tokio::sync::watch;
 use super::page_input::PageInput;
 use super::status::DisplayStatus;
 use crate::edge::connection_table::{ConnectionLimits, ConnectionTable};
-use crate::edge::pairing::{PairingDesk, PairingVerdict};
+use crate::edge::pairing::{PairingCodeCheck, PairingVerdict};
 
 /// Limits for connections to the display's server. Far fewer connections are admitted as watching pages than can be
 /// open, so that a new page always has room for its handshake. The page that takes part is reserved and not counted.
@@ -36,7 +36,7 @@ pub(super) struct PageFeed {
 /// State that all connections of the participant's display share.
 pub(super) struct ServerState {
     /// Pairing code and attempts at it; `None` if no code is required.
-    pairing: Option<Mutex<PairingDesk>>,
+    pairing: Option<Mutex<PairingCodeCheck>>,
     /// Texts of the participant's page, by key.
     pub words: BTreeMap<String, String>,
     pub inputs: Sender<PageInput>,
@@ -58,7 +58,7 @@ impl ServerState {
         (told, status): (PageFeed, Arc<DisplayStatus>),
         began: Instant,
     ) -> ServerState {
-        let pairing = code.map(|code| Mutex::new(PairingDesk::new(code)));
+        let pairing = code.map(|code| Mutex::new(PairingCodeCheck::new(code)));
         let (acting, connections) = (watch::Sender::new(None), ConnectionTable::new(LIMITS));
         ServerState { pairing, words, inputs, told, status, acting, connections, began }
     }

@@ -7,9 +7,9 @@ use std::path::Path;
 use crate::base::printable::printable;
 use crate::base::words::count;
 use crate::edge::file_error::FileError;
-use crate::edge::lsl::{self, FoundStream};
+use crate::edge::lsl::{self, DiscoveredLslStream};
 use crate::edge::{gaze_file, pupil};
-use crate::gaze::surface::SurfaceMap;
+use crate::gaze::surface::SurfaceHomography;
 use crate::session::SessionSpec;
 use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
@@ -115,13 +115,13 @@ fn stream(spec: &SessionSpec) -> PreflightCheck {
         return PreflightCheck::new("gaze", PreflightVerdict::Failed, "no liblsl", "see lsl above");
     };
     let streams = lsl::streams_of_numbers(library, STREAM_S);
-    let there: Vec<(&FoundStream, Vec<String>)> =
+    let there: Vec<(&DiscoveredLslStream, Vec<String>)> =
         streams.iter().map(|found| (found, lsl::channel_names(found, STREAM_S).unwrap_or_default())).collect();
-    let told = |(found, channels): &(&FoundStream, Vec<String>)| {
+    let told = |(found, channels): &(&DiscoveredLslStream, Vec<String>)| {
         let [name, content, host] = found.identity();
         format!("\"{name}\" of type \"{content}\" on {host}: {}", channels.join(", "))
     };
-    let is_wanted = |(found, _): &&(&FoundStream, Vec<String>)| {
+    let is_wanted = |(found, _): &&(&DiscoveredLslStream, Vec<String>)| {
         let [name, content, _] = found.identity();
         let is = |wanted: &Option<String>, found: &String| wanted.as_ref().is_none_or(|wanted| wanted == found);
         is(&wanted.name, &name) && is(&wanted.content, &content)
@@ -149,7 +149,7 @@ fn file(tracker: &TrackerSpec) -> PreflightCheck {
     let path = tracker.file.as_deref().unwrap_or_default();
     let remedy =
         "file under [tracker]: a table of gaze on the display, or the folder of a recording (docs/tracker-recorded.md)";
-    let found = SurfaceMap::new(WHOLE).map(|map| gaze_file::read(Path::new(path), &map, tracker.file_start_s));
+    let found = SurfaceHomography::new(WHOLE).map(|map| gaze_file::read(Path::new(path), &map, tracker.file_start_s));
     match found {
         Some(Ok(found)) if !found.samples.is_empty() => {
             PreflightCheck::ok("gaze", format!("{path}: {}", count(found.samples.len() as u64, "sample", "samples")))

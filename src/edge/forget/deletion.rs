@@ -7,18 +7,18 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::participant_data::{ParticipantData, find, others, training};
-use super::walk::LeftFile;
-use crate::analysis::training_record::TrainingRecord;
+use super::walk::RetainedFile;
+use crate::analysis::training_record::WizardTrainingRecord;
 use crate::edge::file_error::FileError;
-use crate::edge::log::{LOG_NAME, RecordingLock, SETTINGS_NAME, WriteError};
+use crate::edge::log::{LOG_NAME, RecordingLock, RecordingWriteError, SETTINGS_NAME};
 
 /// Why no data of a participant were deleted.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum ForgetError {
+pub enum ParticipantDeletionError {
     /// A recording of the participant is being written, or its folder cannot be written to.
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
-    Recording(WriteError),
+    Recording(RecordingWriteError),
     /// A file with possible data of the participant cannot be read.
     #[error("nothing was deleted: {0}")]
     #[diagnostic(transparent)]
@@ -47,16 +47,17 @@ pub enum ForgetError {
 ///
 /// # Errors
 /// Nothing was deleted, for one of these reasons.
-pub fn delete(found: ParticipantData) -> Result<ParticipantData, ForgetError> {
+pub fn delete(found: ParticipantData) -> Result<ParticipantData, ParticipantDeletionError> {
     let locks = found.recordings.iter().map(|folder| RecordingLock::take(folder));
-    let locks = locks.collect::<Result<Vec<RecordingLock>, _>>().map_err(ForgetError::Recording)?;
-    let again = find(&found.root, &found.temporary, &found.code).map_err(|error| ForgetError::File(Box::new(error)))?;
+    let locks = locks.collect::<Result<Vec<RecordingLock>, _>>().map_err(ParticipantDeletionError::Recording)?;
+    let again = find(&found.root, &found.temporary, &found.code)
+        .map_err(|error| ParticipantDeletionError::File(Box::new(error)))?;
     if again != found {
-        return Err(ForgetError::Changed { folder: found.root });
+        return Err(ParticipantDeletionError::Changed { folder: found.root });
     }
     let unwritable = |path: &Path| {
         let path = path.to_path_buf();
-        |reason| ForgetError::Unwritable { path, reason }
+        |reason| ParticipantDeletionError::Unwritable { path, reason }
     };
     let mut replacements = Vec::new();
     for (path, cut) in &found.cuts {
@@ -82,7 +83,7 @@ fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<Rec
     let mut fails = |path: &Path, result: io::Result<()>| match result {
         Ok(()) => false,
         Err(reason) => {
-            left.push(LeftFile::new(path, format!("it cannot be deleted or written anew: {reason}")));
+            left.push(RetainedFile::new(path, format!("it cannot be deleted or written anew: {reason}")));
             true
         }
     };
@@ -176,7 +177,7 @@ fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut File) -> io::Result<(
 /// Writes a wizard's training record without the participant's recordings.
 fn write_others(path: &Path, found: &ParticipantData, new: &mut File) -> io::Result<()> {
     let record = training(path)?.ok_or_else(|| io::Error::other("it is no record of training any more"))?;
-    let record = TrainingRecord { recordings: others(&record, &found.subject), ..record };
+    let record = WizardTrainingRecord { recordings: others(&record, &found.subject), ..record };
     let text = serde_json::to_string_pretty(&record).map_err(io::Error::other)? + "\n";
     new.write_all(text.as_bytes())
 }

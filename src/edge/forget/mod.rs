@@ -13,6 +13,6 @@ mod participant_rows;
 mod subject;
 mod walk;
 
-pub use self::deletion::{ForgetError, delete};
+pub use self::deletion::{ParticipantDeletionError, delete};
 pub use self::participant_data::{ParticipantData, find};
-pub use self::walk::LeftFile;
+pub use self::walk::RetainedFile;

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 use super::participant_rows::{FolderTables, TableMatch};
 use super::subject::{ForgetSubject, NamedPerson};
-use super::walk::{ForgetWalk, LeftFile, WalkedFolder};
-use crate::analysis::training_record::{JudgedRecording, TrainingRecord};
+use super::walk::{ForgetWalk, RetainedFile, WalkedFolder};
+use crate::analysis::training_record::{WatchedRecording, WizardTrainingRecord};
 use crate::base::words::count;
 use crate::edge::export::REPORT_NAME;
 use crate::edge::file_error::FileResult;
@@ -41,7 +41,7 @@ pub struct ParticipantData {
     /// Training records of wizards from which the participant's recordings are deleted.
     pub trainings: Vec<PathBuf>,
     /// Files that are or may be about the participant and stay, with the reason.
-    pub left: Vec<LeftFile>,
+    pub left: Vec<RetainedFile>,
     /// Byte ranges of the participant's rows in each table.
     pub(super) cuts: BTreeMap<PathBuf, Vec<Range<u64>>>,
     /// Folders that are removed if they are empty afterwards, each after the one that contains it.
@@ -83,7 +83,7 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
         let tables = match FolderTables::read(folder, &walk.subject) {
             Ok(tables) => tables,
             Err(reason) => {
-                walk.left.push(LeftFile::unreadable(folder, &reason));
+                walk.left.push(RetainedFile::unreadable(folder, &reason));
                 continue;
             }
         };
@@ -93,7 +93,7 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
                 Ok(true) => {}
                 Ok(false) if *is_own => walk.leave_strange(path),
                 Ok(false) => {}
-                Err(reason) => walk.left.push(LeftFile::unreadable(path, &reason)),
+                Err(reason) => walk.left.push(RetainedFile::unreadable(path, &reason)),
             }
         }
         look.close();
@@ -109,7 +109,7 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
         .partition(|path| path.ends_with(SETTINGS_NAME) && path.parent().is_some_and(is_occupied));
     let keeps =
         "it says whose the folder is, as long as the other files are in there; run the command again afterwards";
-    found.left.extend(kept.iter().map(|path| LeftFile::new(path, keeps)));
+    found.left.extend(kept.iter().map(|path| RetainedFile::new(path, keeps)));
     found.left.sort();
     (found.recordings, found.recording_files, found.folders) = (walk.recordings, deleted, walk.own_folders);
     Ok(found)
@@ -144,7 +144,7 @@ impl FolderLook<'_> {
         };
         if !is_known && !self.is_own && self.found.subject.is_named_by_recording(&name) {
             let reason = "it has the name of one of the participant's recordings, and does not say what is in it";
-            self.found.left.push(LeftFile::new(path, reason));
+            self.found.left.push(RetainedFile::new(path, reason));
         }
         Ok(is_known)
     }
@@ -159,7 +159,7 @@ impl FolderLook<'_> {
             }
             TableMatch::Own { cut, .. } if cut.is_empty() => {}
             TableMatch::Own { cut, .. } => self.cuts.push((path.to_path_buf(), cut)),
-            TableMatch::Unclear(reason) => self.found.left.push(LeftFile::new(path, reason)),
+            TableMatch::Unclear(reason) => self.found.left.push(RetainedFile::new(path, reason)),
         }
         Ok(true)
     }
@@ -167,14 +167,14 @@ impl FolderLook<'_> {
     fn at_training(&mut self, path: &Path) -> io::Result<bool> {
         let Some(record) = training(path)? else { return Ok(false) };
         let subject = &self.found.subject;
-        let whose = |one: &JudgedRecording| subject.recording(&one.recording);
+        let whose = |one: &WatchedRecording| subject.recording(&one.recording);
         let kept = others(&record, subject).len();
         if record.wizard == subject.code || (kept == 0 && !record.recordings.is_empty()) {
             self.found.files.push(path.to_path_buf());
         } else if record.recordings.iter().any(|one| whose(one) == NamedPerson::Ambiguous) {
             let reason = "a record of training that names a recording, and recordings of several people in different folders have \
                           this name; tomcom forget --in the folder with one of them, or delete it by hand";
-            self.found.left.push(LeftFile::new(path, reason));
+            self.found.left.push(RetainedFile::new(path, reason));
         } else if kept < record.recordings.len() {
             self.found.trainings.push(path.to_path_buf());
         }
@@ -190,7 +190,7 @@ impl FolderLook<'_> {
             if is_report {
                 let reason = "a report that does not say who made it and whom it is about, as those of earlier versions; make it \
                               anew with tomcom study, or delete it";
-                self.found.left.push(LeftFile::new(path, reason));
+                self.found.left.push(RetainedFile::new(path, reason));
             }
             return Ok(is_report);
         };
@@ -200,7 +200,7 @@ impl FolderLook<'_> {
         } else if whose.contains(&NamedPerson::Ambiguous) {
             let reason =
                 "a report about somebody who has the code, or the same code after a seed; make it anew, or delete it";
-            self.found.left.push(LeftFile::new(path, reason));
+            self.found.left.push(RetainedFile::new(path, reason));
         }
         Ok(true)
     }
@@ -213,7 +213,7 @@ impl FolderLook<'_> {
             table_named(&stem).is_some() && path.extension().is_some_and(|extension| extension == "csv")
         };
         let Some(folder) = self.cuts.first().and_then(|(path, _)| path.parent()).map(Path::to_path_buf) else { return };
-        let is_beside = |left: &&LeftFile| left.path.parent() == Some(&folder) && is_study_table(&left.path);
+        let is_beside = |left: &&RetainedFile| left.path.parent() == Some(&folder) && is_study_table(&left.path);
         let damaged = self.found.left.iter().find(is_beside).map(|left| left.path.clone());
         for (path, cut) in self.cuts {
             match &damaged {
@@ -222,7 +222,7 @@ impl FolderLook<'_> {
                     let rows = count(cut.len() as u64, "row is", "rows are");
                     let reason =
                         format!("{rows} about the participant; it is changed together with {beside}, or not at all");
-                    self.found.left.push(LeftFile::new(&path, reason));
+                    self.found.left.push(RetainedFile::new(&path, reason));
                 }
                 _ => {
                     self.found.tables.push((path.clone(), cut.len() as u64));
@@ -234,13 +234,13 @@ impl FolderLook<'_> {
 }
 
 /// Recordings of other participants in the same training record of a wizard.
-pub(super) fn others(record: &TrainingRecord, subject: &ForgetSubject) -> Vec<JudgedRecording> {
-    let is_other = |one: &&JudgedRecording| subject.recording(&one.recording) != NamedPerson::Subject;
+pub(super) fn others(record: &WizardTrainingRecord, subject: &ForgetSubject) -> Vec<WatchedRecording> {
+    let is_other = |one: &&WatchedRecording| subject.recording(&one.recording) != NamedPerson::Subject;
     record.recordings.iter().filter(is_other).cloned().collect()
 }
 
 /// The training record in a file; `None` if the file is anything else.
-pub(super) fn training(path: &Path) -> io::Result<Option<TrainingRecord>> {
+pub(super) fn training(path: &Path) -> io::Result<Option<WizardTrainingRecord>> {
     Ok(read_small(path)?.and_then(|bytes| serde_json::from_slice(&bytes).ok()))
 }
 

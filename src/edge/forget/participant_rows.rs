@@ -12,8 +12,8 @@ use csv::{ByteRecord, Reader};
 use super::subject::{ForgetSubject, NamedPerson};
 use crate::base::words::count;
 use crate::edge::log::rater_codes::EXPORT_COLUMNS;
-use crate::edge::written_tables::{WrittenTables, reader, records};
-use crate::study::column::Table;
+use crate::edge::written_tables::{ListedTables, reader, records};
+use crate::study::column::CsvTable;
 
 /// Why a table is left if it names a recording whose name several people's recordings share.
 const AMBIGUOUS: &str = "it names a recording, and recordings of several people in different folders have this name; \
@@ -35,7 +35,7 @@ pub(super) enum TableMatch {
 /// What the tables of one folder tell about each other: the data dictionary, and the table of trials.
 #[derive(Debug)]
 pub(super) struct FolderTables {
-    written: WrittenTables,
+    written: ListedTables,
     /// Whose each recording is, according to the folder's table of trials.
     recordings: BTreeMap<Vec<u8>, NamedPerson>,
 }
@@ -60,10 +60,10 @@ impl FolderTables {
     /// # Errors
     /// One of them exists but cannot be read.
     pub fn read(folder: &Path, subject: &ForgetSubject) -> io::Result<FolderTables> {
-        let mut tables = FolderTables { written: WrittenTables::read(folder)?, recordings: BTreeMap::new() };
+        let mut tables = FolderTables { written: ListedTables::read(folder)?, recordings: BTreeMap::new() };
         let trials = records(&folder.join("trials.csv"))?;
         if let Some((header, rows)) = trials.split_first()
-            && tables.is_own(Table::Trials.name(), header)
+            && tables.is_own(CsvTable::Trials.name(), header)
         {
             let key = KeyColumns::new(header.iter());
             for row in rows.iter().filter(|row| row.len() == header.len()) {

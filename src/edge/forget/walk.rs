@@ -26,20 +26,20 @@ const EXPORTED: &str = "a BIDS data set of tomcom export with the participant in
 
 /// A file that is or may be about the participant and is left, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct LeftFile {
+pub struct RetainedFile {
     /// Path of the file that is not deleted.
     pub path: PathBuf,
     /// Why the file is not deleted, in words.
     pub reason: String,
 }
 
-impl LeftFile {
-    pub(super) fn new(path: &Path, reason: impl Into<String>) -> LeftFile {
-        LeftFile { path: path.to_path_buf(), reason: reason.into() }
+impl RetainedFile {
+    pub(super) fn new(path: &Path, reason: impl Into<String>) -> RetainedFile {
+        RetainedFile { path: path.to_path_buf(), reason: reason.into() }
     }
 
-    pub(super) fn unreadable(path: &Path, reason: &io::Error) -> LeftFile {
-        LeftFile::new(path, format!("it cannot be read, so it may be about the participant: {reason}"))
+    pub(super) fn unreadable(path: &Path, reason: &io::Error) -> RetainedFile {
+        RetainedFile::new(path, format!("it cannot be read, so it may be about the participant: {reason}"))
     }
 }
 
@@ -73,7 +73,7 @@ pub(super) struct ForgetWalk {
     pub own_folders: Vec<PathBuf>,
     /// All files that do not belong to a recording, by folder.
     pub folders: BTreeMap<PathBuf, WalkedFolder>,
-    pub left: Vec<LeftFile>,
+    pub left: Vec<RetainedFile>,
 }
 
 impl ForgetWalk {
@@ -105,7 +105,7 @@ impl ForgetWalk {
     /// Searches a folder with everything below it.
     fn enter(&mut self, folder: &Path, is_inside: bool) {
         if bids_tree::codes(folder).is_some_and(|codes| codes.contains(&self.subject.code)) {
-            return self.left.push(LeftFile::new(folder, EXPORTED));
+            return self.left.push(RetainedFile::new(folder, EXPORTED));
         }
         let owner = RecordingOwner::read(folder);
         let (mut is_own, mut is_known) = (is_inside, false);
@@ -120,14 +120,14 @@ impl ForgetWalk {
                 is_own = false;
             }
             RecordingOwner::Unknown(reason) => {
-                self.left.push(LeftFile::new(folder, reason));
+                self.left.push(RetainedFile::new(folder, reason));
                 is_own = false;
             }
             RecordingOwner::NoRecording => {}
         }
         let entries = match entries(folder) {
             Ok(entries) => entries,
-            Err(reason) => return self.left.push(LeftFile::unreadable(folder, &reason)),
+            Err(reason) => return self.left.push(RetainedFile::unreadable(folder, &reason)),
         };
         if is_own {
             self.own_folders.push(folder.to_path_buf());
@@ -141,7 +141,7 @@ impl ForgetWalk {
                 EntryKind::File if is_of_recording && is_lock(&path) => {}
                 EntryKind::File if is_of_recording => self.recording_files.push(path),
                 EntryKind::File => files.push(path),
-                EntryKind::Other if is_own => self.left.push(LeftFile::new(&path, STRANGE)),
+                EntryKind::Other if is_own => self.left.push(RetainedFile::new(&path, STRANGE)),
                 EntryKind::Other => {}
             }
         }
@@ -168,7 +168,7 @@ impl ForgetWalk {
 
     /// Lists a file of unknown kind in the participant's own folders as left.
     pub(super) fn leave_strange(&mut self, path: &Path) {
-        self.left.push(LeftFile::new(path, STRANGE));
+        self.left.push(RetainedFile::new(path, STRANGE));
     }
 }
 

@@ -4,12 +4,12 @@
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use super::WriteError;
+use super::RecordingWriteError;
 use super::rater_codes::{code_of, rows, text_of, wrong_line};
 use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::replace_file;
-use crate::measures::cause_codes::{Codable, Code};
-use crate::measures::consensus::{Consensus, SettledCode};
+use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode};
+use crate::measures::consensus::{ConsensusCode, RaterConsensus};
 use crate::session::settings::is_code;
 
 /// Name of the consensus file in the folder of a recording.
@@ -23,7 +23,7 @@ const COLUMNS: [&str; 9] =
 ///
 /// # Errors
 /// The file exists but cannot be read, or contains something that cannot be about this recording.
-pub fn read(folder: &Path, codable: &Codable) -> FileResult<Option<Consensus>> {
+pub fn read(folder: &Path, codable: &CodableErrors) -> FileResult<Option<RaterConsensus>> {
     let path = folder.join(CONSENSUS_NAME);
     let mut bytes = Vec::new();
     match open_regular(&path).and_then(|mut file| file.read_to_end(&mut bytes)) {
@@ -32,14 +32,14 @@ pub fn read(folder: &Path, codable: &Codable) -> FileResult<Option<Consensus>> {
         Err(reason) => return Err(FileError::unreadable(&path, reason, "a readable text file (UTF-8)")),
     };
     let text = text_of(&path, bytes)?;
-    let mut consensus: Option<Consensus> = None;
+    let mut consensus: Option<RaterConsensus> = None;
     for (line, before, press, code) in rows(&path, &text, &COLUMNS)? {
         let wrong = |found: String, remedy: &str| wrong_line(&path, &text, line, found, remedy);
         if let Some((found, remedy)) = codable.fault(press, &code) {
             return Err(wrong(found, &remedy));
         }
         let raters = [before[0].as_str(), before[3].as_str()];
-        let into = consensus.get_or_insert_with(|| Consensus::new(raters[0], raters[1]));
+        let into = consensus.get_or_insert_with(|| RaterConsensus::new(raters[0], raters[1]));
         if raters.iter().any(|rater| !is_code(rater)) || raters[0] >= raters[1] {
             let found = format!("the raters \"{}\" and \"{}\"", raters[0], raters[1]);
             return Err(wrong(found, "the codes of two raters, in the order of the alphabet"));
@@ -53,7 +53,7 @@ pub fn read(folder: &Path, codable: &Codable) -> FileResult<Option<Consensus>> {
             [Ok(one), Ok(other)] => [one, other],
             [Err((found, remedy)), _] | [_, Err((found, remedy))] => return Err(wrong(found, remedy)),
         };
-        let settled = SettledCode { code, from };
+        let settled = ConsensusCode { code, from };
         if let Some(remedy) = settled.fault() {
             return Err(wrong(format!("press {press} with another cause than both raters say"), remedy));
         }
@@ -65,7 +65,7 @@ pub fn read(folder: &Path, codable: &Codable) -> FileResult<Option<Consensus>> {
 }
 
 /// A rater's own code in a row; `None` if its cells are empty.
-fn own(cause: &str, aspect: &str) -> Result<Option<Code>, (String, &'static str)> {
+fn own(cause: &str, aspect: &str) -> Result<Option<ErrorCauseCode>, (String, &'static str)> {
     match (cause, aspect) {
         ("", "") => Ok(None),
         _ => code_of(cause, aspect).map(Some),
@@ -76,15 +76,15 @@ fn own(cause: &str, aspect: &str) -> Result<Option<Code>, (String, &'static str)
 ///
 /// # Errors
 /// The folder cannot be written to.
-pub fn write(folder: &Path, consensus: &Consensus) -> Result<(), WriteError> {
+pub fn write(folder: &Path, consensus: &RaterConsensus) -> Result<(), RecordingWriteError> {
     let path = folder.join(CONSENSUS_NAME);
-    let failed = |reason| WriteError::unwritable(&path, reason);
+    let failed = |reason| RecordingWriteError::unwritable(&path, reason);
     let mut table = csv::Writer::from_writer(Vec::new());
     let mut put = |fields: [&str; 9]| table.write_record(fields).map_err(std::io::Error::from);
     put(COLUMNS).map_err(failed)?;
-    let fields = |code: &Option<Code>| {
+    let fields = |code: &Option<ErrorCauseCode>| {
         let kind = code.as_ref().map_or("", |code| code.kind().name());
-        let aspect = code.as_ref().and_then(Code::aspect).unwrap_or_default();
+        let aspect = code.as_ref().and_then(ErrorCauseCode::aspect).unwrap_or_default();
         [kind.to_string(), aspect.to_string()]
     };
     for (press, settled) in &consensus.settled {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{LogReader, RecordingLock, WriteError, check_continued};
+use super::{LogReader, RecordingLock, RecordingWriteError, check_continued};
 use crate::edge::clock::WallTime;
 use crate::edge::file_error::{FileError, FileResult, read_regular};
 use crate::edge::replace_file;
@@ -45,7 +45,7 @@ pub enum ExclusionError {
     /// The decision about the recording cannot be written to its folder.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Recording(#[from] WriteError),
+    Recording(#[from] RecordingWriteError),
     /// The reason does not have 1 to 200 characters; the number is its length.
     #[error("found a reason of {0} characters")]
     #[diagnostic(help("a reason of 1 to 200 characters, on one line"))]
@@ -99,7 +99,7 @@ pub fn rule(recording: &Path, excluded: bool, reason: &str) -> Result<ExclusionR
     let ruling = ExclusionRecord { excluded, reason: reason.to_string(), at: WallTime::now().rfc3339() };
     all.ruling.push(ruling.clone());
     let path = folder.join(EXCLUSION_NAME);
-    let failed = |reason| WriteError::unwritable(&path, reason);
+    let failed = |reason| RecordingWriteError::unwritable(&path, reason);
     let text = toml::to_string(&all).map_err(|error| failed(std::io::Error::other(error)))?;
     replace_file::replace(&path, text.as_bytes()).map_err(failed)?;
     Ok(ruling)

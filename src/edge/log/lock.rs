@@ -4,7 +4,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use super::WriteError;
+use super::RecordingWriteError;
 use crate::edge::file_error::open_regular;
 
 /// Name of the lock file in the folder of a recording that is being written. The file contains the process id and the
@@ -49,7 +49,7 @@ impl RecordingLock {
     ///
     /// # Errors
     /// Another program holds the lock, or the folder cannot be written to.
-    pub fn take(folder: &Path) -> Result<RecordingLock, WriteError> {
+    pub fn take(folder: &Path) -> Result<RecordingLock, RecordingWriteError> {
         RecordingLock::take_file(folder.join(LOCK_NAME), folder)
     }
 
@@ -58,18 +58,20 @@ impl RecordingLock {
     ///
     /// # Errors
     /// Another program holds it, or the folder cannot be written to.
-    pub fn take_for_codes(folder: &Path, raters: &[&str]) -> Result<RecordingLock, WriteError> {
+    pub fn take_for_codes(folder: &Path, raters: &[&str]) -> Result<RecordingLock, RecordingWriteError> {
         let mut raters = raters.to_vec();
         raters.sort_unstable();
         let path = folder.join(format!("{CODES_LOCK}{}", raters.join("-")));
         RecordingLock::take_file(path, folder).map_err(|error| match error {
-            WriteError::InUse { folder, pid } => WriteError::Coded { folder, raters: raters.join(" and "), pid },
+            RecordingWriteError::InUse { folder, pid } => {
+                RecordingWriteError::Coded { folder, raters: raters.join(" and "), pid }
+            }
             other => other,
         })
     }
 
-    fn take_file(path: PathBuf, folder: &Path) -> Result<RecordingLock, WriteError> {
-        let failed = |reason| WriteError::unwritable(&path, reason);
+    fn take_file(path: PathBuf, folder: &Path) -> Result<RecordingLock, RecordingWriteError> {
+        let failed = |reason| RecordingWriteError::unwritable(&path, reason);
         // Taking the lock empties the file, which must therefore not be the target of a link; and opening a named pipe
         // would block.
         if fs::symlink_metadata(&path).is_ok_and(|data| !data.is_file()) {
@@ -86,7 +88,7 @@ impl RecordingLock {
                 Ok(()) | Err(TryLockError::Error(_)) => {}
                 Err(TryLockError::WouldBlock) => {
                     let pid = LockHolder::read(&mut file).pid;
-                    return Err(WriteError::InUse { folder: folder.to_path_buf(), pid });
+                    return Err(RecordingWriteError::InUse { folder: folder.to_path_buf(), pid });
                 }
             }
             // If the previous holder removed the file after it was opened here, the lock on it has no effect.
@@ -95,7 +97,7 @@ impl RecordingLock {
                 return Ok(RecordingLock { file, path });
             }
         }
-        Err(WriteError::InUse { folder: folder.to_path_buf(), pid: None })
+        Err(RecordingWriteError::InUse { folder: folder.to_path_buf(), pid: None })
     }
 
     /// The program that writes the recording in this folder; `None` if there is none.

@@ -15,7 +15,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::session::Stamped;
+use crate::session::TimestampedEvent;
 pub use exclusion::{EXCLUSION_NAME, ExclusionError, ExclusionRecord, rule, ruling};
 pub use lock::{CODES_LOCK, LOCK_NAME, LockHolder, RecordingLock};
 pub use reader::{LogEnding, LogLine, LogReader, at_line};
@@ -35,7 +35,7 @@ pub const MCAP_NAME: &str = "recording.mcap";
 
 /// Why a recording cannot be written, or not any further.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
-pub enum WriteError {
+pub enum RecordingWriteError {
     /// The recording cannot be written any further; events acknowledged before are in it.
     #[error("{}: the recording cannot be written: {reason}{}", path.display(), rescued(.saved))]
     #[diagnostic(help("a folder that can be written to, on a disk with free space"))]
@@ -101,9 +101,9 @@ pub enum WriteError {
     },
 }
 
-impl WriteError {
-    fn unwritable(path: impl Into<PathBuf>, reason: io::Error) -> WriteError {
-        WriteError::Unwritable { path: path.into(), reason, saved: None }
+impl RecordingWriteError {
+    fn unwritable(path: impl Into<PathBuf>, reason: io::Error) -> RecordingWriteError {
+        RecordingWriteError::Unwritable { path: path.into(), reason, saved: None }
     }
 }
 
@@ -134,6 +134,6 @@ fn move_aside(log: &Path) -> io::Result<Option<PathBuf>> {
 }
 
 /// The log's line for an event, without its line end.
-pub fn event_line(stamped: &Stamped) -> String {
+pub fn event_line(stamped: &TimestampedEvent) -> String {
     serde_json::to_string(stamped).expect("events have no maps with other keys than strings")
 }

@@ -6,12 +6,12 @@ use std::fs;
 use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-use super::WriteError;
+use super::RecordingWriteError;
 use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::overwrite;
 use crate::edge::replace_file;
-use crate::measures::cause_codes::{CauseKind, Codable, Code, Codes};
+use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 use crate::session::settings::is_code;
 
 /// Columns of the file of one rater's codes; an export of several recordings has two more columns before them.
@@ -23,7 +23,7 @@ const REMEDY: &str = "as many fields as the first line has";
 
 /// A row of an export of raters' codes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct CodeRow {
+pub struct RaterCodeRow {
     /// Line of the row in the file, for error messages.
     pub line: usize,
     /// Name of the folder of the coded recording.
@@ -33,23 +33,23 @@ pub struct CodeRow {
     /// Sequence number of the press that was an error.
     pub press: u64,
     /// Cause of the error, as the rater judged it.
-    pub code: Code,
+    pub code: ErrorCauseCode,
 }
 
 /// The codes that one rater gave to the recording in this folder; empty if there is no such file.
 ///
 /// # Errors
 /// The file exists but cannot be read, or contains something that cannot be about this recording.
-pub fn read(folder: &Path, rater: &str, codable: &Codable) -> FileResult<Codes> {
+pub fn read(folder: &Path, rater: &str, codable: &CodableErrors) -> FileResult<RaterCodes> {
     let path = path(folder, rater);
     let mut bytes = Vec::new();
     match open_regular(&path).and_then(|mut file| file.read_to_end(&mut bytes)) {
         Ok(_) => {}
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Codes::default()),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(RaterCodes::default()),
         Err(reason) => return Err(FileError::unreadable(&path, reason, "a readable text file (UTF-8)")),
     };
     let text = text_of(&path, bytes)?;
-    let mut codes = Codes::default();
+    let mut codes = RaterCodes::default();
     for (line, _, press, code) in rows(&path, &text, &COLUMNS)? {
         if let Some((found, remedy)) = codable.fault(press, &code) {
             return Err(wrong_line(&path, &text, line, found, &remedy));
@@ -78,7 +78,7 @@ pub fn raters(folder: &Path) -> FileResult<BTreeSet<String>> {
 ///
 /// # Errors
 /// Those of [`read`] and [`raters`].
-pub fn read_all(folder: &Path, codable: &Codable) -> FileResult<BTreeMap<String, Codes>> {
+pub fn read_all(folder: &Path, codable: &CodableErrors) -> FileResult<BTreeMap<String, RaterCodes>> {
     let codes = |rater: String| read(folder, &rater, codable).map(|codes| (rater, codes));
     raters(folder)?.into_iter().map(codes).collect()
 }
@@ -87,9 +87,9 @@ pub fn read_all(folder: &Path, codable: &Codable) -> FileResult<BTreeMap<String,
 ///
 /// # Errors
 /// The folder cannot be written to.
-pub fn write(folder: &Path, rater: &str, codes: &Codes) -> Result<(), WriteError> {
+pub fn write(folder: &Path, rater: &str, codes: &RaterCodes) -> Result<(), RecordingWriteError> {
     let path = path(folder, rater);
-    let failed = |reason| WriteError::unwritable(&path, reason);
+    let failed = |reason| RecordingWriteError::unwritable(&path, reason);
     let mut table = csv::Writer::from_writer(Vec::new());
     let mut put = |fields: [&str; 3]| table.write_record(fields).map_err(std::io::Error::from);
     put(COLUMNS).map_err(failed)?;
@@ -104,14 +104,14 @@ pub fn write(folder: &Path, rater: &str, codes: &Codes) -> Result<(), WriteError
 ///
 /// # Errors
 /// The file cannot be read, or is not an export.
-pub fn read_export(path: &Path) -> FileResult<(String, Vec<CodeRow>)> {
+pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
     let bytes = fs::read(path);
     let bytes =
         bytes.map_err(|reason| FileError::unreadable(path, reason, "the path of a readable text file (UTF-8)"))?;
     let text = text_of(path, bytes)?;
     let row = |(line, before, press, code): ParsedRow| {
         let [recording, rater] = [before[0].clone(), before[1].clone()];
-        CodeRow { line, recording, rater, press, code }
+        RaterCodeRow { line, recording, rater, press, code }
     };
     let rows = rows(path, &text, &EXPORT_COLUMNS)?.into_iter().map(row).collect();
     Ok((text, rows))
@@ -121,8 +121,8 @@ pub fn read_export(path: &Path) -> FileResult<(String, Vec<CodeRow>)> {
 ///
 /// # Errors
 /// The file cannot be written, or the path has a file of another kind.
-pub fn write_export(path: &Path, rows: &[CodeRow]) -> Result<(), WriteError> {
-    let failed = |reason| WriteError::unwritable(path, reason);
+pub fn write_export(path: &Path, rows: &[RaterCodeRow]) -> Result<(), RecordingWriteError> {
+    let failed = |reason| RecordingWriteError::unwritable(path, reason);
     let is_own = |head: &[u8]| overwrite::first_line(head) == EXPORT_COLUMNS.join(",").as_bytes();
     overwrite::check(path, "an export of raters' codes", is_own).map_err(failed)?;
     let write = || -> csv::Result<()> {
@@ -158,7 +158,7 @@ pub fn wrong_line(path: &Path, text: &str, line: usize, found: String, remedy: &
 }
 
 /// A parsed row: line number, cells before the code, sequence number of the press, and code.
-pub(super) type ParsedRow = (usize, Vec<String>, u64, Code);
+pub(super) type ParsedRow = (usize, Vec<String>, u64, ErrorCauseCode);
 
 /// Reads the rows of a raters' table, whose last three columns are a press and its code. No press may occur twice for
 /// the same rater and recording.
@@ -208,17 +208,17 @@ pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<
 }
 
 /// Sequence number of the press and its code from the cells of a row, or what was found and what would be valid.
-fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, Code), (String, &'static str)> {
+fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, ErrorCauseCode), (String, &'static str)> {
     let number = press.parse();
     let number = number.map_err(|_| (format!("the press \"{press}\""), "the number of the press in its log"))?;
     Ok((number, code_of(cause, aspect)?))
 }
 
 /// The code of a cause and a state aspect, or what was found and what would be valid.
-pub(super) fn code_of(cause: &str, aspect: &str) -> Result<Code, (String, &'static str)> {
-    let kind = CauseKind::named(cause);
+pub(super) fn code_of(cause: &str, aspect: &str) -> Result<ErrorCauseCode, (String, &'static str)> {
+    let kind = ErrorCauseKind::named(cause);
     let kind = kind.ok_or_else(|| (format!("the cause \"{cause}\""), "belief, slip, race, other or buttons"))?;
-    let code = Code::new(kind, Some(aspect).filter(|aspect| !aspect.is_empty()));
+    let code = ErrorCauseCode::new(kind, Some(aspect).filter(|aspect| !aspect.is_empty()));
     let remedy = "the location that is believed wrong with \"belief\", and none with other causes";
     code.ok_or_else(|| (format!("the cause \"{cause}\" with the aspect \"{aspect}\""), remedy))
 }

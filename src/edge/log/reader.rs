@@ -10,9 +10,9 @@ use crate::base::number_range::OutOfRange;
 use crate::edge::file_error::{FileError, FileResult, open_regular};
 use crate::edge::files::compile_kitchen;
 use crate::kitchen::{Kitchen, layout_ranges};
-use crate::session::header::{Continues, FORMAT, VERSION};
+use crate::session::header::{FORMAT, PreviousPart, VERSION};
 use crate::session::ranges;
-use crate::session::{Event, Header, Session, Stamped};
+use crate::session::{Event, LogHeader, Session, TimestampedEvent};
 
 /// Longest line of a log, in bytes; a file with a longer line is not a log.
 const MAX_LINE: usize = 1 << 24;
@@ -29,7 +29,7 @@ pub struct LogLine {
     /// Line of the log as it is in the file, without its line end.
     pub text: String,
     /// Event that the line of the log contains.
-    pub stamped: Stamped,
+    pub stamped: TimestampedEvent,
 }
 
 /// How the events read so far of a recording end.
@@ -48,7 +48,7 @@ pub enum LogEnding {
 #[derive(Debug)]
 pub struct LogReader {
     /// Header of this part of the recording.
-    pub header: Header,
+    pub header: LogHeader,
     /// Kitchen that the header describes.
     pub kitchen: Arc<Kitchen>,
     path: PathBuf,
@@ -145,7 +145,7 @@ impl LogReader {
             let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
             self.wrong(&text, error.utf8_error().valid_up_to(), "bytes that are no text (UTF-8)")
         })?;
-        let stamped: Stamped = serde_json::from_str(&text)
+        let stamped: TimestampedEvent = serde_json::from_str(&text)
             .map_err(|error| self.wrong(&text, error.column().saturating_sub(1), &json_message(&error)))?;
         if stamped.seq != self.next_seq {
             return Err(self.wrong(&text, 0, &format!("seq {} where {} comes next", stamped.seq, self.next_seq)));
@@ -160,7 +160,7 @@ impl LogReader {
     ///
     /// # Errors
     /// The log cannot be read.
-    pub fn last_event(&self) -> FileResult<Option<Stamped>> {
+    pub fn last_event(&self) -> FileResult<Option<TimestampedEvent>> {
         let unreadable = |reason| FileError::unreadable(&self.path, reason, "a readable recording");
         let mut file = open_regular(&self.path).map_err(unreadable)?;
         let length = file.metadata().map_err(unreadable)?.len();
@@ -216,7 +216,13 @@ impl LogReader {
 }
 
 /// Opens the previous part of the recording.
-fn open_before(path: &Path, text: &str, header: &Header, before: &Continues, parts: usize) -> FileResult<LogReader> {
+fn open_before(
+    path: &Path,
+    text: &str,
+    header: &LogHeader,
+    before: &PreviousPart,
+    parts: usize,
+) -> FileResult<LogReader> {
     let wrong = |found: String, remedy: &str| {
         let column = text.find("\"continues\"").unwrap_or(0);
         at_line(path, 1, text, column, found, remedy.to_string())
@@ -242,7 +248,7 @@ fn open_before(path: &Path, text: &str, header: &Header, before: &Continues, par
         return Err(wrong(format!("continues {name}, which is not there"), "that recording, in a folder beside this"));
     }
     let first = LogReader::open_part(&folder, parts - 1)?;
-    let same = |other: &Header| {
+    let same = |other: &LogHeader| {
         (&other.session, &other.layout, &other.recipes, &other.keys, other.trial, other.version)
             == (&header.session, &header.layout, &header.recipes, &header.keys, header.trial, header.version)
     };
@@ -284,7 +290,7 @@ fn json_message(error: &serde_json::Error) -> String {
     message.split(" at line ").next().unwrap_or(&message).to_string()
 }
 
-fn read_header(path: &Path, text: &str) -> FileResult<Header> {
+fn read_header(path: &Path, text: &str) -> FileResult<LogHeader> {
     let wrong = |column: usize, found: String, remedy: String| at_line(path, 1, text, column, found, remedy);
     let is_log = "the folder of a recording, or the events.jsonl in it, as tomcom wrote it".to_string();
     let value: serde_json::Value = serde_json::from_str(text).map_err(|error| match text.contains(FORMAT) {
@@ -302,7 +308,7 @@ fn read_header(path: &Path, text: &str) -> FileResult<Header> {
             return Err(wrong(0, found, remedy));
         }
     }
-    let header: Header = serde_json::from_str(text)
+    let header: LogHeader = serde_json::from_str(text)
         .map_err(|error| wrong(error.column().saturating_sub(1), json_message(&error), is_log.clone()))?;
     match header.session.check_recorded() {
         Ok(()) => Ok(header),

@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 use super::lock::RecordingLock;
 use super::reader::{ends_in_header, first_line};
 use super::writer::is_written_settings;
-use super::{LOG_NAME, LogReader, LogWriter, SETTINGS_NAME, WriteError, move_aside};
+use super::{LOG_NAME, LogReader, LogWriter, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::edge::file_error::{open_regular, read_regular};
-use crate::session::{Event, Header, Stamped};
+use crate::session::{Event, LogHeader, TimestampedEvent};
 
 /// Upper limit of the length of a complete log's last line, in bytes.
 const LAST: u64 = 256;
@@ -35,12 +35,12 @@ impl SimulatedLog {
     ///
     /// # Errors
     /// Errors of [`check_simulated`], another program is writing the recording, or the folder cannot be written to.
-    pub fn open(folder: &Path, header: &Header) -> Result<SimulatedLog, WriteError> {
+    pub fn open(folder: &Path, header: &LogHeader) -> Result<SimulatedLog, RecordingWriteError> {
         // A complete recording is not locked, so that several programs can read it.
         if is_whole(folder, header) {
             return Ok(SimulatedLog::Whole);
         }
-        fs::create_dir_all(folder).map_err(|reason| WriteError::unwritable(folder, reason))?;
+        fs::create_dir_all(folder).map_err(|reason| RecordingWriteError::unwritable(folder, reason))?;
         let lock = RecordingLock::take(folder)?;
         check_simulated(folder, header)?;
         // The previous holder of the lock may have completed the recording.
@@ -49,7 +49,7 @@ impl SimulatedLog {
         }
         let path = folder.join(LOG_NAME);
         let moved = match is_without_header(&path) {
-            true => move_aside(&path).map_err(|reason| WriteError::unwritable(&path, reason))?,
+            true => move_aside(&path).map_err(|reason| RecordingWriteError::unwritable(&path, reason))?,
             false => None,
         };
         let log = LogWriter::begin(lock, folder.to_path_buf(), header, false)?;
@@ -62,13 +62,17 @@ impl SimulatedLog {
 ///
 /// # Errors
 /// The folder holds another recording.
-pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError> {
+pub fn check_simulated(folder: &Path, header: &LogHeader) -> Result<(), RecordingWriteError> {
     let path = folder.join(LOG_NAME);
     if !path.exists() {
         // A program that was killed before it wrote the log leaves settings behind.
         let is_foreign = read_regular(&folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
         let what = "a session.toml that tomcom did not write";
-        return if is_foreign { Err(WriteError::Taken { folder: folder.to_path_buf(), what }) } else { Ok(()) };
+        return if is_foreign {
+            Err(RecordingWriteError::Taken { folder: folder.to_path_buf(), what })
+        } else {
+            Ok(())
+        };
     }
     if is_without_header(&path) {
         return Ok(());
@@ -79,7 +83,7 @@ pub fn check_simulated(folder: &Path, header: &Header) -> Result<(), WriteError>
         Ok(_) => "the recording of another session",
         Err(_) => "a recording that cannot be read",
     };
-    Err(WriteError::Taken { folder: folder.to_path_buf(), what })
+    Err(RecordingWriteError::Taken { folder: folder.to_path_buf(), what })
 }
 
 /// Whether a log ends before the end of its header.
@@ -89,7 +93,7 @@ fn is_without_header(path: &Path) -> bool {
 }
 
 /// Whether this folder holds the complete recording that has this header.
-fn is_whole(folder: &Path, header: &Header) -> bool {
+fn is_whole(folder: &Path, header: &LogHeader) -> bool {
     let ends = || -> io::Result<bool> {
         let mut log = open_regular(&folder.join(LOG_NAME))?;
         let length = log.seek(SeekFrom::End(0))?;
@@ -98,7 +102,7 @@ fn is_whole(folder: &Path, header: &Header) -> bool {
         log.read_to_end(&mut end)?;
         let end = String::from_utf8_lossy(&end);
         let last = end.strip_suffix('\n').and_then(|lines| lines.rsplit('\n').next());
-        let last = last.and_then(|line| serde_json::from_str::<Stamped>(line).ok());
+        let last = last.and_then(|line| serde_json::from_str::<TimestampedEvent>(line).ok());
         Ok(last.is_some_and(|last| last.event == Event::SessionEnded))
     };
     ends().unwrap_or(false) && LogReader::open(folder).is_ok_and(|log| log.header == *header)

@@ -9,11 +9,11 @@ use serde_json::ser::Formatter;
 
 use super::guarded::GuardedFile;
 use super::lock::{LOCK_NAME, RecordingLock, is_same};
-use super::{LOG_NAME, SETTINGS_NAME, WriteError, move_aside};
+use super::{LOG_NAME, RecordingWriteError, SETTINGS_NAME, move_aside};
 use crate::base::time::SessionTime;
 use crate::edge::file_error::read_regular;
 use crate::edge::rescue::{RescueNote, new_rescue_folder};
-use crate::session::{Header, SessionSpec, Stamped};
+use crate::session::{LogHeader, SessionSpec, TimestampedEvent};
 
 /// Longest time, in session time, for which gaze samples are held back before they are handed to the operating system.
 const FLUSH_AFTER: SessionTime = SessionTime(50_000_000);
@@ -38,15 +38,15 @@ pub struct LogWriter {
 impl LogWriter {
     /// Starts a live recording `<date>-<participant>-<n>` in `root`, with the first free n. Events are handed to the
     /// operating system at once, gaze samples within 50 ms of session time or by [`LogWriter::flush`].
-    pub fn create_live(root: &Path, date: &str, header: &Header) -> Result<LogWriter, WriteError> {
-        fs::create_dir_all(root).map_err(|reason| WriteError::unwritable(root, reason))?;
+    pub fn create_live(root: &Path, date: &str, header: &LogHeader) -> Result<LogWriter, RecordingWriteError> {
+        fs::create_dir_all(root).map_err(|reason| RecordingWriteError::unwritable(root, reason))?;
         let mut n = 1;
         loop {
             let folder = root.join(format!("{date}-{}-{n}", header.session.participant.code));
             match fs::create_dir(&folder) {
                 Ok(()) => return LogWriter::begin(RecordingLock::take(&folder)?, folder, header, true),
                 Err(reason) if reason.kind() == io::ErrorKind::AlreadyExists => n += 1,
-                Err(reason) => return Err(WriteError::unwritable(folder, reason)),
+                Err(reason) => return Err(RecordingWriteError::unwritable(folder, reason)),
             }
         }
     }
@@ -55,10 +55,10 @@ impl LogWriter {
     ///
     /// # Errors
     /// The recording has already been continued, or cannot be written.
-    pub fn create_part(folder: &Path, header: &Header) -> Result<LogWriter, WriteError> {
+    pub fn create_part(folder: &Path, header: &LogHeader) -> Result<LogWriter, RecordingWriteError> {
         check_continued(folder)?;
         let part = next_part(folder);
-        fs::create_dir_all(&part).map_err(|reason| WriteError::unwritable(&part, reason))?;
+        fs::create_dir_all(&part).map_err(|reason| RecordingWriteError::unwritable(&part, reason))?;
         LogWriter::begin(RecordingLock::take(&part)?, part, header, true)
     }
 
@@ -66,11 +66,11 @@ impl LogWriter {
     pub(super) fn begin(
         lock: RecordingLock,
         folder: PathBuf,
-        header: &Header,
+        header: &LogHeader,
         prompt: bool,
-    ) -> Result<LogWriter, WriteError> {
+    ) -> Result<LogWriter, RecordingWriteError> {
         let path = folder.join(LOG_NAME);
-        let failed = |reason| WriteError::unwritable(&path, reason);
+        let failed = |reason| RecordingWriteError::unwritable(&path, reason);
         let settings = toml::to_string(&header.session).map_err(|error| failed(io::Error::other(error)))?;
         fs::write(folder.join(SETTINGS_NAME), &settings).map_err(failed)?;
         let begun = folder.join(format!("{LOG_NAME}.new"));
@@ -97,8 +97,8 @@ impl LogWriter {
     }
 
     /// Appends an event to the log.
-    pub fn append(&mut self, stamped: &Stamped) -> Result<(), WriteError> {
-        write_line(&mut self.out, stamped).map_err(|reason| WriteError::unwritable(&self.path, reason))?;
+    pub fn append(&mut self, stamped: &TimestampedEvent) -> Result<(), RecordingWriteError> {
+        write_line(&mut self.out, stamped).map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))?;
         let waits = stamped.event.is_sample() && stamped.time - self.flushed_at < FLUSH_AFTER;
         if self.prompt && !waits {
             self.flushed_at = stamped.time;
@@ -108,8 +108,8 @@ impl LogWriter {
     }
 
     /// Hands all events to the operating system.
-    pub fn flush(&mut self) -> Result<(), WriteError> {
-        self.out.flush().map_err(|reason| WriteError::unwritable(&self.path, reason))
+    pub fn flush(&mut self) -> Result<(), RecordingWriteError> {
+        self.out.flush().map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))
     }
 
     /// Checks that the log is still at its place and undamaged: an open file accepts every event even after it was
@@ -118,20 +118,20 @@ impl LogWriter {
     ///
     /// # Errors
     /// The log is gone or damaged, or must not be written any more.
-    pub fn check(&mut self) -> Result<(), WriteError> {
+    pub fn check(&mut self) -> Result<(), RecordingWriteError> {
         if !is_same(self.out.get_ref().file(), &self.path) {
             let found = if self.path.exists() { "another file took its place" } else { "its folder was removed" };
             let reason = io::Error::new(io::ErrorKind::NotFound, found);
-            return Err(WriteError::Unwritable { path: self.path.clone(), reason, saved: self.rescue(false) });
+            return Err(RecordingWriteError::Unwritable { path: self.path.clone(), reason, saved: self.rescue(false) });
         }
         if let Some(found) = self.out.get_mut().damage() {
-            return Err(WriteError::Damaged { path: self.path.clone(), found, saved: self.rescue(true) });
+            return Err(RecordingWriteError::Damaged { path: self.path.clone(), found, saved: self.rescue(true) });
         }
         let is_readonly = |path: &Path| fs::metadata(path).is_ok_and(|data| data.permissions().readonly());
         match is_readonly(&self.path) || is_readonly(&self.folder) {
             true => {
                 let reason = io::Error::new(io::ErrorKind::ReadOnlyFilesystem, "its folder is read-only");
-                Err(WriteError::unwritable(&self.path, reason))
+                Err(RecordingWriteError::unwritable(&self.path, reason))
             }
             false => Ok(()),
         }
@@ -176,10 +176,10 @@ impl LogWriter {
 ///
 /// # Errors
 /// The recording has already been continued.
-pub fn check_continued(folder: &Path) -> Result<(), WriteError> {
+pub fn check_continued(folder: &Path) -> Result<(), RecordingWriteError> {
     let part = next_part(folder);
     match part.join(LOG_NAME).exists() {
-        true => Err(WriteError::Continued { folder: folder.to_path_buf(), part }),
+        true => Err(RecordingWriteError::Continued { folder: folder.to_path_buf(), part }),
         false => Ok(()),
     }
 }

@@ -12,10 +12,10 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 
 use super::gaze_stamps::StreamStamps;
-use super::library::{FoundStream, LslInletHandle, LslLibrary};
+use super::library::{DiscoveredLslStream, LslInletHandle, LslLibrary};
 use super::predicate;
-use crate::edge::compared_clock::{ANSWERS, ComparedClock};
-use crate::edge::gaze_input::{GazeNews, WAITING};
+use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator};
+use crate::edge::gaze_input::{TrackerMessage, WAITING};
 use crate::gaze::GazeSample;
 use crate::session::settings::LslGazeSpec;
 
@@ -35,9 +35,9 @@ const RETRY: Duration = Duration::from_secs(1);
 /// Waits, when it is dropped, for the end of the reading thread, since liblsl must not be in use when the program ends.
 /// The receiver of gaze messages must be dropped before.
 #[derive(Debug)]
-pub struct InletEnd(mpsc::Receiver<()>);
+pub struct InletThreadEnd(mpsc::Receiver<()>);
 
-impl Drop for InletEnd {
+impl Drop for InletThreadEnd {
     fn drop(&mut self) {
         // A library that hangs does not delay the end of the program beyond the time limit.
         let _ = self.0.recv_timeout(END);
@@ -53,7 +53,7 @@ pub fn follow(
     library: LslLibrary,
     stream: LslGazeSpec,
     display_m: [f64; 2],
-) -> io::Result<(Receiver<GazeNews>, InletEnd)> {
+) -> io::Result<(Receiver<TrackerMessage>, InletThreadEnd)> {
     let ((news, heard), (end, ended)) = (channel(WAITING), mpsc::channel());
     let mut inlet = GazeInlet { library, stream, display_m, news, lost: 0, complaint: None };
     let work = move || {
@@ -62,11 +62,11 @@ pub fn follow(
         let _ = end.send(());
     };
     thread::Builder::new().name("lsl-gaze".to_string()).spawn(work)?;
-    Ok((heard, InletEnd(ended)))
+    Ok((heard, InletThreadEnd(ended)))
 }
 
 /// Names by which settings can refer to a stream's channels: their labels, or numbers where there is no label.
-pub fn channel_names(found: &FoundStream, patience_s: f64) -> Option<Vec<String>> {
+pub fn channel_names(found: &DiscoveredLslStream, patience_s: f64) -> Option<Vec<String>> {
     let labels = found.connect(patience_s)?.labels(patience_s)?;
     let name = |(index, label): (usize, String)| if label.is_empty() { (index + 1).to_string() } else { label };
     Some(labels.into_iter().enumerate().map(name).collect())
@@ -99,7 +99,7 @@ struct GazeInlet {
     library: LslLibrary,
     stream: LslGazeSpec,
     display_m: [f64; 2],
-    news: Sender<GazeNews>,
+    news: Sender<TrackerMessage>,
     /// Number of dropped samples that have not been reported yet.
     lost: u64,
     /// Why the stream cannot be read, if that has been reported.
@@ -116,7 +116,7 @@ impl GazeInlet {
                 Err(NobodyListens) => return,
                 Ok(Some(reason)) if self.complaint.as_ref() != Some(&reason) => {
                     self.complaint = Some(reason.clone());
-                    if self.tell(GazeNews::Lost(reason)).is_err() {
+                    if self.tell(TrackerMessage::Lost(reason)).is_err() {
                         return;
                     }
                     thread::sleep(RETRY);
@@ -128,7 +128,7 @@ impl GazeInlet {
 
     /// Reads the stream until it is lost; returns why it cannot be read, or `None` if it only vanished before it was
     /// connected.
-    fn read(&mut self, found: &FoundStream) -> Result<Option<String>, NobodyListens> {
+    fn read(&mut self, found: &DiscoveredLslStream) -> Result<Option<String>, NobodyListens> {
         let [name, _, host] = found.identity();
         if found.is_text() {
             return Ok(Some(format!("the stream {name} has texts, not numbers")));
@@ -143,8 +143,8 @@ impl GazeInlet {
                 return Ok(Some(format!("the stream {name} has no channel \"{missing}\"; it has {there}")));
             }
         };
-        self.tell(GazeNews::Began)?;
-        self.tell(GazeNews::Connected(format!("{name} on {host}")))?;
+        self.tell(TrackerMessage::Began)?;
+        self.tell(TrackerMessage::Connected(format!("{name} on {host}")))?;
         self.complaint = None;
         self.pass(&inlet, &channels)?;
         Ok(Some(format!("the stream {name} on {host} ended")))
@@ -152,7 +152,7 @@ impl GazeInlet {
 
     /// Passes on gaze samples until the LSL stream is lost.
     fn pass(&mut self, inlet: &LslInletHandle, channels: &GazeChannels) -> Result<(), NobodyListens> {
-        let mut clock = ComparedClock::new();
+        let mut clock = ClockOffsetEstimator::new();
         (0..ANSWERS).for_each(|_| compare(&mut clock, &self.library));
         let mut stamps = StreamStamps::new(inlet.time_correction(CONNECT_S));
         let (mut compared, mut values) = (Instant::now(), Vec::new());
@@ -183,7 +183,7 @@ impl GazeInlet {
         values: &[f64],
         channels: &GazeChannels,
         stamps: &mut StreamStamps,
-        clock: &ComparedClock,
+        clock: &ClockOffsetEstimator,
     ) {
         let value = |channel: usize| values.get(channel).copied().unwrap_or(f64::NAN);
         let point = [value(channels.x), value(channels.y)];
@@ -194,7 +194,7 @@ impl GazeInlet {
         }
         let [x, y] = self.stream.to_display(point, self.display_m);
         if !(x.is_finite() && y.is_finite() && (0.0..=1.0).contains(&confidence)) {
-            self.offer(GazeNews::Malformed(1));
+            self.offer(TrackerMessage::Malformed(1));
             return;
         }
         let (taken, step) = stamps.taken(stamp_s, clock, Instant::now());
@@ -203,18 +203,18 @@ impl GazeInlet {
         }
         let device_ns = (stamp_s > 0.0).then_some((stamp_s * 1e9) as u64);
         let sample = GazeSample { device_ns, ..GazeSample::new(x, y, confidence) };
-        self.offer(GazeNews::Sample(sample, Some(taken)));
+        self.offer(TrackerMessage::Sample(sample, Some(taken)));
     }
 
     /// Sends a message that must not be lost; waits if the session is late.
-    fn tell(&self, news: GazeNews) -> Result<(), NobodyListens> {
+    fn tell(&self, news: TrackerMessage) -> Result<(), NobodyListens> {
         self.news.blocking_send(news).map_err(|_| NobodyListens)
     }
 
     /// Sends a message that may be dropped, and counts dropped ones.
-    fn offer(&mut self, news: GazeNews) {
+    fn offer(&mut self, news: TrackerMessage) {
         self.lost += u64::from(self.news.try_send(news).is_err());
-        if self.lost > 0 && self.news.try_send(GazeNews::Overrun(self.lost)).is_ok() {
+        if self.lost > 0 && self.news.try_send(TrackerMessage::Overrun(self.lost)).is_ok() {
             self.lost = 0;
         }
     }
@@ -228,7 +228,7 @@ struct GazeChannels {
 }
 
 /// Compares LSL's clock on this computer with the program's own clock.
-pub(super) fn compare(clock: &mut ComparedClock, library: &LslLibrary) {
+pub(super) fn compare(clock: &mut ClockOffsetEstimator, library: &LslLibrary) {
     let asked = Instant::now();
     let lsl_s = library.local_clock();
     clock.take(asked, Instant::now(), lsl_s);

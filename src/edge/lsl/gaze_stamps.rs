@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use crate::base::time::SessionTime;
-use crate::edge::compared_clock::ComparedClock;
-use crate::edge::gaze_input::GazeNews;
+use crate::edge::compared_clock::ClockOffsetEstimator;
+use crate::edge::gaze_input::TrackerMessage;
 use crate::gaze::device_clock::{ClockStep, DeviceClock};
 
 /// Largest age of the first sample, in seconds, at which its stamp still counts as one of LSL's clock.
@@ -41,10 +41,10 @@ impl StreamStamps {
     }
 
     /// Takes a new clock correction; returns a message if the clock of the sender's computer was set.
-    pub fn correct(&mut self, correction_s: Option<f64>) -> Option<GazeNews> {
+    pub fn correct(&mut self, correction_s: Option<f64>) -> Option<TrackerMessage> {
         let correction_s = correction_s?;
         let by_s = self.correction_s.map(|before| before - correction_s).filter(|by_s| by_s.abs() > SET_S);
-        let step = by_s.map(|by_s| GazeNews::ClockSet { by_s, known_at: self.known_at });
+        let step = by_s.map(|by_s| TrackerMessage::ClockSet { by_s, known_at: self.known_at });
         if by_s.is_some() {
             self.device = DeviceClock::default();
         }
@@ -54,7 +54,12 @@ impl StreamStamps {
 
     /// Instant at which the sample with this stamp, which has just arrived, was taken; and a message if the sender's
     /// clock was set.
-    pub fn taken(&mut self, stamp_s: f64, clock: &ComparedClock, now: Instant) -> (Instant, Option<GazeNews>) {
+    pub fn taken(
+        &mut self,
+        stamp_s: f64,
+        clock: &ClockOffsetEstimator,
+        now: Instant,
+    ) -> (Instant, Option<TrackerMessage>) {
         let corrected_s = stamp_s + self.correction_s.unwrap_or(0.0);
         let late_s = clock.device_s(now).map(|now_s| now_s - corrected_s);
         if self.ahead_s.is_none() {
@@ -67,7 +72,7 @@ impl StreamStamps {
         let told = step.map(|ClockStep { by_ns, uncertain_since }| {
             let by_s = by_ns as f64 / 1e9;
             self.ahead_s = self.ahead_s.map(|ahead_s| ahead_s + by_s);
-            GazeNews::ClockSet { by_s, known_at: self.origin + Duration::from_nanos(uncertain_since.0) }
+            TrackerMessage::ClockSet { by_s, known_at: self.origin + Duration::from_nanos(uncertain_since.0) }
         });
         let by_stamp = || clock.instant(corrected_s - self.ahead_s.unwrap_or(0.0));
         let taken = if self.is_foreign { None } else { by_stamp() };
@@ -80,8 +85,8 @@ mod tests {
     use super::*;
 
     /// This computer's clock, and LSL's clock, which is 100 s ahead of the seconds since `origin`.
-    fn clocks() -> (Instant, ComparedClock) {
-        let (origin, mut clock) = (Instant::now(), ComparedClock::new());
+    fn clocks() -> (Instant, ClockOffsetEstimator) {
+        let (origin, mut clock) = (Instant::now(), ClockOffsetEstimator::new());
         for ms in 0..10 {
             let at = origin + Duration::from_millis(ms);
             clock.take(at, at, 100.0 + ms as f64 / 1000.0);
@@ -121,7 +126,7 @@ mod tests {
                 assert!(off_s(found, taken) < 1e-3, "{index}: {}", off_s(found, taken));
             }
         }
-        assert!(matches!(&told[..], [GazeNews::ClockSet { by_s, .. }] if (by_s + 0.7).abs() < 1e-6), "{told:?}");
+        assert!(matches!(&told[..], [TrackerMessage::ClockSet { by_s, .. }] if (by_s + 0.7).abs() < 1e-6), "{told:?}");
     }
 
     #[test]
@@ -145,6 +150,6 @@ mod tests {
         assert_eq!(stamps.correct(Some(3.004)), None);
         assert_eq!(stamps.correct(None), None);
         let told = stamps.correct(Some(2.5));
-        assert!(matches!(told, Some(GazeNews::ClockSet { by_s, .. }) if (by_s - 0.504).abs() < 1e-9), "{told:?}");
+        assert!(matches!(told, Some(TrackerMessage::ClockSet { by_s, .. }) if (by_s - 0.504).abs() < 1e-9), "{told:?}");
     }
 }

@@ -162,7 +162,7 @@ impl LslLibrary {
 
     /// Streams that satisfy a predicate (XPath 1.0); waits for `wanted` streams, but not longer than `patience_s`
     /// seconds.
-    pub fn resolve(&self, predicate: &str, wanted: u16, patience_s: f64) -> Vec<FoundStream> {
+    pub fn resolve(&self, predicate: &str, wanted: u16, patience_s: f64) -> Vec<DiscoveredLslStream> {
         let (predicate, mut found) = (text(predicate), vec![std::ptr::null_mut(); usize::from(MOST_FOUND)]);
         // SAFETY: the buffer has room for as many pointers as the library is told.
         let count = unsafe {
@@ -170,7 +170,7 @@ impl LslLibrary {
             (self.functions.resolve_bypred)(buffer, room, predicate.as_ptr(), i32::from(wanted), patience_s)
         };
         found.truncate(usize::try_from(count).unwrap_or(0));
-        found.into_iter().map(|info| FoundStream { functions: self.functions, info }).collect()
+        found.into_iter().map(|info| DiscoveredLslStream { functions: self.functions, info }).collect()
     }
 }
 
@@ -260,12 +260,12 @@ impl Drop for LslOutletHandle {
 
 /// A stream that another program offers, found by a search.
 #[derive(Debug)]
-pub struct FoundStream {
+pub struct DiscoveredLslStream {
     functions: &'static Functions,
     info: Pointer,
 }
 
-impl FoundStream {
+impl DiscoveredLslStream {
     /// Name and content type of the stream, and name of the computer that offers it.
     pub fn identity(&self) -> [String; 3] {
         let functions = self.functions;
@@ -303,7 +303,7 @@ impl FoundStream {
     }
 }
 
-impl Drop for FoundStream {
+impl Drop for DiscoveredLslStream {
     fn drop(&mut self) {
         // SAFETY: the description is destroyed once.
         unsafe { (self.functions.destroy_streaminfo)(self.info) };
@@ -312,7 +312,7 @@ impl Drop for FoundStream {
 
 /// The stream was lost, or the library no longer reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct StreamLost;
+pub struct LslStreamLost;
 
 /// An incoming stream, read until this value is dropped. It stays on the thread that created it.
 #[derive(Debug)]
@@ -358,7 +358,7 @@ impl LslInletHandle {
     ///
     /// # Errors
     /// The stream is lost.
-    pub fn pull(&self, values: &mut Vec<f64>, patience_s: f64) -> Result<Option<f64>, StreamLost> {
+    pub fn pull(&self, values: &mut Vec<f64>, patience_s: f64) -> Result<Option<f64>, LslStreamLost> {
         values.resize(self.channels, 0.0);
         let mut error = 0;
         // SAFETY: the buffer has room for a value of each channel.
@@ -368,7 +368,7 @@ impl LslInletHandle {
         };
         match error {
             0 | TIMEOUT => Ok((time != 0.0).then_some(time)),
-            _ => Err(StreamLost),
+            _ => Err(LslStreamLost),
         }
     }
 }

@@ -17,10 +17,10 @@ use std::path::absolute;
 use crate::analysis::lsl::SOURCE;
 use crate::session::settings::{LslGazeSpec, LslSpec};
 
-pub use gaze_inlet::{InletEnd, channel_names, follow, missing_channel};
-pub use library::{FoundStream, LslLibrary};
+pub use gaze_inlet::{InletThreadEnd, channel_names, follow, missing_channel};
+pub use library::{DiscoveredLslStream, LslLibrary};
 pub use lsl_error::LslError;
-pub use outlet_thread::{LslCounts, LslStreams, TimedSample};
+pub use outlet_thread::{LslCounts, LslSample, LslStreams};
 
 /// Loads the LSL library that the settings name, or the installed one.
 ///
@@ -41,7 +41,7 @@ fn predicate(stream: &LslGazeSpec) -> String {
 }
 
 /// Streams of numbers from other programs, which could be gaze. The search takes `patience_s` seconds.
-pub fn streams_of_numbers(library: LslLibrary, patience_s: f64) -> Vec<FoundStream> {
+pub fn streams_of_numbers(library: LslLibrary, patience_s: f64) -> Vec<DiscoveredLslStream> {
     let mut found = library.resolve(&format!("channel_count>1 and {}", not_own()), library::MOST_FOUND, patience_s);
     found.retain(|stream| !stream.is_text());
     found

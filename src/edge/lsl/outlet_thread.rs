@@ -11,8 +11,8 @@ use std::time::{Duration, Instant};
 use super::gaze_inlet::compare;
 use super::library::{LslLibrary, LslOutletHandle};
 use super::lsl_error::LslError;
-use crate::analysis::lsl::{SampleValues, StreamDescription};
-use crate::edge::compared_clock::{ANSWERS, ComparedClock};
+use crate::analysis::lsl::{LslSampleValues, StreamDescription};
+use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator};
 use crate::session::settings::LslOutlet;
 
 /// Number of packets of samples that may wait to be sent; at 200 gaze samples per second, they are those of 20 seconds.
@@ -29,13 +29,13 @@ const COMPARE: Duration = Duration::from_secs(1);
 
 /// A sample for a stream, with the time of the event that it describes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TimedSample {
+pub struct LslSample {
     /// LSL stream that the sample is sent to.
     pub outlet: LslOutlet,
     /// Instant of the event that the sample describes.
     pub at: Instant,
     /// Values of the sample, one for each channel.
-    pub values: SampleValues,
+    pub values: LslSampleValues,
 }
 
 /// Numbers of samples sent over LSL, dropped, and refused.
@@ -62,7 +62,7 @@ pub struct LslStreams {
     /// Descriptions of the LSL streams on offer.
     pub descriptions: Vec<StreamDescription>,
     /// Queue to the sending thread; `None` once no more samples will be sent.
-    packets: Option<SyncSender<Vec<TimedSample>>>,
+    packets: Option<SyncSender<Vec<LslSample>>>,
     counters: Arc<Counters>,
     done: Receiver<()>,
 }
@@ -73,7 +73,7 @@ impl LslStreams {
     /// # Errors
     /// The library refuses one of the streams, or does not answer.
     pub fn offer(library: LslLibrary, descriptions: Vec<StreamDescription>) -> Result<LslStreams, LslError> {
-        let (packets, told) = sync_channel::<Vec<TimedSample>>(WAITING);
+        let (packets, told) = sync_channel::<Vec<LslSample>>(WAITING);
         let (begun, begins) = channel();
         let (end, done) = channel();
         let (counters, streams) = (Arc::new(Counters::default()), descriptions.clone());
@@ -99,7 +99,7 @@ impl LslStreams {
     }
 
     /// Sends samples, or drops them if the sending thread is too slow.
-    pub fn tell(&self, samples: Vec<TimedSample>) {
+    pub fn tell(&self, samples: Vec<LslSample>) {
         let Some(packets) = self.packets.as_ref().filter(|_| !samples.is_empty()) else { return };
         if let Err(TrySendError::Full(samples) | TrySendError::Disconnected(samples)) = packets.try_send(samples) {
             self.counters.dropped.fetch_add(samples.len() as u64, Relaxed);
@@ -132,10 +132,10 @@ fn offer_all(
 fn send(
     library: LslLibrary,
     outlets: &BTreeMap<LslOutlet, LslOutletHandle>,
-    told: &Receiver<Vec<TimedSample>>,
+    told: &Receiver<Vec<LslSample>>,
     counters: &Counters,
 ) {
-    let mut clock = ComparedClock::new();
+    let mut clock = ClockOffsetEstimator::new();
     (0..ANSWERS).for_each(|_| compare(&mut clock, &library));
     let mut compared = Instant::now();
     loop {
@@ -151,8 +151,8 @@ fn send(
         for sample in &packet {
             let outlet = outlets.get(&sample.outlet).zip(clock.device_s(sample.at));
             let is_taken = outlet.is_some_and(|(outlet, time_s)| match &sample.values {
-                SampleValues::Numbers(values) => outlet.push_numbers(values, time_s),
-                SampleValues::Texts(values) => outlet.push_texts(values, time_s),
+                LslSampleValues::Numbers(values) => outlet.push_numbers(values, time_s),
+                LslSampleValues::Texts(values) => outlet.push_texts(values, time_s),
             });
             let counter = if is_taken { &counters.sent } else { &counters.refused };
             counter.fetch_add(1, Relaxed);

@@ -1,4 +1,4 @@
-//! Carries out requests to Pupil Capture: asks for its time, and does what [`CaptureRecorder`] decides.
+//! Carries out requests to Pupil Capture: asks for its time, and does what [`CaptureRecordingControl`] decides.
 
 use std::future::pending;
 use std::io;
@@ -8,11 +8,11 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{Receiver, Sender};
 use tokio::time::{interval, sleep_until, timeout_at};
 
-use super::message::{self, ANNOTATION, RecorderNews};
-use super::recorder::{CaptureAction, CaptureRecorder, CaptureRequest};
+use super::message::{self, ANNOTATION, CaptureNotification};
+use super::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
 use super::zmtp::{ZmtpConnection, ZmtpMessage};
-use crate::edge::compared_clock::{ANSWERS, ComparedClock, DeviceClockStep};
-use crate::edge::gaze_input::GazeNews;
+use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator, DeviceClockStep};
+use crate::edge::gaze_input::TrackerMessage;
 
 /// Period of time requests to Pupil Capture; a clock that was set is noticed within this time.
 const ASK_TIME: Duration = Duration::from_millis(250);
@@ -20,24 +20,24 @@ const ASK_TIME: Duration = Duration::from_millis(250);
 const SUBSCRIPTIONS: Duration = Duration::from_millis(200);
 
 /// Connections to Capture for requests and annotations.
-pub(super) struct CaptureDesk {
+pub(super) struct CaptureClient {
     pub remote: ZmtpConnection,
     pub annotations: ZmtpConnection,
-    pub news: Sender<GazeNews>,
+    pub news: Sender<TrackerMessage>,
 }
 
 /// Event for which the task that serves Capture waits.
 enum DeskEvent {
     Time,
     Order(Option<CaptureRequest>),
-    Recorder(Option<RecorderNews>),
+    Recorder(Option<CaptureNotification>),
     Subscription(io::Result<ZmtpMessage>),
     Due,
 }
 
-impl CaptureDesk {
+impl CaptureClient {
     /// Initialises the clock offset by averaging Capture's first replies to time requests.
-    pub async fn set_clock(remote: &mut ZmtpConnection, clock: &Mutex<ComparedClock>) -> io::Result<()> {
+    pub async fn set_clock(remote: &mut ZmtpConnection, clock: &Mutex<ClockOffsetEstimator>) -> io::Result<()> {
         for _ in 0..ANSWERS {
             ask_time(remote, clock).await?;
         }
@@ -62,9 +62,9 @@ impl CaptureDesk {
     pub async fn attend(
         &mut self,
         orders: &mut Receiver<CaptureRequest>,
-        mut told: Receiver<RecorderNews>,
-        recorder: &mut CaptureRecorder,
-        clock: &Mutex<ComparedClock>,
+        mut told: Receiver<CaptureNotification>,
+        recorder: &mut CaptureRecordingControl,
+        clock: &Mutex<ClockOffsetEstimator>,
         mut actions: Vec<CaptureAction>,
     ) -> io::Error {
         let mut asking = interval(ASK_TIME);
@@ -107,14 +107,14 @@ impl CaptureDesk {
 
     /// Compares the clocks; if Capture's clock was set, reports that and asks again until the mean is as exact as
     /// before.
-    async fn check_time(&mut self, clock: &Mutex<ComparedClock>) -> io::Result<()> {
+    async fn check_time(&mut self, clock: &Mutex<ClockOffsetEstimator>) -> io::Result<()> {
         let Some(DeviceClockStep { by_s, known_at }) = ask_time(&mut self.remote, clock).await? else { return Ok(()) };
         // The receiver may no longer exist; the listener notices that.
-        let _ = self.news.send(GazeNews::ClockSet { by_s, known_at }).await;
-        CaptureDesk::set_clock(&mut self.remote, clock).await
+        let _ = self.news.send(TrackerMessage::ClockSet { by_s, known_at }).await;
+        CaptureClient::set_clock(&mut self.remote, clock).await
     }
 
-    async fn act(&mut self, action: CaptureAction, clock: &Mutex<ComparedClock>) -> io::Result<()> {
+    async fn act(&mut self, action: CaptureAction, clock: &Mutex<ClockOffsetEstimator>) -> io::Result<()> {
         match action {
             CaptureAction::Start(name) => self.remote.ask(&[format!("R {name}").as_bytes()]).await.map(drop),
             CaptureAction::Stop => self.remote.ask(&[b"r"]).await.map(drop),
@@ -126,7 +126,7 @@ impl CaptureDesk {
                 self.annotations.send(&[ANNOTATION.as_bytes(), &payload]).await
             }
             CaptureAction::Tell(state) => {
-                let _ = self.news.send(GazeNews::Recording(state)).await;
+                let _ = self.news.send(TrackerMessage::Recording(state)).await;
                 Ok(())
             }
             CaptureAction::Report(to) => {
@@ -143,7 +143,10 @@ fn is_annotated(message: &ZmtpMessage) -> bool {
     message.first().and_then(|frame| frame.strip_prefix(&[1])) == Some(ANNOTATION.as_bytes())
 }
 
-async fn ask_time(remote: &mut ZmtpConnection, clock: &Mutex<ComparedClock>) -> io::Result<Option<DeviceClockStep>> {
+async fn ask_time(
+    remote: &mut ZmtpConnection,
+    clock: &Mutex<ClockOffsetEstimator>,
+) -> io::Result<Option<DeviceClockStep>> {
     let asked = Instant::now();
     let answer = remote.ask(&[b"t"]).await?;
     let answered = Instant::now();

@@ -9,12 +9,12 @@ use tokio::sync::mpsc::Sender;
 use tokio::time::timeout;
 
 use super::eye_events::{BlinkMerger, FixationMerger, FixationWindow};
-use super::message::{self, PupilBlink, PupilFixation, PupilMessage, RecorderNews};
+use super::message::{self, CaptureNotification, PupilBlink, PupilFixation, PupilMessage};
 use super::zmtp::{ZmtpConnection, ZmtpMessage};
-use crate::edge::compared_clock::ComparedClock;
-use crate::edge::gaze_input::{GazeNews, SampleTime, TrackerFixation};
+use crate::edge::compared_clock::ClockOffsetEstimator;
+use crate::edge::gaze_input::{TrackerFixation, TrackerMessage, TrackerTime};
 use crate::gaze::GazeSample;
-use crate::gaze::surface::SurfaceMap;
+use crate::gaze::surface::SurfaceHomography;
 
 /// The display's surface counts as lost after this long without a datum about it.
 const UNSEEN: Duration = Duration::from_secs(1);
@@ -25,11 +25,11 @@ const MAX_OTHERS: usize = 8;
 
 /// Reads the messages that Capture publishes, and passes them on to the session and to the recorder.
 pub(super) struct Listener<'a> {
-    news: Sender<GazeNews>,
-    recorder: Sender<RecorderNews>,
+    news: Sender<TrackerMessage>,
+    recorder: Sender<CaptureNotification>,
     surface: &'a str,
-    map: SurfaceMap,
-    clock: &'a Mutex<ComparedClock>,
+    map: SurfaceHomography,
+    clock: &'a Mutex<ClockOffsetEstimator>,
     /// Number of dropped messages that have not been reported yet.
     lost: &'a mut u64,
     fixations: FixationMerger,
@@ -44,10 +44,10 @@ pub(super) struct Listener<'a> {
 impl<'a> Listener<'a> {
     /// A listener that has received no message yet.
     pub fn new(
-        news: Sender<GazeNews>,
-        recorder: Sender<RecorderNews>,
-        (surface, map): (&'a str, SurfaceMap),
-        clock: &'a Mutex<ComparedClock>,
+        news: Sender<TrackerMessage>,
+        recorder: Sender<CaptureNotification>,
+        (surface, map): (&'a str, SurfaceHomography),
+        clock: &'a Mutex<ClockOffsetEstimator>,
         lost: &'a mut u64,
     ) -> Listener<'a> {
         let (fixations, blinks) = (FixationMerger::default(), BlinkMerger::default());
@@ -123,10 +123,10 @@ impl<'a> Listener<'a> {
         }
         if self.sees != Some(sees) {
             self.sees = Some(sees);
-            let _ = self.news.send(GazeNews::SeesDisplay(sees)).await;
+            let _ = self.news.send(TrackerMessage::SeesDisplay(sees)).await;
         }
         if !sees && std::mem::take(&mut self.has_new_others) {
-            let _ = self.news.send(GazeNews::OtherSurfaces(self.others.iter().cloned().collect())).await;
+            let _ = self.news.send(TrackerMessage::OtherSurfaces(self.others.iter().cloned().collect())).await;
         }
     }
 
@@ -141,7 +141,7 @@ impl<'a> Listener<'a> {
             };
             let taken = self.taken(gaze.timestamp);
             let sample = GazeSample { device_ns: Some(taken.device_ns), ..GazeSample::new(x, y, gaze.confidence) };
-            self.offer(GazeNews::Sample(sample, taken.at));
+            self.offer(TrackerMessage::Sample(sample, taken.at));
         }
         for found in told.fixations {
             let window = self.window(&found);
@@ -164,9 +164,9 @@ impl<'a> Listener<'a> {
             let _ = self.recorder.try_send(news);
         }
         if malformed > 0 {
-            self.offer(GazeNews::Malformed(malformed));
+            self.offer(TrackerMessage::Malformed(malformed));
         }
-        if *self.lost > 0 && self.news.try_send(GazeNews::Overrun(*self.lost)).is_ok() {
+        if *self.lost > 0 && self.news.try_send(TrackerMessage::Overrun(*self.lost)).is_ok() {
             *self.lost = 0;
         }
     }
@@ -183,7 +183,7 @@ impl<'a> Listener<'a> {
 
     fn tell_fixation(&mut self, found: FixationWindow) {
         let [begin, end] = found.span_s;
-        self.offer(GazeNews::Fixation(TrackerFixation {
+        self.offer(TrackerMessage::Fixation(TrackerFixation {
             at: found.at,
             duration_ms: (end - begin) * 1000.0,
             dispersion_deg: found.dispersion_deg,
@@ -194,15 +194,15 @@ impl<'a> Listener<'a> {
 
     fn tell_blink(&mut self, found: PupilBlink) {
         let taken = self.taken(found.timestamp);
-        self.offer(GazeNews::Blink { is_onset: found.is_onset, confidence: found.confidence, taken });
+        self.offer(TrackerMessage::Blink { is_onset: found.is_onset, confidence: found.confidence, taken });
     }
 
-    fn taken(&self, pupil_s: f64) -> SampleTime {
+    fn taken(&self, pupil_s: f64) -> TrackerTime {
         let at = self.clock.lock().ok().and_then(|clock| clock.instant(pupil_s));
-        SampleTime { device_ns: (pupil_s * 1e9) as u64, at }
+        TrackerTime { device_ns: (pupil_s * 1e9) as u64, at }
     }
 
-    fn offer(&mut self, news: GazeNews) {
+    fn offer(&mut self, news: TrackerMessage) {
         if self.news.try_send(news).is_err() {
             *self.lost += 1;
         }

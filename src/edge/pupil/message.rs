@@ -61,7 +61,7 @@ pub struct PupilBlink {
 
 /// Notification of Capture's recorder.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum RecorderNews {
+pub enum CaptureNotification {
     /// The recorder began a recording under this session name.
     Started(String),
     /// The recorder ended its recording.
@@ -82,7 +82,7 @@ pub struct PupilMessage {
     /// Name of another surface that the tracker detects.
     pub other_surface: Option<String>,
     /// Notification of the recorder, if the message contains one.
-    pub recorder: Option<RecorderNews>,
+    pub recorder: Option<CaptureNotification>,
     /// Number of malformed items in the message; 1 if the whole message is malformed.
     pub malformed: u64,
 }
@@ -182,10 +182,10 @@ fn is_undecided(item: &Value) -> bool {
     field(item, "confidence").and_then(Value::as_f64).is_some_and(f64::is_nan)
 }
 
-fn recorder(topic: &str, item: &Value) -> Option<RecorderNews> {
+fn recorder(topic: &str, item: &Value) -> Option<CaptureNotification> {
     match topic {
-        STARTED => Some(RecorderNews::Started(field(item, "session_name")?.as_str()?.to_string())),
-        _ => Some(RecorderNews::Stopped),
+        STARTED => Some(CaptureNotification::Started(field(item, "session_name")?.as_str()?.to_string())),
+        _ => Some(CaptureNotification::Stopped),
     }
 }
 

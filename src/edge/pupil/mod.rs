@@ -16,13 +16,13 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{Receiver, Sender, channel};
 use tokio::time::sleep;
 
-use super::compared_clock::ComparedClock;
-use super::gaze_input::{GazeNews, WAITING};
-use crate::gaze::surface::SurfaceMap;
-use capture_desk::CaptureDesk;
+use super::compared_clock::ClockOffsetEstimator;
+use super::gaze_input::{TrackerMessage, WAITING};
+use crate::gaze::surface::SurfaceHomography;
+use capture_desk::CaptureClient;
 use listener::Listener;
 use message::{SURFACES, TOPICS};
-use recorder::CaptureRecorder;
+use recorder::CaptureRecordingControl;
 pub use recorder::CaptureRequest;
 use zmtp::{SocketRole, ZmtpConnection};
 
@@ -35,7 +35,7 @@ const RECORDER_NEWS: usize = 16;
 
 /// Network address of Pupil Capture, and what to receive from it.
 #[derive(Clone, Debug)]
-pub struct CaptureAddress {
+pub struct CaptureConfiguration {
     /// Host on which Capture runs.
     pub address: String,
     /// Port of Capture's plugin Pupil Remote.
@@ -43,17 +43,17 @@ pub struct CaptureAddress {
     /// Name of the surface that Capture defines by the display's markers.
     pub surface: String,
     /// Map from the surface to the wall display.
-    pub map: SurfaceMap,
+    pub map: SurfaceHomography,
     /// Whether Capture is to make a recording; its recordings are annotated in any case.
     pub records: bool,
 }
 
 /// Starts following Capture; returns the channels for its messages and for requests. Ends when the receiver is dropped.
-pub fn follow(capture: CaptureAddress) -> (Receiver<GazeNews>, Sender<CaptureRequest>) {
+pub fn follow(capture: CaptureConfiguration) -> (Receiver<TrackerMessage>, Sender<CaptureRequest>) {
     let (news, receiver) = channel(WAITING);
     let (sender, orders) = channel(ORDERS);
     tokio::spawn(async move {
-        let recorder = CaptureRecorder::new(capture.records);
+        let recorder = CaptureRecordingControl::new(capture.records);
         let mut follower = Follower { capture, news, orders, recorder, run: None, lost: 0 };
         while !follower.news.is_closed() {
             let was_there = follower.once().await;
@@ -76,10 +76,10 @@ pub async fn version(address: &str, port: u16) -> io::Result<String> {
 }
 
 struct Follower {
-    capture: CaptureAddress,
-    news: Sender<GazeNews>,
+    capture: CaptureConfiguration,
+    news: Sender<TrackerMessage>,
     orders: Receiver<CaptureRequest>,
-    recorder: CaptureRecorder,
+    recorder: CaptureRecordingControl,
     /// Ports of the message bus of the Capture that was connected last, by which a restarted Capture is recognised.
     run: Option<[u16; 2]>,
     /// Number of dropped messages that have not been reported yet.
@@ -93,8 +93,8 @@ impl Follower {
         let (address, port) = (self.capture.address.clone(), self.capture.port);
         let mut remote = ZmtpConnection::open(&address, port, SocketRole::Req).await.map_err(never)?;
         let version = remote.ask(&[b"v"]).await.map_err(never)?;
-        let clock = Mutex::new(ComparedClock::new());
-        CaptureDesk::set_clock(&mut remote, &clock).await.map_err(never)?;
+        let clock = Mutex::new(ClockOffsetEstimator::new());
+        CaptureClient::set_clock(&mut remote, &clock).await.map_err(never)?;
         let sub_port = port_of(&remote.ask(&[b"SUB_PORT"]).await.map_err(never)?).map_err(never)?;
         let pub_port = port_of(&remote.ask(&[b"PUB_PORT"]).await.map_err(never)?).map_err(never)?;
         let mut backbone = ZmtpConnection::open(&address, sub_port, SocketRole::Sub).await.map_err(never)?;
@@ -104,9 +104,9 @@ impl Follower {
             backbone.subscribe(topic).await.map_err(never)?;
         }
         let annotations = ZmtpConnection::open(&address, pub_port, SocketRole::Pub).await.map_err(never)?;
-        let mut desk = CaptureDesk { remote, annotations, news: self.news.clone() };
+        let mut desk = CaptureClient { remote, annotations, news: self.news.clone() };
         let listens = desk.start_plugin().await.map_err(never)?;
-        self.tell(GazeNews::Connected(format!("Pupil Capture {version}"))).await;
+        self.tell(TrackerMessage::Connected(format!("Pupil Capture {version}"))).await;
         let run = [sub_port, pub_port];
         let is_same_run = self.run.replace(run) == Some(run);
         let ended = self.attend(desk, backbone, &clock, is_same_run, listens).await;
@@ -117,9 +117,9 @@ impl Follower {
     /// Listens, compares clocks, and passes requests on, until one of these fails.
     async fn attend(
         &mut self,
-        mut desk: CaptureDesk,
+        mut desk: CaptureClient,
         mut backbone: ZmtpConnection,
-        clock: &Mutex<ComparedClock>,
+        clock: &Mutex<ClockOffsetEstimator>,
         is_same_run: bool,
         listens: bool,
     ) -> io::Error {
@@ -138,7 +138,7 @@ impl Follower {
         reason
     }
 
-    async fn tell(&mut self, news: GazeNews) {
+    async fn tell(&mut self, news: TrackerMessage) {
         // If the receiver of gaze messages was dropped, the outer loop ends.
         let _ = self.news.send(news).await;
     }
@@ -150,7 +150,7 @@ impl Follower {
                 io::ErrorKind::TimedOut => "Pupil Capture does not answer".to_string(),
                 _ => format!("Pupil Capture: {}", lost.reason),
             };
-            self.tell(GazeNews::Lost(reason)).await;
+            self.tell(TrackerMessage::Lost(reason)).await;
         }
     }
 }

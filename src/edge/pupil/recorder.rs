@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot;
 
-use super::message::RecorderNews;
+use super::message::CaptureNotification;
 use crate::session::tracker::TrackerRecording;
 
 /// Longest time from a request for a recording to its beginning.
@@ -85,7 +85,7 @@ enum Hold {
 
 /// State of Capture's recording, as far as this program knows it, and waiting requests.
 #[derive(Debug)]
-pub struct CaptureRecorder {
+pub struct CaptureRecordingControl {
     /// Whether Capture is to make a recording; its recordings are annotated in any case.
     records: bool,
     /// Name of the Capture recording that the session wants now.
@@ -103,10 +103,10 @@ pub struct CaptureRecorder {
     waiting: VecDeque<CaptureRequest>,
 }
 
-impl CaptureRecorder {
+impl CaptureRecordingControl {
     /// State before anything is known about Capture.
-    pub fn new(records: bool) -> CaptureRecorder {
-        CaptureRecorder {
+    pub fn new(records: bool) -> CaptureRecordingControl {
+        CaptureRecordingControl {
             records,
             wanted: None,
             owner: RecordingOwner::Nobody,
@@ -171,11 +171,11 @@ impl CaptureRecorder {
     }
 
     /// Handles a notification of Capture's recorder.
-    pub fn heard(&mut self, news: RecorderNews, now: Instant) -> Vec<CaptureAction> {
+    pub fn heard(&mut self, news: CaptureNotification, now: Instant) -> Vec<CaptureAction> {
         let mut actions = Vec::new();
         let is_beginning = matches!(self.hold, Some(Hold::Beginning(_)));
         match news {
-            RecorderNews::Started(name)
+            CaptureNotification::Started(name)
                 if self.wanted.as_ref() == Some(&name) && (is_beginning || self.is_overdue()) =>
             {
                 // Annotations sent before the recording began are not in it, so the trial's state is annotated again.
@@ -184,16 +184,16 @@ impl CaptureRecorder {
                 actions.push(CaptureAction::Tell(TrackerRecording::Begun));
                 self.begun(now);
             }
-            RecorderNews::Started(_) if is_beginning => self.is_not_ours(now, &mut actions),
-            RecorderNews::Started(_) => {}
-            RecorderNews::Stopped if matches!(self.hold, Some(Hold::Ending(_))) => {
+            CaptureNotification::Started(_) if is_beginning => self.is_not_ours(now, &mut actions),
+            CaptureNotification::Started(_) => {}
+            CaptureNotification::Stopped if matches!(self.hold, Some(Hold::Ending(_))) => {
                 (self.hold, self.owner) = (None, RecordingOwner::Nobody);
             }
-            RecorderNews::Stopped if self.wanted.is_some() && self.owner != RecordingOwner::Nobody => {
+            CaptureNotification::Stopped if self.wanted.is_some() && self.owner != RecordingOwner::Nobody => {
                 self.owner = RecordingOwner::Nobody;
                 actions.push(CaptureAction::Tell(TrackerRecording::Ended));
             }
-            RecorderNews::Stopped => {}
+            CaptureNotification::Stopped => {}
         }
         self.go_on(now, &mut actions);
         actions

@@ -50,7 +50,7 @@ fn broken(what: &str) -> io::Error {
 
 /// Assembles ZeroMQ messages from received bytes.
 #[derive(Debug, Default)]
-pub struct FrameAssembler {
+pub struct ZmtpFrameAssembler {
     bytes: Vec<u8>,
     /// Number of received bytes that have been consumed already.
     read: usize,
@@ -58,7 +58,7 @@ pub struct FrameAssembler {
     size: usize,
 }
 
-impl FrameAssembler {
+impl ZmtpFrameAssembler {
     /// Adds bytes received from the ZeroMQ socket.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.drain(..self.read);
@@ -117,7 +117,7 @@ impl FrameAssembler {
 #[derive(Debug)]
 pub struct ZmtpConnection {
     stream: TcpStream,
-    inbox: FrameAssembler,
+    inbox: ZmtpFrameAssembler,
     chunk: Vec<u8>,
 }
 
@@ -152,7 +152,7 @@ impl ZmtpConnection {
             ready.extend(property("Identity", ""));
         }
         stream.write_all(&[&[COMMAND, ready.len() as u8], ready.as_slice()].concat()).await?;
-        let mut connection = ZmtpConnection { stream, inbox: FrameAssembler::default(), chunk: vec![0; 1 << 16] };
+        let mut connection = ZmtpConnection { stream, inbox: ZmtpFrameAssembler::default(), chunk: vec![0; 1 << 16] };
         // The other side's READY command comes before anything else.
         let flags = loop {
             match connection.inbox.next_frame()? {

@@ -4,12 +4,12 @@ use toml::Spanned;
 
 use super::contents::IngredientItems;
 use super::places::stored;
-use super::spec_error::{Result, SpecFile, wrong, wrong_file};
+use super::spec_error::{KitchenFileKind, Result, wrong, wrong_file};
 use crate::kitchen::action::{Button, ButtonAction};
 use crate::kitchen::agent::Agent;
 use crate::kitchen::layout::{ButtonSpec, LayoutSpec, is_same_key};
 use crate::kitchen::location::{Location, LocationId};
-use crate::kitchen::process::Process;
+use crate::kitchen::process::ProcessingStep;
 use crate::kitchen::recipe::RecipesSpec;
 
 /// Largest length of the name of a button's area, in characters.
@@ -23,7 +23,7 @@ pub(super) fn buttons(
     spec: &RecipesSpec,
     items: &IngredientItems,
     locations: &[Location],
-    processes: &[Process],
+    processes: &[ProcessingStep],
 ) -> Result<[Vec<Button>; 2]> {
     let located = |name: &Spanned<String>| {
         let index = locations.iter().position(|location| location.name == *name.get_ref());
@@ -43,7 +43,11 @@ pub(super) fn buttons(
             let button = layout.process.iter().find(|button| *button.name.get_ref() == process.name);
             let Some(button) = button else {
                 let found = format!("no button for the process \"{}\" of the recipe file", process.name);
-                return Err(wrong_file(SpecFile::Layout, found, "a table [[process]] with this name and a button"));
+                return Err(wrong_file(
+                    KitchenFileKind::Layout,
+                    found,
+                    "a table [[process]] with this name and a button",
+                ));
             };
             list.push((process.name.clone(), ButtonAction::Process(index as u8), &button.button));
         }
@@ -60,7 +64,7 @@ pub(super) fn buttons(
     for process in &layout.process {
         if !processes.iter().any(|known| known.name == *process.name.get_ref()) {
             let found = format!("a button for the process \"{}\"", process.name.get_ref());
-            return Err(wrong(SpecFile::Layout, process.name.span(), found, "a [[process]] of the recipe file"));
+            return Err(wrong(KitchenFileKind::Layout, process.name.span(), found, "a [[process]] of the recipe file"));
         }
     }
     Ok(buttons)
@@ -69,17 +73,32 @@ pub(super) fn buttons(
 fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, others: &[Button]) -> Result<Button> {
     if others.iter().any(|other| other.name == name) {
         let found = format!("a second button \"{name}\" of the {}", agent.name());
-        return Err(wrong(SpecFile::Layout, spec.at_m.span(), found, "a name of its own for each button of an agent"));
+        return Err(wrong(
+            KitchenFileKind::Layout,
+            spec.at_m.span(),
+            found,
+            "a name of its own for each button of an agent",
+        ));
     }
     let at_m = *spec.at_m.get_ref();
     if !at_m.iter().all(|metres| metres.is_finite()) {
-        return Err(wrong(SpecFile::Layout, spec.at_m.span(), "a button at no place", "at_m = [x, y] in metres"));
+        return Err(wrong(
+            KitchenFileKind::Layout,
+            spec.at_m.span(),
+            "a button at no place",
+            "at_m = [x, y] in metres",
+        ));
     }
     let key = match (agent, &spec.key) {
         (Agent::Robot, _) => None,
         (Agent::Human, None) => {
             let found = format!("no key for the human's button \"{name}\"");
-            return Err(wrong(SpecFile::Layout, spec.at_m.span(), found, "button = { at_m = [x, y], key = \"k\" }"));
+            return Err(wrong(
+                KitchenFileKind::Layout,
+                spec.at_m.span(),
+                found,
+                "button = { at_m = [x, y], key = \"k\" }",
+            ));
         }
         (Agent::Human, Some(key)) => {
             let has_it = |other: &&Button| other.key.is_some_and(|other| is_same_key(other, *key.get_ref()));
@@ -87,7 +106,12 @@ fn button(agent: Agent, name: String, action: ButtonAction, spec: &ButtonSpec, o
             if key.get_ref().is_whitespace() || twin.is_some() {
                 let whose = twin.map_or(String::new(), |other| format!(", which \"{}\" has already", other.name));
                 let found = format!("the key \"{}\" for \"{name}\"{whose}", key.get_ref());
-                return Err(wrong(SpecFile::Layout, key.span(), found, "a key of its own that is not the space bar"));
+                return Err(wrong(
+                    KitchenFileKind::Layout,
+                    key.span(),
+                    found,
+                    "a key of its own that is not the space bar",
+                ));
             }
             Some(*key.get_ref())
         }
@@ -103,7 +127,12 @@ fn area(spec: &ButtonSpec) -> Result<Option<String>> {
     let is_name = (1..=MAX_AREA).contains(&name.chars().count()) && name.trim() == name;
     if !is_name || name.chars().any(char::is_control) {
         let found = format!("area = {name:?}");
-        return Err(wrong(SpecFile::Layout, area.span(), found, "a name of 1 to 40 characters, such as \"storage\""));
+        return Err(wrong(
+            KitchenFileKind::Layout,
+            area.span(),
+            found,
+            "a name of 1 to 40 characters, such as \"storage\"",
+        ));
     }
     Ok(Some(name.clone()))
 }
@@ -116,7 +145,7 @@ fn gamepad(agent: Agent, name: &str, spec: &ButtonSpec, others: &[Button]) -> Re
         let whose = twin.map_or(String::new(), |other| format!(", which \"{}\" has already", other.name));
         let found = format!("gamepad = {} for \"{name}\"{whose}", number.get_ref());
         let remedy = "the number of a gamepad button, 0 to 63, each once";
-        return Err(wrong(SpecFile::Layout, number.span(), found, remedy));
+        return Err(wrong(KitchenFileKind::Layout, number.span(), found, remedy));
     }
     Ok(Some(*number.get_ref()))
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::contents::IngredientItems;
-use super::spec_error::{Result, SpecFile, wrong};
+use super::spec_error::{KitchenFileKind, Result, wrong};
 use crate::kitchen::content::Content;
 use crate::kitchen::content_wording::{KitchenWords, SCREEN_LANGUAGE};
 use crate::kitchen::recipe::RecipesSpec;
@@ -25,14 +25,14 @@ pub(super) fn content_words(spec: &RecipesSpec, items: &IngredientItems) -> Resu
             if !dish && !ingredient && !items.names.contains(name) {
                 let found = format!("words for \"{name}\" in the table [words.{language}]");
                 let remedy = format!("a dish, an ingredient, or one of the items {}", items.names.join(", "));
-                return Err(wrong(SpecFile::Recipes, wording.span(), found, remedy));
+                return Err(wrong(KitchenFileKind::Recipes, wording.span(), found, remedy));
             }
             let text = wording.get_ref();
             let is_wording = (1..=MAX_WORDING).contains(&text.chars().count()) && text.trim() == text;
             if !is_wording || text.chars().any(char::is_control) || text.contains(" + ") {
                 let remedy = format!("1 to {MAX_WORDING} characters in one line, such as \"cooked rice\"");
                 return Err(wrong(
-                    SpecFile::Recipes,
+                    KitchenFileKind::Recipes,
                     wording.span(),
                     format!("{text:?} as words for \"{name}\""),
                     remedy,
@@ -67,7 +67,7 @@ fn check_distinct(
         let entries = &spec.words[language];
         let span = [name.as_str(), other].iter().find_map(|name| entries.get(*name)).map_or(0..0, |word| word.span());
         let found = format!("\"{wording}\" as words for both \"{other}\" and \"{name}\"");
-        return Err(wrong(SpecFile::Recipes, span, found, "words of its own for each item and each dish"));
+        return Err(wrong(KitchenFileKind::Recipes, span, found, "words of its own for each item and each dish"));
     }
     Ok(())
 }

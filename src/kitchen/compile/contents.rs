@@ -3,7 +3,7 @@
 
 use toml::Spanned;
 
-use super::spec_error::{Result, SpecFile, look, wrong, wrong_file};
+use super::spec_error::{KitchenFileKind, Result, look, wrong, wrong_file};
 use crate::kitchen::content::{Content, ContentId};
 use crate::kitchen::look::Appearance;
 use crate::kitchen::recipe::{DishSpec, RecipesSpec};
@@ -33,11 +33,11 @@ impl IngredientItems {
                 let name = format!("{}{suffix}", ingredient.name.get_ref());
                 if items.names.contains(&name) {
                     let found = format!("the item \"{name}\" a second time");
-                    return Err(wrong(SpecFile::Recipes, ingredient.name.span(), found, "each item once"));
+                    return Err(wrong(KitchenFileKind::Recipes, ingredient.name.span(), found, "each item once"));
                 }
                 if items.names.len() == MAX_CONTENTS - 1 {
                     let found = format!("\"{name}\" as item number {MAX_CONTENTS}");
-                    return Err(wrong(SpecFile::Recipes, ingredient.name.span(), found, TOO_MANY));
+                    return Err(wrong(KitchenFileKind::Recipes, ingredient.name.span(), found, TOO_MANY));
                 }
                 items.names.push(name);
                 items.ingredient.push(index);
@@ -51,7 +51,7 @@ impl IngredientItems {
         match self.names.iter().position(|item| item == name.get_ref()) {
             Some(index) => Ok(ContentId(index as u8 + 1)),
             None => Err(wrong(
-                SpecFile::Recipes,
+                KitchenFileKind::Recipes,
                 name.span(),
                 format!("\"{}\"", name.get_ref()),
                 format!("one of the items {}", self.names.join(", ")),
@@ -71,7 +71,7 @@ pub(super) fn contents(spec: &RecipesSpec, items: &IngredientItems) -> Result<Ve
     sets.extend(stacks(spec, items)?);
     if sets.len() > MAX_CONTENTS {
         let found = format!("{} different contents (items and stacks)", sets.len());
-        return Err(wrong_file(SpecFile::Recipes, found, TOO_MANY));
+        return Err(wrong_file(KitchenFileKind::Recipes, found, TOO_MANY));
     }
     let dish_names = dish_names(spec, items)?;
     let mut contents: Vec<Content> = sets.iter().map(|set| content(set, items, &dish_names)).collect();
@@ -93,9 +93,9 @@ fn item_look(spec: &RecipesSpec, items: &IngredientItems, item: usize) -> Result
     if !looks.is_empty() && looks.len() != states {
         let found = format!("{} looks of \"{}\"", looks.len(), ingredient.name.get_ref());
         let remedy = format!("one for each of its states: {states}");
-        return Err(wrong(SpecFile::Recipes, looks[0].span(), found, remedy));
+        return Err(wrong(KitchenFileKind::Recipes, looks[0].span(), found, remedy));
     }
-    looks.get(items.state[item]).map(|text| look(SpecFile::Recipes, text)).transpose()
+    looks.get(items.state[item]).map(|text| look(KitchenFileKind::Recipes, text)).transpose()
 }
 
 /// All stacks of two or more items, small ones first.
@@ -107,12 +107,12 @@ fn stacks(spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Vec<Content
         for (item, name) in items.find_all(&slot.items)?.into_iter().zip(&slot.items) {
             if of_slots.contains(&item) {
                 let found = format!("\"{}\" in a second slot, or twice in one", name.get_ref());
-                return Err(wrong(SpecFile::Recipes, name.span(), found, "each item in at most one [[slot]]"));
+                return Err(wrong(KitchenFileKind::Recipes, name.span(), found, "each item in at most one [[slot]]"));
             }
             of_slots.push(item);
             stacks.extend(below.iter().map(|stack| [stack.as_slice(), &[item]].concat()));
             if stacks.len() > 2 * MAX_CONTENTS {
-                return Err(wrong(SpecFile::Recipes, slot.name.span(), "too many different stacks", TOO_MANY));
+                return Err(wrong(KitchenFileKind::Recipes, slot.name.span(), "too many different stacks", TOO_MANY));
             }
         }
     }
@@ -160,7 +160,7 @@ fn look_alikes(
             let other = spec.ingredient.iter().position(|ingredient| ingredient.name.get_ref() == name.get_ref());
             let Some(other) = other else {
                 let found = format!("looks_like \"{}\"", name.get_ref());
-                return Err(wrong(SpecFile::Recipes, name.span(), found, "the name of another ingredient"));
+                return Err(wrong(KitchenFileKind::Recipes, name.span(), found, "the name of another ingredient"));
             };
             let twin =
                 (0..items.names.len()).find(|&twin| items.ingredient[twin] == other && items.state[twin] == state);

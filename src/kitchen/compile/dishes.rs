@@ -2,18 +2,22 @@
 
 use super::contents::IngredientItems;
 use super::places::stored;
-use super::spec_error::{Result, SpecFile, look, wrong, wrong_file};
+use super::spec_error::{KitchenFileKind, Result, look, wrong, wrong_file};
 use crate::kitchen::agent::Agent;
 use crate::kitchen::content::{Content, ContentId};
 use crate::kitchen::dish::Dish;
 use crate::kitchen::layout::LayoutSpec;
 use crate::kitchen::location::{Location, LocationId, LocationKind};
-use crate::kitchen::process::Process;
-use crate::kitchen::recipe::{DeviationCombination, DeviationSpec, ProcessSpec, RecipesSpec};
+use crate::kitchen::process::ProcessingStep;
+use crate::kitchen::recipe::{DeviationCombination, DeviationSpec, ProcessingStepSpec, RecipesSpec};
 use crate::kitchen::state::MAX_DISHES;
 
-pub(super) fn processes(spec: &RecipesSpec, items: &IngredientItems, locations: &[Location]) -> Result<Vec<Process>> {
-    let one = |process: &ProcessSpec| {
+pub(super) fn processes(
+    spec: &RecipesSpec,
+    items: &IngredientItems,
+    locations: &[Location],
+) -> Result<Vec<ProcessingStep>> {
+    let one = |process: &ProcessingStepSpec| {
         let place = match process.at.get_ref().as_str() {
             "hand" => None,
             name => match locations.iter().position(|l| l.name == name && l.kind == LocationKind::Place) {
@@ -21,7 +25,7 @@ pub(super) fn processes(spec: &RecipesSpec, items: &IngredientItems, locations: 
                 None => {
                     let found = format!("at = \"{name}\"");
                     return Err(wrong(
-                        SpecFile::Recipes,
+                        KitchenFileKind::Recipes,
                         process.at.span(),
                         found,
                         "\"hand\" or a [[place]] of the layout",
@@ -31,7 +35,7 @@ pub(super) fn processes(spec: &RecipesSpec, items: &IngredientItems, locations: 
         };
         let steps = process.steps.iter().map(|step| Ok((items.find(&step.from)?, items.find(&step.to)?)));
         let agents = Agent::BOTH.map(|agent| process.agents.contains(&agent));
-        Ok(Process { name: process.name.get_ref().clone(), place, agents, steps: steps.collect::<Result<_>>()? })
+        Ok(ProcessingStep { name: process.name.get_ref().clone(), place, agents, steps: steps.collect::<Result<_>>()? })
     };
     spec.process.iter().map(one).collect()
 }
@@ -39,7 +43,7 @@ pub(super) fn processes(spec: &RecipesSpec, items: &IngredientItems, locations: 
 pub(super) fn dishes(spec: &RecipesSpec, items: &IngredientItems, contents: &[Content]) -> Result<Vec<Dish>> {
     if spec.dish.is_empty() || spec.dish.len() > MAX_DISHES {
         let found = format!("{} dishes", spec.dish.len());
-        return Err(wrong_file(SpecFile::Recipes, found, format!("1 to {MAX_DISHES} tables [[dish]]")));
+        return Err(wrong_file(KitchenFileKind::Recipes, found, format!("1 to {MAX_DISHES} tables [[dish]]")));
     }
     let slots: Vec<Vec<ContentId>> = spec.slot.iter().map(|slot| items.find_all(&slot.items)).collect::<Result<_>>()?;
     let mut dishes: Vec<Dish> = Vec::new();
@@ -49,7 +53,7 @@ pub(super) fn dishes(spec: &RecipesSpec, items: &IngredientItems, contents: &[Co
             slots.iter().map(|slot| slot.iter().copied().find(|item| parts.contains(item))).collect();
         let Some(by_slot) = by_slot.filter(|by_slot| by_slot.len() == parts.len()) else {
             let found = format!("\"{}\" of {} items", dish.name.get_ref(), parts.len());
-            return Err(wrong(SpecFile::Recipes, dish.items.span(), found, "one item of each [[slot]]"));
+            return Err(wrong(KitchenFileKind::Recipes, dish.items.span(), found, "one item of each [[slot]]"));
         };
         let deviation = spec.deviation.iter().find_map(|deviation| match items.find_all(&deviation.dishes_with) {
             Ok(with) => with.iter().any(|item| parts.contains(item)).then_some(Ok(deviation)),
@@ -66,9 +70,9 @@ pub(super) fn dishes(spec: &RecipesSpec, items: &IngredientItems, contents: &[Co
         let variants: Vec<ContentId> = sets.into_iter().filter_map(find).collect();
         if dishes.iter().any(|other| other.name == *dish.name.get_ref() || other.variants[0] == variants[0]) {
             let found = format!("the dish \"{}\" a second time", dish.name.get_ref());
-            return Err(wrong(SpecFile::Recipes, dish.name.span(), found, "each name and each recipe once"));
+            return Err(wrong(KitchenFileKind::Recipes, dish.name.span(), found, "each name and each recipe once"));
         }
-        let look = dish.look.as_ref().map(|text| look(SpecFile::Recipes, text)).transpose()?;
+        let look = dish.look.as_ref().map(|text| look(KitchenFileKind::Recipes, text)).transpose()?;
         dishes.push(Dish { name: dish.name.get_ref().clone(), variants, look });
     }
     Ok(dishes)
@@ -85,7 +89,7 @@ fn variants(
     for vary in &deviation.slots {
         let Some(slot) = spec.slot.iter().position(|slot| slot.name.get_ref() == vary.slot.get_ref()) else {
             let found = format!("slot = \"{}\"", vary.slot.get_ref());
-            return Err(wrong(SpecFile::Recipes, vary.slot.span(), found, "the name of a [[slot]]"));
+            return Err(wrong(KitchenFileKind::Recipes, vary.slot.span(), found, "the name of a [[slot]]"));
         };
         let starts = match deviation.combine {
             DeviationCombination::OneAtATime => vec![truth.to_vec()],
@@ -110,7 +114,7 @@ pub(super) fn check_obtainable(
     spec: &RecipesSpec,
     layout: &LayoutSpec,
     items: &IngredientItems,
-    processes: &[Process],
+    processes: &[ProcessingStep],
 ) -> Result<()> {
     let mut obtainable: Vec<ContentId> =
         layout.storage.iter().map(|storage| stored(&storage.ingredient, spec, items)).collect::<Result<_>>()?;
@@ -124,7 +128,7 @@ pub(super) fn check_obtainable(
             if !obtainable.contains(&items.find(name)?) {
                 let found = format!("\"{}\", which nobody can get", name.get_ref());
                 let remedy = "a [[storage]] of the layout that gives it, or steps of a [[process]] that lead to it";
-                return Err(wrong(SpecFile::Recipes, name.span(), found, remedy));
+                return Err(wrong(KitchenFileKind::Recipes, name.span(), found, remedy));
             }
         }
     }

@@ -15,10 +15,10 @@ use toml::Spanned;
 
 use self::contents::IngredientItems;
 pub use self::places::{MAX_ORDERS, MIN_GAP_M};
+pub use self::spec_error::{KitchenFileError, KitchenFileKind};
 use self::spec_error::{Result, wrong, wrong_file};
-pub use self::spec_error::{SpecError, SpecFile};
 use super::action::Button;
-use super::aspect::{Aspect, AspectKind};
+use super::aspect::{AspectKind, StateAspect};
 use super::compiled::Kitchen;
 use super::content::{Content, ContentId};
 use super::cost_to_go::MAX_BUTTONS;
@@ -26,7 +26,7 @@ use super::dish::{Dish, DishId};
 use super::layout::LayoutSpec;
 use super::layout_ranges;
 use super::location::{Location, LocationId, LocationKind};
-use super::process::Process;
+use super::process::ProcessingStep;
 use super::recipe::RecipesSpec;
 use super::state::OrderContent;
 use super::transition_tables::TransitionTables;
@@ -43,23 +43,23 @@ impl Kitchen {
     /// # Errors
     /// A text is not TOML, or does not describe a valid kitchen.
     pub fn from_toml(layout: &str, recipes: &str) -> Result<Kitchen> {
-        let unreadable = |file: SpecFile| {
-            move |error: toml::de::Error| SpecError {
+        let unreadable = |file: KitchenFileKind| {
+            move |error: toml::de::Error| KitchenFileError {
                 file,
                 span: error.span(),
                 found: error.message().to_string(),
                 remedy: "a file like those in layouts and recipes".to_string(),
             }
         };
-        let ranges = layout_ranges::check(layout).map_err(|error| SpecError {
-            file: SpecFile::Layout,
+        let ranges = layout_ranges::check(layout).map_err(|error| KitchenFileError {
+            file: KitchenFileKind::Layout,
             span: error.place,
             found: error.found,
             remedy: error.remedy,
         });
-        let layout: LayoutSpec = toml::from_str(layout).map_err(unreadable(SpecFile::Layout))?;
+        let layout: LayoutSpec = toml::from_str(layout).map_err(unreadable(KitchenFileKind::Layout))?;
         ranges?;
-        let recipes: RecipesSpec = toml::from_str(recipes).map_err(unreadable(SpecFile::Recipes))?;
+        let recipes: RecipesSpec = toml::from_str(recipes).map_err(unreadable(KitchenFileKind::Recipes))?;
         Kitchen::compile(&layout, &recipes)
     }
 
@@ -83,7 +83,7 @@ impl Kitchen {
         }
         if !layout.table.height_m.is_finite() {
             let found = format!("height_m = {}", layout.table.height_m);
-            return Err(wrong_file(SpecFile::Layout, found, "the table's height in metres"));
+            return Err(wrong_file(KitchenFileKind::Layout, found, "the table's height in metres"));
         }
         positive(&layout.table.served_shown_s, "served_shown_s")?;
         positive(&layout.table.new_order_after_s, "new_order_after_s")?;
@@ -121,9 +121,9 @@ fn check_size(
     locations: &[Location],
     tables: &TransitionTables,
     buttons: &[Vec<Button>; 2],
-    processes: &[Process],
+    processes: &[ProcessingStep],
 ) -> Result<()> {
-    let too_large = |found: String, most: String| Err(wrong_file(SpecFile::Layout, found, most));
+    let too_large = |found: String, most: String| Err(wrong_file(KitchenFileKind::Layout, found, most));
     let accepted = tables.accepts.chunks(tables.width).zip(locations);
     let physical = accepted.filter(|(_, location)| location.kind != LocationKind::Order);
     let contents = physical.map(|(row, _)| 1 + row.iter().filter(|accepted| **accepted).count() as u128);
@@ -150,7 +150,7 @@ fn positive(value: &Spanned<f64>, name: &str) -> Result<()> {
     if value.get_ref().is_finite() && *value.get_ref() > 0.0 {
         return Ok(());
     }
-    Err(wrong(SpecFile::Layout, value.span(), format!("{name} = {}", value.get_ref()), "a number above 0"))
+    Err(wrong(KitchenFileKind::Layout, value.span(), format!("{name} = {}", value.get_ref()), "a number above 0"))
 }
 
 fn tables(
@@ -159,7 +159,7 @@ fn tables(
     items: &IngredientItems,
     contents: &[Content],
     locations: &[Location],
-    processes: &[Process],
+    processes: &[ProcessingStep],
 ) -> Result<TransitionTables> {
     let width = contents.len();
     let mut accepts = vec![false; locations.len() * width];
@@ -214,14 +214,19 @@ fn accept(
             (other, None) => {
                 let found = format!("accepts \"{other}\"");
                 let remedy = "\"anything\", \"ingredients\", \"dishes\" or a [[group]] of the recipe file";
-                return Err(wrong(SpecFile::Layout, name.span(), found, remedy));
+                return Err(wrong(KitchenFileKind::Layout, name.span(), found, remedy));
             }
         };
     }
     Ok(())
 }
 
-fn aspects(contents: &[Content], locations: &[Location], dishes: &[Dish], tables: &TransitionTables) -> Vec<Aspect> {
+fn aspects(
+    contents: &[Content],
+    locations: &[Location],
+    dishes: &[Dish],
+    tables: &TransitionTables,
+) -> Vec<StateAspect> {
     let order_values = || {
         let dishes = (0..dishes.len()).map(|index| OrderContent::Dish(DishId(index as u8)).code());
         [OrderContent::None.code(), OrderContent::Served.code()].into_iter().chain(dishes).collect()
@@ -245,9 +250,9 @@ fn aspects(contents: &[Content], locations: &[Location], dishes: &[Dish], tables
         let labels = values.iter().map(|&code| said(location.kind, code)[0].to_string()).collect();
         let wordings = values.iter().map(|&code| said(location.kind, code)[1].to_string()).collect();
         let kind = AspectKind::Location(LocationId(index as u8));
-        Aspect { name: location.name.clone(), kind, values, labels, wordings }
+        StateAspect { name: location.name.clone(), kind, values, labels, wordings }
     };
-    let of_dish = |(index, dish): (usize, &Dish)| Aspect {
+    let of_dish = |(index, dish): (usize, &Dish)| StateAspect {
         name: format!("recipe of {}", dish.name),
         kind: AspectKind::Recipe(DishId(index as u8)),
         values: dish.variants.iter().map(|variant| variant.0).collect(),

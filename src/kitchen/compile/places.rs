@@ -4,11 +4,11 @@
 use toml::Spanned;
 
 use super::contents::IngredientItems;
-use super::spec_error::{Result, SpecFile, look, wrong, wrong_file};
+use super::spec_error::{KitchenFileKind, Result, look, wrong, wrong_file};
 use crate::kitchen::agent::Agent;
 use crate::kitchen::content::ContentId;
 use crate::kitchen::layout::{LayoutSpec, PlaceSpec, StorageSpec, is_same_key};
-use crate::kitchen::location::{DisplayArea, Location, LocationId, LocationKind, Storage};
+use crate::kitchen::location::{DisplayArea, IngredientStorage, Location, LocationId, LocationKind};
 use crate::kitchen::recipe::RecipesSpec;
 use crate::kitchen::state::MAX_LOCATIONS;
 
@@ -36,21 +36,21 @@ pub(super) fn locations(layout: &LayoutSpec) -> Result<Vec<Location>> {
     for (name, location) in orders.chain(hands).chain(places) {
         if locations.iter().any(|other| other.name == location.name) {
             let found = format!("the location \"{}\" a second time", location.name);
-            return Err(wrong(SpecFile::Layout, name.span(), found, "each name once"));
+            return Err(wrong(KitchenFileKind::Layout, name.span(), found, "each name once"));
         }
         locations.push(location);
     }
     if locations.len() > MAX_LOCATIONS {
         let found = format!("{} locations", locations.len());
-        return Err(wrong_file(SpecFile::Layout, found, format!("at most {MAX_LOCATIONS}")));
+        return Err(wrong_file(KitchenFileKind::Layout, found, format!("at most {MAX_LOCATIONS}")));
     }
     if layout.order.is_empty() || layout.order.len() > MAX_ORDERS {
         let found = format!("{} orders", layout.order.len());
-        return Err(wrong_file(SpecFile::Layout, found, format!("1 to {MAX_ORDERS} tables [[order]]")));
+        return Err(wrong_file(KitchenFileKind::Layout, found, format!("1 to {MAX_ORDERS} tables [[order]]")));
     }
     let first_place = layout.order.len() + layout.hand.len();
     for (location, place) in locations.iter_mut().skip(first_place).zip(&layout.place) {
-        location.look = place.look.as_ref().map(|text| look(SpecFile::Layout, text)).transpose()?;
+        location.look = place.look.as_ref().map(|text| look(KitchenFileKind::Layout, text)).transpose()?;
     }
     Ok(locations)
 }
@@ -65,7 +65,7 @@ pub(super) fn roles(layout: &LayoutSpec, locations: &[Location]) -> Result<([Loc
             (Some(hand), 1) => Ok(hand),
             _ => {
                 let found = format!("{count} hands of the {}", agent.name());
-                Err(wrong_file(SpecFile::Layout, found, "one [[hand]] for the human and one for the robot"))
+                Err(wrong_file(KitchenFileKind::Layout, found, "one [[hand]] for the human and one for the robot"))
             }
         }
     };
@@ -76,11 +76,11 @@ pub(super) fn roles(layout: &LayoutSpec, locations: &[Location]) -> Result<([Loc
             (Some((index, _)), None) => Ok(LocationId((first_place + index) as u8)),
             (Some(_), Some((_, second))) => {
                 let found = format!("a second place with {which} = true, \"{}\"", second.name.get_ref());
-                Err(wrong(SpecFile::Layout, second.name.span(), found, "one such place"))
+                Err(wrong(KitchenFileKind::Layout, second.name.span(), found, "one such place"))
             }
             (None, _) => {
                 let found = format!("no place with {which} = true");
-                Err(wrong_file(SpecFile::Layout, found, format!("{which} = true at one [[place]]")))
+                Err(wrong_file(KitchenFileKind::Layout, found, format!("{which} = true at one [[place]]")))
             }
         }
     };
@@ -99,7 +99,7 @@ pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m:
         if !(inside && area.w > 0.0 && area.h > 0.0) {
             let found = format!("\"{}\" reaches beyond the display", location.name);
             return Err(wrong(
-                SpecFile::Layout,
+                KitchenFileKind::Layout,
                 spans[index].clone(),
                 found,
                 "x, y, w and h as fractions within 0 to 1",
@@ -110,7 +110,7 @@ pub(super) fn check_gaps(layout: &LayoutSpec, locations: &[Location], display_m:
             if gap < MIN_GAP_M - 1e-9 {
                 let found = format!("\"{}\" only {gap:.3} m from \"{}\"", location.name, other.name);
                 let remedy = format!("at least {MIN_GAP_M} m between locations, so that gaze can tell them apart");
-                return Err(wrong(SpecFile::Layout, spans[index].clone(), found, remedy));
+                return Err(wrong(KitchenFileKind::Layout, spans[index].clone(), found, remedy));
             }
         }
     }
@@ -125,26 +125,35 @@ pub(super) fn check_signal_keys(layout: &LayoutSpec) -> Result<()> {
         if key.get_ref().is_whitespace() || twin.is_some() {
             let whose = twin.map_or(String::new(), |(other, _)| format!(", which \"{other}\" has already"));
             let found = format!("signal = \"{}\" for \"{name}\"{whose}", key.get_ref());
-            return Err(wrong(SpecFile::Layout, key.span(), found, "a key of its own that is not the space bar"));
+            return Err(wrong(
+                KitchenFileKind::Layout,
+                key.span(),
+                found,
+                "a key of its own that is not the space bar",
+            ));
         }
         seen.push((name, *key.get_ref()));
     }
     Ok(())
 }
 
-pub(super) fn storages(layout: &LayoutSpec, spec: &RecipesSpec, items: &IngredientItems) -> Result<Vec<Storage>> {
+pub(super) fn storages(
+    layout: &LayoutSpec,
+    spec: &RecipesSpec,
+    items: &IngredientItems,
+) -> Result<Vec<IngredientStorage>> {
     let one = |storage: &StorageSpec| {
         let DisplayArea { x, y, w, h } = *storage.display.get_ref();
         if ![x, y, w, h].iter().all(|fraction| fraction.is_finite()) {
             let found = format!("a storage of \"{}\" at no place", storage.ingredient.get_ref());
             return Err(wrong(
-                SpecFile::Layout,
+                KitchenFileKind::Layout,
                 storage.display.span(),
                 found,
                 "x, y, w and h as fractions within 0 to 1",
             ));
         }
-        Ok(Storage {
+        Ok(IngredientStorage {
             agent: storage.agent,
             item: stored(&storage.ingredient, spec, items)?,
             label: storage.ingredient.get_ref().clone(),
@@ -161,6 +170,6 @@ pub(super) fn stored(name: &Spanned<String>, spec: &RecipesSpec, items: &Ingredi
     item.map(|item| ContentId(item as u8 + 1)).ok_or_else(|| {
         let names: Vec<&str> = spec.ingredient.iter().map(|ingredient| ingredient.name.get_ref().as_str()).collect();
         let found = format!("ingredient = \"{}\"", name.get_ref());
-        wrong(SpecFile::Layout, name.span(), found, format!("one of {}", names.join(", ")))
+        wrong(KitchenFileKind::Layout, name.span(), found, format!("one of {}", names.join(", ")))
     })
 }

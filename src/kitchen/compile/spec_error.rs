@@ -8,7 +8,7 @@ use crate::kitchen::look::Appearance;
 
 /// The file of a kitchen in which an error is: layout or recipes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SpecFile {
+pub enum KitchenFileKind {
     /// The layout file.
     Layout,
     /// The recipe file.
@@ -18,9 +18,9 @@ pub enum SpecFile {
 /// Error: a layout or recipe file contains something invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{found}")]
-pub struct SpecError {
+pub struct KitchenFileError {
     /// The file that the error is in.
-    pub file: SpecFile,
+    pub file: KitchenFileKind,
     /// Position of the error in the file's text, in bytes.
     pub span: Option<Range<usize>>,
     /// What the file contains at that position.
@@ -30,25 +30,29 @@ pub struct SpecError {
 }
 
 /// Result of a step of the compilation of a kitchen.
-pub(super) type Result<T> = std::result::Result<T, SpecError>;
+pub(super) type Result<T> = std::result::Result<T, KitchenFileError>;
 
 /// An error at a position in a layout or recipe file.
 pub(super) fn wrong(
-    file: SpecFile,
+    file: KitchenFileKind,
     span: Range<usize>,
     found: impl Into<String>,
     remedy: impl Into<String>,
-) -> SpecError {
-    SpecError { file, span: Some(span), found: found.into(), remedy: remedy.into() }
+) -> KitchenFileError {
+    KitchenFileError { file, span: Some(span), found: found.into(), remedy: remedy.into() }
 }
 
 /// An error that concerns a layout or recipe file as a whole.
-pub(super) fn wrong_file(file: SpecFile, found: impl Into<String>, remedy: impl Into<String>) -> SpecError {
-    SpecError { file, span: None, found: found.into(), remedy: remedy.into() }
+pub(super) fn wrong_file(
+    file: KitchenFileKind,
+    found: impl Into<String>,
+    remedy: impl Into<String>,
+) -> KitchenFileError {
+    KitchenFileError { file, span: None, found: found.into(), remedy: remedy.into() }
 }
 
 /// Reads the appearance of an item, a dish or a place: a shape and its colours.
-pub(super) fn look(file: SpecFile, text: &Spanned<String>) -> Result<Appearance> {
+pub(super) fn look(file: KitchenFileKind, text: &Spanned<String>) -> Result<Appearance> {
     Appearance::read(text.get_ref())
         .map_err(|remedy| wrong(file, text.span(), format!("look = \"{}\"", text.get_ref()), remedy))
 }

@@ -7,27 +7,27 @@ use super::ground::KitchenTables;
 use super::partial_plan::{BLOCKED, PressPlan};
 
 /// The assignments of items for both serving orders, the one with the smaller lower bound of the cost to go first.
-pub struct AssignmentRating {
+pub struct CostToGoBounds {
     choices: [Assignment; 2],
     count: usize,
     /// The lower bound of the cost to go, in presses.
     pub lower: u32,
 }
 
-impl AssignmentRating {
+impl CostToGoBounds {
     /// The assignments of items in this state, and the lower bound of the cost to go that follows from them.
-    pub fn new(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> AssignmentRating {
+    pub fn new(ground: &KitchenTables, goal: &ServingGoal, state: &ContentClasses) -> CostToGoBounds {
         let forwards = Assignment::choose(ground, goal, state, [0, 1]);
         let lower = forwards.demand.bound(ground, state);
         if !order_counts(goal, state) {
             let count = if goal.targets_differ() { 2 } else { 1 };
-            return AssignmentRating { choices: [forwards, forwards.reversed()], count, lower };
+            return CostToGoBounds { choices: [forwards, forwards.reversed()], count, lower };
         }
         let backwards = Assignment::choose(ground, goal, state, [1, 0]);
         let other = backwards.demand.bound(ground, state);
         match lower <= other {
-            true => AssignmentRating { choices: [forwards, backwards], count: 2, lower },
-            false => AssignmentRating { choices: [backwards, forwards], count: 2, lower: other },
+            true => CostToGoBounds { choices: [forwards, backwards], count: 2, lower },
+            false => CostToGoBounds { choices: [backwards, forwards], count: 2, lower: other },
         }
     }
 

@@ -10,7 +10,7 @@ use super::classes::ContentClasses;
 use super::fidelity::Fidelity;
 use super::goal::ServingGoal;
 use super::partial_plan::{BLOCKED, PressPlan};
-use super::rating::AssignmentRating;
+use super::rating::CostToGoBounds;
 use super::store::{CostToGo, UNREACHABLE};
 use super::successors::successors;
 use crate::kitchen::{ContentId, State};
@@ -136,7 +136,7 @@ impl<'a> BestFirstSearch<'a> {
 
     /// Runs the search; it stops once `lower` is reached.
     fn best(mut self, start: &ContentClasses, lower: u32) -> u32 {
-        let rating = AssignmentRating::new(&self.costs.ground, self.goal, start);
+        let rating = CostToGoBounds::new(&self.costs.ground, self.goal, start);
         self.fidelity(start, rating, 0, lower);
         // The presses that a plan settles first are nearly always right: the start state itself is expanded last among
         // equal bounds.
@@ -147,7 +147,7 @@ impl<'a> BestFirstSearch<'a> {
                 break;
             }
             if next.gap == UNSEEN {
-                let rating = AssignmentRating::new(&self.costs.ground, self.goal, &next.state);
+                let rating = CostToGoBounds::new(&self.costs.ground, self.goal, &next.state);
                 self.fidelity(&next.state, rating, next.presses, next.bound);
                 continue;
             }
@@ -164,7 +164,7 @@ impl<'a> BestFirstSearch<'a> {
 
     fn expand(&mut self, open: &Open) {
         let goal = self.goal;
-        let rating = AssignmentRating::new(&self.costs.ground, goal, &open.state);
+        let rating = CostToGoBounds::new(&self.costs.ground, goal, &open.state);
         if goal.targets.len() > 1 {
             for choice in rating.choices() {
                 let plan = PressPlan::new(&self.costs.ground, goal, &open.state, choice);
@@ -201,7 +201,7 @@ impl<'a> BestFirstSearch<'a> {
         }
         let (known, mut rating) = (self.costs.known(Fidelity::LowerBound, key), None);
         let lower = known.unwrap_or_else(|| {
-            let new = AssignmentRating::new(&self.costs.ground, self.goal, state);
+            let new = CostToGoBounds::new(&self.costs.ground, self.goal, state);
             let lower = new.lower;
             rating = Some(new);
             self.costs.keep(Fidelity::LowerBound, key, lower)
@@ -214,12 +214,12 @@ impl<'a> BestFirstSearch<'a> {
         if lower > bound {
             return self.keep(lower, UNSEEN, presses, state);
         }
-        let rating = rating.unwrap_or_else(|| AssignmentRating::new(&self.costs.ground, self.goal, state));
+        let rating = rating.unwrap_or_else(|| CostToGoBounds::new(&self.costs.ground, self.goal, state));
         self.fidelity(state, rating, presses, bound);
     }
 
     /// Computes the plan of a state, from the state after all certainly optimal presses.
-    fn fidelity(&mut self, state: &ContentClasses, mut rating: AssignmentRating, presses: u32, bound: u32) {
+    fn fidelity(&mut self, state: &ContentClasses, mut rating: CostToGoBounds, presses: u32, bound: u32) {
         let goal = self.goal;
         let plan = PressPlan::new(&self.costs.ground, goal, state, rating.best_choice());
         let (settling, settled, served) = plan.settle();
@@ -234,7 +234,7 @@ impl<'a> BestFirstSearch<'a> {
             if !self.is_new(key, presses) {
                 return;
             }
-            rating = AssignmentRating::new(&self.costs.ground, goal, &settled);
+            rating = CostToGoBounds::new(&self.costs.ground, goal, &settled);
         }
         if presses + rating.lower >= self.best {
             return;
@@ -272,9 +272,9 @@ impl CostToGo {
 
     pub(super) fn solve(&mut self, fidelity: Fidelity, slot: usize, goal: &ServingGoal, state: &ContentClasses) -> u32 {
         if fidelity == Fidelity::LowerBound {
-            return AssignmentRating::bound(&self.ground, goal, state);
+            return CostToGoBounds::bound(&self.ground, goal, state);
         }
-        let rating = AssignmentRating::new(&self.ground, goal, state);
+        let rating = CostToGoBounds::new(&self.ground, goal, state);
         let upper = rating.close_upper(&self.ground, goal, state);
         if upper <= rating.lower || fidelity == Fidelity::PlanBound && upper < BLOCKED {
             return upper;

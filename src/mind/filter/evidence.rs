@@ -12,16 +12,16 @@ use crate::base::bits::ones;
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, AspectId, AspectKind, Kitchen, LocationId, OrderContent, World};
-use crate::mind::choice::ChoiceModel;
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::lapse_posterior::PressParts;
-use crate::mind::model::InferenceModel;
+use crate::mind::model::InferenceSettings;
 
 use super::distinct::DistinctWorlds;
-use super::human_act::HumanAct;
-use super::look_news::{LookNews, SampleLooks, UnseenLooks};
-use super::moments::Moments;
-use super::urn::Urn;
+use super::evidence_model::EvidenceModel;
+use super::human_act::HumanAction;
+use super::look_news::{SampleLooks, UnseenLooks, ValueFromLook};
+use super::moments::MixtureMoments;
+use super::urn::PolyaUrn;
 
 /// Share of the first draws of a recipe that is spread evenly over its variants (importance sampling), so that
 /// improbable variants get samples.
@@ -31,7 +31,7 @@ pub const UNDRAWN: u8 = u8::MAX;
 
 /// Likelihood of the human's press, and quality of the belief samples behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evidence {
+pub struct PressEvidence {
     /// ln p(a) of the pressed button, given that one is pressed, under the estimate before the press, in nats.
     pub log_p: f64,
     /// Number of belief samples drawn.
@@ -43,8 +43,8 @@ pub struct Evidence {
 /// Draws belief samples and weights them by the likelihood of the human's action; its buffers are reused from press to
 /// press.
 #[derive(Clone, Debug, Default)]
-pub struct Sampler {
-    pub(super) urns: Vec<Urn>,
+pub struct BeliefSampler {
+    pub(super) urns: Vec<PolyaUrn>,
     /// `[order][value]`: bit set of the recipe aspects on which the decision depends if the order has this value.
     pub(super) wants: Vec<Vec<u32>>,
     /// `[aspect * batch size + sample]`: the first draws of the present batch of samples.
@@ -75,7 +75,7 @@ pub struct Sampler {
     world_weights: Vec<f64>,
     /// What each belief sample has learned from looks at times of unknown gaze, if there were any.
     pub(super) looks: Vec<SampleLooks>,
-    pub(super) news: Vec<LookNews>,
+    pub(super) news: Vec<ValueFromLook>,
     /// Systematic sampling of readings: by location, and last of the signal, sum of the probabilities so far.
     pub(super) read_sums: Vec<f64>,
 }
@@ -85,14 +85,14 @@ pub struct Sampler {
 pub(super) struct Sample {
     /// Bit set of the aspects of which the belief sample has several values (mixed aspects).
     mixed: u32,
-    /// Start of the mixed aspects' rows in [`Sampler::rows`].
+    /// Start of the mixed aspects' rows in [`BeliefSampler::rows`].
     rows: usize,
-    /// Range of the sample's distinct worlds in [`Sampler::runs`].
+    /// Range of the sample's distinct worlds in [`BeliefSampler::runs`].
     pub(super) runs: [usize; 2],
 }
 
 impl Sample {
-    /// Start of the row of a mixed aspect in [`Sampler::rows`].
+    /// Start of the row of a mixed aspect in [`BeliefSampler::rows`].
     #[inline]
     fn row(&self, aspect: usize, states: usize) -> usize {
         self.rows + (self.mixed & ((1 << aspect) - 1)).count_ones() as usize * states
@@ -120,24 +120,13 @@ struct Alike {
     draws: u32,
 }
 
-/// The models that define the likelihood of an action of the human.
-pub struct EvidenceModel<'a> {
-    /// The kitchen, with the rules of its buttons.
-    pub kitchen: &'a Kitchen,
-    /// The human's choice model.
-    pub choice: &'a ChoiceModel,
-    /// Sample sizes of the inference, and which evidence it uses.
-    pub inference: &'a InferenceModel,
-    /// For each button of the human, the bit set of locations at which the human looks before the press.
-    pub watched: &'a [u32],
-    /// The expected lapse of this person; `None` where it is that of the choice model.
-    pub lapse: Option<f64>,
-}
-
-impl Sampler {
+impl BeliefSampler {
     /// A sampler of beliefs about this kitchen.
-    pub fn new(kitchen: &Kitchen) -> Sampler {
-        Sampler { wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(), ..Sampler::default() }
+    pub fn new(kitchen: &Kitchen) -> BeliefSampler {
+        BeliefSampler {
+            wants: kitchen.orders.iter().map(|&order| wants(kitchen, order)).collect(),
+            ..BeliefSampler::default()
+        }
     }
 
     /// Updates the estimate by the likelihood of an action of the human, and by the possible looks at times of unknown
@@ -147,10 +136,10 @@ impl Sampler {
         model: &EvidenceModel,
         cost: &mut CostToGo,
         belief: &mut DirichletBelief,
-        act: HumanAct,
+        act: HumanAction,
         looks: Option<&UnseenLooks>,
         random: &mut Stream,
-    ) -> Evidence {
+    ) -> PressEvidence {
         let states = model.inference.states;
         self.begin(model, belief, looks, random);
         let mut wanted = model.inference.beliefs;
@@ -183,8 +172,8 @@ impl Sampler {
         looks: Option<&UnseenLooks>,
         random: &mut Stream,
     ) {
-        let InferenceModel { states, beliefs, max_beliefs, .. } = *model.inference;
-        self.urns.resize(belief.aspects.len(), Urn::default());
+        let InferenceSettings { states, beliefs, max_beliefs, .. } = *model.inference;
+        self.urns.resize(belief.aspects.len(), PolyaUrn::default());
         self.counts.clear();
         for ((urn, dirichlet), aspect) in self.urns.iter_mut().zip(&belief.aspects).zip(&model.kitchen.aspects) {
             urn.fill(dirichlet, states, random);
@@ -300,7 +289,7 @@ impl Sampler {
     }
 
     /// Multiplies the weights of the belief samples from index `from` on by the likelihood of the human's action.
-    fn weigh_samples(&mut self, model: &EvidenceModel, act: HumanAct, from: usize) {
+    fn weigh_samples(&mut self, model: &EvidenceModel, act: HumanAction, from: usize) {
         self.posteriors.truncate(from);
         self.pressing.truncate(from);
         self.parts.truncate(from);
@@ -309,7 +298,7 @@ impl Sampler {
             let sums = self.sum_costs(sample, &mut sums, model);
             let waits = || model.choice.wait_likelihood(self.sum_here(sample), sums);
             let (pressing, likelihood) = match act {
-                HumanAct::Presses(press) => {
+                HumanAction::Presses(press) => {
                     let presses = if model.inference.waiting { 1.0 - waits() } else { 1.0 };
                     let choice = match model.lapse {
                         None => model.choice.press_likelihood(sums, press.button),
@@ -321,7 +310,7 @@ impl Sampler {
                     };
                     (prior * presses, press.likelihood(choice))
                 }
-                HumanAct::Waits { longer } => (*prior, longer + (1.0 - longer) * waits()),
+                HumanAction::Waits { longer } => (*prior, longer + (1.0 - longer) * waits()),
             };
             self.pressing.push(pressing);
             self.posteriors.push(pressing * likelihood);
@@ -377,16 +366,20 @@ impl Sampler {
         PressParts { chosen: mean(|parts| parts.chosen), slipped: mean(|parts| parts.slipped) }
     }
 
-    fn evidence(&self) -> Evidence {
+    fn evidence(&self) -> PressEvidence {
         let (before, total): (f64, f64) = (self.pressing.iter().sum(), self.posteriors.iter().sum());
         let squares: f64 = self.posteriors.iter().map(|p| p * p).sum();
-        Evidence { log_p: (total / before).ln(), beliefs: self.posteriors.len(), effective: total * total / squares }
+        PressEvidence {
+            log_p: (total / before).ln(),
+            beliefs: self.posteriors.len(),
+            effective: total * total / squares,
+        }
     }
 
     /// Projects the weighted samples onto a product of Dirichlets.
     fn collapse(&self, belief: &mut DirichletBelief, states: usize) {
         let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
-        let mut all: Vec<Moments> = belief.aspects.iter().map(Moments::from_prior).collect();
+        let mut all: Vec<MixtureMoments> = belief.aspects.iter().map(MixtureMoments::from_prior).collect();
         let samples = self.samples.iter().zip(self.firsts.chunks_exact(all.len()));
         let weights = self.posteriors.iter().zip(&self.priors);
         for (index, ((sample, firsts), (after, prior))) in samples.zip(weights).enumerate() {

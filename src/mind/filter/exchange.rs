@@ -21,7 +21,7 @@ enum Outcome {
 /// A location's button: classes ("kinds") of contents that the button treats alike in hand and location, and the effect
 /// for each pair.
 #[derive(Clone, Debug)]
-pub struct Exchange {
+pub struct ExchangeUpdate {
     hand: Side,
     location: Side,
     /// Effect by values: `[hand value * number of location values + location value]`.
@@ -42,9 +42,9 @@ struct Side {
     across: Vec<Option<usize>>,
 }
 
-impl Exchange {
+impl ExchangeUpdate {
     /// The human's button of a location.
-    pub fn new(kitchen: &Kitchen, location: LocationId) -> Exchange {
+    pub fn new(kitchen: &Kitchen, location: LocationId) -> ExchangeUpdate {
         let hand_at = kitchen.hands[Agent::Human.index()];
         let aspects = [AspectId::of_location(hand_at), AspectId::of_location(location)];
         let [held, there] = aspects.map(|aspect| &kitchen.aspects[aspect.index()]);
@@ -82,7 +82,7 @@ impl Exchange {
         };
         let hand = side(0, hand_kinds, hand_firsts.len());
         let location = side(1, location_kinds, location_firsts.len());
-        Exchange { hand, location, outcomes, by_kind }
+        ExchangeUpdate { hand, location, outcomes, by_kind }
     }
 
     /// Updates the estimate by the human's press of this button.

@@ -35,7 +35,7 @@ impl PressMixture {
 
 /// An action of the human, as evidence of the human's belief b.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum HumanAct {
+pub enum HumanAction {
     /// The human presses a button. Likelihood: that of the mixture, times 1 - p(wait | b) where waiting is evidence.
     Presses(PressMixture),
     /// The human has not pressed for longer than usual. Likelihood: l + (1 - l) p(wait | b), where l is the share of

@@ -28,7 +28,7 @@ pub struct UnseenSignal {
 pub struct SampleLooks {
     /// Bit set of the aspects whose value differs from the sample's draws.
     pub changed: u32,
-    /// Range of the sample's entries in `Sampler::news`.
+    /// Range of the sample's entries in `BeliefSampler::news`.
     pub news: [usize; 2],
     /// Whether it has read the signal on the display.
     pub read_signal: bool,
@@ -36,7 +36,7 @@ pub struct SampleLooks {
 
 /// A value that a belief sample holds since a look at a time of unknown gaze.
 #[derive(Clone, Copy, Debug)]
-pub struct LookNews {
+pub struct ValueFromLook {
     /// Index of the state aspect that the value belongs to.
     pub aspect: usize,
     /// Index of the value among the aspect's possible values.

@@ -7,6 +7,7 @@
 
 mod distinct;
 mod evidence;
+mod evidence_model;
 mod exchange;
 mod gamma;
 mod human_act;
@@ -26,33 +27,33 @@ use std::sync::Arc;
 
 use super::choice::ChoiceModel;
 use super::dirichlet::DirichletBelief;
-use super::gaze_presence::GazePresence;
+use super::gaze_presence::GazeAvailability;
 use super::lapse_posterior::LapsePosterior;
 use super::model::{HumanModel, LookingModel};
-use super::observation::{Observation, Observed, ProposedPresses};
+use super::observation::{Observation, ObservedEvidence, ProposedPresses};
 use crate::base::rng::{Stream, stream};
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
-use crate::kitchen::State;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, OrderContent};
-pub use evidence::Evidence;
-use evidence::{EvidenceModel, Sampler};
-use exchange::Exchange;
-use human_act::{HumanAct, PressMixture};
+use crate::kitchen::{Agent, AspectKind, ButtonAction, ButtonId, Kitchen, LocationId, OrderContent, State};
+use evidence::BeliefSampler;
+pub use evidence::PressEvidence;
+use evidence_model::EvidenceModel;
+use exchange::ExchangeUpdate;
+use human_act::{HumanAction, PressMixture};
 use look_news::UnseenLooks;
-use perception::GazeReader;
-use serving::Serving;
+use perception::GazeBeliefUpdate;
+use serving::ServingUpdate;
 use signals_so_far::SignalsSoFar;
-use unknown_gaze::UnknownStretch;
+use unknown_gaze::UnknownGazePeriod;
 
 /// How the human's press of a button changes the belief: it involves one location, or several that jointly determine
 /// the effect of the press.
 #[derive(Clone, Debug)]
 enum Lesson {
     Alone,
-    Exchange(Exchange),
-    Serving(Serving),
+    Exchange(ExchangeUpdate),
+    Serving(ServingUpdate),
 }
 
 /// The recursive estimator of the human's belief.
@@ -64,18 +65,18 @@ pub struct BeliefFilter {
     belief: DirichletBelief,
     /// The prior to which beliefs about recipes decay.
     prior: DirichletBelief,
-    reader: GazeReader,
-    presence: GazePresence,
+    reader: GazeBeliefUpdate,
+    presence: GazeAvailability,
     /// The probability that the next press needs each location, once it has been computed after the last event.
     needs: Option<Vec<f64>>,
     /// Time of unknown gaze since the last event or known gaze, if there was any.
-    stretch: Option<UnknownStretch>,
+    stretch: Option<UnknownGazePeriod>,
     /// For each button of the human, the bit set of locations at which the human looks before the press.
     watched: Vec<u32>,
     choice: ChoiceModel,
     /// How a press of each button of the human changes the belief, by [`ButtonId`].
     lessons: Vec<Lesson>,
-    sampler: Sampler,
+    sampler: BeliefSampler,
     shown: State,
     /// Number of presses of both agents so far. It seeds the random stream of an update, so that other events in a log
     /// do not change the estimate.
@@ -90,7 +91,7 @@ pub struct BeliefFilter {
     signals: SignalsSoFar,
     /// How often the person slips, where that is learned.
     lapse: LapsePosterior,
-    evidence: Option<Evidence>,
+    evidence: Option<PressEvidence>,
 }
 
 impl BeliefFilter {
@@ -99,20 +100,20 @@ impl BeliefFilter {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
         let lesson = |action: ButtonAction| match action {
-            ButtonAction::Use(location) => Lesson::Exchange(Exchange::new(&kitchen, location)),
-            ButtonAction::Serve(order) => Lesson::Serving(Serving::new(&kitchen, order)),
+            ButtonAction::Use(location) => Lesson::Exchange(ExchangeUpdate::new(&kitchen, location)),
+            ButtonAction::Serve(order) => Lesson::Serving(ServingUpdate::new(&kitchen, order)),
             ButtonAction::Take(_) | ButtonAction::Process(_) | ButtonAction::Trash => Lesson::Alone,
         };
         let lessons = kitchen.buttons[Agent::Human.index()].iter().map(|button| lesson(button.action)).collect();
         BeliefFilter {
-            reader: GazeReader::new(&kitchen, &model.perception),
-            presence: GazePresence::new(&model),
+            reader: GazeBeliefUpdate::new(&kitchen, &model.perception),
+            presence: GazeAvailability::new(&model),
             needs: None,
             stretch: None,
             watched: unknown_gaze::watched(&kitchen),
             choice: ChoiceModel::for_draws(&kitchen, &model.decision, model.inference.states),
             belief: prior.clone(),
-            sampler: Sampler::new(&kitchen),
+            sampler: BeliefSampler::new(&kitchen),
             forgot: None,
             frozen: None,
             proposed: ProposedPresses::default(),
@@ -135,7 +136,7 @@ impl BeliefFilter {
     }
 
     /// Likelihood and effective sample size of the human's last press.
-    pub fn evidence(&self) -> Option<Evidence> {
+    pub fn evidence(&self) -> Option<PressEvidence> {
         self.evidence
     }
 
@@ -148,22 +149,22 @@ impl BeliefFilter {
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
         let now = self.frozen.unwrap_or(observation.time);
         match observation.what {
-            Observed::Frozen => return self.frozen = Some(now),
-            Observed::Thawed { by, asked, teaches } => return self.thaw(by, asked, teaches),
-            Observed::Proposed(presses) => {
+            ObservedEvidence::Frozen => return self.frozen = Some(now),
+            ObservedEvidence::Thawed { by, asked, teaches } => return self.thaw(by, asked, teaches),
+            ObservedEvidence::Proposed(presses) => {
                 self.replace_signal(now, cost);
                 return self.proposed = presses;
             }
             _ => {}
         }
-        if let Observed::Gaze { sample, taken } = observation.what {
+        if let ObservedEvidence::Gaze { sample, taken } = observation.what {
             if self.forgot.is_some() {
                 self.take_sample(&sample, taken, cost);
             }
             return;
         }
         self.advance(now, cost);
-        if let Observed::DisplayInView(is_in_view) = observation.what {
+        if let ObservedEvidence::DisplayInView(is_in_view) = observation.what {
             self.presence.display_in_view = is_in_view;
             return;
         }
@@ -174,9 +175,9 @@ impl BeliefFilter {
     }
 
     /// Updates the estimate with an event.
-    fn update(&mut self, now: SessionTime, what: &Observed, cost: &mut CostToGo) {
+    fn update(&mut self, now: SessionTime, what: &ObservedEvidence, cost: &mut CostToGo) {
         match *what {
-            Observed::Started { state } => {
+            ObservedEvidence::Started { state } => {
                 self.prior = DirichletBelief::prior(&self.kitchen, &self.model.prior, state);
                 self.belief.clone_from(&self.prior);
                 self.proposed = ProposedPresses::default();
@@ -186,9 +187,9 @@ impl BeliefFilter {
                 self.presence.rest(now);
                 self.show(now, state);
             }
-            Observed::Gaze { .. } | Observed::DisplayInView(_) => {}
-            Observed::Frozen | Observed::Thawed { .. } | Observed::Proposed(_) => {}
-            Observed::Pressed(press) => {
+            ObservedEvidence::Gaze { .. } | ObservedEvidence::DisplayInView(_) => {}
+            ObservedEvidence::Frozen | ObservedEvidence::Thawed { .. } | ObservedEvidence::Proposed(_) => {}
+            ObservedEvidence::Pressed(press) => {
                 self.presses += 1;
                 let mut random = stream(self.seed, "belief", self.presses);
                 match press.agent {
@@ -201,16 +202,16 @@ impl BeliefFilter {
                 }
                 self.show(now, press.after);
             }
-            Observed::Displayed { state } => {
+            ObservedEvidence::Displayed { state } => {
                 self.expect_cleared(state);
                 self.see_changes(now, state);
                 self.show(now, state);
             }
-            Observed::Waited { longer } => self.weigh_waiting(longer, cost),
-            Observed::Told { location } => self.told(now, location),
-            Observed::SignalOver => self.signals.end(),
-            Observed::Paused => self.forgot = None,
-            Observed::Resumed => {
+            ObservedEvidence::Waited { longer } => self.weigh_waiting(longer, cost),
+            ObservedEvidence::Told { location } => self.told(now, location),
+            ObservedEvidence::SignalOver => self.signals.end(),
+            ObservedEvidence::Paused => self.forgot = None,
+            ObservedEvidence::Resumed => {
                 self.forgot = Some(now);
                 self.presence.rest(now);
             }
@@ -287,7 +288,7 @@ impl BeliefFilter {
             self.needs = Some(self.needs_now(cost));
         }
         let needs = self.needs.as_deref().unwrap_or_default();
-        let stretch = self.stretch.get_or_insert_with(|| UnknownStretch {
+        let stretch = self.stretch.get_or_insert_with(|| UnknownGazePeriod {
             before: self.belief.aspects.clone(),
             hazards: vec![[0.0; 2]; locations],
             signal_hazard: 0.0,
@@ -332,9 +333,8 @@ impl BeliefFilter {
         }
     }
 
-    /// Updates the estimate by the likelihood of a press, with the possible looks in the time of unknown gaze before
-    /// it.
-    fn weigh_press(&mut self, press: PressMixture, cost: &mut CostToGo, random: &mut Stream) -> Evidence {
+    /// Updates the estimate by the likelihood of a press, with the possible looks at unknown gaze before it.
+    fn weigh_press(&mut self, press: PressMixture, cost: &mut CostToGo, random: &mut Stream) -> PressEvidence {
         let stretch = self.stretch.take();
         let signal = stretch.as_ref().and_then(|stretch| self.unseen_signal(stretch.signal_hazard));
         let has_signal = signal.is_some();
@@ -350,12 +350,12 @@ impl BeliefFilter {
         let lapse = self.model.adapt.lapse.then(|| self.lapse.expected());
         let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
         let evidence =
-            self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Presses(press), looks.as_ref(), random);
+            self.sampler.weigh(&model, cost, &mut self.belief, HumanAction::Presses(press), looks.as_ref(), random);
         if lapse.is_some() {
             let parts = self.sampler.expected_parts();
             self.lapse.learn(|lapse| press.likelihood(parts.likelihood(lapse)));
         }
-        if let Some(UnknownStretch { signal_hazard, .. }) = stretch.filter(|_| has_signal) {
+        if let Some(UnknownGazePeriod { signal_hazard, .. }) = stretch.filter(|_| has_signal) {
             self.correct_reading(signal_hazard, self.sampler.signal_read());
         }
         evidence
@@ -366,7 +366,7 @@ impl BeliefFilter {
         let mut random = stream(self.seed, "waiting", self.presses);
         let (kitchen, choice, watched, lapse) = (&*self.kitchen, &self.choice, &self.watched[..], None);
         let model = EvidenceModel { kitchen, choice, inference: &self.model.inference, watched, lapse };
-        self.sampler.weigh(&model, cost, &mut self.belief, HumanAct::Waits { longer }, None, &mut random);
+        self.sampler.weigh(&model, cost, &mut self.belief, HumanAction::Waits { longer }, None, &mut random);
     }
 
     fn show(&mut self, now: SessionTime, state: State) {

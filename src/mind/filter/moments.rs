@@ -1,12 +1,12 @@
 //! Accumulation of weighted belief samples of one aspect, and their projection onto a Dirichlet by mean and second
 //! moment.
 
-use super::urn::Urn;
+use super::urn::PolyaUrn;
 use crate::mind::dirichlet::Dirichlet;
 
 /// Mean and second moment of a mixture of Dirichlets that share one prior, accumulated as changes to the prior's
 /// moments.
-pub struct Moments<'a> {
+pub struct MixtureMoments<'a> {
     prior: &'a Dirichlet,
     mean: Vec<f64>,
     second: f64,
@@ -20,13 +20,13 @@ pub struct Moments<'a> {
     counts: Vec<(u8, u32)>,
 }
 
-impl Moments<'_> {
+impl MixtureMoments<'_> {
     /// Starts the accumulation with the moments of the prior.
-    pub fn from_prior(prior: &Dirichlet) -> Moments<'_> {
+    pub fn from_prior(prior: &Dirichlet) -> MixtureMoments<'_> {
         let mean = prior.mean().to_vec();
         let square = mean.iter().map(|m| m * m).sum();
         let pure = vec![0.0; mean.len() + 1];
-        Moments { prior, mean, second: prior.second(), square, share: 0.0, pure, counts: Vec::new() }
+        MixtureMoments { prior, mean, second: prior.second(), square, share: 0.0, pure, counts: Vec::new() }
     }
 
     /// Adds Dir(alpha + counts of the drawn values) with this weight; `draws` is the number of draws. All weights sum
@@ -98,7 +98,7 @@ impl Moments<'_> {
         if let Some(value) = stand_in
             && self.mean[value] < prior[value]
         {
-            let tail = || (0..prior.len()).filter(|&value| Urn::is_tail(prior, value));
+            let tail = || (0..prior.len()).filter(|&value| PolyaUrn::is_tail(prior, value));
             let of_tail: f64 = tail().map(|value| prior[value]).sum();
             let left = (1.0 + (self.mean[value] - prior[value]) / of_tail).max(0.0);
             tail().for_each(|value| self.mean[value] = left * prior[value]);

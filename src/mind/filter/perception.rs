@@ -46,7 +46,7 @@ impl Look {
 
 /// Updates the estimate with gaze samples.
 #[derive(Clone, Debug)]
-pub struct GazeReader {
+pub struct GazeBeliefUpdate {
     /// Confusion matrix of each location: by true value, the probability of reading each value.
     confusions: Vec<Vec<Vec<f64>>>,
     rate: ReadingRate,
@@ -55,16 +55,16 @@ pub struct GazeReader {
     shown: VecDeque<(SessionTime, State)>,
 }
 
-impl GazeReader {
+impl GazeBeliefUpdate {
     /// A reader at the start of a trial, before the first sample.
-    pub fn new(kitchen: &Kitchen, model: &PerceptionModel) -> GazeReader {
+    pub fn new(kitchen: &Kitchen, model: &PerceptionModel) -> GazeBeliefUpdate {
         let of_location = |index: usize| {
             let values = kitchen.aspects[index].values.len();
             (0..values).map(|value| confusion(kitchen, model, LocationId(index as u8), value)).collect()
         };
         let confusions: Vec<_> = (0..kitchen.locations.len()).map(of_location).collect();
         let looks = vec![Look { unread: 1.0, survived: 1.0, code: 0, last: SessionTime::ZERO }; confusions.len()];
-        GazeReader { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new() }
+        GazeBeliefUpdate { confusions, rate: model.reading_rate(), looks, shown: VecDeque::new() }
     }
 
     /// Records that the display shows `state` from `now` on.

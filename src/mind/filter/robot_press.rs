@@ -12,7 +12,7 @@ use crate::kitchen::{WeightedWorld, WeightedWorlds, World};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
 
-use super::urn::Urn;
+use super::urn::PolyaUrn;
 
 /// Worlds with a smaller share of the draws use lower bounds instead of plans for their costs to go.
 const COUNTS: f64 = 0.05;
@@ -102,7 +102,7 @@ fn moved(dirichlet: &Dirichlet, flows: &[Flow], occurred: &[f64]) -> Dirichlet {
 fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut Stream) -> WeightedWorlds {
     let mut worlds = vec![World::empty(kitchen); draws];
     let mut values = vec![0; draws];
-    let mut urn = Urn::default();
+    let mut urn = PolyaUrn::default();
     for (index, dirichlet) in belief.aspects.iter().enumerate() {
         urn.fill(dirichlet, 1, random);
         urn.first_draws(random, &mut values);

@@ -18,7 +18,7 @@ const NEGLIGIBLE: f64 = 1e-4;
 
 /// The button that serves an order, with the aspects on which its effect depends.
 #[derive(Clone, Debug)]
-pub struct Serving {
+pub struct ServingUpdate {
     order: AspectId,
     plate: AspectId,
     served: usize,
@@ -42,9 +42,9 @@ struct Tally {
     second: f64,
 }
 
-impl Serving {
+impl ServingUpdate {
     /// The human's button that serves this order.
-    pub fn new(kitchen: &Kitchen, order: LocationId) -> Serving {
+    pub fn new(kitchen: &Kitchen, order: LocationId) -> ServingUpdate {
         let (order, plate) = (AspectId::of_location(order), AspectId::of_location(kitchen.plate));
         let [ordered, on_plate] = [order, plate].map(|aspect| &kitchen.aspects[aspect.index()]);
         let dishes = (0..kitchen.dishes.len()).filter_map(|index| {
@@ -56,7 +56,7 @@ impl Serving {
             Some(Served { ordered, recipe, on_plate })
         });
         let served = ordered.index_of(OrderContent::Served.code()).unwrap_or(0);
-        Serving { order, plate, served, empty: on_plate.index_of(0).unwrap_or(0), dishes: dishes.collect() }
+        ServingUpdate { order, plate, served, empty: on_plate.index_of(0).unwrap_or(0), dishes: dishes.collect() }
     }
 
     /// Updates the estimate by a press of this serve button.

@@ -13,7 +13,7 @@ use crate::mind::dirichlet::Dirichlet;
 
 /// A time of unknown gaze since the last event or known gaze.
 #[derive(Clone, Debug)]
-pub struct UnknownStretch {
+pub struct UnknownGazePeriod {
     /// Beliefs about all aspects at its beginning, apart from what has been forgotten since.
     pub before: Vec<Dirichlet>,
     /// By location: expected number of looks without need, and the additional number if the next press certainly needs

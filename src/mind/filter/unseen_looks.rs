@@ -13,10 +13,11 @@ use crate::kitchen::state::MAX_LOCATIONS;
 use crate::mind::dirichlet::DirichletBelief;
 use rand::RngExt;
 
-use super::evidence::{EvidenceModel, Sampler, UNDRAWN};
-use super::look_news::{LookNews, SampleLooks, UnseenLooks, UnseenSignal};
+use super::evidence::{BeliefSampler, UNDRAWN};
+use super::evidence_model::EvidenceModel;
+use super::look_news::{SampleLooks, UnseenLooks, UnseenSignal, ValueFromLook};
 
-impl Sampler {
+impl BeliefSampler {
     /// The probability that the human looks at each location before its next press, averaged over belief samples.
     pub fn needs(
         &mut self,
@@ -61,7 +62,7 @@ impl Sampler {
                     let value = value_at(reading, random.random::<f64>());
                     // What the signal has told is certain already.
                     if self.news[begin..].iter().all(|news| news.aspect != location) {
-                        self.news.push(LookNews { aspect: location, value, is_read: true });
+                        self.news.push(ValueFromLook { aspect: location, value, is_read: true });
                     }
                 }
             }
@@ -72,7 +73,7 @@ impl Sampler {
             let wanted = wanted.fold(0, |all, wants| all | wants) & !told;
             for aspect in ones(wanted).filter(|aspect| self.firsts[index * aspects + aspect] == UNDRAWN) {
                 let value = self.urns[aspect].draw(random);
-                self.news.push(LookNews { aspect, value, is_read: false });
+                self.news.push(ValueFromLook { aspect, value, is_read: false });
             }
             let news = [begin, self.news.len()];
             let changed = self.news[begin..].iter().fold(0, |changed, news| changed | 1 << news.aspect);
@@ -95,7 +96,11 @@ impl Sampler {
     fn hear(&mut self, signal: &UnseenSignal, random: &mut Stream) -> bool {
         let is_read = self.is_read(self.read_sums.len() - 1, signal.chance);
         for (aspect, reading) in signal.readings.iter().filter(|_| is_read) {
-            self.news.push(LookNews { aspect: *aspect, value: value_at(reading, random.random::<f64>()), is_read });
+            self.news.push(ValueFromLook {
+                aspect: *aspect,
+                value: value_at(reading, random.random::<f64>()),
+                is_read,
+            });
         }
         is_read
     }
@@ -119,7 +124,7 @@ impl Sampler {
     }
 
     /// What a belief sample has learned from looks, if looks were drawn.
-    pub fn news_of(&self, sample: usize) -> (u32, &[LookNews]) {
+    pub fn news_of(&self, sample: usize) -> (u32, &[ValueFromLook]) {
         let looks = self.looks.get(sample).copied().unwrap_or_default();
         (looks.changed, &self.news[looks.news[0]..looks.news[1]])
     }

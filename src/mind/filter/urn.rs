@@ -18,7 +18,7 @@ const MANY: usize = 8;
 /// urn in proportion to the probabilities: over time every value is used, while each press evaluates few improbable
 /// worlds.
 #[derive(Clone, Debug, Default)]
-pub struct Urn {
+pub struct PolyaUrn {
     /// The value that represents the tail.
     stand_in: Option<u8>,
     /// Values in decreasing order of probability, with their cumulative probability.
@@ -29,16 +29,16 @@ pub struct Urn {
     stays: Vec<f64>,
 }
 
-impl Urn {
+impl PolyaUrn {
     /// Prepares the urn for `draws` draws from a distribution that this Dirichlet gives.
     pub fn fill(&mut self, dirichlet: &Dirichlet, draws: usize, random: &mut Stream) {
         let mean = dirichlet.mean();
         self.order.clear();
         self.proposal.clear();
         self.order.extend(
-            (0..mean.len()).filter(|&value| !Urn::is_tail(mean, value)).map(|value| (value as u8, mean[value])),
+            (0..mean.len()).filter(|&value| !PolyaUrn::is_tail(mean, value)).map(|value| (value as u8, mean[value])),
         );
-        let tail = || (0..mean.len()).filter(|&value| Urn::is_tail(mean, value));
+        let tail = || (0..mean.len()).filter(|&value| PolyaUrn::is_tail(mean, value));
         let of_tail: f64 = tail().map(|value| mean[value]).sum();
         let mut left = random.random::<f64>() * of_tail;
         let chosen = tail().find(|&value| {
@@ -103,8 +103,8 @@ impl Urn {
         counts
     }
 
-    /// First draws of many samples by stratified sampling from the mean (or the mixture of [`Urn::spread`]), in random
-    /// order.
+    /// First draws of many samples by stratified sampling from the mean (or the mixture of [`PolyaUrn::spread`]), in
+    /// random order.
     pub fn first_draws(&self, random: &mut Stream, out: &mut [u8]) {
         let from = if self.proposal.is_empty() { &self.order } else { &self.proposal };
         let step = 1.0 / out.len() as f64;

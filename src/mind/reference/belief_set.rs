@@ -7,23 +7,23 @@ use rand::RngExt;
 
 use super::person::{Particle, press_chances, wait_chance};
 use super::plausible_looks::{self, PlausibleLooks};
-use super::reading_effect::GazeFollower;
+use super::reading_effect::LookTracker;
 use super::signal_reading::PlainSignals;
 use crate::base::rng::Stream;
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, LocationId, LocationKind, OrderContent, State};
-use crate::mind::choice_parameters::DecisionModel;
+use crate::mind::choice_parameters::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
-use crate::mind::gaze_presence::GazePresence;
+use crate::mind::gaze_presence::GazeAvailability;
 use crate::mind::lapse_posterior::{LAPSES, MOST_LAPSE};
 use crate::mind::model::HumanModel;
-use crate::mind::observation::{Observation, Observed, ProposedPresses};
+use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
 /// A set of explicit beliefs (particles), with the model and state that they share.
 #[derive(Clone, Debug)]
-pub struct Particles {
+pub struct ParticleSet {
     kitchen: Arc<Kitchen>,
     model: HumanModel,
     /// The prior: the belief at the start, to which beliefs about recipes decay.
@@ -32,8 +32,8 @@ pub struct Particles {
     pub doubt: DirichletBelief,
     /// The explicit beliefs of the set.
     pub of: Vec<Particle>,
-    sight: GazeFollower,
-    presence: GazePresence,
+    sight: LookTracker,
+    presence: GazeAvailability,
     /// For each belief, the probability at the human's last press that the human presses rather than waits, where
     /// waiting is evidence.
     pub pressing: Vec<f64>,
@@ -50,15 +50,15 @@ pub struct Particles {
     pub lapses: Vec<(f64, f64)>,
 }
 
-impl Particles {
+impl ParticleSet {
     /// An empty set, before the trial's start.
-    pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> Particles {
+    pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> ParticleSet {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
-        let (doubt, sight, presence) = (prior.clone(), GazeFollower::default(), GazePresence::new(&model));
+        let (doubt, sight, presence) = (prior.clone(), LookTracker::default(), GazeAvailability::new(&model));
         let (of, pressing, unseen, forgot) = (Vec::new(), Vec::new(), None, None);
         let (proposed, signals, lapses) = (ProposedPresses::default(), PlainSignals::default(), lapses(&model));
-        Particles {
+        ParticleSet {
             kitchen,
             model,
             prior,
@@ -147,29 +147,29 @@ impl Particles {
     /// waiting; else 1.
     pub fn experience(&mut self, observation: &Observation, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
         let now = observation.time;
-        if let Observed::Gaze { sample, taken } = observation.what {
+        if let ObservedEvidence::Gaze { sample, taken } = observation.what {
             if self.forgot.is_some() {
                 self.gaze(&sample, taken, cost, random);
             }
             return vec![1.0; self.of.len()];
         }
-        if let Observed::Proposed(presses) = observation.what {
+        if let ObservedEvidence::Proposed(presses) = observation.what {
             self.advance(now, cost, random);
             self.end_signal();
             self.proposed = presses;
             return vec![1.0; self.of.len()];
         }
         self.advance(now, cost, random);
-        if let Observed::DisplayInView(is_in_view) = observation.what {
+        if let ObservedEvidence::DisplayInView(is_in_view) = observation.what {
             self.presence.display_in_view = is_in_view;
             return vec![1.0; self.of.len()];
         }
         self.forget(now, random);
         self.unseen = None;
         match observation.what {
-            Observed::Started { state } => self.start(now, state, self.of.len(), random),
-            Observed::Gaze { .. } | Observed::DisplayInView(_) | Observed::Proposed(_) => {}
-            Observed::Pressed(press) => {
+            ObservedEvidence::Started { state } => self.start(now, state, self.of.len(), random),
+            ObservedEvidence::Gaze { .. } | ObservedEvidence::DisplayInView(_) | ObservedEvidence::Proposed(_) => {}
+            ObservedEvidence::Pressed(press) => {
                 let weights = match press.agent {
                     Agent::Human => Some(self.human_pressed(press.button, press.effective, cost, random)),
                     Agent::Robot => None,
@@ -183,17 +183,17 @@ impl Particles {
                     return weights;
                 }
             }
-            Observed::Displayed { state } => {
+            ObservedEvidence::Displayed { state } => {
                 self.expect_cleared(state);
                 self.see_changes(now, state, random);
                 self.show(now, state);
             }
-            Observed::Waited { longer } => return self.human_waited(longer, cost, random),
-            Observed::Told { location } => self.told(now, location, random),
-            Observed::SignalOver => self.end_signal(),
-            Observed::Paused | Observed::Frozen => self.forgot = None,
-            Observed::Resumed => self.go_on(now),
-            Observed::Thawed { asked, teaches, .. } => {
+            ObservedEvidence::Waited { longer } => return self.human_waited(longer, cost, random),
+            ObservedEvidence::Told { location } => self.told(now, location, random),
+            ObservedEvidence::SignalOver => self.end_signal(),
+            ObservedEvidence::Paused | ObservedEvidence::Frozen => self.forgot = None,
+            ObservedEvidence::Resumed => self.go_on(now),
+            ObservedEvidence::Thawed { asked, teaches, .. } => {
                 self.go_on(now);
                 plausible_looks::asked(&self.kitchen, &self.model, &mut self.of, (asked, self.shown), teaches, random);
             }
@@ -261,7 +261,7 @@ impl Particles {
             self.pressing.push(presses);
             // p(a | b) for each lapse, alone the human model's where it is not learned.
             for ((lapse, p), likelihood) in self.lapses.iter().zip(&mut likelihoods) {
-                let decision = DecisionModel { lapse: *lapse, ..decision.clone() };
+                let decision = ChoiceParameters { lapse: *lapse, ..decision.clone() };
                 let pressed = proposed + chosen * press_chances(&self.kitchen, &decision, &after)[button.index()];
                 *likelihood += presses * pressed;
                 weight += p * presses * pressed;

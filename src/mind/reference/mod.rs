@@ -17,11 +17,11 @@ use std::sync::Arc;
 
 use rand::RngExt;
 
-use self::belief_set::Particles;
+use self::belief_set::ParticleSet;
 use self::person::Particle;
 use super::dirichlet::DirichletBelief;
 use super::model::HumanModel;
-use super::observation::{Observation, Observed};
+use super::observation::{Observation, ObservedEvidence};
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen};
@@ -33,7 +33,7 @@ pub struct ReferenceFilter {
     /// Number of belief samples.
     beliefs: usize,
     seed: u64,
-    people: Particles,
+    people: ParticleSet,
     /// Number of observations so far.
     observed: u64,
     /// Whether gaze samples have updated the beliefs since they were last drawn.
@@ -46,7 +46,7 @@ impl ReferenceFilter {
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel, seed: u64) -> ReferenceFilter {
         let beliefs = model.inference.beliefs;
         ReferenceFilter {
-            people: Particles::new(kitchen.clone(), model),
+            people: ParticleSet::new(kitchen.clone(), model),
             kitchen,
             beliefs,
             seed,
@@ -79,17 +79,17 @@ impl ReferenceFilter {
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
         self.observed += 1;
         let mut random = stream(self.seed, "reference", self.observed);
-        if let Observed::Started { state } = observation.what {
+        if let ObservedEvidence::Started { state } = observation.what {
             self.people.start(observation.time, state, self.beliefs, &mut random);
             return;
         }
-        let is_gaze = matches!(observation.what, Observed::Gaze { .. });
+        let is_gaze = matches!(observation.what, ObservedEvidence::Gaze { .. });
         if self.looked && !is_gaze {
             self.project(&vec![1.0; self.people.of.len()], &mut random);
         }
         let weights = self.people.experience(observation, cost, &mut random);
         self.looked = is_gaze;
-        if matches!(observation.what, Observed::Pressed(press) if press.agent == Agent::Human) {
+        if matches!(observation.what, ObservedEvidence::Pressed(press) if press.agent == Agent::Human) {
             self.log_p = Some((weights.iter().sum::<f64>() / self.people.pressing.iter().sum::<f64>()).ln());
         }
         if !is_gaze {

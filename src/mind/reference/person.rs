@@ -12,7 +12,7 @@ use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
 use crate::kitchen::{Agent, AspectId, AspectKind, ButtonAction, ButtonId, ContentId, DishId, Kitchen, LocationId};
 use crate::kitchen::{OrderContent, Recipes, State};
-use crate::mind::choice_parameters::DecisionModel;
+use crate::mind::choice_parameters::ChoiceParameters;
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use crate::robot::policy;
 
@@ -119,7 +119,7 @@ impl Particle {
         &self,
         kitchen: &Kitchen,
         cost: &mut CostToGo,
-        model: &DecisionModel,
+        model: &ChoiceParameters,
         states: usize,
         random: &mut Stream,
     ) -> Vec<f64> {
@@ -311,7 +311,7 @@ fn each_recipe(
 }
 
 /// p(a | b) of every button, given that one is pressed, from the expected cost to go after each.
-pub fn press_chances(kitchen: &Kitchen, model: &DecisionModel, expected: &[f64]) -> Vec<f64> {
+pub fn press_chances(kitchen: &Kitchen, model: &ChoiceParameters, expected: &[f64]) -> Vec<f64> {
     let least = expected.iter().copied().fold(f64::INFINITY, f64::min);
     let weights: Vec<f64> = expected.iter().map(|after| (-model.tau * (after - least)).exp()).collect();
     let total: f64 = weights.iter().sum();
@@ -329,7 +329,7 @@ pub fn press_chances(kitchen: &Kitchen, model: &DecisionModel, expected: &[f64])
 }
 
 /// p(wait | b), from the expected cost to go of the present state and after each button.
-pub fn wait_chance(model: &DecisionModel, here: f64, after: &[f64]) -> f64 {
+pub fn wait_chance(model: &ChoiceParameters, here: f64, after: &[f64]) -> f64 {
     let weight = |q: f64| (model.tau * (q + here)).exp();
     let wait = weight(-(here + model.wait_cost));
     let pressing: f64 = after.iter().map(|after| weight(-(1.0 + after))).sum();

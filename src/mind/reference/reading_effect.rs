@@ -24,7 +24,7 @@ pub struct LocationReading {
 
 /// Tracks looks at locations and the recent states of the display.
 #[derive(Clone, Debug, Default)]
-pub struct GazeFollower {
+pub struct LookTracker {
     /// Recent states of the display, each with the time at which it appeared.
     shown: Vec<(SessionTime, State)>,
     /// By location, the code of the content that is displayed in the present look, and the time of the look's last
@@ -32,7 +32,7 @@ pub struct GazeFollower {
     looks: Vec<(u8, SessionTime)>,
 }
 
-impl GazeFollower {
+impl LookTracker {
     /// Records that the display shows `state` from `now` on.
     pub fn show(&mut self, now: SessionTime, state: State) {
         self.shown.push((now, state));

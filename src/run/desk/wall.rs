@@ -3,14 +3,14 @@
 use crate::display::page_language::DisplayWords;
 use crate::display::{consent_sight, scene};
 pub(in crate::run) use crate::edge::display::PageInput;
-use crate::edge::display::{Display, PageReply};
+use crate::edge::display::{DisplayServer, ParticipantResponse};
 use crate::run::error::LiveError;
 use crate::session::settings::ParticipantKind;
 use crate::session::{Session, SessionSpec};
 
 /// The server of the participant's display, if the session has one.
 #[derive(Default)]
-pub(in crate::run) struct WallDisplay(Option<Display>);
+pub(in crate::run) struct WallDisplay(Option<DisplayServer>);
 
 impl WallDisplay {
     /// Starts the server of the display, if the session has one.
@@ -22,18 +22,18 @@ impl WallDisplay {
             return Ok(WallDisplay(None));
         }
         let (address, port) = (spec.display.listen, spec.display.port);
-        let opened = Display::open(address, port, &DisplayWords::for_display(&spec.display)).await;
+        let opened = DisplayServer::open(address, port, &DisplayWords::for_display(&spec.display)).await;
         opened.map(|display| WallDisplay(Some(display))).map_err(|reason| LiveError::Display { address, port, reason })
     }
 
     /// The participant's display, if the session has one.
-    pub fn display(&self) -> Option<&Display> {
+    pub fn display(&self) -> Option<&DisplayServer> {
         self.0.as_ref()
     }
 
     /// Lets the participant's page ask for consent to this text; returns whether a page is connected.
     pub fn ask_consent(&self, session: &Session, text: &str) -> bool {
-        let screen = self.0.as_ref().map(Display::screen);
+        let screen = self.0.as_ref().map(DisplayServer::screen);
         if let Some(screen) = &screen {
             screen.build(&scene(session));
             screen.show(&consent_sight(session, text), None);
@@ -52,5 +52,5 @@ impl WallDisplay {
 
 /// Whether an input of the page is the participant's consent.
 pub(in crate::run) fn is_consent(input: &PageInput) -> bool {
-    *input == PageInput::Reply(PageReply::Consent)
+    *input == PageInput::Reply(ParticipantResponse::Consent)
 }

@@ -3,16 +3,16 @@
 use std::sync::Arc;
 
 #[cfg(feature = "physics")]
-use crate::arm::body::SteppedArm;
+use crate::arm::body::SimulatedArm;
 #[cfg(feature = "physics")]
 use crate::arm::reaching::ReachingBehaviour;
-use crate::arm::worker::Robot;
+use crate::arm::worker::RobotTaskExecutor;
 #[cfg(not(feature = "physics"))]
-use crate::base::features::{Feature, NotBuilt};
+use crate::base::features::{Feature, MissingFeature};
 use crate::base::rng::stream;
 use crate::kitchen::Kitchen;
 use crate::participant::SimulatedParticipant;
-use crate::participant::gaze_gaps::GazeGaps;
+use crate::participant::gaze_gaps::GazeDropoutSchedule;
 use crate::participant::population::Experience;
 use crate::session::SessionSpec;
 use crate::session::settings::ArmKind;
@@ -42,17 +42,17 @@ pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial:
 }
 
 /// Gaps in the data of the simulated eye tracker in a trial.
-pub(super) fn gaze_gaps(spec: &SessionSpec, trial: u64) -> Option<GazeGaps> {
+pub(super) fn gaze_gaps(spec: &SessionSpec, trial: u64) -> Option<GazeDropoutSchedule> {
     let GazeGapSpec { every_s, shortest_s, longest_s } = *spec.tracker.gaps.as_ref()?;
-    Some(GazeGaps::new(every_s, [shortest_s, longest_s], stream(spec.seed, "tracker's gaps", trial)))
+    Some(GazeDropoutSchedule::new(every_s, [shortest_s, longest_s], stream(spec.seed, "tracker's gaps", trial)))
 }
 
 /// The robot of a trial.
 ///
 /// # Panics
 /// The settings ask for an arm with simulated physics, and this build has none.
-pub(super) fn trial_robot(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
-    let robot = Robot::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
+pub(super) fn trial_robot(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> RobotTaskExecutor {
+    let robot = RobotTaskExecutor::new(spec.robot.press_s, spec.robot.press_spread, spec.seed, trial);
     match spec.robot.arm {
         ArmKind::Timed => robot,
         ArmKind::Physics => with_physics(robot, kitchen, spec, trial),
@@ -60,15 +60,15 @@ pub(super) fn trial_robot(kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> 
 }
 
 #[cfg(feature = "physics")]
-fn with_physics(robot: Robot, kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> Robot {
+fn with_physics(robot: RobotTaskExecutor, kitchen: &Kitchen, spec: &SessionSpec, trial: u64) -> RobotTaskExecutor {
     let hand = match spec.participant.kind {
         ParticipantKind::Simulated => ReachingBehaviour::SIMULATED,
         ParticipantKind::Keyboard | ParticipantKind::Display => ReachingBehaviour::UNSEEN,
     };
-    robot.with_body(SteppedArm::new(kitchen, hand, spec.seed, trial))
+    robot.with_body(SimulatedArm::new(kitchen, hand, spec.seed, trial))
 }
 
 #[cfg(not(feature = "physics"))]
-fn with_physics(_: Robot, _: &Kitchen, _: &SessionSpec, _: u64) -> Robot {
-    panic!("{}", NotBuilt(Feature::Physics))
+fn with_physics(_: RobotTaskExecutor, _: &Kitchen, _: &SessionSpec, _: u64) -> RobotTaskExecutor {
+    panic!("{}", MissingFeature(Feature::Physics))
 }

@@ -1,24 +1,24 @@
 //! Events that follow immediately from others: evaluation of a familiarisation's criterion, gaze accuracy, the
 //! assistant's signal, the end of a proposal.
 
-use super::Engine;
+use super::SessionEngine;
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::Recommendation;
 use crate::communication::{Sender, Signal};
 use crate::kitchen::Agent;
 use crate::session::admit::admit;
-use crate::session::event::SignalEnd;
+use crate::session::event::SignalEndReason;
 use crate::session::proposals;
 use crate::session::protocol::ProtocolEvent;
-use crate::session::{Event, Phase};
+use crate::session::{Event, TrialPhase};
 
-impl Engine {
+impl SessionEngine {
     /// Evaluates at the end of a familiarisation whether its criterion is met.
     pub(super) fn check_criterion(&mut self, now: SessionTime) {
         let session = self.session();
         let Some((step, protocol)) = session.step() else { return };
         let Some(criterion) = step.criterion.filter(|_| protocol.practice.is_none()) else { return };
-        if !matches!(session.phase, Phase::Over(_)) || session.aborted.is_some() {
+        if !matches!(session.phase, TrialPhase::Over(_)) || session.aborted.is_some() {
             return;
         }
         let (orders, presses) = (session.served.len() as u32, session.presses[Agent::Human.index()]);
@@ -30,7 +30,7 @@ impl Engine {
     /// Removes a proposal of presses from the display once it is out of date.
     pub(super) fn end_outdated_proposal(&mut self, now: SessionTime) {
         if self.session().is_running() && proposals::is_outdated(self.session()) {
-            self.record_own(now, Event::SignalEnded { reason: SignalEnd::Outdated });
+            self.record_own(now, Event::SignalEnded { reason: SignalEndReason::Outdated });
         }
     }
 

@@ -1,19 +1,19 @@
 //! Tells the simulated participant and the scripted wizard about events, and opens and closes offers to a wizard at the
 //! console.
 
-use super::Engine;
+use super::SessionEngine;
 use crate::base::time::SessionTime;
-use crate::communication::offer::{OfferedAct, OfferedAdvice};
-use crate::communication::recommendation::Reason;
-use crate::kitchen::Change;
+use crate::communication::offer::{OfferedAdvice, OfferedCommunication};
+use crate::communication::recommendation::SignalReason;
+use crate::kitchen::KitchenChange;
 use crate::session::accuracy_check::RunningGazeCheck;
-use crate::session::event::SignalEnd;
+use crate::session::event::SignalEndReason;
 use crate::session::offers;
-use crate::session::{Event, Stamped};
+use crate::session::{Event, TimestampedEvent};
 
-impl Engine {
+impl SessionEngine {
     /// Tells the simulated participant the part of an applied event that they can notice.
-    pub(super) fn tell_participant(&mut self, stamped: &Stamped, change: &Change) {
+    pub(super) fn tell_participant(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let Some(participant) = &mut self.participant else { return };
         let session = &self.follower.session;
         let (now, state) = (stamped.time, session.state);
@@ -27,7 +27,7 @@ impl Engine {
                     participant.on_signal(now, shown.location, signal);
                 }
             }
-            Event::SignalEnded { reason } => participant.on_signal_end(*reason == SignalEnd::Outdated),
+            Event::SignalEnded { reason } => participant.on_signal_end(*reason == SignalEndReason::Outdated),
             Event::Calibration(_) => {
                 participant.on_target(now, session.calibration.as_ref().and_then(RunningGazeCheck::target))
             }
@@ -41,10 +41,10 @@ impl Engine {
             // A recommendation states a reason for its first option only; if two orders are of the same dish, the offer
             // may be about the other order.
             if let Event::OfferOpened(advice) = &mut event
-                && let (None, OfferedAct::Signal(signal)) = (&advice.reason, &advice.what)
+                && let (None, OfferedCommunication::Signal(signal)) = (&advice.reason, &advice.what)
             {
                 let session = &self.follower.session;
-                advice.reason = Reason::for_signal(&session.kitchen, session.state, self.belief(), signal);
+                advice.reason = SignalReason::for_signal(&session.kitchen, session.state, self.belief(), signal);
             }
             self.record_own(now, event);
         }
@@ -52,7 +52,7 @@ impl Engine {
 
     /// Tells a scripted wizard the part of an applied event that it sees: kitchen, presses, gaze, and offers if they
     /// are shown.
-    pub(super) fn tell_wizard(&mut self, stamped: &Stamped, change: &Change) {
+    pub(super) fn tell_wizard(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let Some(wizard) = &mut self.wizard else { return };
         let session = &self.follower.session;
         let (now, state) = (stamped.time, session.state);
@@ -69,7 +69,7 @@ impl Engine {
                     wizard.on_signal(now, location, state);
                 }
             }
-            Event::OfferOpened(OfferedAdvice { what: OfferedAct::Signal(_), visible: true, .. }) => {
+            Event::OfferOpened(OfferedAdvice { what: OfferedCommunication::Signal(_), visible: true, .. }) => {
                 wizard.on_offer(now, stamped.seq);
             }
             _ => {

@@ -1,16 +1,16 @@
 //! Freeze probes in a running session: begins them when they are due, draws their questions, and lets a simulated
 //! participant answer.
 
-use super::Engine;
+use super::SessionEngine;
 use crate::base::time::SessionTime;
 use crate::kitchen::AspectId;
 use crate::measures::sequences::FALSE_BELOW;
 use crate::session::Event;
 use crate::session::probe_sampling::{aspect, questions};
 use crate::session::probes::{DueProbe, ProbeEvent, ProbeSubject, of_trial, upcoming};
-use crate::session::wall_display::Answering;
+use crate::session::wall_display::AnswerEntry;
 
-impl Engine {
+impl SessionEngine {
     /// Session time of the next event of a freeze probe.
     pub(super) fn probe_due(&self) -> Option<SessionTime> {
         let rule = upcoming(self.session()).map(|(due, _)| due);
@@ -78,7 +78,7 @@ impl Engine {
         };
         let asks_confidence = of_trial(&session.spec).is_some_and(|spec| spec.confidence);
         let confidence = aspect.filter(|_| asks_confidence && answer.is_some()).map(|one| participant.confidence(one));
-        let on = Answering::Display;
+        let on = AnswerEntry::Display;
         self.record_own(now, Event::Probe(ProbeEvent::Answered { probe, question, answer, confidence, on }));
     }
 }

@@ -1,16 +1,16 @@
 //! The robot in a running session: turns its activities into events, and tells it about events that concern it.
 
-use super::Engine;
-use crate::arm::worker::Robot;
+use super::SessionEngine;
+use crate::arm::worker::RobotTaskExecutor;
 use crate::base::time::SessionTime;
-use crate::kitchen::{Agent, ButtonId, Change};
+use crate::kitchen::{Agent, ButtonId, KitchenChange};
 use crate::participant::SimulatedParticipant;
 use crate::robot::RobotActivity;
-use crate::session::{Event, Stamped};
+use crate::session::{Event, TimestampedEvent};
 
-impl Engine {
+impl SessionEngine {
     /// The session's robot, for experiments with its arm.
-    pub fn robot(&mut self) -> &mut Robot {
+    pub fn robot(&mut self) -> &mut RobotTaskExecutor {
         &mut self.robot
     }
 
@@ -39,7 +39,7 @@ impl Engine {
 
     /// Tells the robot about an applied event (an intervention of the wizard, or a press of the human); returns its
     /// reactions.
-    pub(super) fn tell_robot(&mut self, stamped: &Stamped, change: &Change) -> Vec<RobotActivity> {
+    pub(super) fn tell_robot(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) -> Vec<RobotActivity> {
         let kitchen = self.session().kitchen.clone();
         let now = stamped.time;
         if let Some(press) = change.human_press() {

@@ -7,7 +7,7 @@ use tokio::sync::mpsc::Sender;
 use crate::edge::pupil::CaptureRequest;
 use crate::run::desk::GazeTracker;
 use crate::session::probes::ProbeEvent;
-use crate::session::{Event, Phase, Session};
+use crate::session::{Event, Session, TrialPhase};
 
 const RUNNING: &str = "trial running";
 const PAUSED: &str = "trial paused";
@@ -35,8 +35,8 @@ impl CaptureOrders {
         let mut capture = CaptureOrders { orders: tracker.orders(), name, ..CaptureOrders::default() };
         capture.probe = session.probes.open.as_ref().map(|open| open.number);
         capture.phase = match session.phase {
-            Phase::Running => Some(RUNNING),
-            Phase::Paused => Some(PAUSED),
+            TrialPhase::Running => Some(RUNNING),
+            TrialPhase::Paused => Some(PAUSED),
             _ => None,
         };
         if let Some(phase) = capture.phase {

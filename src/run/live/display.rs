@@ -3,10 +3,10 @@
 use std::time::Instant;
 
 use crate::base::time::SessionTime;
-use crate::console::display_status::DisplayHealth;
+use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::notice::NoticeLevel;
-use crate::display::{DisplayUpdate, RobotHand, RobotPose, choice_made_of, scene, sight, time_left};
-use crate::edge::display::{Display, PageConnection, PageReply};
+use crate::display::{DisplayUpdate, RobotHand, RobotHandPose, choice_made_of, scene, sight, time_left};
+use crate::edge::display::{DisplayHandle, DisplayServer, ParticipantResponse};
 use crate::gaze::GazeSample;
 use crate::kitchen::Agent;
 use crate::run::desk::{OperatorDesk, PageInput};
@@ -15,26 +15,26 @@ use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
 use crate::session::tutorial::{TutorialEvent, TutorialReader};
-use crate::session::wall_display::{Answering, DisplayEvent};
+use crate::session::wall_display::{AnswerEntry, DisplayEvent};
 use crate::session::{Event, Session};
 
 /// The participant's display during one recording.
 pub(super) struct ParticipantDisplay {
-    screen: PageConnection,
+    screen: DisplayHandle,
     /// Content that the display shows at present.
     shown: Option<DisplayUpdate>,
     /// The robot's hand, if the display shows it, with the pose that was sent last.
     hand: Option<RobotHand>,
-    told: Option<RobotPose>,
+    told: Option<RobotHandPose>,
 }
 
 impl ParticipantDisplay {
     /// The display of the operator's desk, if there is one, with its state for the wizard.
-    pub fn at(desk: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<DisplayHealth>) {
-        let health = |display: &Display| DisplayHealth {
+    pub fn at(desk: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
+        let health = |display: &DisplayServer| ParticipantDisplayHealth {
             url: display.url(),
             code: display.code().map(str::to_string),
-            ..DisplayHealth::default()
+            ..ParticipantDisplayHealth::default()
         };
         let display = desk.wall.display();
         (
@@ -68,7 +68,7 @@ impl ParticipantDisplay {
     }
 
     /// Updates the display's state that the wizard sees.
-    pub fn examine(&self, health: &mut DisplayHealth) {
+    pub fn examine(&self, health: &mut ParticipantDisplayHealth) {
         let counts = self.screen.counts();
         health.page = counts.page.map(|page| [page.width_px, page.height_px]);
         health.upright = counts.page.is_some_and(|page| page.upright);
@@ -114,21 +114,21 @@ impl PageEvent {
 }
 
 /// Converts a reply of the participant to an event of the session; `None` if the reply is not possible now.
-fn answered(reply: PageReply, session: &Session) -> Option<Event> {
+fn answered(reply: ParticipantResponse, session: &Session) -> Option<Event> {
     match reply {
-        PageReply::Answer { item, answer: Some(given) } => {
+        ParticipantResponse::Answer { item, answer: Some(given) } => {
             answer(ProtocolEvent::ItemAnswered { item, answer: given }, session)
         }
-        PageReply::Answer { item, answer: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
-        PageReply::Next => session.next_item().and_then(|next| answer(next, session)),
-        PageReply::Back { item } => answer(ProtocolEvent::ItemShown { item }, session),
+        ParticipantResponse::Answer { item, answer: None } => answer(ProtocolEvent::ItemSkipped { item }, session),
+        ParticipantResponse::Next => session.next_item().and_then(|next| answer(next, session)),
+        ParticipantResponse::Back { item } => answer(ProtocolEvent::ItemShown { item }, session),
         // Consent is asked for before a recording begins; a late consent changes nothing.
-        PageReply::Consent => None,
-        PageReply::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
-        PageReply::Turn { step, forward } => turn(session, &step, forward),
-        PageReply::Choose { step, choice } => practise(session, TutorialEvent::Answered { step, choice }),
-        PageReply::CardsShown { step } => practise(session, TutorialEvent::CardsHidden { step }),
-        PageReply::Believe { probe, question, choice, items, sure } => {
+        ParticipantResponse::Consent => None,
+        ParticipantResponse::Confirm => answer(ProtocolEvent::AnswersConfirmed, session),
+        ParticipantResponse::Turn { step, forward } => turn(session, &step, forward),
+        ParticipantResponse::Choose { step, choice } => practise(session, TutorialEvent::Answered { step, choice }),
+        ParticipantResponse::CardsShown { step } => practise(session, TutorialEvent::CardsHidden { step }),
+        ParticipantResponse::Believe { probe, question, choice, items, sure } => {
             believe(session, (probe, question), (choice, &items), sure)
         }
     }
@@ -190,14 +190,14 @@ fn believe(
         Some(number) => Some(asked.choices.get(usize::from(number).checked_sub(1)?)?.clone()),
         None => None,
     };
-    let on = Answering::Display;
+    let on = AnswerEntry::Display;
     let event = Event::Probe(ProbeEvent::Answered { probe, question, answer, confidence, on });
     admit(session, &event).is_ok().then_some(event)
 }
 
 /// Converts an answer to a questionnaire to an event, if participants answer on the display in this session.
 fn answer(event: ProtocolEvent, session: &Session) -> Option<Event> {
-    (session.spec.display.questionnaire == Answering::Display).then_some(Event::Protocol(event))
+    (session.spec.display.questionnaire == AnswerEntry::Display).then_some(Event::Protocol(event))
 }
 
 /// Session time of an instant shortly before the present one.

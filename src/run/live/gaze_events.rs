@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use crate::base::time::SessionTime;
 use crate::edge::gaze_file::GazeFile;
-use crate::edge::gaze_input::{GazeNews, SampleTime};
+use crate::edge::gaze_input::{TrackerMessage, TrackerTime};
 use crate::gaze::GazeSample;
 use crate::gaze::device_clock::{ClockStep, DeviceClock};
-use crate::gaze::quality::{DropCounts, RateLimit};
+use crate::gaze::quality::{DroppedInputCounts, RateLimit};
 use crate::run::desk::GazeTracker;
 use crate::session::tracker::TrackerEvent;
-use crate::session::{Event, Phase, Session};
+use crate::session::{Event, Session, TrialPhase};
 
 /// No events, for a tracker message that is none.
 const NONE: [Option<Event>; 2] = [None, None];
@@ -21,7 +21,7 @@ const NONE: [Option<Event>; 2] = [None, None];
 pub(super) struct GazeInput {
     clock: DeviceClock,
     limit: RateLimit,
-    dropped: DropCounts,
+    dropped: DroppedInputCounts,
     /// Whether the wizard was told of a wrong time stamp.
     has_complained: bool,
     /// Gaze replayed from a file, with the index of the next sample.
@@ -33,58 +33,58 @@ impl GazeInput {
     /// The gaze input of a recording that begins or continues with this session.
     pub fn at(tracker: &GazeTracker, session: &Session) -> GazeInput {
         let Some(file) = tracker.file() else { return GazeInput::default() };
-        let dropped = DropCounts { malformed: file.malformed, ..DropCounts::default() };
+        let dropped = DroppedInputCounts { malformed: file.malformed, ..DroppedInputCounts::default() };
         let clock_s = session.trial_clock(session.time).as_secs_f64();
-        let is_past = |(at_s, _): &&(f64, GazeSample)| session.phase != Phase::Ready && *at_s < clock_s;
+        let is_past = |(at_s, _): &&(f64, GazeSample)| session.phase != TrialPhase::Ready && *at_s < clock_s;
         let next = file.samples.iter().take_while(is_past).count();
         GazeInput { dropped, file: Some(file), next, ..GazeInput::default() }
     }
 
     /// Message to the wizard about the first sample with a wrong time stamp.
-    pub fn complaint(&mut self, news: &GazeNews) -> Option<String> {
-        let GazeNews::WrongTime(t) = news else { return None };
+    pub fn complaint(&mut self, news: &TrackerMessage) -> Option<String> {
+        let TrackerMessage::WrongTime(t) = news else { return None };
         let is_first = !std::mem::replace(&mut self.has_complained, true);
         is_first.then(|| format!("gaze is refused: t = {t} is no time in seconds, nor in ms, us or ns since 1970"))
     }
 
     /// The events for a tracker message; empty for messages that are only counted.
-    pub fn events(&mut self, news: GazeNews, now: SessionTime) -> [Option<Event>; 2] {
+    pub fn events(&mut self, news: TrackerMessage, now: SessionTime) -> [Option<Event>; 2] {
         let tracker = match news {
-            GazeNews::Sample(sample, at) => return self.sample(sample, at, now),
-            GazeNews::Malformed(count) => {
+            TrackerMessage::Sample(sample, at) => return self.sample(sample, at, now),
+            TrackerMessage::Malformed(count) => {
                 self.dropped.malformed += count;
                 return NONE;
             }
-            GazeNews::WrongTime(_) => {
+            TrackerMessage::WrongTime(_) => {
                 self.dropped.malformed += 1;
                 return NONE;
             }
-            GazeNews::Overrun(count) => {
+            TrackerMessage::Overrun(count) => {
                 self.dropped.overrun += count;
                 return NONE;
             }
             // Senders that are not trackers are counted at the console only, not in the log.
-            GazeNews::Rejected(_) | GazeNews::Refused { .. } => return NONE,
-            GazeNews::Began => {
+            TrackerMessage::Rejected(_) | TrackerMessage::Refused { .. } => return NONE,
+            TrackerMessage::Began => {
                 self.clock = DeviceClock::default();
                 return NONE;
             }
-            GazeNews::Connected(device) => TrackerEvent::Connected { device },
-            GazeNews::Lost(reason) => TrackerEvent::Lost { reason },
-            GazeNews::SeesDisplay(true) => TrackerEvent::DisplayFound,
-            GazeNews::SeesDisplay(false) => TrackerEvent::DisplayLost,
-            GazeNews::OtherSurfaces(names) => TrackerEvent::OtherSurfaces { names },
-            GazeNews::ClockSet { by_s, known_at } => {
+            TrackerMessage::Connected(device) => TrackerEvent::Connected { device },
+            TrackerMessage::Lost(reason) => TrackerEvent::Lost { reason },
+            TrackerMessage::SeesDisplay(true) => TrackerEvent::DisplayFound,
+            TrackerMessage::SeesDisplay(false) => TrackerEvent::DisplayLost,
+            TrackerMessage::OtherSurfaces(names) => TrackerEvent::OtherSurfaces { names },
+            TrackerMessage::ClockSet { by_s, known_at } => {
                 TrackerEvent::ClockSet { by_s, uncertain_since_ns: ago(now, known_at) }
             }
-            GazeNews::Recording(state) => TrackerEvent::Recording { state },
-            GazeNews::Fixation(found) => {
+            TrackerMessage::Recording(state) => TrackerEvent::Recording { state },
+            TrackerMessage::Fixation(found) => {
                 let (duration_ms, dispersion_deg) = (found.duration_ms, found.dispersion_deg);
                 let (device_ns, began_ns) = (found.began.device_ns, session_time(found.began, now));
                 let (at, confidence) = (found.at, found.confidence);
                 TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, device_ns, began_ns }
             }
-            GazeNews::Blink { is_onset, confidence, taken } => {
+            TrackerMessage::Blink { is_onset, confidence, taken } => {
                 let (device_ns, taken_ns) = (taken.device_ns, session_time(taken, now));
                 TrackerEvent::Blink { closed: is_onset, confidence, device_ns, taken_ns }
             }
@@ -114,7 +114,7 @@ impl GazeInput {
 
     /// An event with the counts of gaze input that was dropped, if they have grown.
     pub fn drops(&self, session: &Session) -> Option<Event> {
-        let is_news = self.dropped != session.tracker.dropped && session.phase != Phase::Closed;
+        let is_news = self.dropped != session.tracker.dropped && session.phase != TrialPhase::Closed;
         is_news.then_some(Event::Tracker(TrackerEvent::Dropped(self.dropped)))
     }
 
@@ -138,7 +138,7 @@ fn session_time_in_file(session: &Session, at_s: f64) -> SessionTime {
     session.trial_start + session.paused_total + SessionTime::from_secs_f64(at_s)
 }
 
-fn session_time(taken: SampleTime, now: SessionTime) -> SessionTime {
+fn session_time(taken: TrackerTime, now: SessionTime) -> SessionTime {
     taken.at.map_or(now, |at| ago(now, at))
 }
 

@@ -4,13 +4,13 @@ use super::display::PageEvent;
 use super::live_session::Live;
 use crate::console::notice::NoticeLevel;
 use crate::console::{ConsoleCommand, ConsoleMessage, update};
-use crate::edge::gaze_input::GazeNews;
+use crate::edge::gaze_input::TrackerMessage;
 use crate::gaze::GazeSample;
 use crate::history::wording;
 use crate::run::desk::PageInput;
 use crate::run::leaving::LeavingReason;
 use crate::session::tracker::{TrackerEvent, TrackerRecording};
-use crate::session::{Event, Phase};
+use crate::session::{Event, TrialPhase};
 
 impl Live {
     /// Handles a message from the terminal; returns how the wizard leaves the recording, if at all.
@@ -53,7 +53,7 @@ impl Live {
 
     /// Handles an input of the page that acts for the participant.
     pub(super) fn hear(&mut self, input: PageInput) {
-        if self.engine.session().phase == Phase::Closed {
+        if self.engine.session().phase == TrialPhase::Closed {
             return;
         }
         let PageEvent { event, notice } = PageEvent::from_input(input, self.engine.session(), self.clock.now());
@@ -66,12 +66,12 @@ impl Live {
     }
 
     /// Handles a message of the eye tracker.
-    pub(super) fn take_gaze(&mut self, news: GazeNews) {
-        if let GazeNews::Rejected(count) = news {
+    pub(super) fn take_gaze(&mut self, news: TrackerMessage) {
+        if let TrackerMessage::Rejected(count) = news {
             self.model.count_rejected(count);
             self.dirty = true;
         }
-        if let GazeNews::Refused { from, why, senders } = news {
+        if let TrackerMessage::Refused { from, why, senders } = news {
             self.model.refuse_sender(&from.to_string(), why.words(), senders);
             self.dirty = true;
         }

@@ -18,21 +18,21 @@ use crate::console::{ConsoleModel, KeyBindings};
 use crate::edge::clock::{SessionClock, WallTime};
 use crate::edge::doctor::free_bytes;
 use crate::edge::key_file::key_map;
-use crate::edge::log::{LogWriter, RecordingLock, WriteError};
+use crate::edge::log::{LogWriter, RecordingLock, RecordingWriteError};
 use crate::edge::terminal::{TerminalScreen, theme};
-use crate::run::advisor_desk::{AdvisorDesk, next_advice};
+use crate::run::advisor_desk::{LiveAdvisor, next_advice};
 use crate::run::desk::{GazeTracker, OperatorDesk};
-use crate::run::engine::Engine;
+use crate::run::engine::SessionEngine;
 use crate::run::error::{LiveError, TerminalError};
 use crate::run::event_loop::{self, ConsoleShell, FRAME, LoopEvent, ShellDeadlines, ShellView};
 use crate::run::leaving::{LeavingReason, LiveOutcome};
 use crate::run::options::SessionStart;
 use crate::run::unfinished_recording::{PreparedSession, RecordingPlace};
-use crate::run::watch_desk::ComparisonDesk;
+use crate::run::watch_desk::LiveComparison;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::GazeSource;
-use crate::session::wizard_screen::VisibleScreen;
-use crate::session::{Event, Header, Session};
+use crate::session::wizard_screen::WizardScreenContent;
+use crate::session::{Event, LogHeader, Session};
 
 /// Period of redrawing clocks and ages on the console while the trial is running.
 const RUNNING: Duration = Duration::from_millis(100);
@@ -40,16 +40,16 @@ const RESTING: Duration = Duration::from_millis(250);
 
 /// A running session with its recording and devices.
 pub(super) struct Live {
-    pub(super) engine: Engine,
+    pub(super) engine: SessionEngine,
     /// The assistant's thread, if the session requests advice.
-    pub(super) advisor: Option<AdvisorDesk>,
+    pub(super) advisor: Option<LiveAdvisor>,
     /// The comparison of wizard and assistants, if the console shows it.
-    pub(super) comparison: Option<ComparisonDesk>,
+    pub(super) comparison: Option<LiveComparison>,
     /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,
     pub(super) model: ConsoleModel,
     /// Header of the recording.
-    header: Header,
+    header: LogHeader,
     pub(super) log: LogWriter,
     /// Stream to Rerun viewers.
     pub(super) viewing: Option<StreamedSession>,
@@ -58,14 +58,14 @@ pub(super) struct Live {
     /// Lock on the previous part of a continued recording.
     _before: Option<RecordingLock>,
     /// Error of writing the log, if writing has failed.
-    pub(super) failed: Option<WriteError>,
+    pub(super) failed: Option<RecordingWriteError>,
     pub(super) clock: SessionClock,
     pub(super) gaze: GazeInput,
     pub(super) capture: CaptureOrders,
     /// Sequence number of a signal that no frame on the wizard's screen has shown yet.
     pub(super) undrawn: Option<u64>,
     /// Last recorded content of the wizard's screen.
-    pub(super) seen: Option<VisibleScreen>,
+    pub(super) seen: Option<WizardScreenContent>,
     /// Number of judged presses that the console has been told.
     pub(super) judged: usize,
     /// Whether the screen has to be redrawn.
@@ -248,7 +248,7 @@ impl Live {
     /// Start of a repetition of this trial in a new recording beside this one.
     fn beginning_again(&self) -> SessionStart {
         let out = self.log.folder().parent().unwrap_or(std::path::Path::new(".")).to_path_buf();
-        let header = Header { redoes: Some(self.name()), started: None, continues: None, ..self.header.clone() };
+        let header = LogHeader { redoes: Some(self.name()), started: None, continues: None, ..self.header.clone() };
         SessionStart::Again { header: Box::new(header), kitchen: self.engine.session().kitchen.clone(), out }
     }
 

@@ -3,18 +3,18 @@
 
 use std::rc::Rc;
 
-use crate::analysis::lsl::{SampleMaker, StreamSample};
+use crate::analysis::lsl::{LslSampleConverter, StreamSample};
 use crate::console::console_model::LslStatus;
 use crate::edge::clock::SessionClock;
-use crate::edge::lsl::{LslCounts, LslStreams, TimedSample};
+use crate::edge::lsl::{LslCounts, LslSample, LslStreams};
 use crate::history::belief_track::BeliefSnapshot;
 use crate::run::desk::OperatorDesk;
-use crate::run::engine::Engine;
-use crate::session::{Session, Stamped};
+use crate::run::engine::SessionEngine;
+use crate::session::{Session, TimestampedEvent};
 
 /// Sends a session's samples to its LSL streams.
 pub(super) struct LslStreaming {
-    maker: SampleMaker,
+    maker: LslSampleConverter,
     streams: Rc<LslStreams>,
     /// Numbers of lost samples that the wizard was told.
     told: LslCounts,
@@ -33,7 +33,7 @@ impl LslStreaming {
     ) -> Result<Option<LslStreaming>, String> {
         let streams = desk.lsl.streams(session).map_err(|error| error.to_string())?;
         let open = |streams: Rc<LslStreams>| {
-            let (maker, told) = (SampleMaker::new(session, recording), streams.counts());
+            let (maker, told) = (LslSampleConverter::new(session, recording), streams.counts());
             let streaming = LslStreaming { maker, streams, told };
             streaming.send(streaming.maker.opening(session, session.time), clock);
             streaming
@@ -42,7 +42,13 @@ impl LslStreaming {
     }
 
     /// Sends the samples of events that have just been recorded. `belief`: the estimate after the last event.
-    pub fn tell(&mut self, events: &[Stamped], engine: &Engine, belief: &BeliefSnapshot, clock: &SessionClock) {
+    pub fn tell(
+        &mut self,
+        events: &[TimestampedEvent],
+        engine: &SessionEngine,
+        belief: &BeliefSnapshot,
+        clock: &SessionClock,
+    ) {
         let samples = self.maker.samples(events, engine.session(), engine.judged(), belief);
         self.send(samples, clock);
     }
@@ -50,7 +56,7 @@ impl LslStreaming {
     fn send(&self, samples: Vec<StreamSample>, clock: &SessionClock) {
         let timed = |StreamSample { outlet, time, values }: StreamSample| {
             let at = clock.instant_of(time);
-            TimedSample { outlet, at, values }
+            LslSample { outlet, at, values }
         };
         self.streams.tell(samples.into_iter().map(timed).collect());
     }

@@ -6,15 +6,15 @@ use super::viewing::StreamedSession;
 use crate::console::console_model::RecordingStatus;
 use crate::console::notice::NoticeLevel;
 use crate::edge::doctor::free_bytes;
-use crate::edge::log::WriteError;
+use crate::edge::log::RecordingWriteError;
 use crate::history::belief_track::{self, BeliefSnapshot};
 use crate::history::{probe_wording, wording};
 use crate::session::probes::ProbeEvent;
-use crate::session::{Event, Phase, Stamped};
+use crate::session::{Event, TimestampedEvent, TrialPhase};
 
 impl Live {
     /// Writes events to the log. If that fails, the session ends, since it would have no data.
-    pub(super) fn record(&mut self, events: &[Stamped]) {
+    pub(super) fn record(&mut self, events: &[TimestampedEvent]) {
         self.dirty = true;
         for stamped in events {
             match stamped.event {
@@ -99,7 +99,7 @@ impl Live {
         if let Some(drops) = self.gaze.drops(self.engine.session()) {
             self.input(drops);
         }
-        if self.engine.session().phase == Phase::Ready {
+        if self.engine.session().phase == TrialPhase::Ready {
             self.model.free_bytes = free_bytes(self.log.folder()).ok();
         }
         self.check_log();
@@ -116,10 +116,10 @@ impl Live {
 
     /// Handles a log that cannot be written: alarm, robot stop, end of the session. The console stays open until the
     /// wizard leaves.
-    pub(super) fn fail(&mut self, error: WriteError) {
+    pub(super) fn fail(&mut self, error: RecordingWriteError) {
         let (reason, saved) = match &error {
-            WriteError::Unwritable { reason, saved, .. } => (reason.to_string(), saved.clone()),
-            WriteError::Damaged { found, saved, .. } => (format!("the log {found}"), saved.clone()),
+            RecordingWriteError::Unwritable { reason, saved, .. } => (reason.to_string(), saved.clone()),
+            RecordingWriteError::Damaged { found, saved, .. } => (format!("the log {found}"), saved.clone()),
             error => (error.to_string(), None),
         };
         let saved = saved.map_or(String::new(), |saved| format!(", saved in {}", saved.display()));

@@ -3,9 +3,9 @@
 use super::live_session::Live;
 use crate::console::screen::screen;
 use crate::console::{click_question, hands};
-use crate::run::watch_desk::ComparisonDesk;
+use crate::run::watch_desk::LiveComparison;
 use crate::session::wall_display::DisplayEvent;
-use crate::session::{Event, Phase};
+use crate::session::{Event, TrialPhase};
 
 impl Live {
     /// Updates the time that the console shows.
@@ -20,7 +20,7 @@ impl Live {
         click_question::expire(&mut self.model, self.engine.session());
         hands::expire(&mut self.model, self.engine.session());
         if let (Some(newest), Some(compared)) =
-            (self.comparison.as_ref().and_then(ComparisonDesk::newest), &mut self.model.comparison)
+            (self.comparison.as_ref().and_then(LiveComparison::newest), &mut self.model.comparison)
         {
             compared.show(newest);
         }
@@ -31,7 +31,7 @@ impl Live {
     /// Records the content of the wizard's screen if it changed.
     fn tell_screen(&mut self) {
         let now = screen(self.engine.session(), &self.model);
-        if self.engine.session().phase != Phase::Closed && self.seen.as_ref() != Some(&now) {
+        if self.engine.session().phase != TrialPhase::Closed && self.seen.as_ref() != Some(&now) {
             self.seen = Some(now.clone());
             self.input(Event::Screen(now));
         }
@@ -39,7 +39,7 @@ impl Live {
 
     /// Records that the frame just drawn is the first to show a signal.
     pub(super) fn tell_drawn(&mut self) {
-        if let Some(signal) = self.undrawn.take_if(|_| self.engine.session().phase != Phase::Closed) {
+        if let Some(signal) = self.undrawn.take_if(|_| self.engine.session().phase != TrialPhase::Closed) {
             self.input(Event::SignalDrawn { signal });
         }
     }

@@ -3,7 +3,7 @@
 use super::live_session::Live;
 use crate::base::time::SessionTime;
 use crate::session::Event;
-use crate::session::accuracy_check::{AcceptedGazeCheck, CalibrationEvent, RunningGazeCheck};
+use crate::session::accuracy_check::{AcceptedGazeCheck, GazeCheckEvent, RunningGazeCheck};
 use crate::session::settings::GazeSource;
 
 impl Live {
@@ -15,7 +15,7 @@ impl Live {
         if let Some(AcceptedGazeCheck { found, corrected, .. }) =
             before.filter(|_| is_wanted && session.calibrated.is_none())
         {
-            let event = CalibrationEvent::Carried { found: found.clone(), corrected: *corrected };
+            let event = GazeCheckEvent::Carried { found: found.clone(), corrected: *corrected };
             self.input(Event::Calibration(event));
         }
     }

@@ -4,14 +4,14 @@
 use std::net::SocketAddr;
 
 use crate::base::time::SessionTime;
-use crate::console::console_model::ViewerStreamStatus;
+use crate::console::console_model::RerunStreamStatus;
 use crate::edge::log::{LOG_NAME, LogWriter};
 use crate::edge::rerun::{StreamIdentity, uri};
 use crate::edge::rrd::{self, RRD_NAME};
 use crate::edge::stream::RerunStream;
-use crate::run::engine::Engine;
+use crate::run::engine::SessionEngine;
 use crate::scene::{DerivedData, SessionScene};
-use crate::session::{Header, Session, Stamped};
+use crate::session::{LogHeader, Session, TimestampedEvent};
 
 /// Delay with which motion between events is streamed, so that no earlier event can follow.
 const BEHIND: SessionTime = SessionTime(100_000_000);
@@ -32,7 +32,7 @@ impl StreamedSession {
     /// The stream cannot be opened, for this reason; the session can continue without it.
     pub fn open(
         session: &Session,
-        header: &Header,
+        header: &LogHeader,
         log: &mut LogWriter,
         next: u64,
         is_whole: bool,
@@ -60,7 +60,7 @@ impl StreamedSession {
     }
 
     /// Streams events that have just been recorded to the viewers.
-    pub fn view(&mut self, events: &[Stamped], engine: &Engine) {
+    pub fn view(&mut self, events: &[TimestampedEvent], engine: &SessionEngine) {
         let judged = engine.judged();
         for (index, stamped) in events.iter().enumerate() {
             let belief = (index + 1 == events.len()).then(|| engine.belief());
@@ -74,10 +74,10 @@ impl StreamedSession {
     }
 
     /// State of the stream to Rerun.
-    pub fn status(&self) -> ViewerStreamStatus {
+    pub fn status(&self) -> RerunStreamStatus {
         let fares = self.stream.fares();
         let address = self.stream.server.map(|address| address.to_string());
-        ViewerStreamStatus { address, written: fares.written, dropped: fares.dropped }
+        RerunStreamStatus { address, written: fares.written, dropped: fares.dropped }
     }
 
     /// Ends the stream. If its file shows the whole log, which is complete now, the file is sealed as up to date.

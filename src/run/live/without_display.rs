@@ -1,7 +1,7 @@
 //! Stand-in for the participant's display in a live session, in a build without the feature `display`.
 
 use crate::base::time::SessionTime;
-use crate::console::display_status::DisplayHealth;
+use crate::console::display_status::ParticipantDisplayHealth;
 use crate::console::notice::NoticeLevel;
 use crate::run::desk::{OperatorDesk, PageInput};
 use crate::session::{Event, Session};
@@ -11,7 +11,7 @@ pub(super) enum ParticipantDisplay {}
 
 impl ParticipantDisplay {
     /// Returns no display, since this build lacks it.
-    pub fn at(_: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<DisplayHealth>) {
+    pub fn at(_: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
         (None, None)
     }
 
@@ -31,7 +31,7 @@ impl ParticipantDisplay {
     }
 
     /// Does nothing: this build has no display whose state could be examined.
-    pub fn examine(&self, _: &mut DisplayHealth) {
+    pub fn examine(&self, _: &mut ParticipantDisplayHealth) {
         match *self {}
     }
 }

@@ -1,12 +1,12 @@
 //! Stand-in for the live stream to Rerun in a build without the feature `rerun`; the wizard is told if the session asks
 //! for a stream.
 
-use crate::base::features::{Feature, NotBuilt};
+use crate::base::features::{Feature, MissingFeature};
 use crate::base::time::SessionTime;
-use crate::console::console_model::ViewerStreamStatus;
+use crate::console::console_model::RerunStreamStatus;
 use crate::edge::log::LogWriter;
-use crate::run::engine::Engine;
-use crate::session::{Header, Session, Stamped};
+use crate::run::engine::SessionEngine;
+use crate::session::{LogHeader, Session, TimestampedEvent};
 
 /// The stream to Rerun, which this build lacks: the type has no value.
 pub(super) enum StreamedSession {}
@@ -18,16 +18,16 @@ impl StreamedSession {
     /// The session asks for a stream.
     pub fn open(
         session: &Session,
-        _: &Header,
+        _: &LogHeader,
         _: &mut LogWriter,
         _: u64,
         _: bool,
     ) -> Result<Option<StreamedSession>, String> {
-        if session.spec.rerun.is_on() { Err(NotBuilt(Feature::Rerun).to_string()) } else { Ok(None) }
+        if session.spec.rerun.is_on() { Err(MissingFeature(Feature::Rerun).to_string()) } else { Ok(None) }
     }
 
     /// Does nothing: this build has no stream.
-    pub fn view(&mut self, _: &[Stamped], _: &Engine) {
+    pub fn view(&mut self, _: &[TimestampedEvent], _: &SessionEngine) {
         match *self {}
     }
 
@@ -37,7 +37,7 @@ impl StreamedSession {
     }
 
     /// Never called, since this build has no stream.
-    pub fn status(&self) -> ViewerStreamStatus {
+    pub fn status(&self) -> RerunStreamStatus {
         match *self {}
     }
 

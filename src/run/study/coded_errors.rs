@@ -1,13 +1,13 @@
 //! The causes of a person's errors, from the consensus of two raters, from both raters' codes, or from the estimate.
 
-use crate::analysis::follower::Follower;
+use crate::analysis::follower::SessionFollower;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogReader, consensus_file, rater_codes};
 use crate::kitchen::Kitchen;
 use crate::measures::JudgedPress;
-use crate::measures::attribution::{Cause, Target};
-use crate::measures::belief_basis::BeliefBasis;
-use crate::measures::cause_codes::{CauseKind, Codable, Code, Codes};
+use crate::measures::attribution::{ErrorCause, FalseBeliefTarget};
+use crate::measures::belief_basis::BeliefSource;
+use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 use crate::measures::rater_choice::{RaterChoice, RaterPair};
 use crate::session::settings::ParticipantKind;
 
@@ -16,9 +16,9 @@ use crate::session::settings::ParticipantKind;
 pub struct CodedErrors {
     /// Codes of two raters: those who were named or settled a consensus, else the two who coded most errors. `None`
     /// with fewer than two raters, or if the choice is ambiguous.
-    pub raters: Option<[Codes; 2]>,
+    pub raters: Option<[RaterCodes; 2]>,
     /// Consensus codes of the two raters, if these hold and cover every error.
-    pub consensus: Option<Codes>,
+    pub consensus: Option<RaterCodes>,
     /// The two raters who settled the consensus.
     pub settled_by: Option<[String; 2]>,
     /// Why the raters' consensus does not hold, if there is one.
@@ -31,10 +31,10 @@ impl CodedErrors {
     /// # Errors
     /// A file with codes is damaged; or more than two raters have coded every error of a person, and the user did not
     /// name two of them.
-    pub fn read(log: &LogReader, follower: &Follower, named: Option<&[String; 2]>) -> FileResult<CodedErrors> {
-        let codable = Codable::from_presses(&follower.session.kitchen, &follower.judged);
+    pub fn read(log: &LogReader, follower: &SessionFollower, named: Option<&[String; 2]>) -> FileResult<CodedErrors> {
+        let codable = CodableErrors::from_presses(&follower.session.kitchen, &follower.judged);
         let all = rater_codes::read_all(log.folder(), &codable)?;
-        let own_codes = || -> FileResult<Option<[Codes; 2]>> {
+        let own_codes = || -> FileResult<Option<[RaterCodes; 2]>> {
             let choice = named.map_or_else(
                 || RaterChoice::most_complete(&all),
                 |raters| RaterChoice::Pair(RaterPair::named(&all, raters)),
@@ -77,13 +77,13 @@ impl CodedErrors {
     /// estimate. The source is `None` for a simulated participant without recorded beliefs.
     pub fn judged(
         &self,
-        follower: &Follower,
-        by_estimate: Option<&[(u64, Cause)]>,
-    ) -> (Vec<JudgedPress>, Option<BeliefBasis>) {
+        follower: &SessionFollower,
+        by_estimate: Option<&[(u64, ErrorCause)]>,
+    ) -> (Vec<JudgedPress>, Option<BeliefSource>) {
         let mut judged = follower.judged.clone();
         let Some(estimated) = by_estimate else {
             let is_known = judged.iter().all(|press| press.belief_known);
-            return (judged, is_known.then_some(BeliefBasis::Recorded));
+            return (judged, is_known.then_some(BeliefSource::Recorded));
         };
         let raters = self.complete_raters(&judged);
         let kitchen = &follower.session.kitchen;
@@ -95,28 +95,29 @@ impl CodedErrors {
             };
         }
         let basis = match (&self.consensus, raters) {
-            (Some(_), _) => BeliefBasis::Consensus,
-            (None, Some(_)) => BeliefBasis::Raters,
-            (None, None) => BeliefBasis::Estimate,
+            (Some(_), _) => BeliefSource::Consensus,
+            (None, Some(_)) => BeliefSource::Raters,
+            (None, None) => BeliefSource::Estimate,
         };
         (judged, Some(basis))
     }
 
     /// Codes that two raters share: their consensus, else the errors that both coded alike, if both coded every error.
-    pub fn shared(&self, judged: &[JudgedPress]) -> Option<Codes> {
+    pub fn shared(&self, judged: &[JudgedPress]) -> Option<RaterCodes> {
         let alike = || self.complete_raters(judged).map(|[one, other]| one.agreed(other));
         self.consensus.clone().or_else(alike)
     }
 
     /// The codes of the two raters, if both coded every error.
-    fn complete_raters(&self, judged: &[JudgedPress]) -> Option<&[Codes; 2]> {
-        let coded = |codes: &Codes| judged.iter().all(|press| !press.verdict.error || codes.0.contains_key(&press.seq));
+    fn complete_raters(&self, judged: &[JudgedPress]) -> Option<&[RaterCodes; 2]> {
+        let coded =
+            |codes: &RaterCodes| judged.iter().all(|press| !press.verdict.error || codes.0.contains_key(&press.seq));
         self.raters.as_ref().filter(|raters| raters.iter().all(coded))
     }
 }
 
 /// Whether raters who each coded this many errors determine the causes of a person's errors.
-fn is_needed(follower: &Follower, codable: &Codable, coded: usize) -> bool {
+fn is_needed(follower: &SessionFollower, codable: &CodableErrors, coded: usize) -> bool {
     let is_person = follower.session.spec.participant.kind != ParticipantKind::Simulated;
     is_person && !codable.errors.is_empty() && coded == codable.errors.len()
 }
@@ -131,23 +132,24 @@ fn tied(log: &LogReader, raters: &[String]) -> FileError {
 }
 
 /// The cause of an error that a code stands for.
-fn cause(kitchen: &Kitchen, press: &JudgedPress, code: &Code) -> Option<Cause> {
-    if code.kind() != CauseKind::Belief {
-        return Some(Cause::Slip);
+fn cause(kitchen: &Kitchen, press: &JudgedPress, code: &ErrorCauseCode) -> Option<ErrorCause> {
+    if code.kind() != ErrorCauseKind::Belief {
+        return Some(ErrorCause::Slip);
     }
-    Some(Cause::Belief { gain_nats: f64::NAN, target: code.target(kitchen, press.before)?, with: None })
+    Some(ErrorCause::Belief { gain_nats: f64::NAN, target: code.target(kitchen, press.before)?, with: None })
 }
 
 /// The cause of an error by two raters, whatever their order. If both coded a false belief, the error follows from one;
 /// if the raters name two different ones, the first in the layout's order comes first. Otherwise the error does not
 /// count as following from a false belief.
-fn agreed(kitchen: &Kitchen, press: &JudgedPress, [one, other]: &[Codes; 2]) -> Option<Cause> {
+fn agreed(kitchen: &Kitchen, press: &JudgedPress, [one, other]: &[RaterCodes; 2]) -> Option<ErrorCause> {
     let codes = [one.0.get(&press.seq)?, other.0.get(&press.seq)?];
-    if codes.iter().any(|code| code.kind() != CauseKind::Belief) {
-        return Some(Cause::Slip);
+    if codes.iter().any(|code| code.kind() != ErrorCauseKind::Belief) {
+        return Some(ErrorCause::Slip);
     }
-    let mut targets: Vec<Target> = codes.iter().filter_map(|code| code.target(kitchen, press.before)).collect();
+    let mut targets: Vec<FalseBeliefTarget> =
+        codes.iter().filter_map(|code| code.target(kitchen, press.before)).collect();
     targets.sort_by_key(|target| target.aspects(kitchen).next());
     targets.dedup();
-    Some(Cause::Belief { gain_nats: f64::NAN, target: *targets.first()?, with: targets.get(1).copied() })
+    Some(ErrorCause::Belief { gain_nats: f64::NAN, target: *targets.first()?, with: targets.get(1).copied() })
 }

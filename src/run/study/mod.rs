@@ -19,20 +19,20 @@ use std::sync::Arc;
 
 use self::reading::AnalysisScope;
 pub use self::tell::{describe, describe_arms};
-use super::replay::SameKitchen;
+use super::replay::SameKitchenCheck;
 use super::{consents, parallel};
-use crate::edge::export::{ExportError, ExportFolder};
+use crate::edge::export::{AnalysisFolder, AnalysisWriteError};
 use crate::edge::file_error::FileError;
 use crate::edge::frozen_file::read_frozen;
 use crate::edge::log::LogReader;
 use crate::edge::recordings;
 use crate::kitchen::Kitchen;
 use crate::session::SessionSpec;
-use crate::study::dictionary::{DictionaryRow, dictionary};
-use crate::study::facts::Facts;
+use crate::study::dictionary::{DataDictionaryRow, dictionary};
+use crate::study::facts::RecordingFacts;
 use crate::study::figures::StudySummary;
 use crate::study::frozen_plan::FrozenPlan;
-use crate::study::preregistration::{Preregistration, RecordedPlan};
+use crate::study::preregistration::{PreregistrationCheck, RecordedPlan};
 use crate::study::report;
 use crate::study::study_part::AnalysedRecording;
 use crate::study::tables::concept_table::{ConceptRow, concepts};
@@ -40,7 +40,7 @@ use crate::study::tables::participants::{ParticipantRow, participants};
 use crate::study::tables::probe_table::{ProbeRow, probes};
 use crate::study::tables::questionnaires::{AnswerRow, answers};
 use crate::study::tables::tutorial_answers::TutorialAnswer;
-use crate::study::trial_statistics::{Trial, arrange};
+use crate::study::trial_statistics::{TrialStatistics, arrange};
 
 /// Error of analysing a study.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
@@ -52,7 +52,7 @@ pub enum StudyError {
     /// A table cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Export(#[from] ExportError),
+    Export(#[from] AnalysisWriteError),
 }
 
 impl From<FileError> for StudyError {
@@ -131,7 +131,7 @@ pub fn study(
     done: impl Fn() + Sync,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
     let frozen = frozen(analysis)?;
-    let export = ExportFolder::create(&analysis.out)?;
+    let export = AnalysisFolder::create(&analysis.out)?;
     let Some((first, _)) = recordings.found.first() else { return Err(no_recording(analysis)) };
     let kitchen = LogReader::open(first)?.kitchen;
     let numbered: Vec<(usize, &(PathBuf, String))> = recordings.found.iter().enumerate().collect();
@@ -176,11 +176,11 @@ fn recorded_plan(spec: &SessionSpec) -> RecordedPlan {
 
 /// Puts the rows of a recording aside until all recordings are read; practice has none.
 fn keep(
-    export: &ExportFolder,
+    export: &AnalysisFolder,
     index: usize,
     analysed: &AnalysedRecording,
     rows: &[Vec<u8>; 5],
-) -> Result<(), ExportError> {
+) -> Result<(), AnalysisWriteError> {
     if analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
 }
 
@@ -188,11 +188,11 @@ fn keep(
 /// are kept.
 fn conclude(
     analysed: Vec<(usize, AnalysedRecording)>,
-    export: &ExportFolder,
+    export: &AnalysisFolder,
     extent: AnalysisScope,
     frozen: Option<(String, FrozenPlan)>,
 ) -> Result<(StudySummary, PathBuf), StudyError> {
-    let (mut trials, mut facts, mut kept) = (Vec::new(), Facts::default(), Vec::new());
+    let (mut trials, mut facts, mut kept) = (Vec::new(), RecordingFacts::default(), Vec::new());
     let (mut plans, mut consents, mut tutorials) = (Vec::new(), Vec::new(), Vec::new());
     for (index, recording) in analysed {
         plans.push(recording.plan);
@@ -209,7 +209,7 @@ fn conclude(
     consents.sort_by(|a, b| a.started.cmp(&b.started));
     // The order of a tutorial's questions stays.
     tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
-    let preregistration = frozen.map(|(digest, frozen)| Preregistration::new(digest, &frozen, &plans));
+    let preregistration = frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans));
     let figures = StudySummary::from_trials(&trials, &facts, practice).with_tutorials(&tutorials);
     let figures = figures.with_preregistration(preregistration);
     if !extent.events {
@@ -217,19 +217,19 @@ fn conclude(
     }
     let mut filled = export.tables_of_events(&kept)?;
     filled.extend(export.table::<ParticipantRow>(participants(&trials, &consents))?);
-    filled.extend(export.table::<Trial>(&trials)?);
+    filled.extend(export.table::<TrialStatistics>(&trials)?);
     filled.extend(export.table::<AnswerRow>(trials.iter().flat_map(answers))?);
     filled.extend(export.table::<TutorialAnswer>(&tutorials)?);
     filled.extend(export.table::<ConceptRow>(trials.iter().filter(|trial| trial.counts()).flat_map(concepts))?);
     filled.extend(export.table::<ProbeRow>(trials.iter().flat_map(probes))?);
-    filled.extend(export.table::<DictionaryRow>(dictionary())?);
+    filled.extend(export.table::<DataDictionaryRow>(dictionary())?);
     filled.sort_unstable();
     let path = export.report(&report::page(&figures, &trials, &facts, &filled))?;
     Ok((figures, path))
 }
 
 fn same_kitchen(first: (&Path, &Arc<Kitchen>), other: (&Path, &Arc<Kitchen>)) -> Result<(), FileError> {
-    let mut one = SameKitchen::default();
+    let mut one = SameKitchenCheck::default();
     one.admit(first.0, first.1)?;
     one.admit(other.0, other.1)
 }

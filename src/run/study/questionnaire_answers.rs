@@ -1,16 +1,16 @@
 //! Answers to a questionnaire in the form that the tables need, and the questionnaire's score.
 
-use crate::session::plan::{Item, ItemForm, ItemKind, Questionnaire, ScoreRule};
-use crate::session::protocol::Protocol;
-use crate::session::{Phase, Session};
+use crate::session::plan::{AnswerFormat, Questionnaire, QuestionnaireItem, QuestionnaireItemKind, ScoreRule};
+use crate::session::protocol::StudyProtocolState;
+use crate::session::{Session, TrialPhase};
 use crate::study::trial_statistics::QuestionnaireAnswer;
 
 /// Answers to the questionnaire that was just confirmed.
 pub(super) fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {
     let (Some(questionnaire), Some(protocol)) = (session.questionnaire(), &session.protocol) else { return Vec::new() };
-    let before = session.phase == Phase::Ready;
+    let before = session.phase == TrialPhase::Ready;
     let score = score(questionnaire, protocol);
-    let answered = |(index, item): (usize, &Item)| {
+    let answered = |(index, item): (usize, &QuestionnaireItem)| {
         let form = questionnaire.form(index);
         QuestionnaireAnswer {
             questionnaire: questionnaire.name.clone(),
@@ -18,10 +18,10 @@ pub(super) fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {
             text: item.text.clone(),
             about: item.about.clone(),
             reversed: item.reversed,
-            kind: item.kind.unwrap_or(ItemKind::Scale),
+            kind: item.kind.unwrap_or(QuestionnaireItemKind::Scale),
             answer: protocol.given(index).cloned(),
             points: match form {
-                Some(ItemForm::Scale(scale)) => Some(scale.points),
+                Some(AnswerFormat::Scale(scale)) => Some(scale.points),
                 _ => None,
             },
             options: item.options.clone(),
@@ -34,14 +34,14 @@ pub(super) fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {
 }
 
 /// Answer to an item as a number from 0 to 1 on its scale, reversed if the item is.
-fn share(questionnaire: &Questionnaire, protocol: &Protocol, index: usize) -> Option<f64> {
+fn share(questionnaire: &Questionnaire, protocol: &StudyProtocolState, index: usize) -> Option<f64> {
     let [least, most] = questionnaire.form(index)?.ends()?;
     let share = (protocol.given(index)?.number()? - least) as f64 / (most - least).max(1) as f64;
     Some(if questionnaire.items.get(index)?.reversed { 1.0 - share } else { share })
 }
 
 /// Score of the questionnaire; `None` if it has no scoring rule, or if an item was left out.
-fn score(questionnaire: &Questionnaire, protocol: &Protocol) -> Option<f64> {
+fn score(questionnaire: &Questionnaire, protocol: &StudyProtocolState) -> Option<f64> {
     let count = questionnaire.items.len();
     let shares: Option<Vec<f64>> = (0..count).map(|index| share(questionnaire, protocol, index)).collect();
     let shares = shares.filter(|shares| !shares.is_empty())?;

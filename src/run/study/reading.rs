@@ -9,12 +9,12 @@ use super::rows::{PressFacts, RowCollector};
 use super::sweep::ConceptSweep;
 use super::twin::useful_signals;
 use crate::analysis::exclusion_status::ExclusionStatus;
-use crate::analysis::follower::Follower;
+use crate::analysis::follower::SessionFollower;
 use crate::analysis::offer_summary::TimedOffer;
 use crate::analysis::order_work::{RegretSum, order_times};
 use crate::analysis::probe_collector::ProbeCollector;
 use crate::analysis::probe_record::ProbedTrial;
-use crate::analysis::watcher::{CompareRequest, ComparisonFollower};
+use crate::analysis::watcher::{ComparisonFollower, ComparisonRequest};
 use crate::analysis::wizard_log::{WizardLog, clock_at};
 use crate::base::time::SessionTime;
 use crate::communication::concept::ConceptName;
@@ -22,12 +22,12 @@ use crate::edge::file_error::FileResult;
 use crate::edge::log::{LogReader, at_line, rater_codes};
 use crate::history::comparison::CommunicationContent;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, AspectId, Change, Kitchen};
-use crate::measures::attribution::{Attributor, Cause};
-use crate::measures::belief_basis::BeliefBasis;
+use crate::kitchen::{Agent, AspectId, Kitchen, KitchenChange};
+use crate::measures::attribution::{ErrorAttributor, ErrorCause};
+use crate::measures::belief_basis::BeliefSource;
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::matching::{CommunicationEvent, WINDOW};
-use crate::measures::sequences::{Episode, Sequence, sequences, sequences_any_aspect};
+use crate::measures::sequences::{ErrorSequence, FalseBeliefEpisode, sequences, sequences_any_aspect};
 use crate::measures::{JudgedPress, median};
 use crate::mind::belief::Belief;
 use crate::mind::dirichlet::DirichletBelief;
@@ -35,22 +35,22 @@ use crate::run::standing::exclusion_status;
 use crate::session::apply::ApplyError;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::settings::{Condition, ParticipantKind};
-use crate::session::{Event, Header, Phase, Session, Stamped, TimelineEntry, TimelineEvent};
-use crate::study::acting_arm::ActingArm;
+use crate::session::{Event, LogHeader, Session, TimelineEntry, TimelineEvent, TimestampedEvent, TrialPhase};
+use crate::study::acting_arm::ActingStudyArm;
 use crate::study::belief_trace::BeliefTrace;
-use crate::study::facts::Facts;
-use crate::study::known_beliefs::{KnownBeliefs, SharedBeliefs};
-use crate::study::prevention::TrialTruth;
-use crate::study::robot_tally::{RobotSummary, RobotTally};
-use crate::study::trial_statistics::{BeliefErrors, Trial};
+use crate::study::facts::RecordingFacts;
+use crate::study::known_beliefs::{FalseBeliefAgreement, KnownFalseBeliefs};
+use crate::study::prevention::TrialGroundTruth;
+use crate::study::robot_tally::{RobotEventSummary, RobotEventTally};
+use crate::study::trial_statistics::{FalseBeliefErrors, TrialStatistics};
 
 /// Result of analysing one recording.
 #[derive(Debug)]
 pub struct RecordingAnalysis {
     /// Statistics of the trial.
-    pub trial: Trial,
+    pub trial: TrialStatistics,
     /// Settings and circumstances of the recording, for the report.
-    pub facts: Facts,
+    pub facts: RecordingFacts,
     /// Rows of the CSV tables of events.
     pub rows: [Vec<u8>; 5],
 }
@@ -66,7 +66,7 @@ pub struct AnalysisScope {
 
 /// Replay of a recording together with the analyses that its condition and the requested scope need.
 enum Pass {
-    Plain(Box<Follower>),
+    Plain(Box<SessionFollower>),
     /// Replay of a wizard trial with the assistant's hypothetical signals.
     Beside(Box<ComparisonFollower>),
     /// Replay of an unassisted trial with hypothetical signals of all compared concepts.
@@ -81,17 +81,17 @@ impl Pass {
         let cost = CostToGo::new(session.kitchen.clone());
         match spec.trial.condition {
             Condition::Wizard if extent.concepts => {
-                let request = CompareRequest { with: Vec::new(), window: WINDOW };
+                let request = ComparisonRequest { with: Vec::new(), window: WINDOW };
                 session.spec.assistant.concept = ConceptName::TomCom;
                 Pass::Beside(Box::new(ComparisonFollower::new(session, &request)))
             }
             // Prevented errors can be counted only where false beliefs are known.
             Condition::None if extent.concepts && is_known => Pass::Swept(Box::new(ConceptSweep::new(session, cost))),
-            _ => Pass::Plain(Box::new(Follower::new(session, cost))),
+            _ => Pass::Plain(Box::new(SessionFollower::new(session, cost))),
         }
     }
 
-    fn apply(&mut self, stamped: &Stamped) -> Result<Change, ApplyError> {
+    fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
         match self {
             Pass::Plain(follower) => follower.apply(stamped).map(|applied| applied.change),
             Pass::Beside(watcher) => watcher.apply(stamped),
@@ -99,7 +99,7 @@ impl Pass {
         }
     }
 
-    fn follower(&self) -> &Follower {
+    fn follower(&self) -> &SessionFollower {
         match self {
             Pass::Plain(follower) => follower,
             Pass::Beside(watcher) => &watcher.follower,
@@ -110,14 +110,14 @@ impl Pass {
 
 /// Attributes people's errors to causes by the estimated beliefs.
 struct ByEstimate {
-    attributor: Attributor,
+    attributor: ErrorAttributor,
     cost: CostToGo,
-    causes: Vec<(u64, Cause)>,
+    causes: Vec<(u64, ErrorCause)>,
 }
 
 impl ByEstimate {
     /// Attributes the error of a press that was just applied to a cause.
-    fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower) {
+    fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, follower: &SessionFollower) {
         let Some(press) = change.human_press() else { return };
         let (kitchen, judged) = (&follower.session.kitchen, follower.judged.last());
         let estimated = follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
@@ -160,7 +160,7 @@ pub fn read(
     let kitchen = log.kitchen.clone();
     let mut rows = RowCollector::new(name);
     let mut hands = WizardLog::default();
-    let mut robot = RobotTally::new(header.session.robot.arm);
+    let mut robot = RobotEventTally::new(header.session.robot.arm);
     let mut regret = RegretSum::new(CostToGo::new(kitchen.clone()));
     let mut answers = Vec::new();
     let mut probes = ProbeCollector::default();
@@ -169,14 +169,14 @@ pub fn read(
     let mut pass = Pass::new(log.session(), extent, is_simulated || is_coded);
     let mut trace = BeliefTrace::default();
     let mut by_estimate = (!is_simulated).then(|| ByEstimate {
-        attributor: Attributor::new(header.session.human.decision.clone(), log.session().seed()),
+        attributor: ErrorAttributor::new(header.session.human.decision.clone(), log.session().seed()),
         cost: CostToGo::new(kitchen.clone()),
         causes: Vec::new(),
     });
     while let Some(line) = log.next_line()? {
         let session = &pass.follower().session;
         let was_running = session.is_running();
-        let was_on = was_running || session.phase == Phase::Paused;
+        let was_on = was_running || session.phase == TrialPhase::Paused;
         let change = pass
             .apply(&line.stamped)
             .map_err(|error| at_line(log.path(), line.number, &line.text, 0, error.found, error.remedy))?;
@@ -208,16 +208,16 @@ pub fn read(
     let known = basis.and_then(|basis| known_beliefs(follower, &judged, basis, &coded, &trace));
     trial.beliefs = basis.map(|basis| beliefs(follower, &judged, basis, known.as_ref()));
     trial.answers = answers;
-    if extent.concepts && basis == Some(BeliefBasis::Recorded) && trial.signals > 0 {
+    if extent.concepts && basis == Some(BeliefSource::Recorded) && trial.signals > 0 {
         trial.useful_signals = useful_signals(recording)?;
     }
     trial.additional_presses_per_order = regret.per_order(trial.orders);
     trial.wizard = (header.session.trial.condition == Condition::Wizard).then(|| match &known {
-        Some(known) if known.basis != BeliefBasis::Recorded => hands.measures_by_raters(follower, &known.episodes),
+        Some(known) if known.basis != BeliefSource::Recorded => hands.measures_by_raters(follower, &known.episodes),
         _ => hands.figures(follower).measures,
     });
     if let (Pass::Swept(sweeper), Some(known)) = (&pass, &known) {
-        trial.swept = sweeper.swept(&TrialTruth::new(&kitchen, &judged, known));
+        trial.swept = sweeper.swept(&TrialGroundTruth::new(&kitchen, &judged, known));
     }
     if let [(_, of), (_, with)] = &lanes[..] {
         trial.lanes = Some([of.clone(), with.clone()]);
@@ -233,13 +233,16 @@ pub fn read(
     };
     trial.probes = Some(probes.finish(&follower.session)).filter(ProbedTrial::is_any);
     let rows = rows.finish(&follower.session, &presses, &lanes, WINDOW);
-    if matches!(basis, Some(BeliefBasis::Consensus | BeliefBasis::Raters)) {
-        trial.shared_beliefs = coded.raters.as_ref().map(SharedBeliefs::count);
+    if matches!(basis, Some(BeliefSource::Consensus | BeliefSource::Raters)) {
+        trial.shared_beliefs = coded.raters.as_ref().map(FalseBeliefAgreement::count);
         trial.raters = coded.raters;
     }
-    trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefBasis::Consensus));
+    trial.settled_by = coded.settled_by.filter(|_| basis == Some(BeliefSource::Consensus));
     trial.stale_consensus = coded.stale.filter(|_| !is_simulated);
-    Ok(Some((kitchen, RecordingAnalysis { trial, facts: Facts::from_session(&header, &follower.session), rows })))
+    Ok(Some((
+        kitchen,
+        RecordingAnalysis { trial, facts: RecordingFacts::from_session(&header, &follower.session), rows },
+    )))
 }
 
 /// Communications of each sender, with the sender's name: those that were sent and, in a wizard trial, the assistant's
@@ -282,38 +285,39 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
 
 /// The participant's false beliefs, recorded or from codes that raters share; `None` if only the estimate is known.
 fn known_beliefs(
-    follower: &Follower,
+    follower: &SessionFollower,
     judged: &[JudgedPress],
-    basis: BeliefBasis,
+    basis: BeliefSource,
     coded: &CodedErrors,
     trace: &BeliefTrace,
-) -> Option<KnownBeliefs> {
+) -> Option<KnownFalseBeliefs> {
     let kitchen = &follower.session.kitchen;
     match basis {
-        BeliefBasis::Recorded => Some(KnownBeliefs::recorded(judged, follower.episodes.all().cloned().collect())),
-        BeliefBasis::Consensus | BeliefBasis::Raters => {
+        BeliefSource::Recorded => Some(KnownFalseBeliefs::recorded(judged, follower.episodes.all().cloned().collect())),
+        BeliefSource::Consensus | BeliefSource::Raters => {
             let (codes, mut cost) = (coded.shared(judged)?, CostToGo::new(kitchen.clone()));
-            Some(KnownBeliefs::coded(basis, kitchen, &mut cost, trace, judged, &codes))
+            Some(KnownFalseBeliefs::coded(basis, kitchen, &mut cost, trace, judged, &codes))
         }
-        BeliefBasis::Estimate | BeliefBasis::Probes => None,
+        BeliefSource::Estimate | BeliefSource::Probes => None,
     }
 }
 
 fn beliefs(
-    follower: &Follower,
+    follower: &SessionFollower,
     judged: &[JudgedPress],
-    basis: BeliefBasis,
-    known: Option<&KnownBeliefs>,
-) -> BeliefErrors {
-    let episodes: &[Episode] = known.map_or(&[], |known| &known.episodes);
-    let count = |is: fn(Cause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count() as u64;
-    let lengths = |sequences: &[Sequence]| sequences.iter().map(Sequence::length).collect();
+    basis: BeliefSource,
+    known: Option<&KnownFalseBeliefs>,
+) -> FalseBeliefErrors {
+    let episodes: &[FalseBeliefEpisode] = known.map_or(&[], |known| &known.episodes);
+    let count =
+        |is: fn(ErrorCause) -> bool| judged.iter().filter_map(|press| press.cause).filter(|&c| is(c)).count() as u64;
+    let lengths = |sequences: &[ErrorSequence]| sequences.iter().map(ErrorSequence::length).collect();
     let all = sequences(judged);
-    let recovery = |sequence: &Sequence| Some(since(&follower.session, sequence.began, sequence.recovered?));
-    BeliefErrors {
+    let recovery = |sequence: &ErrorSequence| Some(since(&follower.session, sequence.began, sequence.recovered?));
+    FalseBeliefErrors {
         basis,
-        errors: count(|cause| matches!(cause, Cause::Belief { .. })),
-        of_two: count(|cause| matches!(cause, Cause::Belief { with: Some(_), .. })),
+        errors: count(|cause| matches!(cause, ErrorCause::Belief { .. })),
+        of_two: count(|cause| matches!(cause, ErrorCause::Belief { with: Some(_), .. })),
         lengths: lengths(&all),
         causes: CauseKindCounts::from_presses(&follower.session.kitchen, judged, episodes),
         lengths_any_aspect: lengths(&sequences_any_aspect(judged)),
@@ -322,10 +326,10 @@ fn beliefs(
     }
 }
 
-fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionStatus) -> Trial {
+fn trial(name: &str, header: &LogHeader, follower: &SessionFollower, standing: ExclusionStatus) -> TrialStatistics {
     let (session, spec) = (&follower.session, &header.session);
     let step = spec.step.as_ref();
-    let is_over = matches!(session.phase, Phase::Over(_) | Phase::Closed);
+    let is_over = matches!(session.phase, TrialPhase::Over(_) | TrialPhase::Closed);
     let left_out = match standing {
         ExclusionStatus { aborted: Some(reason), .. } => Some(format!("aborted: {reason}")),
         ExclusionStatus { excluded: Some(reason), .. } => Some(format!("excluded: {reason}")),
@@ -337,7 +341,7 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         times.windows(2).map(|pair| since(session, pair[0], pair[1])).collect()
     };
     let presses = std::iter::once(0).chain(session.served.iter().map(|served| served.presses)).collect::<Vec<u32>>();
-    Trial {
+    TrialStatistics {
         recording: name.to_string(),
         participant: spec.participant.code.clone(),
         seed: spec.seed,
@@ -351,11 +355,11 @@ fn trial(name: &str, header: &Header, follower: &Follower, standing: ExclusionSt
         planned_arm: step.and_then(|step| step.arm),
         aims: step.map(|step| step.aims),
         wizard_sees: spec.console.visibility,
-        acting: ActingArm::from_settings(session.study_arm(), spec.assistant.parameter()),
+        acting: ActingStudyArm::from_settings(session.study_arm(), spec.assistant.parameter()),
         left_out,
         ended: None,
         arm: spec.robot.arm,
-        robot: RobotSummary::default(),
+        robot: RobotEventSummary::default(),
         human_presses: u64::from(session.presses[Agent::Human.index()]),
         robot_presses: u64::from(session.presses[Agent::Robot.index()]),
         errors: follower.errors() as u64,

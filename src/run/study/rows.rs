@@ -2,22 +2,22 @@
 //! columns.
 
 use super::coded_errors::CodedErrors;
-use crate::analysis::follower::Follower;
+use crate::analysis::follower::SessionFollower;
 use crate::analysis::offer_summary::TimedOffer;
 use crate::analysis::wizard_log::clock_at;
 use crate::base::time::SessionTime;
 use crate::edge::export::TableRows;
 use crate::gaze::{MIN_CONFIDENCE, nearest_location};
-use crate::kitchen::{Agent, AspectId, Change, LocationId, Press, State};
+use crate::kitchen::{Agent, AspectId, KitchenChange, LocationId, Press, State};
 use crate::measures::JudgedPress;
-use crate::measures::attribution::Cause;
+use crate::measures::attribution::ErrorCause;
 use crate::measures::matching::{CommunicationEvent, MatchCriterion, matched};
-use crate::measures::sequences::Sequence;
-use crate::mind::BeliefWitness;
-use crate::mind::recorded_estimate::EstimateWitness;
-use crate::session::{Event, Session, Stamped};
-use crate::study::column::{Table, TableRow};
-use crate::study::known_beliefs::KnownBeliefs;
+use crate::measures::sequences::ErrorSequence;
+use crate::mind::RecordedBelief;
+use crate::mind::recorded_estimate::RecordedEstimate;
+use crate::session::{Event, Session, TimestampedEvent};
+use crate::study::column::{CsvRow, CsvTable};
+use crate::study::known_beliefs::KnownFalseBeliefs;
 use crate::study::tables::actions::{ActionRow, PressAnalysis, RecordedPress};
 use crate::study::tables::aspect_beliefs::BeliefRow;
 use crate::study::tables::communications::CommunicationRow;
@@ -33,17 +33,17 @@ pub struct RowCollector {
     pressed_at: [Option<SessionTime>; 2],
     /// Presses of both agents; human presses are judged after the replay.
     presses: Vec<RecordedPress>,
-    witness: Option<BeliefWitness>,
+    witness: Option<RecordedBelief>,
     look: Option<GazeRun>,
 }
 
-/// Rows of each table of events, in the order of [`Table::OF_EVENTS`].
+/// Rows of each table of events, in the order of [`CsvTable::OF_EVENTS`].
 #[derive(Debug)]
 struct EventRows([TableRows; 5]);
 
 impl EventRows {
-    fn add<Row: TableRow>(&mut self, row: &Row) {
-        if let Some(index) = Table::OF_EVENTS.iter().position(|&table| table == Row::TABLE) {
+    fn add<Row: CsvRow>(&mut self, row: &Row) {
+        if let Some(index) = CsvTable::OF_EVENTS.iter().position(|&table| table == Row::TABLE) {
             self.0[index].add(row);
         }
     }
@@ -55,13 +55,13 @@ pub struct PressFacts<'a> {
     /// The human's presses with their judgements, in order.
     pub judged: &'a [JudgedPress],
     /// Error sequences of the trial.
-    pub sequences: &'a [Sequence],
+    pub sequences: &'a [ErrorSequence],
     /// Causes of people's errors by the estimated beliefs, with the sequence number of the press.
-    pub by_estimate: Option<&'a [(u64, Cause)]>,
+    pub by_estimate: Option<&'a [(u64, ErrorCause)]>,
     /// Raters' codes of the errors.
     pub coded: &'a CodedErrors,
     /// The participant's false beliefs, if they are known.
-    pub known: Option<&'a KnownBeliefs>,
+    pub known: Option<&'a KnownFalseBeliefs>,
 }
 
 impl<'a> PressFacts<'a> {
@@ -92,7 +92,7 @@ impl RowCollector {
     pub fn new(recording: &str) -> RowCollector {
         RowCollector {
             recording: recording.to_string(),
-            rows: EventRows(Table::OF_EVENTS.map(|_| TableRows::default())),
+            rows: EventRows(CsvTable::OF_EVENTS.map(|_| TableRows::default())),
             pressed_at: [None; 2],
             presses: Vec::new(),
             witness: None,
@@ -101,9 +101,15 @@ impl RowCollector {
     }
 
     /// Adds the rows of an event that was just applied; `was_running`: the trial was running before the event.
-    pub fn note(&mut self, stamped: &Stamped, change: &Change, follower: &Follower, was_running: bool) {
+    pub fn note(
+        &mut self,
+        stamped: &TimestampedEvent,
+        change: &KitchenChange,
+        follower: &SessionFollower,
+        was_running: bool,
+    ) {
         let session = &follower.session;
-        if let Change::Press { press, presses } = change {
+        if let KitchenChange::Press { press, presses } = change {
             self.pressed(stamped, press, presses[press.agent.index()], follower);
         }
         match &stamped.event {
@@ -127,7 +133,7 @@ impl RowCollector {
     }
 
     /// Adds a press; `number` counts the presses of its agent from 1.
-    fn pressed(&mut self, stamped: &Stamped, press: &Press, number: u32, follower: &Follower) {
+    fn pressed(&mut self, stamped: &TimestampedEvent, press: &Press, number: u32, follower: &SessionFollower) {
         let session = &follower.session;
         let before = self.pressed_at[press.agent.index()].replace(stamped.time);
         let estimated = follower.estimated.as_ref().filter(|estimated| estimated.press == stamped.seq);
@@ -148,9 +154,9 @@ impl RowCollector {
     fn believed(
         &mut self,
         seq: u64,
-        estimate: &EstimateWitness,
+        estimate: &RecordedEstimate,
         state: State,
-        witness: Option<BeliefWitness>,
+        witness: Option<RecordedBelief>,
         session: &Session,
     ) {
         let kitchen = &session.kitchen;
@@ -186,7 +192,7 @@ impl RowCollector {
         self.rows.add(&GazeRow { recording: &self.recording, kitchen: &session.kitchen, time_s, run });
     }
 
-    /// The CSV rows, in the order of [`Table::OF_EVENTS`]. `lanes`: communications that were sent, and the assistant's
+    /// The CSV rows, in the order of [`CsvTable::OF_EVENTS`]. `lanes`: communications that were sent, and the assistant's
     /// hypothetical ones.
     pub fn finish(
         mut self,

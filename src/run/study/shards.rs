@@ -9,14 +9,14 @@ use std::sync::Arc;
 
 use super::reading::AnalysisScope;
 use super::{AnalysisRequest, NamedRecordings, StudyError, analyse, conclude, frozen, keep, recorded_plan};
-use crate::edge::export::ExportFolder;
+use crate::edge::export::AnalysisFolder;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::files::compile_kitchen;
 use crate::edge::log::LogReader;
 use crate::edge::study_part_file::{PartReader, PartWriter};
 use crate::run::parallel;
-use crate::run::replay::SameKitchen;
-use crate::run::simulate::Shard;
+use crate::run::replay::SameKitchenCheck;
+use crate::run::simulate::SimulationShard;
 use crate::study::figures::StudySummary;
 use crate::study::study_part::{PART_FORMAT, PartAnalysis, PartHeader, check_parts, trial_index};
 
@@ -31,7 +31,7 @@ struct RecordingPlace {
 }
 
 impl RecordingPlace {
-    fn read(recording: &Path, shard: Shard) -> FileResult<RecordingPlace> {
+    fn read(recording: &Path, shard: SimulationShard) -> FileResult<RecordingPlace> {
         let header = LogReader::open(recording)?.header;
         let is_own = trial_index(header.session.step.as_ref(), header.trial) % shard.of == shard.number - 1;
         Ok(RecordingPlace { is_own, plan: recorded_plan(&header.session).plan })
@@ -46,7 +46,7 @@ impl RecordingPlace {
 pub fn analyse_shard(
     analysis: &AnalysisRequest,
     recordings: NamedRecordings,
-    shard: Shard,
+    shard: SimulationShard,
     begun: impl FnOnce(usize),
     done: impl Fn() + Sync,
 ) -> Result<u64, StudyError> {
@@ -99,7 +99,7 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
     let headers: Vec<PartHeader> = parts.iter().map(|part| part.header.clone()).collect();
     check_parts(&headers)
         .map_err(|wrong| FileError::from_finding(parts[wrong.index].path(), wrong.found, wrong.remedy))?;
-    let mut kitchen = SameKitchen::default();
+    let mut kitchen = SameKitchenCheck::default();
     for part in &parts {
         if let Some([layout, recipes]) = &part.kitchen {
             let own = compile_kitchen(
@@ -110,7 +110,7 @@ pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), Study
         }
     }
     let PartAnalysis { concepts, events, .. } = headers[0].analysis.clone();
-    let export = ExportFolder::create(&analysis.out)?;
+    let export = AnalysisFolder::create(&analysis.out)?;
     let (mut analysed, mut names) = (Vec::new(), BTreeSet::new());
     for part in &mut parts {
         while let Some((recording, rows)) = part.next_recording()? {

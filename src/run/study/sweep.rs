@@ -2,22 +2,22 @@
 //! replay. The planner runs once per decision; all costs of communication are then applied to the same benefits.
 
 use crate::analysis::advisor::AdviceRequest;
-use crate::analysis::follower::Follower;
+use crate::analysis::follower::SessionFollower;
 use crate::analysis::watcher::follows_at_once;
 use crate::base::time::SessionTime;
 use crate::communication::concept::{Concept, ConceptName};
 use crate::communication::planner::Planner;
 use crate::communication::recommendation::{SignalOption, aspects_told};
-use crate::communication::repeats::Repeats;
+use crate::communication::repeats::SignalRepeatRule;
 use crate::communication::settings::AssistantSpec;
 use crate::communication::tom::TomConcept;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::kitchen::{Agent, Change};
+use crate::kitchen::{Agent, KitchenChange};
 use crate::session::advice_moments::leads_to_advice;
 use crate::session::apply::ApplyError;
-use crate::session::{Applied, Event, Session, Stamped};
-use crate::study::prevention::{ConceptSignal, TrialTruth};
-use crate::study::roc::{CONCEPTS, LEAST_COST, SweptTrial, parameters};
+use crate::session::{AppliedEvent, Event, Session, TimestampedEvent};
+use crate::study::prevention::{HypotheticalSignal, TrialGroundTruth};
+use crate::study::roc::{CONCEPTS, LEAST_COST, PreventedTrialErrors, parameters};
 
 /// A concept with one value of its parameter, and its hypothetical signals.
 #[derive(Debug)]
@@ -25,15 +25,15 @@ struct SweptConcept {
     concept: ConceptName,
     parameter: f64,
     /// Signals that the concept may not repeat yet.
-    repeats: Repeats,
-    sent: Vec<ConceptSignal>,
+    repeats: SignalRepeatRule,
+    sent: Vec<HypotheticalSignal>,
 }
 
 /// Replays a session, and evaluates all communication concepts whenever the assistant is asked for advice.
 #[derive(Debug)]
 pub struct ConceptSweep {
     /// The session with the belief estimate.
-    pub follower: Follower,
+    pub follower: SessionFollower,
     planner: Planner,
     tom: TomConcept,
     cost: CostToGo,
@@ -52,7 +52,7 @@ impl ConceptSweep {
         let swept = |concept: ConceptName, parameter: f64| SweptConcept {
             concept,
             parameter,
-            repeats: Repeats::default(),
+            repeats: SignalRepeatRule::default(),
             sent: Vec::new(),
         };
         let of_concept = |concept: ConceptName| parameters(concept).into_iter().map(move |one| swept(concept, one));
@@ -60,7 +60,7 @@ impl ConceptSweep {
         ConceptSweep {
             planner: Planner::new(kitchen.clone(), &spec.human, assistant, session.seed()),
             tom: TomConcept::new(kitchen, 0.0),
-            follower: Follower::new(session, cost.clone()),
+            follower: SessionFollower::new(session, cost.clone()),
             cost,
             swept_concepts: signalling.flat_map(of_concept).collect(),
             pending: None,
@@ -70,19 +70,19 @@ impl ConceptSweep {
     /// Applies one event of the session.
     ///
     /// # Errors
-    /// Errors of [`Follower::apply`].
-    pub fn apply(&mut self, stamped: &Stamped) -> Result<Change, ApplyError> {
+    /// Errors of [`SessionFollower::apply`].
+    pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
         if self.pending.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
             self.evaluate();
         }
-        let Applied { change, .. } = self.follower.apply(stamped)?;
+        let AppliedEvent { change, .. } = self.follower.apply(stamped)?;
         if stamped.event.is_sample() {
             return Ok(change);
         }
         let session = &self.follower.session;
         for swept in &mut self.swept_concepts {
             if matches!(stamped.event, Event::TrialStarted) {
-                swept.repeats = Repeats::default();
+                swept.repeats = SignalRepeatRule::default();
             }
             swept.repeats.update(&session.kitchen, session.state, self.follower.filter.belief());
         }
@@ -112,20 +112,24 @@ impl ConceptSweep {
             let best = options.iter().find(|option| allowed.contains(&option.signal));
             if let Some(option) = best.filter(|option| option.benefit > swept.parameter) {
                 swept.repeats.shown(kitchen, state, &option.signal);
-                swept.sent.push(ConceptSignal { time, press, aspects: aspects_told(kitchen, state, &option.signal) });
+                swept.sent.push(HypotheticalSignal {
+                    time,
+                    press,
+                    aspects: aspects_told(kitchen, state, &option.signal),
+                });
             }
         }
     }
 
     /// Errors that each concept would have prevented with each parameter value, given the trial's true errors and false
     /// beliefs; to be called after the last event.
-    pub fn swept(&self, truth: &TrialTruth) -> Vec<SweptTrial> {
-        let signalled = self.swept_concepts.iter().map(|swept| SweptTrial {
+    pub fn swept(&self, truth: &TrialGroundTruth) -> Vec<PreventedTrialErrors> {
+        let signalled = self.swept_concepts.iter().map(|swept| PreventedTrialErrors {
             concept: swept.concept,
             parameter: swept.parameter,
             count: truth.count_signals(&swept.sent),
         });
-        let proposed = parameters(ConceptName::Dev).into_iter().map(|parameter| SweptTrial {
+        let proposed = parameters(ConceptName::Dev).into_iter().map(|parameter| PreventedTrialErrors {
             concept: ConceptName::Dev,
             parameter,
             count: truth.count_proposals(parameter as usize),

@@ -2,13 +2,13 @@
 
 use crate::analysis::probe_lines;
 use crate::base::words::count;
-use crate::measures::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefSource;
 use crate::measures::matching::{MatchShares, Similarity};
-use crate::session::event::EndReason;
-use crate::study::arm_comparison::ArmComparison;
+use crate::session::event::TrialEndReason;
+use crate::study::arm_comparison::StudyArmComparison;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::StudySummary;
-use crate::study::live_arms::LiveArm;
+use crate::study::live_arms::LiveStudyArm;
 use crate::study::roc::{BootstrapInterval, EQUAL_SIGNALS};
 
 /// Summary of a study as lines of text.
@@ -39,7 +39,11 @@ pub fn describe(figures: &StudySummary) -> String {
             number(totals.mean_sequence_length),
             number(totals.mean_sequence_length_any_aspect),
             number(totals.mean_recovery_s),
-            if totals.beliefs_from == Some(BeliefBasis::Estimate) { "; by the assistant's estimate alone" } else { "" },
+            if totals.beliefs_from == Some(BeliefSource::Estimate) {
+                "; by the assistant's estimate alone"
+            } else {
+                ""
+            },
         ),
         _ => "belief related errors: not known\n".to_string(),
     };
@@ -70,7 +74,7 @@ pub fn describe(figures: &StudySummary) -> String {
     for one in &figures.stale_consensus {
         text += &format!("stale consensus, not used: {}: {}; settle it again\n", one.recording, one.reason);
     }
-    if figures.ended.keys().any(|reason| *reason != EndReason::Presses) {
+    if figures.ended.keys().any(|reason| *reason != TrialEndReason::Presses) {
         let ended: Vec<String> =
             figures.ended.iter().map(|(reason, count)| format!("{count} {}", reason.name())).collect();
         text += &format!("trials ended by: {}\n", ended.join(", "));
@@ -96,7 +100,7 @@ pub fn describe(figures: &StudySummary) -> String {
         text += &format!(
             "concepts, {}, false beliefs by {}: belief related errors prevented, by signals per 100 presses of the human\n{:<12}{}{:>8}\n",
             count(figures.roc_trials, "unassisted trial", "unassisted trials"),
-            figures.roc_beliefs_from.map_or("unknown sources", BeliefBasis::words),
+            figures.roc_beliefs_from.map_or("unknown sources", BeliefSource::words),
             "",
             heads.join(""),
             "area"
@@ -127,7 +131,7 @@ pub fn describe(figures: &StudySummary) -> String {
 }
 
 /// Results of concepts that sent signals by themselves, as one line of text each.
-fn of_live(arms: &[LiveArm]) -> String {
+fn of_live(arms: &[LiveStudyArm]) -> String {
     let Some(first) = arms.first() else { return String::new() };
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let mut text = format!(
@@ -201,7 +205,7 @@ fn p_value(p: f64) -> String {
 }
 
 /// Contrasts of the primary outcome between study arms, as text.
-pub fn describe_arms(found: &ArmComparison) -> String {
+pub fn describe_arms(found: &StudyArmComparison) -> String {
     let mut text = format!(
         "{} per press of the human, by condition (linear mixed model of {} trials of {}):\n",
         found.outcome.title(),

@@ -9,7 +9,7 @@
 use std::collections::VecDeque;
 use std::path::Path;
 
-use crate::analysis::follower::Follower;
+use crate::analysis::follower::SessionFollower;
 use crate::base::time::SessionTime;
 use crate::communication::Signal;
 use crate::communication::recommendation::aspects_told;
@@ -17,13 +17,13 @@ use crate::edge::file_error::FileResult;
 use crate::edge::log::{LogReader, event_line};
 use crate::kitchen::AspectId;
 use crate::kitchen::cost_to_go::CostToGo;
-use crate::measures::attribution::Cause;
-use crate::measures::sequences::Episode;
-use crate::run::engine::Engine;
-use crate::run::headless::Attendant;
+use crate::measures::attribution::ErrorCause;
+use crate::measures::sequences::FalseBeliefEpisode;
+use crate::run::engine::SessionEngine;
+use crate::run::headless::SimulatedAttendant;
 use crate::session::admit::is_external;
 use crate::session::settings::Condition;
-use crate::session::{Event, Phase, Session, Stamped};
+use crate::session::{Event, Session, TimestampedEvent, TrialPhase};
 
 /// Errors that a signal can prevent.
 enum SignalScope {
@@ -62,13 +62,13 @@ pub(super) fn useful_signals(recording: &Path) -> FileResult<Option<u64>> {
         return Ok(None);
     }
     let cost = CostToGo::new(kitchen.clone());
-    let mut again = Engine::for_header(kitchen, &header, cost);
+    let mut again = SessionEngine::for_header(kitchen, &header, cost);
     let (mut produced, mut twins) = (VecDeque::new(), Vec::new());
     while let Some(line) = log.next_line()? {
         if produced.is_empty() {
             produced.extend(run_to(&mut again, &line.stamped, &mut twins));
         }
-        let same = produced.pop_front().is_some_and(|one: Stamped| event_line(&one) == line.text);
+        let same = produced.pop_front().is_some_and(|one: TimestampedEvent| event_line(&one) == line.text);
         if !same {
             return Ok(None);
         }
@@ -80,7 +80,11 @@ pub(super) fn useful_signals(recording: &Path) -> FileResult<Option<u64>> {
 
 /// Runs the session up to a recorded event, and a twin for every signal before it. Recommendations are taken from the
 /// recording.
-fn run_to(again: &mut Engine, recorded: &Stamped, twins: &mut Vec<TwinResult>) -> Vec<Stamped> {
+fn run_to(
+    again: &mut SessionEngine,
+    recorded: &TimestampedEvent,
+    twins: &mut Vec<TwinResult>,
+) -> Vec<TimestampedEvent> {
     let is_signal = match &recorded.event {
         Event::SignalShown { .. } => true,
         Event::Advised(advice) => {
@@ -112,11 +116,11 @@ fn run_to(again: &mut Engine, recorded: &Stamped, twins: &mut Vec<TwinResult>) -
 
 /// Runs a twin (the trial continued without further signals) until the false beliefs that a signal at `time` is about
 /// have ended.
-fn twin(mut engine: Engine, time: SessionTime, signal: &Signal) -> TwinResult {
+fn twin(mut engine: SessionEngine, time: SessionTime, signal: &Signal) -> TwinResult {
     let scope = SignalScope::of_signal(engine.session(), signal);
     let presses = engine.judged().len();
-    let mut attendant = Attendant::default();
-    while engine.session().phase == Phase::Running || engine.session().is_frozen() {
+    let mut attendant = SimulatedAttendant::default();
+    while engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
         attendant.step(&mut engine);
         let _ = engine.take_questions();
         // The belief is over once the twin's recorded beliefs say so; they are recorded before each press.
@@ -136,13 +140,18 @@ fn twin(mut engine: Engine, time: SessionTime, signal: &Signal) -> TwinResult {
 }
 
 /// False belief episodes about these aspects that were open at this time.
-fn open_at<'a>(follower: &'a Follower, time: SessionTime, told: &'a [AspectId]) -> impl Iterator<Item = &'a Episode> {
-    let is_open = move |episode: &&Episode| episode.began <= time && episode.corrected.is_none_or(|end| end > time);
+fn open_at<'a>(
+    follower: &'a SessionFollower,
+    time: SessionTime,
+    told: &'a [AspectId],
+) -> impl Iterator<Item = &'a FalseBeliefEpisode> {
+    let is_open =
+        move |episode: &&FalseBeliefEpisode| episode.began <= time && episode.corrected.is_none_or(|end| end > time);
     follower.episodes.all().filter(|episode| told.contains(&episode.aspect)).filter(is_open)
 }
 
 /// Number of errors after this time that a signal at this time can prevent.
-fn errors_after(follower: &Follower, time: SessionTime, scope: &SignalScope) -> u64 {
+fn errors_after(follower: &SessionFollower, time: SessionTime, scope: &SignalScope) -> u64 {
     match scope {
         SignalScope::Beliefs(told) => belief_errors_after(follower, time, told),
         SignalScope::Presses(next) => {
@@ -154,14 +163,14 @@ fn errors_after(follower: &Follower, time: SessionTime, scope: &SignalScope) -> 
 
 /// Number of errors after this time that follow from false beliefs, held at this time, about the aspects in `told`;
 /// counted until each belief is corrected.
-fn belief_errors_after(follower: &Follower, time: SessionTime, told: &[AspectId]) -> u64 {
+fn belief_errors_after(follower: &SessionFollower, time: SessionTime, told: &[AspectId]) -> u64 {
     let kitchen = &follower.session.kitchen;
-    let open: Vec<&Episode> = open_at(follower, time, told).collect();
+    let open: Vec<&FalseBeliefEpisode> = open_at(follower, time, told).collect();
     let errors = follower.judged.iter().filter(|press| {
-        let Some(Cause::Belief { target, .. }) = press.cause.filter(|_| press.time > time) else { return false };
+        let Some(ErrorCause::Belief { target, .. }) = press.cause.filter(|_| press.time > time) else { return false };
         let mut aspects = target.aspects(kitchen);
         aspects.any(|aspect| {
-            let is_in = |episode: &&Episode| episode.corrected.is_none_or(|end| press.time <= end);
+            let is_in = |episode: &&FalseBeliefEpisode| episode.corrected.is_none_or(|end| press.time <= end);
             open.iter().filter(|episode| episode.aspect == aspect).any(is_in)
         })
     });

@@ -10,7 +10,7 @@ pub const SLIDER_END: i64 = 100;
 /// The kinds of questionnaire items, by their answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum ItemKind {
+pub enum QuestionnaireItemKind {
     /// The answer is a point of a rating scale.
     Scale,
     /// The answer is one of the options, or several.
@@ -26,7 +26,7 @@ pub enum ItemKind {
 /// A rating scale with points from 1 to `points`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Scale {
+pub struct RatingScale {
     /// Number of points of the rating scale.
     pub points: u8,
     /// Label of the scale's lowest point, 1.
@@ -47,9 +47,9 @@ pub struct ItemOption {
 
 /// The answer format of a questionnaire item, with the settings of its kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ItemForm<'a> {
+pub enum AnswerFormat<'a> {
     /// The answer is a point of this rating scale.
-    Scale(&'a Scale),
+    Scale(&'a RatingScale),
     /// The answer is one of these options, or several.
     Choice {
         /// The options in their order on the page.
@@ -80,25 +80,25 @@ pub enum ItemForm<'a> {
     },
 }
 
-impl ItemKind {
+impl QuestionnaireItemKind {
     /// Name of the item's kind in files and tables.
     pub fn name(self) -> &'static str {
         match self {
-            ItemKind::Scale => "scale",
-            ItemKind::Choice => "choice",
-            ItemKind::Number => "number",
-            ItemKind::Text => "text",
-            ItemKind::Slider => "slider",
+            QuestionnaireItemKind::Scale => "scale",
+            QuestionnaireItemKind::Choice => "choice",
+            QuestionnaireItemKind::Number => "number",
+            QuestionnaireItemKind::Text => "text",
+            QuestionnaireItemKind::Slider => "slider",
         }
     }
 }
 
-impl<'a> ItemForm<'a> {
+impl<'a> AnswerFormat<'a> {
     /// The least and the greatest answer of scales and sliders, whose answers can be reversed.
     pub fn ends(&self) -> Option<[i64; 2]> {
         match self {
-            ItemForm::Scale(scale) => Some([1, i64::from(scale.points)]),
-            ItemForm::Slider { .. } => Some([0, SLIDER_END]),
+            AnswerFormat::Scale(scale) => Some([1, i64::from(scale.points)]),
+            AnswerFormat::Slider { .. } => Some([0, SLIDER_END]),
             _ => None,
         }
     }
@@ -106,7 +106,7 @@ impl<'a> ItemForm<'a> {
     /// Whether the item stays on the page after an answer, because participants are likely to change the answer; the
     /// next item then follows only on request.
     pub fn stays(&self) -> bool {
-        matches!(self, ItemForm::Choice { several: true, .. } | ItemForm::Slider { .. })
+        matches!(self, AnswerFormat::Choice { several: true, .. } | AnswerFormat::Slider { .. })
     }
 
     /// Whether a value is a valid answer to the item.
@@ -117,25 +117,25 @@ impl<'a> ItemForm<'a> {
         let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
         let is_option = |options: &[ItemOption], id: &String| options.iter().any(|option| option.id == *id);
         match (self, answer) {
-            (ItemForm::Scale(scale), AnswerValue::Number(point)) => {
+            (AnswerFormat::Scale(scale), AnswerValue::Number(point)) => {
                 unless((1..=i64::from(scale.points)).contains(point), "the scale has no such point")
             }
-            (ItemForm::Slider { step, .. }, AnswerValue::Number(position)) => {
+            (AnswerFormat::Slider { step, .. }, AnswerValue::Number(position)) => {
                 unless((0..=SLIDER_END).contains(position), "the slider goes from 0 to 100")?;
                 unless(position % step == 0, "the slider has no such position: it goes in steps")
             }
-            (ItemForm::Number { range: [least, most], .. }, AnswerValue::Number(number)) => {
+            (AnswerFormat::Number { range: [least, most], .. }, AnswerValue::Number(number)) => {
                 unless((least..=most).contains(&number), "the number is out of the item's range")
             }
-            (ItemForm::Text { length }, AnswerValue::Text(text)) => {
+            (AnswerFormat::Text { length }, AnswerValue::Text(text)) => {
                 unless(!text.trim().is_empty(), "there are no words in it")?;
                 unless(!text.chars().any(char::is_control), "there is a sign in it that is no letter")?;
                 unless(text.chars().count() <= *length as usize, "it is longer than the item allows")
             }
-            (ItemForm::Choice { options, several: false }, AnswerValue::Text(id)) => {
+            (AnswerFormat::Choice { options, several: false }, AnswerValue::Text(id)) => {
                 unless(is_option(options, id), "the item has no such option")
             }
-            (ItemForm::Choice { options, several: true }, AnswerValue::Options(ids)) => {
+            (AnswerFormat::Choice { options, several: true }, AnswerValue::Options(ids)) => {
                 unless(ids.iter().all(|id| is_option(options, id)), "the item has no such option")?;
                 let twice = |index: usize| ids[..index].contains(&ids[index]);
                 unless(!(1..ids.len()).any(twice), "an option is chosen twice")
@@ -146,7 +146,7 @@ impl<'a> ItemForm<'a> {
 
     /// The answer after the participant selects this option, or deselects it.
     pub fn choose(&self, index: usize, given: Option<&AnswerValue>) -> Option<AnswerValue> {
-        let ItemForm::Choice { options, several } = self else { return None };
+        let AnswerFormat::Choice { options, several } = self else { return None };
         let chosen = &options.get(index)?.id;
         if !several {
             return Some(AnswerValue::Text(chosen.clone()));
@@ -161,12 +161,12 @@ impl<'a> ItemForm<'a> {
     /// The answer in words: options by their texts, numbers with their unit.
     pub fn words(&self, answer: &AnswerValue) -> String {
         match (self, answer) {
-            (ItemForm::Choice { options, .. }, _) => {
+            (AnswerFormat::Choice { options, .. }, _) => {
                 let ids = answer.options();
                 let texts = options.iter().filter(|option| ids.contains(&option.id)).map(|option| option.text.as_str());
                 texts.collect::<Vec<_>>().join(", ")
             }
-            (ItemForm::Number { unit, .. }, AnswerValue::Number(number)) if !unit.is_empty() => {
+            (AnswerFormat::Number { unit, .. }, AnswerValue::Number(number)) if !unit.is_empty() => {
                 format!("{number} {unit}")
             }
             _ => answer.cell(),

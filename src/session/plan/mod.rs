@@ -24,11 +24,11 @@ mod study_aims;
 mod tutorial;
 
 pub use groups::{StartingGroup, orders};
-pub use item_form::{ItemForm, ItemKind, ItemOption, SLIDER_END, Scale};
+pub use item_form::{AnswerFormat, ItemOption, QuestionnaireItemKind, RatingScale, SLIDER_END};
 pub use plan_spec::{FamiliarisationSpec, Participants, PlanSpec, QuestionnaireSpec};
-pub use planned_study::{Slot, Study, WantedRecording};
-pub use progress::{NextRecording, PlanRecording, Progress, RecordingOutcome, SlotProgress};
-pub use questionnaire::{Item, Questionnaire, ScoreRule};
-pub use step::{Criterion, PhaseSpec, StepSpec};
+pub use planned_study::{PlannedTrial, Study, WantedRecording};
+pub use progress::{NextRecording, ParticipantProgress, PlanRecording, PlannedTrialProgress, RecordingOutcome};
+pub use questionnaire::{Questionnaire, QuestionnaireItem, ScoreRule};
+pub use step::{PhaseSpec, PracticeCriterion, StepSpec};
 pub use study_aims::{PrimaryOutcome, StudyAims};
 pub use tutorial::{Tutorial, TutorialStep, TutorialStepKind, TutorialTarget};

@@ -4,10 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use super::groups::orders;
 use super::study_aims::StudyAims;
-use crate::session::console_settings::Visibility;
+use crate::session::console_settings::WizardVisibility;
 use crate::session::setting_checks::{SettingError, is_code};
 use crate::session::study_arm::StudyArm;
-use crate::session::wall_display::Answering;
+use crate::session::wall_display::AnswerEntry;
 
 /// The `[plan]` of a session file: participants, conditions, and the phases around the trials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ pub struct PlanSpec {
     /// How the participant consents: on the display by holding a button, or by telling the wizard, who confirms it at
     /// the console.
     #[serde(default = "on_console", skip_serializing_if = "is_console")]
-    pub consent_on: Answering,
+    pub consent_on: AnswerEntry,
     /// Steps of the wizard's instruction to the participant.
     #[serde(default)]
     pub instruction: Vec<String>,
@@ -53,12 +53,12 @@ fn default_consent() -> String {
     "The participant was told what is recorded and for what it is used, and agrees to it.".to_string()
 }
 
-fn on_console() -> Answering {
-    Answering::Console
+fn on_console() -> AnswerEntry {
+    AnswerEntry::Console
 }
 
-fn is_console(consent_on: &Answering) -> bool {
-    *consent_on == Answering::Console
+fn is_console(consent_on: &AnswerEntry) -> bool {
+    *consent_on == AnswerEntry::Console
 }
 
 /// The participants of a plan: their number, from which codes follow (P01, P02, …), or their codes.
@@ -167,10 +167,10 @@ impl PlanSpec {
     ///
     /// # Errors
     /// The plan has a wizard without advice, but the settings show recommendations.
-    pub fn check_visibility(&self, visibility: Visibility) -> Result<(), SettingError> {
+    pub fn check_visibility(&self, visibility: WizardVisibility) -> Result<(), SettingError> {
         let practice = self.familiarisation.iter().map(|practice| practice.condition);
         let is_blind = self.conditions.iter().copied().chain(practice).any(|arm| arm == StudyArm::Wizard);
-        if !is_blind || visibility < Visibility::Recommendation {
+        if !is_blind || visibility < WizardVisibility::Recommendation {
             return Ok(());
         }
         let found = "the condition \"wizard\", and a wizard who sees recommendations".to_string();

@@ -5,21 +5,21 @@ use serde::Serialize;
 use super::groups::StartingGroup;
 use super::plan_spec::PlanSpec;
 use super::questionnaire::Questionnaire;
-use super::step::{Criterion, PhaseSpec, StepSpec};
+use super::step::{PhaseSpec, PracticeCriterion, StepSpec};
 use super::tutorial::Tutorial;
 use crate::base::rng::mix;
-use crate::communication::settings::Shadow;
+use crate::communication::settings::ShadowMode;
 use crate::session::protocol_event::ProtocolEvent;
-use crate::session::settings::{ConsoleSpec, ParticipantKind, ParticipantSpec, SessionSpec, Visibility};
+use crate::session::settings::{ConsoleSpec, ParticipantKind, ParticipantSpec, SessionSpec, WizardVisibility};
 use crate::session::stream_settings::RerunSpec;
 use crate::session::study_arm::StudyArm;
 use crate::session::tracker::TrackerSpec;
-use crate::session::wall_display::{Answering, DisplaySpec};
+use crate::session::wall_display::{AnswerEntry, DisplaySpec};
 use crate::wizard::settings::WizardKind;
 
 /// A planned trial in a participant's series (familiarisation or counted trial): it needs one complete recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Slot {
+pub struct PlannedTrial {
     /// Number of the trial, from 1; `None` for the familiarisation.
     pub period: Option<u32>,
     /// The study arm of the trial.
@@ -86,17 +86,17 @@ impl Study {
     }
 
     /// The event that the participant consented to the plan's text, at the display or at the console.
-    pub fn consent_given(&self, on: Answering) -> ProtocolEvent {
+    pub fn consent_given(&self, on: AnswerEntry) -> ProtocolEvent {
         let (text, digest) = (self.plan.consent.clone(), digest(&self.plan.consent));
         ProtocolEvent::ConsentGiven { on: Some(on), text: Some(text), digest: Some(digest) }
     }
 
     /// The planned trials of a participant, in order.
-    pub fn slots(&self, participant: usize) -> Vec<Slot> {
+    pub fn slots(&self, participant: usize) -> Vec<PlannedTrial> {
         let practice = self.plan.familiarisation.as_ref().map(|practice| (None, practice.condition));
         let trials = self.group(participant).conditions.into_iter().enumerate();
         let trials = trials.map(|(index, condition)| (Some(index as u32 + 1), condition));
-        practice.into_iter().chain(trials).map(|(period, condition)| Slot { period, condition }).collect()
+        practice.into_iter().chain(trials).map(|(period, condition)| PlannedTrial { period, condition }).collect()
     }
 
     /// The settings of a recording with people, with the participant's own parameters of the human model where there are any, and the
@@ -124,7 +124,7 @@ impl Study {
             arm: Some(slot.condition),
             aims: self.plan.aims,
             attempt: wanted.attempt,
-            criterion: practice.map(|it| Criterion { orders: it.orders, error_rate: it.error_rate }),
+            criterion: practice.map(|it| PracticeCriterion { orders: it.orders, error_rate: it.error_rate }),
             phases: self.phases(slot, wanted),
         });
         (spec, trial_number(wanted))
@@ -168,7 +168,7 @@ impl Study {
         Some(spec)
     }
 
-    fn phases(&self, slot: Slot, wanted: WantedRecording) -> Vec<PhaseSpec> {
+    fn phases(&self, slot: PlannedTrial, wanted: WantedRecording) -> Vec<PhaseSpec> {
         let mut phases = Vec::new();
         if !wanted.instructed && !self.plan.instruction.is_empty() {
             phases.push(PhaseSpec::Instruction { steps: self.plan.instruction.clone() });
@@ -205,8 +205,8 @@ fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
     }
     match arm {
         StudyArm::WizardWithAdvice => {
-            spec.console.visibility = Visibility::Recommendation;
-            spec.assistant.shadow = Shadow::On;
+            spec.console.visibility = WizardVisibility::Recommendation;
+            spec.assistant.shadow = ShadowMode::On;
             if spec.wizard.kind == WizardKind::Scripted {
                 spec.wizard.offers.get_or_insert_default();
             }

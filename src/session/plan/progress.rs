@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::planned_study::{Slot, Study, WantedRecording};
+use super::planned_study::{PlannedTrial, Study, WantedRecording};
 use super::step::StepSpec;
 
 /// State of a recording of a plan: complete, open, excluded or void.
@@ -81,19 +81,19 @@ impl NextRecording {
 
 /// A planned trial of a participant's series, with the attempts at it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SlotProgress {
+pub struct PlannedTrialProgress {
     /// The planned trial of the participant's series.
     #[serde(flatten)]
-    pub slot: Slot,
+    pub slot: PlannedTrial,
     /// Whether the trial has a valid recording.
     pub is_done: bool,
     /// The attempts at the trial, in order.
-    pub recordings: Vec<Attempt>,
+    pub recordings: Vec<TrialAttempt>,
 }
 
 /// One attempt at a planned trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Attempt {
+pub struct TrialAttempt {
     /// The name of the recording's last folder.
     pub recording: String,
     /// Number of the attempt, from 1.
@@ -108,7 +108,7 @@ pub struct Attempt {
 
 /// Progress of one participant through the study plan.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Progress {
+pub struct ParticipantProgress {
     /// The participant's code.
     pub code: String,
     /// Index of the participant in the plan.
@@ -122,17 +122,21 @@ pub struct Progress {
     #[serde(skip)]
     pub instructed: bool,
     /// The planned trials of the series, in order.
-    pub steps: Vec<SlotProgress>,
+    pub steps: Vec<PlannedTrialProgress>,
     /// The recording that the participant needs next.
     pub next: NextRecording,
 }
 
-impl Progress {
+impl ParticipantProgress {
     /// Progress of a participant; `made` contains all recordings of the plan in any order.
     ///
     /// # Errors
     /// A recording that does not belong to this plan, in words.
-    pub fn from_recordings(study: &Study, participant: usize, made: &[PlanRecording]) -> Result<Progress, String> {
+    pub fn from_recordings(
+        study: &Study,
+        participant: usize,
+        made: &[PlanRecording],
+    ) -> Result<ParticipantProgress, String> {
         let code = study.plan.code(participant);
         let group = study.group(participant).name;
         let own: Vec<&PlanRecording> = made.iter().filter(|made| made.code == code).collect();
@@ -141,13 +145,13 @@ impl Progress {
             return Err(format!("{code} was in group {recorded} in {recording}, and is in {group} now"));
         }
         let slots = study.slots(participant);
-        let steps: Vec<SlotProgress> =
-            slots.iter().map(|slot| SlotProgress::from_recordings(study, *slot, &own)).collect();
+        let steps: Vec<PlannedTrialProgress> =
+            slots.iter().map(|slot| PlannedTrialProgress::from_recordings(study, *slot, &own)).collect();
         let next =
             steps.iter().enumerate().find_map(|(index, stand)| stand.next(index)).unwrap_or(NextRecording::Finished);
         let consent = own.iter().any(|made| made.consent);
         let instructed = own.iter().any(|made| made.instructed);
-        Ok(Progress { code, participant, group, consent, instructed, steps, next })
+        Ok(ParticipantProgress { code, participant, group, consent, instructed, steps, next })
     }
 
     /// The recording to make for a new attempt at a planned trial.
@@ -168,12 +172,12 @@ impl Progress {
     }
 }
 
-impl SlotProgress {
-    fn from_recordings(study: &Study, slot: Slot, own: &[&PlanRecording]) -> SlotProgress {
+impl PlannedTrialProgress {
+    fn from_recordings(study: &Study, slot: PlannedTrial, own: &[&PlanRecording]) -> PlannedTrialProgress {
         let mut here: Vec<&PlanRecording> =
             own.iter().filter(|made| made.step.period == slot.period).copied().collect();
         here.sort_by(|a, b| (a.step.attempt, &a.recording).cmp(&(b.step.attempt, &b.recording)));
-        let attempt = |made: &&PlanRecording| Attempt {
+        let attempt = |made: &&PlanRecording| TrialAttempt {
             recording: made.recording.clone(),
             attempt: made.step.attempt,
             presses: made.presses,
@@ -184,7 +188,7 @@ impl SlotProgress {
         let is_done = here
             .last()
             .is_some_and(|made| matches!(made.outcome, RecordingOutcome::Complete | RecordingOutcome::Excluded { .. }));
-        SlotProgress { slot, is_done, recordings: here.iter().map(attempt).collect() }
+        PlannedTrialProgress { slot, is_done, recordings: here.iter().map(attempt).collect() }
     }
 
     /// The number of the last attempt.

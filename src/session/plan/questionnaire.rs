@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::item_form::{ItemForm, ItemKind, ItemOption, Scale};
+use super::item_form::{AnswerFormat, ItemOption, QuestionnaireItemKind, RatingScale};
 use crate::session::condition::Condition;
 
 /// Largest length of a text answer in characters, unless the item sets another one.
@@ -25,13 +25,13 @@ pub struct Questionnaire {
     pub score: Option<ScoreRule>,
     /// The rating scale of all items that do not name another one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub scale: Option<Scale>,
+    pub scale: Option<RatingScale>,
     /// Further rating scales by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub scales: BTreeMap<String, Scale>,
+    pub scales: BTreeMap<String, RatingScale>,
     /// The items, in the order in which they are asked.
     #[serde(rename = "item")]
-    pub items: Vec<Item>,
+    pub items: Vec<QuestionnaireItem>,
 }
 
 /// How a questionnaire's score is computed from its answers. Answers to reversed items are first reversed on their
@@ -49,14 +49,14 @@ pub enum ScoreRule {
 /// An item of a questionnaire: a statement to be rated, or a question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Item {
+pub struct QuestionnaireItem {
     /// Identifier of the item in logs and tables.
     pub id: String,
     /// The statement or question, as the participant reads it.
     pub text: String,
     /// The kind of answer; a rating scale by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub kind: Option<ItemKind>,
+    pub kind: Option<QuestionnaireItemKind>,
     /// Name of the item's rating scale; by default that of all items.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<String>,
@@ -101,34 +101,36 @@ pub struct Item {
 impl Questionnaire {
     /// The questionnaire after a trial in this condition; `None` if it has no items.
     pub fn after(&self, condition: Condition) -> Option<Questionnaire> {
-        let is_asked = |item: &&Item| item.conditions.as_ref().is_none_or(|only| only.contains(&condition));
-        let items: Vec<Item> = self.items.iter().filter(is_asked).cloned().collect();
+        let is_asked =
+            |item: &&QuestionnaireItem| item.conditions.as_ref().is_none_or(|only| only.contains(&condition));
+        let items: Vec<QuestionnaireItem> = self.items.iter().filter(is_asked).cloned().collect();
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
     }
 
     /// The questionnaire before the first trial; `None` if it has no items. Items for certain conditions are left out.
     pub fn before_trials(&self) -> Option<Questionnaire> {
-        let items: Vec<Item> = self.items.iter().filter(|item| item.conditions.is_none()).cloned().collect();
+        let items: Vec<QuestionnaireItem> =
+            self.items.iter().filter(|item| item.conditions.is_none()).cloned().collect();
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
     }
 
     /// The answer format of the item with this index; `None` if there is no such item, or if it lacks settings that its
     /// kind needs.
-    pub fn form(&self, index: usize) -> Option<ItemForm<'_>> {
+    pub fn form(&self, index: usize) -> Option<AnswerFormat<'_>> {
         let item = self.items.get(index)?;
-        Some(match item.kind.unwrap_or(ItemKind::Scale) {
-            ItemKind::Scale => ItemForm::Scale(match &item.scale {
+        Some(match item.kind.unwrap_or(QuestionnaireItemKind::Scale) {
+            QuestionnaireItemKind::Scale => AnswerFormat::Scale(match &item.scale {
                 Some(name) => self.scales.get(name)?,
                 None => self.scale.as_ref()?,
             }),
-            ItemKind::Choice => ItemForm::Choice { options: &item.options, several: item.several },
-            ItemKind::Number => {
-                ItemForm::Number { range: [item.min?, item.max?], unit: item.unit.as_deref().unwrap_or_default() }
+            QuestionnaireItemKind::Choice => AnswerFormat::Choice { options: &item.options, several: item.several },
+            QuestionnaireItemKind::Number => {
+                AnswerFormat::Number { range: [item.min?, item.max?], unit: item.unit.as_deref().unwrap_or_default() }
             }
-            ItemKind::Text => ItemForm::Text { length: item.length.unwrap_or(LENGTH) },
-            ItemKind::Slider => {
+            QuestionnaireItemKind::Text => AnswerFormat::Text { length: item.length.unwrap_or(LENGTH) },
+            QuestionnaireItemKind::Slider => {
                 let step = i64::from(item.step.unwrap_or(1).max(1));
-                ItemForm::Slider { low: item.low.as_deref()?, high: item.high.as_deref()?, step }
+                AnswerFormat::Slider { low: item.low.as_deref()?, high: item.high.as_deref()?, step }
             }
         })
     }

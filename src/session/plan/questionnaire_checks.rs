@@ -1,7 +1,7 @@
 //! Checks of a questionnaire file.
 
-use super::item_form::{ItemForm, ItemKind, ItemOption, SLIDER_END};
-use super::questionnaire::{Item, Questionnaire, ScoreRule};
+use super::item_form::{AnswerFormat, ItemOption, QuestionnaireItemKind, SLIDER_END};
+use super::questionnaire::{Questionnaire, QuestionnaireItem, ScoreRule};
 use crate::session::ranges;
 use crate::session::setting_checks::{SettingError, is_code};
 
@@ -48,8 +48,8 @@ impl Questionnaire {
     }
 
     /// Checks that an item has the settings that its kind needs, and no others.
-    fn check_item(&self, item: &Item) -> Result<(), WrongItem> {
-        let kind = item.kind.unwrap_or(ItemKind::Scale);
+    fn check_item(&self, item: &QuestionnaireItem) -> Result<(), WrongItem> {
+        let kind = item.kind.unwrap_or(QuestionnaireItemKind::Scale);
         if let Some((key, owner)) = OWNED.into_iter().find(|(key, owner)| *owner != kind && has(item, key)) {
             return Err((key, format!("{key} in an item of the kind \"{}\"", kind.name()), remedy_for(owner)));
         }
@@ -57,7 +57,7 @@ impl Questionnaire {
         let line = if item.kind.is_some() { "kind" } else { "id" };
         let found = format!("kind = \"{}\" in the item \"{}\"", kind.name(), item.id);
         match kind {
-            ItemKind::Scale => match &item.scale {
+            QuestionnaireItemKind::Scale => match &item.scale {
                 Some(name) if !self.scales.contains_key(name) => {
                     let remedy = "the name of a scale: [scales.NAME] in this file";
                     Err(("scale", format!("scale = \"{name}\""), remedy))
@@ -68,22 +68,24 @@ impl Questionnaire {
                 }
                 _ => Ok(()),
             },
-            ItemKind::Choice => check_options(item, line),
-            ItemKind::Number => match (item.min, item.max) {
+            QuestionnaireItemKind::Choice => check_options(item, line),
+            QuestionnaireItemKind::Number => match (item.min, item.max) {
                 (Some(min), Some(max)) if min < max => Ok(()),
                 (Some(min), Some(max)) => {
                     Err(("max", format!("max = {max}, with min = {min}"), "a greatest number above the least one"))
                 }
                 _ => Err((line, format!("{found} without min or max"), "the least and the greatest number: min, max")),
             },
-            ItemKind::Slider if item.low.is_none() || item.high.is_none() => {
+            QuestionnaireItemKind::Slider if item.low.is_none() || item.high.is_none() => {
                 Err((line, format!("{found} without low or high"), "what 0 and 100 mean: low, high"))
             }
-            ItemKind::Slider => match item.step.filter(|&step| step == 0 || SLIDER_END % i64::from(step) != 0) {
-                Some(step) => Err(("step", format!("step = {step}"), "a number that divides 100, such as 5")),
-                None => Ok(()),
-            },
-            ItemKind::Text => Ok(()),
+            QuestionnaireItemKind::Slider => {
+                match item.step.filter(|&step| step == 0 || SLIDER_END % i64::from(step) != 0) {
+                    Some(step) => Err(("step", format!("step = {step}"), "a number that divides 100, such as 5")),
+                    None => Ok(()),
+                }
+            }
+            QuestionnaireItemKind::Text => Ok(()),
         }
     }
 
@@ -98,7 +100,7 @@ impl Questionnaire {
             }
             Some(ScoreRule::Sus) => {
                 let is_five =
-                    |form: Option<ItemForm>| matches!(form, Some(ItemForm::Scale(scale)) if scale.points == 5);
+                    |form: Option<AnswerFormat>| matches!(form, Some(AnswerFormat::Scale(scale)) if scale.points == 5);
                 match (self.items.len(), forms().all(is_five)) {
                     (10, true) => Ok(()),
                     (items, _) => {
@@ -114,7 +116,7 @@ impl Questionnaire {
 /// Error in an item: the setting, what was found, and what would be right.
 type WrongItem = (&'static str, String, &'static str);
 
-fn check_options(item: &Item, line: &'static str) -> Result<(), WrongItem> {
+fn check_options(item: &QuestionnaireItem, line: &'static str) -> Result<(), WrongItem> {
     let options: &[ItemOption] = &item.options;
     if !(2..=MOST_OPTIONS).contains(&options.len()) {
         let found = format!("{} options in the item \"{}\"", options.len(), item.id);
@@ -133,31 +135,31 @@ fn check_options(item: &Item, line: &'static str) -> Result<(), WrongItem> {
 }
 
 /// The settings that belong to one kind of items, with that kind.
-const OWNED: [(&str, ItemKind); 10] = [
-    ("scale", ItemKind::Scale),
-    ("options", ItemKind::Choice),
-    ("several", ItemKind::Choice),
-    ("min", ItemKind::Number),
-    ("max", ItemKind::Number),
-    ("unit", ItemKind::Number),
-    ("length", ItemKind::Text),
-    ("low", ItemKind::Slider),
-    ("high", ItemKind::Slider),
-    ("step", ItemKind::Slider),
+const OWNED: [(&str, QuestionnaireItemKind); 10] = [
+    ("scale", QuestionnaireItemKind::Scale),
+    ("options", QuestionnaireItemKind::Choice),
+    ("several", QuestionnaireItemKind::Choice),
+    ("min", QuestionnaireItemKind::Number),
+    ("max", QuestionnaireItemKind::Number),
+    ("unit", QuestionnaireItemKind::Number),
+    ("length", QuestionnaireItemKind::Text),
+    ("low", QuestionnaireItemKind::Slider),
+    ("high", QuestionnaireItemKind::Slider),
+    ("step", QuestionnaireItemKind::Slider),
 ];
 
-fn remedy_for(owner: ItemKind) -> &'static str {
+fn remedy_for(owner: QuestionnaireItemKind) -> &'static str {
     match owner {
-        ItemKind::Scale => "it belongs to items of the kind \"scale\"",
-        ItemKind::Choice => "it belongs to items of kind = \"choice\"",
-        ItemKind::Number => "it belongs to items of kind = \"number\"",
-        ItemKind::Text => "it belongs to items of kind = \"text\"",
-        ItemKind::Slider => "it belongs to items of kind = \"slider\"",
+        QuestionnaireItemKind::Scale => "it belongs to items of the kind \"scale\"",
+        QuestionnaireItemKind::Choice => "it belongs to items of kind = \"choice\"",
+        QuestionnaireItemKind::Number => "it belongs to items of kind = \"number\"",
+        QuestionnaireItemKind::Text => "it belongs to items of kind = \"text\"",
+        QuestionnaireItemKind::Slider => "it belongs to items of kind = \"slider\"",
     }
 }
 
 /// Whether the item has this setting in the file.
-fn has(item: &Item, key: &str) -> bool {
+fn has(item: &QuestionnaireItem, key: &str) -> bool {
     match key {
         "kind" => item.kind.is_some(),
         "scale" => item.scale.is_some(),

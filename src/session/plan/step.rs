@@ -35,7 +35,7 @@ pub struct StepSpec {
     pub attempt: u32,
     /// Criterion of the practice trial (familiarisation).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub criterion: Option<Criterion>,
+    pub criterion: Option<PracticeCriterion>,
     /// The phases of the recording, in order.
     #[serde(rename = "phase")]
     pub phases: Vec<PhaseSpec>,
@@ -45,7 +45,7 @@ pub struct StepSpec {
 /// human's presses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Criterion {
+pub struct PracticeCriterion {
     /// The least number of served orders.
     pub orders: u32,
     /// The largest share of errors among the human's presses, 0 to 1; none: errors do not matter.
@@ -53,7 +53,7 @@ pub struct Criterion {
     pub error_rate: Option<f64>,
 }
 
-impl Criterion {
+impl PracticeCriterion {
     /// Whether a practice trial with these numbers of served orders, human presses and errors meets the criterion.
     pub fn is_met(&self, orders: u32, presses: u32, errors: u32) -> bool {
         let share = f64::from(errors) / f64::from(presses.max(1));

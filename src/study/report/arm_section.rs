@@ -4,14 +4,14 @@ use maud::{Markup, Render, html};
 
 use super::elements::{Captions, PageColumn, nothing, number, p_value, scroll, section, with_interval};
 use crate::study::arm_chart;
-use crate::study::arm_comparison::{ArmComparison, ArmContrast, ArmOutcome, NonInferiority};
+use crate::study::arm_comparison::{NonInferiority, StudyArmComparison, StudyArmContrast, StudyArmOutcome};
 use crate::study::figures::StudySummary;
 use crate::study::group_orders::GroupOrder;
-use crate::study::trial_statistics::Trial;
+use crate::study::trial_statistics::TrialStatistics;
 
 /// Section with the arms' rates, their contrasts, and the non-inferiority of the assistant to the wizard.
-pub(super) fn arms(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
-    let misfits: Vec<(&Trial, String)> =
+pub(super) fn arms(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
+    let misfits: Vec<(&TrialStatistics, String)> =
         trials.iter().filter(|trial| trial.counts()).filter_map(|trial| Some((trial, trial.misfit()?))).collect();
     let content = html! {
         @for (trial, misfit) in &misfits {
@@ -23,7 +23,7 @@ pub(super) fn arms(captions: &mut Captions, figures: &StudySummary, trials: &[Tr
     section("How do the conditions compare?", if has_content { content } else { nothing() })
 }
 
-fn comparison(captions: &mut Captions, found: &ArmComparison) -> Markup {
+fn comparison(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
     let outcome = found.outcome.title();
     let [between, within] = found.standard_deviations;
     html! {
@@ -55,8 +55,8 @@ fn comparison(captions: &mut Captions, found: &ArmComparison) -> Markup {
     }
 }
 
-fn rates(captions: &mut Captions, found: &ArmComparison) -> Markup {
-    let columns: [PageColumn<ArmOutcome>; 5] = [
+fn rates(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
+    let columns: [PageColumn<StudyArmOutcome>; 5] = [
         ("condition", |one| one.arm.title().render()),
         ("trials", |one| one.trials.render()),
         ("events", |one| one.events.render()),
@@ -69,12 +69,12 @@ fn rates(captions: &mut Captions, found: &ArmComparison) -> Markup {
 
 /// A contrast of the primary model, with the same contrast of the two other models.
 struct ContrastRow<'a> {
-    own: &'a ArmContrast,
-    carried: Option<&'a ArmContrast>,
+    own: &'a StudyArmContrast,
+    carried: Option<&'a StudyArmContrast>,
     of_counts: Option<(f64, f64)>,
 }
 
-fn contrasts(captions: &mut Captions, found: &ArmComparison) -> Markup {
+fn contrasts(captions: &mut Captions, found: &StudyArmComparison) -> Markup {
     let counts = || found.negative_binomial.iter().flat_map(|model| &model.contrasts);
     let rows: Vec<ContrastRow> = found
         .contrasts

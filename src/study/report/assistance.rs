@@ -10,10 +10,10 @@ use crate::study::charts;
 use crate::study::effect::AssistanceEffect;
 use crate::study::figures::{StudyConditionSummary, StudySummary};
 use crate::study::statistics::FTest;
-use crate::study::trial_statistics::Trial;
+use crate::study::trial_statistics::TrialStatistics;
 
 /// Section on the effect of assistance: charts, means by condition, and tests.
-pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
+pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let headline = figures.effects.first();
     if figures.conditions.len() > 2 {
         // Charts and tests compare two conditions; a study with more has another section for that.
@@ -43,7 +43,7 @@ pub(super) fn assistance(captions: &mut Captions, figures: &StudySummary, trials
 }
 
 /// Charts for a study of two conditions.
-fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
+fn pictures(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let key = keys(&[("first", "assisted first"), ("second", "unassisted first")]);
     let of_conditions = keys(&[("unassisted", "unassisted"), ("assisted", "assisted")]);
     html! {

@@ -5,8 +5,8 @@ use maud::{Markup, Render, html};
 use super::elements::{
     Captions, PageColumn, UNKNOWN, cells, keys, nothing, number, percent, range, scroll, section, with_interval,
 };
-use crate::analysis::probe_accuracy::{AccuracyGrouping, ProbeAccuracy};
-use crate::analysis::probe_figures::{ProbeCounts, ProbeFigures, TrueBeliefs};
+use crate::analysis::probe_accuracy::{ProbeAccuracy, ProbeAccuracyGrouping};
+use crate::analysis::probe_figures::{ProbeCounts, ProbeSummary, TrueBeliefComparison};
 use crate::base::words;
 use crate::measures::belief_detection::CALIBRATED;
 use crate::study::charts;
@@ -92,7 +92,7 @@ fn left_out(counts: &ProbeCounts) -> Markup {
     }
 }
 
-fn accuracies(captions: &mut Captions, found: &ProbeFigures) -> Markup {
+fn accuracies(captions: &mut Captions, found: &ProbeSummary) -> Markup {
     let columns: [PageColumn<ProbeAccuracy>; 4] = [
         ("", |one| one.group.render()),
         ("answers", |one| one.n.render()),
@@ -103,13 +103,13 @@ fn accuracies(captions: &mut Captions, found: &ProbeFigures) -> Markup {
         }),
     ];
     // Results by single aspect are only in the table of probes and in the JSON summary.
-    let printed = found.accuracies.iter().filter(|one| one.by != AccuracyGrouping::Aspect);
+    let printed = found.accuracies.iter().filter(|one| one.by != ProbeAccuracyGrouping::Aspect);
     let caption = "What participants knew: by what was asked, by when the place last changed and whether it was looked at since, by \
                    condition, and by how questions were drawn. Weighted; intervals of 95 % by bootstrap over participants.";
     captions.table_of_columns(caption, &columns, printed)
 }
 
-fn estimate(found: &ProbeFigures) -> Markup {
+fn estimate(found: &ProbeSummary) -> Markup {
     let detection = &found.detection;
     let bracketed = |ends: Option<[f64; 2]>| ends.map_or(String::new(), |ends| format!(" ({})", range(ends, 2)));
     html! {
@@ -125,7 +125,7 @@ fn estimate(found: &ProbeFigures) -> Markup {
     }
 }
 
-fn scores(captions: &mut Captions, found: &ProbeFigures) -> Markup {
+fn scores(captions: &mut Captions, found: &ProbeSummary) -> Markup {
     let of = &found.log_scores;
     let row = |what: &str, score: Option<f64>| {
         let gain = score.zip(of.estimate).map(|(score, estimate)| estimate - score);
@@ -146,7 +146,7 @@ fn scores(captions: &mut Captions, found: &ProbeFigures) -> Markup {
     captions.table(caption, &["", "log score", "gain of the estimate"], &rows)
 }
 
-fn by_true_beliefs(known: &TrueBeliefs) -> Markup {
+fn by_true_beliefs(known: &TrueBeliefComparison) -> Markup {
     let value = |value: Option<f64>| value.map_or(UNKNOWN.to_string(), |value| number(Some(value), 3));
     html! {
         p class="note" {

@@ -4,10 +4,10 @@ use maud::{Markup, Render, html};
 
 use super::elements::{Captions, UNKNOWN, keys, nothing, number, scroll, section, with_interval};
 use crate::base::words::count;
-use crate::measures::belief_basis::BeliefBasis;
+use crate::measures::belief_basis::BeliefSource;
 use crate::study::charts::{self, MOST_SIGNALS};
 use crate::study::figures::StudySummary;
-use crate::study::live_arms::LiveArm;
+use crate::study::live_arms::LiveStudyArm;
 use crate::study::roc::EQUAL_SIGNALS;
 
 /// Section that compares the concepts by the errors they prevent.
@@ -16,7 +16,7 @@ pub(super) fn concepts(captions: &mut Captions, figures: &StudySummary) -> Marku
     let pictures = html! {
         (captions.figure(charts::roc(figures), html! {
             "Receiver operating characteristics over unassisted trials" (bands(figures)) ". False beliefs are known by "
-            (figures.roc_beliefs_from.map_or(UNKNOWN, BeliefBasis::words)) "." (key)
+            (figures.roc_beliefs_from.map_or(UNKNOWN, BeliefSource::words)) "." (key)
         }))
         (captions.figure(charts::equal_signals(figures), html! {
             "Errors prevented against number of signals. Each point is one parameter value. A curve may fall, because a value that \
@@ -63,7 +63,7 @@ fn cut_off(figures: &StudySummary) -> String {
 
 /// Table of the concepts that sent signals by themselves, with the predictions from the analysis of unassisted trials.
 fn live(captions: &mut Captions, figures: &StudySummary) -> Markup {
-    let parameter = |arm: &LiveArm| arm.arm.parameter.map_or(String::new(), |parameter| format!(" {parameter}"));
+    let parameter = |arm: &LiveStudyArm| arm.arm.parameter.map_or(String::new(), |parameter| format!(" {parameter}"));
     let rows = figures.live.iter().map(|arm| {
         let values = [
             number(arm.belief_related_per_100, 2),

@@ -4,14 +4,14 @@ use maud::{Markup, html};
 
 use super::elements::{arm, section};
 use crate::base::words;
-use crate::measures::belief_basis::BeliefBasis;
-use crate::session::event::EndReason;
-use crate::study::arm_group::ArmGroup;
-use crate::study::facts::Facts;
+use crate::measures::belief_basis::BeliefSource;
+use crate::session::event::TrialEndReason;
+use crate::study::arm_group::RobotArmGroup;
+use crate::study::facts::RecordingFacts;
 use crate::study::figures::StudySummary;
 
 /// Section on methods: conduct and analysis of the trials.
-pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> Markup {
+pub(super) fn methods(figures: &StudySummary, facts: &RecordingFacts) -> Markup {
     let content = html! {
         p { (conduct(figures, facts)) (wizard(facts)) (versions(facts)) } "\n"
         p { (analysis(figures)) } "\n"
@@ -30,11 +30,11 @@ pub(super) fn methods(figures: &StudySummary, facts: &Facts) -> Markup {
 }
 
 /// All values of a setting or circumstance, as text.
-fn all(facts: &Facts, key: &str) -> String {
+fn all(facts: &RecordingFacts, key: &str) -> String {
     facts.all(key).unwrap_or_else(|| "unknown".to_string())
 }
 
-fn conduct(figures: &StudySummary, facts: &Facts) -> String {
+fn conduct(figures: &StudySummary, facts: &RecordingFacts) -> String {
     let planned = facts.all("plan").map_or(" without a plan".to_string(), |plan| {
         format!(" after the plan {plan} (name and digest; its seed determines groups and orders of conditions)")
     });
@@ -61,7 +61,7 @@ fn conduct(figures: &StudySummary, facts: &Facts) -> String {
 }
 
 /// Sentence about the wizard and the information shown to the wizard.
-fn wizard(facts: &Facts) -> Markup {
+fn wizard(facts: &RecordingFacts) -> Markup {
     html! {
         @if facts.has("scripted wizard") {
             " The wizard was a script that observes kitchen, presses and gaze, but no estimate: " (all(facts, "scripted wizard")) "."
@@ -74,7 +74,7 @@ fn wizard(facts: &Facts) -> Markup {
     }
 }
 
-fn versions(facts: &Facts) -> String {
+fn versions(facts: &RecordingFacts) -> String {
     let all = |key| all(facts, key);
     format!(
         " The human model's temperature was \u{3c4} = {}, the cost of a signal {} presses. Recorded with tomcom {} (log format {}), \
@@ -95,16 +95,16 @@ fn analysis(figures: &StudySummary) -> String {
         false => " and the estimate of beliefs",
     };
     let causes = match figures.totals.beliefs_from {
-        Some(BeliefBasis::Recorded) => {
+        Some(BeliefSource::Recorded) => {
             "Causes of errors were attributed by the recorded beliefs of the simulated participants."
         }
-        Some(BeliefBasis::Consensus) => {
+        Some(BeliefSource::Consensus) => {
             "Causes of errors were coded by two raters, who settled together what they had coded differently."
         }
-        Some(BeliefBasis::Raters) => "Causes of errors were coded by two raters.",
-        Some(BeliefBasis::Estimate) => "Causes of errors were attributed by the assistant's estimate of the beliefs.",
+        Some(BeliefSource::Raters) => "Causes of errors were coded by two raters.",
+        Some(BeliefSource::Estimate) => "Causes of errors were attributed by the assistant's estimate of the beliefs.",
         // Answers to probes do not tell the causes of errors.
-        Some(BeliefBasis::Probes) | None => "Causes of errors are not known for all trials.",
+        Some(BeliefSource::Probes) | None => "Causes of errors are not known for all trials.",
     };
     format!(
         "Every recording was replayed event by event; errors, their causes{computed} were recomputed from the recorded events. \
@@ -114,18 +114,18 @@ fn analysis(figures: &StudySummary) -> String {
 
 /// Sentence with the number of trials by the reason why they ended.
 fn endings(figures: &StudySummary) -> String {
-    let one = |(reason, &count): (&EndReason, &u64)| {
+    let one = |(reason, &count): (&TrialEndReason, &u64)| {
         let how = match reason {
-            EndReason::Presses => "after the set number of presses",
-            EndReason::Time => "after the set time",
-            EndReason::Orders => "after the set number of orders",
-            EndReason::Wizard => "early by the wizard",
-            EndReason::Aborted => "aborted",
+            TrialEndReason::Presses => "after the set number of presses",
+            TrialEndReason::Time => "after the set time",
+            TrialEndReason::Orders => "after the set number of orders",
+            TrialEndReason::Wizard => "early by the wizard",
+            TrialEndReason::Aborted => "aborted",
         };
         format!("{count} {how}")
     };
     let ended: Vec<String> = figures.ended.iter().map(one).collect();
-    let shorter = match figures.ended.keys().all(|reason| *reason == EndReason::Presses) {
+    let shorter = match figures.ended.keys().all(|reason| *reason == TrialEndReason::Presses) {
         true => "",
         false => " Each counts as one trial, regardless of its length.",
     };
@@ -137,7 +137,8 @@ fn endings(figures: &StudySummary) -> String {
 
 /// Sentence about the kinds of robot arm.
 fn arms(figures: &StudySummary) -> String {
-    let trials = |group: &ArmGroup| format!("{} in {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
+    let trials =
+        |group: &RobotArmGroup| format!("{} in {}", arm(group.kind), words::count(group.trials, "trial", "trials"));
     match &figures.robot[..] {
         [] => String::new(),
         [one] => format!(" The robot\u{2019}s arm was {}.", arm(one.kind)),

@@ -14,16 +14,16 @@ mod sections;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use self::elements::Captions;
-use super::column::Table;
-use super::facts::Facts;
+use super::column::CsvTable;
+use super::facts::RecordingFacts;
 use super::figures::StudySummary;
-use super::trial_statistics::Trial;
+use super::trial_statistics::TrialStatistics;
 
 /// Style sheet of the report's page and its charts.
 pub const STYLE: &str = include_str!("style.css");
 
 /// The report as an HTML page, with links to the files of these tables.
-pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[Table]) -> String {
+pub fn page(figures: &StudySummary, trials: &[TrialStatistics], facts: &RecordingFacts, tables: &[CsvTable]) -> String {
     let captions = &mut Captions::default();
     let sections = [
         sections::summary(figures),
@@ -54,7 +54,7 @@ pub fn page(figures: &StudySummary, trials: &[Trial], facts: &Facts, tables: &[T
 }
 
 /// HTML head of the report's page.
-fn head(figures: &StudySummary, trials: &[Trial]) -> Markup {
+fn head(figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     html! {
         head {
             meta charset="utf-8"; "\n"
@@ -67,7 +67,7 @@ fn head(figures: &StudySummary, trials: &[Trial]) -> Markup {
 }
 
 /// Metadata of the report's page as (name, content).
-fn metadata(trials: &[Trial]) -> [(&'static str, String); 3] {
+fn metadata(trials: &[TrialStatistics]) -> [(&'static str, String); 3] {
     let [generator, participants] = page_head::about(trials.iter().map(|trial| trial.participant.as_str()));
     [generator, participants, ("viewport", "width=device-width, initial-scale=1".to_string())]
 }

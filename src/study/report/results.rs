@@ -5,11 +5,11 @@ use maud::{Markup, html};
 use super::elements::{Captions, UNKNOWN, cells, count, nothing, number, p_value, percent, scroll, section};
 use crate::analysis::offer_summary::{OfferDurations, OfferSummary};
 use crate::base::words;
-use crate::communication::offer::OfferEnd;
-use crate::measures::belief_basis::BeliefBasis;
+use crate::communication::offer::OfferCloseReason;
+use crate::measures::belief_basis::BeliefSource;
 use crate::measures::matching::MatchShares;
 use crate::measures::wizard_performance::WizardMeasures;
-use crate::session::plan::ItemKind;
+use crate::session::plan::QuestionnaireItemKind;
 use crate::session::study_arm::StudyArm;
 use crate::study::figures::StudySummary;
 
@@ -82,7 +82,7 @@ fn performance(figures: &StudySummary) -> String {
     let unknown = "; false beliefs that led to no error are not known";
     match figures.wizard_beliefs_from {
         None => "Performance of the wizard.".to_string(),
-        Some(BeliefBasis::Recorded) => format!("Performance of the wizard, by {}.", BeliefBasis::Recorded.words()),
+        Some(BeliefSource::Recorded) => format!("Performance of the wizard, by {}.", BeliefSource::Recorded.words()),
         Some(basis) => format!("Performance of the wizard, by {}{unknown}.", basis.words()),
     }
 }
@@ -93,7 +93,7 @@ fn offers(found: &OfferSummary) -> Markup {
         (Some(median_s), Some(shortest_s)) => format!("{median_s:.1} s in the median, {shortest_s:.1} s at least"),
         _ => UNKNOWN.to_string(),
     };
-    let by_reason = |(reason, one): (&OfferEnd, &OfferDurations)| format!("{} {}", one.n, reason.words());
+    let by_reason = |(reason, one): (&OfferCloseReason, &OfferDurations)| format!("{} {}", one.n, reason.words());
     let reasons: Vec<String> = found.by_reason.iter().map(by_reason).collect();
     let reaction = found.reaction_s.map(|s| format!(", {s:.1} s after its opening in the median"));
     html! {
@@ -217,17 +217,17 @@ fn items(captions: &mut Captions, figures: &StudySummary) -> Markup {
     let rows = figures.questionnaires.iter().map(|item| {
         let mean = match (item.points, item.kind) {
             (Some(points), _) => format!("{} of {points}", number(item.mean, 1)),
-            (None, ItemKind::Choice | ItemKind::Text) => String::new(),
+            (None, QuestionnaireItemKind::Choice | QuestionnaireItemKind::Text) => String::new(),
             (None, _) => number(item.mean, 1).to_string(),
         };
         let counts = item.counts.iter().map(u64::to_string);
         let counts: Vec<String> = match item.kind {
-            ItemKind::Choice => {
+            QuestionnaireItemKind::Choice => {
                 item.options.iter().zip(counts).map(|(text, count)| format!("{text}: {count}")).collect()
             }
             _ => counts.collect(),
         };
-        let between = if item.kind == ItemKind::Choice { ", " } else { " " };
+        let between = if item.kind == QuestionnaireItemKind::Choice { ", " } else { " " };
         let after = asked_after(item.condition);
         cells([&item.text, &after, &item.answers, &item.left_out, &mean, &counts.join(between)])
     });

@@ -4,13 +4,13 @@ use maud::{Markup, Render, html};
 
 use super::elements::{Captions, PageColumn, UNKNOWN, cells, count, number, p_sentence, percent, section};
 use crate::base::words;
-use crate::measures::belief_basis::BeliefBasis;
-use crate::measures::cause_codes::Agreement;
-use crate::session::event::EndReason;
-use crate::study::column::Table;
+use crate::measures::belief_basis::BeliefSource;
+use crate::measures::cause_codes::RaterAgreement;
+use crate::session::event::TrialEndReason;
+use crate::study::column::CsvTable;
 use crate::study::definitions::DEFINITIONS;
 use crate::study::figures::StudySummary;
-use crate::study::trial_statistics::Trial;
+use crate::study::trial_statistics::TrialStatistics;
 
 /// Least number of participants with both trials for which r and p are among the main results.
 const FEWEST_PARTICIPANTS: usize = 8;
@@ -46,7 +46,7 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
             }
             "\n"
         }
-        @if totals.beliefs_from == Some(BeliefBasis::Estimate) {
+        @if totals.beliefs_from == Some(BeliefSource::Estimate) {
             p class="warning" {
                 "Beliefs of participants are known only as the assistant's estimate. Results that rest on them, such as the share of \
                  belief related errors, are tentative until two raters have coded the errors."
@@ -72,7 +72,7 @@ pub(super) fn summary(figures: &StudySummary) -> Markup {
 }
 
 /// Paragraph on the agreement of two raters.
-fn raters(found: &Agreement, figures: &StudySummary) -> Markup {
+fn raters(found: &RaterAgreement, figures: &StudySummary) -> Markup {
     html! {
         p {
             "Two raters coded the causes of errors. They agree on the cause of " (found.same_cause) " of " (found.errors)
@@ -101,7 +101,7 @@ fn card(value: &str, what: &str) -> Markup {
 const MOST_TRIALS: usize = 60;
 
 /// Section with all trials, and with the reasons for excluded ones.
-pub(super) fn trials(captions: &mut Captions, figures: &StudySummary, trials: &[Trial]) -> Markup {
+pub(super) fn trials(captions: &mut Captions, figures: &StudySummary, trials: &[TrialStatistics]) -> Markup {
     let content = html! {
         div class="scroll long" { (counting(captions, trials)) } "\n"
         h3 { "Excluded" } "\n"
@@ -116,13 +116,13 @@ pub(super) fn trials(captions: &mut Captions, figures: &StudySummary, trials: &[
     section("Trials", content)
 }
 
-fn counting(captions: &mut Captions, trials: &[Trial]) -> Markup {
-    let columns: [PageColumn<Trial>; 14] = [
+fn counting(captions: &mut Captions, trials: &[TrialStatistics]) -> Markup {
+    let columns: [PageColumn<TrialStatistics>; 14] = [
         ("participant", |trial| trial.participant.render()),
         ("group", |trial| trial.group.as_deref().unwrap_or(UNKNOWN).render()),
         ("trial", |trial| count(trial.period.map(u64::from)).render()),
         ("condition", |trial| trial.study_arm.title().render()),
-        ("ended by", |trial| trial.ended.map_or(UNKNOWN, EndReason::name).render()),
+        ("ended by", |trial| trial.ended.map_or(UNKNOWN, TrialEndReason::name).render()),
         ("presses, human", |trial| trial.human_presses.render()),
         ("robot", |trial| trial.robot_presses.render()),
         ("errors", |trial| trial.errors.render()),
@@ -163,7 +163,7 @@ pub(super) fn definitions() -> Markup {
 }
 
 /// Section that lists the non-empty tables beside the report.
-pub(super) fn files(tables: &[Table]) -> Markup {
+pub(super) fn files(tables: &[CsvTable]) -> Markup {
     let content = html! {
         p {
             "Beside this page: "

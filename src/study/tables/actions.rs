@@ -2,10 +2,10 @@
 
 use crate::kitchen::{Agent, Kitchen, Press};
 use crate::measures::JudgedPress;
-use crate::measures::attribution::{Cause, Target};
-use crate::measures::cause_codes::{CauseKind, Code};
+use crate::measures::attribution::{ErrorCause, FalseBeliefTarget};
+use crate::measures::cause_codes::{ErrorCauseCode, ErrorCauseKind};
 use crate::mind::recorded_estimate::rounded;
-use crate::study::column::{Column, Table, TableCell, TableRow};
+use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 
 /// A recorded press with its time and number.
 #[derive(Clone, Copy, Debug)]
@@ -32,11 +32,11 @@ pub struct PressAnalysis<'a> {
     /// Number of the press's error sequence in the trial, from 1.
     pub sequence: Option<usize>,
     /// Cause of a person's error by the assistant's estimate.
-    pub by_estimate: Option<Cause>,
+    pub by_estimate: Option<ErrorCause>,
     /// Codes that two raters gave to the error.
-    pub codes: [Option<&'a Code>; 2],
+    pub codes: [Option<&'a ErrorCauseCode>; 2],
     /// Consensus code of the two raters, where it determines the cause of the error.
-    pub shared: Option<&'a Code>,
+    pub shared: Option<&'a ErrorCauseCode>,
     /// Beginning of the false belief behind the error, on the trial's clock in seconds, where it is known.
     pub false_since_s: Option<f64>,
     /// End of the false belief behind the error, on the trial's clock in seconds; `None` if the belief is not corrected
@@ -65,9 +65,9 @@ impl ActionRow<'_> {
     /// Targets of the false belief behind the press; the second only if the press needs two false beliefs to be
     /// explained.
     fn targets(&self) -> [Option<String>; 2] {
-        let label = |target: Target| target.label(self.kitchen);
+        let label = |target: FalseBeliefTarget| target.label(self.kitchen);
         match self.judged().and_then(|press| press.cause) {
-            Some(Cause::Belief { target, with, .. }) => [Some(label(target)), with.map(label)],
+            Some(ErrorCause::Belief { target, with, .. }) => [Some(label(target)), with.map(label)],
             _ => [None, None],
         }
     }
@@ -76,14 +76,14 @@ impl ActionRow<'_> {
     /// from raters.
     fn gain_nats(&self) -> Option<f64> {
         match self.judged()?.cause? {
-            Cause::Belief { gain_nats, .. } => Some(rounded(gain_nats)).filter(|gain| gain.is_finite()),
-            Cause::Slip | Cause::Planning => None,
+            ErrorCause::Belief { gain_nats, .. } => Some(rounded(gain_nats)).filter(|gain| gain.is_finite()),
+            ErrorCause::Slip | ErrorCause::Planning => None,
         }
     }
 
-    fn code(&self, code: impl Fn(&PressAnalysis) -> Option<Code>) -> TableCell<'static> {
+    fn code(&self, code: impl Fn(&PressAnalysis) -> Option<ErrorCauseCode>) -> CsvCell<'static> {
         let code = self.analysis.as_ref().and_then(code);
-        let words = |code: &Code| {
+        let words = |code: &ErrorCauseCode| {
             let kind = code.kind().name();
             code.aspect().map_or(kind.to_string(), |aspect| format!("{kind} {aspect}"))
         };
@@ -97,11 +97,11 @@ const SECOND_ASPECT: &str =
 const RATER: &str = "code of one of the two raters, who were named, settled a consensus or else coded most errors: belief (with location), slip, race, \
                      other or buttons";
 
-fn cause_name(cause: Cause) -> &'static str {
+fn cause_name(cause: ErrorCause) -> &'static str {
     match cause {
-        Cause::Slip => CauseKind::Slip.name(),
-        Cause::Planning => "planning",
-        Cause::Belief { .. } => CauseKind::Belief.name(),
+        ErrorCause::Slip => ErrorCauseKind::Slip.name(),
+        ErrorCause::Planning => "planning",
+        ErrorCause::Belief { .. } => ErrorCauseKind::Belief.name(),
     }
 }
 
@@ -112,10 +112,10 @@ fn agent_name(agent: Agent) -> &'static str {
     }
 }
 
-impl TableRow for ActionRow<'_> {
-    const TABLE: Table = Table::Actions;
+impl CsvRow for ActionRow<'_> {
+    const TABLE: CsvTable = CsvTable::Actions;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         let cause = "cause of an error: belief, planning or slip; source in the trial's beliefs_from; empty: unknown";
         let sequence = "number of a belief related error's sequence in the trial, from 1";
         vec![
@@ -171,7 +171,7 @@ impl TableRow for ActionRow<'_> {
 }
 
 /// Columns with causes by estimate and raters, and with the duration of the false belief.
-fn of_estimate_and_raters<'a>() -> Vec<Column<ActionRow<'a>>> {
+fn of_estimate_and_raters<'a>() -> Vec<CsvColumn<ActionRow<'a>>> {
     vec![
         ActionRow::column(
             "cause_estimated",

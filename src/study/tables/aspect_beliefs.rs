@@ -2,7 +2,7 @@
 
 use crate::mind::AspectBelief;
 use crate::mind::recorded_estimate::AspectEstimate;
-use crate::study::column::{Column, Table, TableRow};
+use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
 /// Row of the table of beliefs: estimated and recorded belief about one aspect before a human press.
 #[derive(Clone, Copy, Debug)]
@@ -19,10 +19,10 @@ pub struct BeliefRow<'a> {
     pub believed: Option<&'a AspectBelief>,
 }
 
-impl TableRow for BeliefRow<'_> {
-    const TABLE: Table = Table::Beliefs;
+impl CsvRow for BeliefRow<'_> {
+    const TABLE: CsvTable = CsvTable::Beliefs;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         let seq = "log number of the human press that follows, as in actions";
         let believed = "probability of the true value in a simulated participant's belief";
         vec![

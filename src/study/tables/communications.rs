@@ -3,7 +3,7 @@
 use crate::kitchen::Kitchen;
 use crate::measures::matching::{CommunicationEvent, CommunicationKind};
 use crate::mind::recorded_estimate::rounded;
-use crate::study::column::{Column, Table, TableRow};
+use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
 /// Row of the table of communications: one that was sent, or that a concept would have sent.
 #[derive(Clone, Copy, Debug)]
@@ -30,10 +30,10 @@ fn kind_name(kind: CommunicationKind) -> &'static str {
     }
 }
 
-impl TableRow for CommunicationRow<'_> {
-    const TABLE: Table = Table::Communications;
+impl CsvRow for CommunicationRow<'_> {
+    const TABLE: CsvTable = CsvTable::Communications;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         let lane = "sender (wizard, assistant), or concept of a hypothetical signal (tom-com)";
         let offer = "the offer that it took or met, as in offers; empty: none was visible";
         let matched = "whether the other lane has the same signal within the window; empty: no other lane";

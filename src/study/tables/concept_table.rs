@@ -1,27 +1,27 @@
 //! Table of errors that communication concepts would have prevented.
 
 use crate::communication::concept::ConceptName;
-use crate::study::column::{Column, Table, TableCell, TableRow};
+use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::prevention::PreventionCounts;
-use crate::study::roc::SweptTrial;
-use crate::study::trial_statistics::Trial;
+use crate::study::roc::PreventedTrialErrors;
+use crate::study::trial_statistics::TrialStatistics;
 
 /// Row of the table of concepts: a concept with one parameter value in an unassisted trial.
 #[derive(Clone, Copy, Debug)]
 pub struct ConceptRow<'a> {
-    trial: &'a Trial,
-    swept: &'a SweptTrial,
+    trial: &'a TrialStatistics,
+    swept: &'a PreventedTrialErrors,
 }
 
 /// Rows for all communication concepts that were evaluated on a trial.
-pub fn concepts(trial: &Trial) -> impl Iterator<Item = ConceptRow<'_>> {
+pub fn concepts(trial: &TrialStatistics) -> impl Iterator<Item = ConceptRow<'_>> {
     trial.swept.iter().map(move |swept| ConceptRow { trial, swept })
 }
 
-impl TableRow for ConceptRow<'_> {
-    const TABLE: Table = Table::Concepts;
+impl CsvRow for ConceptRow<'_> {
+    const TABLE: CsvTable = CsvTable::Concepts;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         let count = |name, unit, meaning, count: fn(&PreventionCounts) -> u64| {
             Self::column(name, unit, meaning, move |row| count(&row.swept.count).into())
         };
@@ -32,7 +32,7 @@ impl TableRow for ConceptRow<'_> {
             }),
             Self::column("participant", "", "as in participants", |row| (&row.trial.participant).into()),
             Self::column("concept", "", "tom-com, tom or dev", |row| row.swept.concept.name().into()),
-            Self::column("parameter", "", parameter, |row| TableCell::Number(row.swept.parameter)),
+            Self::column("parameter", "", parameter, |row| CsvCell::Number(row.swept.parameter)),
             count("presses", "presses", "human presses in the trial", |count| count.presses),
             count("signals", "signals", "hypothetical signals; for dev, proposals", |count| count.signals),
             count("related", "errors", "belief related", |count| count.related),

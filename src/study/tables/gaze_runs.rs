@@ -3,7 +3,7 @@
 use crate::base::time::SessionTime;
 use crate::kitchen::{Kitchen, LocationId};
 use crate::mind::recorded_estimate::rounded;
-use crate::study::column::{Column, Table, TableRow};
+use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
 /// Successive gaze samples on one location, or on none.
 #[derive(Clone, Copy, Debug)]
@@ -40,10 +40,10 @@ pub struct GazeRow<'a> {
     pub run: GazeRun,
 }
 
-impl TableRow for GazeRow<'_> {
-    const TABLE: Table = Table::Gaze;
+impl CsvRow for GazeRow<'_> {
+    const TABLE: CsvTable = CsvTable::Gaze;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         let time = "time of the run's first sample on the trial's clock";
         vec![
             Self::column("recording", "", "as in trials", |row| row.recording.into()),

@@ -2,9 +2,9 @@
 
 use crate::analysis::offer_summary::TimedOffer;
 use crate::communication::Signal;
-use crate::communication::offer::{OfferEnd, OfferUse, OfferedAct};
+use crate::communication::offer::{OfferCloseReason, OfferKeyUse, OfferedCommunication};
 use crate::mind::recorded_estimate::rounded;
-use crate::study::column::{Column, Table, TableRow};
+use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
 /// Row of the table of offers: an offer of a recording.
 #[derive(Clone, Copy, Debug)]
@@ -16,37 +16,37 @@ pub struct OfferRow<'a> {
 }
 
 impl OfferRow<'_> {
-    fn act(&self) -> &OfferedAct {
+    fn act(&self) -> &OfferedCommunication {
         &self.timed.offer.advice.what
     }
 
     fn target(&self) -> String {
         match self.act() {
-            OfferedAct::Signal(signal) => signal.target().unwrap_or_default().to_string(),
-            OfferedAct::Presses(presses) => presses.join(" "),
+            OfferedCommunication::Signal(signal) => signal.target().unwrap_or_default().to_string(),
+            OfferedCommunication::Presses(presses) => presses.join(" "),
         }
     }
 }
 
-fn kind_name(what: &OfferedAct) -> &'static str {
+fn kind_name(what: &OfferedCommunication) -> &'static str {
     match what {
-        OfferedAct::Signal(Signal::ShowRecipe(_)) => "recipe",
-        OfferedAct::Signal(Signal::Highlight(_)) => "highlight",
-        OfferedAct::Signal(Signal::Propose(_)) | OfferedAct::Presses(_) => "proposal",
+        OfferedCommunication::Signal(Signal::ShowRecipe(_)) => "recipe",
+        OfferedCommunication::Signal(Signal::Highlight(_)) => "highlight",
+        OfferedCommunication::Signal(Signal::Propose(_)) | OfferedCommunication::Presses(_) => "proposal",
     }
 }
 
-fn key_name(how: OfferUse) -> &'static str {
+fn key_name(how: OfferKeyUse) -> &'static str {
     match how {
-        OfferUse::Taken => "enter",
-        OfferUse::OwnKey => "own",
+        OfferKeyUse::Taken => "enter",
+        OfferKeyUse::OwnKey => "own",
     }
 }
 
-impl TableRow for OfferRow<'_> {
-    const TABLE: Table = Table::Offers;
+impl CsvRow for OfferRow<'_> {
+    const TABLE: CsvTable = CsvTable::Offers;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         let worth = "presses; for tom a probability";
         let closed = "reason of the close: taken, own_key, impossible, fell (no longer worth it), replaced, trial_ended; \
                       empty: the recording was cut";
@@ -68,7 +68,7 @@ impl TableRow for OfferRow<'_> {
             Self::column("stood_s", "s", "time for which it was open, without pauses", |row| {
                 row.timed.stood_s.map(rounded).into()
             }),
-            Self::column("closed", "", closed, |row| row.timed.reason.map(OfferEnd::name).into()),
+            Self::column("closed", "", closed, |row| row.timed.reason.map(OfferCloseReason::name).into()),
             Self::column("key", "", key, |row| row.timed.offer.used.map(|used| key_name(used.how)).into()),
             Self::column("reaction_s", "s", "time from the opening to that key, without pauses", |row| {
                 row.timed.reaction_s.map(rounded).into()

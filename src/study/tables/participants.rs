@@ -1,18 +1,18 @@
 //! Table of participants, with the measures that are compared between their trials.
 
-use crate::study::column::{Column, Table, TableRow};
+use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 use crate::study::effect::{StudyMeasure, TrialPair, pairs};
 use crate::study::recorded_consent::RecordedConsent;
 use crate::study::tables::trials::{HEADLINE, measures};
-use crate::study::trial_statistics::Trial;
+use crate::study::trial_statistics::TrialStatistics;
 
 /// A participant with its trials, at least one, and the first consent that it gave, if one is recorded.
 #[derive(Clone, Copy, Debug)]
-pub struct ParticipantRow<'a>(&'a [Trial], Option<&'a RecordedConsent>);
+pub struct ParticipantRow<'a>(&'a [TrialStatistics], Option<&'a RecordedConsent>);
 
 /// Participants of these trials, which must be ordered by participant, with their consents, which must be ordered by time.
 pub fn participants<'a>(
-    trials: &'a [Trial],
+    trials: &'a [TrialStatistics],
     consents: &'a [RecordedConsent],
 ) -> impl Iterator<Item = ParticipantRow<'a>> {
     trials.chunk_by(|a, b| a.participant == b.participant).map(|of_one| {
@@ -28,15 +28,15 @@ impl ParticipantRow<'_> {
     }
 }
 
-impl TableRow for ParticipantRow<'_> {
-    const TABLE: Table = Table::Participants;
+impl CsvRow for ParticipantRow<'_> {
+    const TABLE: CsvTable = CsvTable::Participants;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         let code = "participant code; prefixed by the seed if several seeds are analysed together";
         let kind = "kind of participant: simulated, keyboard (at the console) or display (at the wall display)";
         let group = "starting group in the study plan; AB: conditions in the plan's order";
         let second = "whether the second trial is the assisted one; empty without a pair of trials that count";
-        let mut columns: Vec<Column<Self>> = vec![
+        let mut columns: Vec<CsvColumn<Self>> = vec![
             Self::column("participant", "", code, |row| (&row.0[0].participant).into()),
             Self::column("kind", "", kind, |row| row.0[0].kind_name().into()),
             Self::column("group", "", group, |row| row.0[0].group.as_ref().into()),

@@ -1,11 +1,11 @@
 //! Table of the questions of freeze probes.
 
-use crate::analysis::probe_record::{FrozenAspect, ProbeResponse, ProbedQuestion, ProbedTrial};
+use crate::analysis::probe_record::{AspectAtFreeze, ProbeResponse, ProbedQuestion, ProbedTrial};
 use crate::mind::WORTH_TELLING;
 use crate::mind::recorded_estimate::rounded;
-use crate::study::column::{Column, Table, TableCell, TableRow};
+use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::effect::StudyMeasure;
-use crate::study::trial_statistics::Trial;
+use crate::study::trial_statistics::TrialStatistics;
 
 /// Measure of situation awareness: share of wrong answers to freeze probes.
 pub const PROBES_WRONG: StudyMeasure = StudyMeasure {
@@ -21,17 +21,17 @@ pub const PROBES_WRONG: StudyMeasure = StudyMeasure {
 /// Row of the table of probes: a question of a recording.
 #[derive(Clone, Copy, Debug)]
 pub struct ProbeRow<'a> {
-    trial: &'a Trial,
+    trial: &'a TrialStatistics,
     question: &'a ProbedQuestion,
 }
 
 /// Rows for the questions of a trial's freeze probes.
-pub fn probes(trial: &Trial) -> impl Iterator<Item = ProbeRow<'_>> {
+pub fn probes(trial: &TrialStatistics) -> impl Iterator<Item = ProbeRow<'_>> {
     trial.probes.iter().flat_map(|probes| &probes.questions).map(move |question| ProbeRow { trial, question })
 }
 
 impl ProbeRow<'_> {
-    fn frozen<'a, T: Into<TableCell<'a>>>(&'a self, value: impl Fn(&'a FrozenAspect) -> T) -> TableCell<'a> {
+    fn frozen<'a, T: Into<CsvCell<'a>>>(&'a self, value: impl Fn(&'a AspectAtFreeze) -> T) -> CsvCell<'a> {
         self.question.frozen.as_ref().map(value).into()
     }
 
@@ -46,7 +46,7 @@ impl ProbeRow<'_> {
 }
 
 /// Text with the values that the estimate gives at least the probability [`WORTH_TELLING`], the most probable first.
-fn told(frozen: &FrozenAspect) -> String {
+fn told(frozen: &AspectAtFreeze) -> String {
     let mut told: Vec<(&String, f64)> = frozen.estimate_p.iter().map(|(name, p)| (name, *p)).collect();
     told.retain(|(_, p)| *p >= WORTH_TELLING);
     told.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(b.0)));
@@ -54,10 +54,10 @@ fn told(frozen: &FrozenAspect) -> String {
     told.join("; ")
 }
 
-impl TableRow for ProbeRow<'_> {
-    const TABLE: Table = Table::Probes;
+impl CsvRow for ProbeRow<'_> {
+    const TABLE: CsvTable = CsvTable::Probes;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         let mut columns = question();
         columns.extend(answer());
         columns.extend(frozen());
@@ -65,7 +65,7 @@ impl TableRow for ProbeRow<'_> {
     }
 }
 
-type ProbeColumn<'a> = Column<ProbeRow<'a>>;
+type ProbeColumn<'a> = CsvColumn<ProbeRow<'a>>;
 
 fn question<'a>() -> Vec<ProbeColumn<'a>> {
     let kind = "what is asked: order, recipe or place (what is); next_order, next_press (level 2: what comes next)";

@@ -1,25 +1,25 @@
 //! Table of answers to questionnaires.
 
 use crate::session::answer_value::AnswerValue;
-use crate::study::column::{Column, Table, TableCell, TableRow};
-use crate::study::trial_statistics::{QuestionnaireAnswer, Trial};
+use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
+use crate::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
 /// Row of the table of questionnaires: an answer with the trial after which it was given.
 #[derive(Clone, Copy, Debug)]
 pub struct AnswerRow<'a> {
-    trial: &'a Trial,
+    trial: &'a TrialStatistics,
     answer: &'a QuestionnaireAnswer,
 }
 
 /// Rows for the answers given after a trial.
-pub fn answers(trial: &Trial) -> impl Iterator<Item = AnswerRow<'_>> {
+pub fn answers(trial: &TrialStatistics) -> impl Iterator<Item = AnswerRow<'_>> {
     trial.answers.iter().map(move |answer| AnswerRow { trial, answer })
 }
 
-impl TableRow for AnswerRow<'_> {
-    const TABLE: Table = Table::Questionnaires;
+impl CsvRow for AnswerRow<'_> {
+    const TABLE: CsvTable = CsvTable::Questionnaires;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         let given = "answer as given (not reversed): a point of the scale from 1, a number, a slider's position from 0 to 100, \
                      words, or ids of options separated by spaces; empty: skipped";
         let score = "score of the whole questionnaire at this occasion, the same at all its items; empty: it has none, or an item \
@@ -42,7 +42,7 @@ impl TableRow for AnswerRow<'_> {
             Self::column("answer", "", given, |row| match &row.answer.answer {
                 Some(AnswerValue::Number(number)) => (*number).into(),
                 Some(answer) => answer.cell().into(),
-                None => TableCell::Unknown,
+                None => CsvCell::Unknown,
             }),
             Self::column("points", "points", "number of points of the scale; empty: no scale", |row| {
                 row.answer.points.into()

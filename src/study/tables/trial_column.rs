@@ -1,12 +1,12 @@
 //! Declaration of a column of the table of trials.
 
-use crate::study::column::{Column, TableCell, TableRow};
+use crate::study::column::{CsvCell, CsvColumn, CsvRow};
 use crate::study::effect::StudyMeasure;
-use crate::study::trial_statistics::Trial;
+use crate::study::trial_statistics::TrialStatistics;
 
 /// Declaration of a column in the table of trials.
 pub(super) enum TrialColumn {
-    Plain(Column<Trial>),
+    Plain(CsvColumn<TrialStatistics>),
     /// A measure that the report compares between assisted and unassisted trials.
     Compared(StudyMeasure),
 }
@@ -16,7 +16,7 @@ pub(super) fn plain(
     name: &'static str,
     unit: &'static str,
     meaning: &'static str,
-    value: fn(&Trial) -> TableCell<'_>,
+    value: fn(&TrialStatistics) -> CsvCell<'_>,
 ) -> TrialColumn {
-    TrialColumn::Plain(Trial::column(name, unit, meaning, value))
+    TrialColumn::Plain(TrialStatistics::column(name, unit, meaning, value))
 }

@@ -6,15 +6,15 @@ use crate::analysis::offer_summary::OfferSummary;
 use crate::measures::cause_kinds::CauseKindCounts;
 use crate::measures::wizard_performance::WizardMeasures;
 use crate::robot::AbortReason;
-use crate::session::event::EndReason;
+use crate::session::event::TrialEndReason;
 use crate::session::wall_display::DisplayedArm;
-use crate::study::column::{Column, Table, TableCell, TableRow};
+use crate::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
 use crate::study::effect::StudyMeasure;
-use crate::study::known_beliefs::SharedBeliefs;
-use crate::study::robot_tally::ArmSummary;
+use crate::study::known_beliefs::FalseBeliefAgreement;
+use crate::study::robot_tally::RobotArmSummary;
 use crate::study::tables::arm_columns;
 use crate::study::tables::probe_table::PROBES_WRONG;
-use crate::study::trial_statistics::{BeliefErrors, Trial, mean_length};
+use crate::study::trial_statistics::{FalseBeliefErrors, TrialStatistics, mean_length};
 
 /// Main measure of the report, the first that is compared.
 pub const HEADLINE: StudyMeasure = StudyMeasure {
@@ -24,7 +24,7 @@ pub const HEADLINE: StudyMeasure = StudyMeasure {
     meaning_in: "in the {} trial",
     title: "errors per press of the human",
     digits: 3,
-    value: Trial::error_rate_human,
+    value: TrialStatistics::error_rate_human,
 };
 
 /// Number of errors, which the paper compares. Since trials differ in length, the error rate is the main measure.
@@ -57,14 +57,14 @@ pub fn measures() -> Vec<StudyMeasure> {
     measures
 }
 
-impl TableRow for Trial {
-    const TABLE: Table = Table::Trials;
+impl CsvRow for TrialStatistics {
+    const TABLE: CsvTable = CsvTable::Trials;
 
-    fn columns() -> Vec<Column<Trial>> {
+    fn columns() -> Vec<CsvColumn<TrialStatistics>> {
         let column = |column: TrialColumn| match column {
-            Compared(measure) => {
-                Trial::column(measure.name, measure.unit, measure.meaning, move |trial| (measure.value)(trial).into())
-            }
+            Compared(measure) => TrialStatistics::column(measure.name, measure.unit, measure.meaning, move |trial| {
+                (measure.value)(trial).into()
+            }),
             TrialColumn::Plain(column) => column,
         };
         declared().map(column).collect()
@@ -104,7 +104,7 @@ fn kind_of_trial() -> Vec<TrialColumn> {
             "ended",
             "",
             "reason of the trial's end: set number of presses, time or orders; early: wizard or aborted; empty: incomplete recording",
-            |t| t.ended.map(EndReason::name).into(),
+            |t| t.ended.map(TrialEndReason::name).into(),
         ),
         plain("arm", "", "robot arm: timed (random press durations) or physics (simulated with contact forces)", |t| {
             t.arm.name().into()
@@ -113,7 +113,7 @@ fn kind_of_trial() -> Vec<TrialColumn> {
 }
 
 fn errors() -> Vec<TrialColumn> {
-    fn of_beliefs(trial: &Trial, count: fn(&BeliefErrors) -> usize) -> TableCell<'_> {
+    fn of_beliefs(trial: &TrialStatistics, count: fn(&FalseBeliefErrors) -> usize) -> CsvCell<'_> {
         trial.beliefs.as_ref().map(|beliefs| count(beliefs) as u64).into()
     }
     vec![
@@ -131,7 +131,7 @@ fn errors() -> Vec<TrialColumn> {
             meaning_in: "in the {} trial",
             title: "errors per press of both agents",
             digits: 3,
-            value: Trial::error_rate,
+            value: TrialStatistics::error_rate,
         }),
         plain(
             "beliefs_from",
@@ -153,7 +153,7 @@ fn errors() -> Vec<TrialColumn> {
             meaning_in: "mean errors per error sequence of the {} trial",
             title: "errors per sequence",
             digits: 2,
-            value: Trial::sequence_length,
+            value: TrialStatistics::sequence_length,
         }),
         plain("sequences_by_aspect", "sequences", "as sequences, which are by aspect", |t| {
             of_beliefs(t, |beliefs| beliefs.lengths.len())
@@ -166,7 +166,7 @@ fn errors() -> Vec<TrialColumn> {
             meaning_in: "mean recovery time of the {} trial's error sequences",
             title: "seconds to recover from a sequence",
             digits: 2,
-            value: Trial::recovery_s,
+            value: TrialStatistics::recovery_s,
         }),
     ]
 }
@@ -207,7 +207,10 @@ fn pace() -> Vec<TrialColumn> {
 }
 
 fn robot() -> Vec<TrialColumn> {
-    fn of_arm<T: Into<TableCell<'static>>>(trial: &Trial, value: fn(&ArmSummary) -> T) -> TableCell<'static> {
+    fn of_arm<T: Into<CsvCell<'static>>>(
+        trial: &TrialStatistics,
+        value: fn(&RobotArmSummary) -> T,
+    ) -> CsvCell<'static> {
         trial.robot.arm.as_ref().map(value).into()
     }
     vec![
@@ -254,7 +257,7 @@ fn presses_given_up() -> Vec<TrialColumn> {
     let column = |reason: AbortReason| {
         let (name, why) = why(reason);
         let unknown = if reason.is_of_physics() { "; empty for a timed arm" } else { "" };
-        TrialColumn::Plain(Trial::column(
+        TrialColumn::Plain(TrialStatistics::column(
             format!("given_up_{name}"),
             "presses",
             format!("aborted robot presses: {why}{unknown}"),
@@ -280,7 +283,7 @@ fn by_hand() -> Vec<TrialColumn> {
 /// Columns with error sequences, lost presses, and errors by kind of state aspect.
 fn work() -> Vec<TrialColumn> {
     fn cause(name: &'static str, meaning: &'static str, count: fn(&CauseKindCounts) -> u64) -> TrialColumn {
-        TrialColumn::Plain(Trial::column(name, "errors", meaning, move |trial| {
+        TrialColumn::Plain(TrialStatistics::column(name, "errors", meaning, move |trial| {
             trial.beliefs.as_ref().map(|beliefs| count(&beliefs.causes)).into()
         }))
     }
@@ -327,9 +330,11 @@ fn offered() -> Vec<TrialColumn> {
         name: &'static str,
         unit: &'static str,
         meaning: &'static str,
-        value: fn(OfferSummary) -> TableCell<'static>,
+        value: fn(OfferSummary) -> CsvCell<'static>,
     ) -> TrialColumn {
-        TrialColumn::Plain(Trial::column(name, unit, meaning, move |trial| trial.offer_summary().map(value).into()))
+        TrialColumn::Plain(TrialStatistics::column(name, unit, meaning, move |trial| {
+            trial.offer_summary().map(value).into()
+        }))
     }
     vec![
         offers("offers", "offers", "closed offers that a wizard could see; empty: a recording without offers", |of| {
@@ -357,11 +362,13 @@ fn shown() -> Vec<TrialColumn> {
 
 /// Columns about false belief episodes, raters' agreement on them, and a wizard's hits.
 fn false_beliefs() -> Vec<TrialColumn> {
-    fn shared(name: &'static str, meaning: &'static str, count: fn(SharedBeliefs) -> u64) -> TrialColumn {
-        TrialColumn::Plain(Trial::column(name, "errors", meaning, move |trial| trial.shared_beliefs.map(count).into()))
+    fn shared(name: &'static str, meaning: &'static str, count: fn(FalseBeliefAgreement) -> u64) -> TrialColumn {
+        TrialColumn::Plain(TrialStatistics::column(name, "errors", meaning, move |trial| {
+            trial.shared_beliefs.map(count).into()
+        }))
     }
     fn wizard(name: &'static str, unit: &'static str, meaning: &'static str, count: Counted) -> TrialColumn {
-        TrialColumn::Plain(Trial::column(name, unit, meaning, move |trial| {
+        TrialColumn::Plain(TrialStatistics::column(name, unit, meaning, move |trial| {
             trial.wizard.as_ref().and_then(count).into()
         }))
     }

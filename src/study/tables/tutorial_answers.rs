@@ -6,8 +6,8 @@ use crate::base::time::SessionTime;
 use crate::session::plan::{PhaseSpec, TutorialStep, TutorialStepKind};
 use crate::session::protocol::{ProtocolEvent, StudyPhase};
 use crate::session::tutorial::TutorialEvent;
-use crate::session::{Event, SessionSpec, Stamped};
-use crate::study::column::{Column, Table, TableRow};
+use crate::session::{Event, SessionSpec, TimestampedEvent};
+use crate::study::column::{CsvColumn, CsvRow, CsvTable};
 
 /// Row of the table of tutorials: a question with the participant's answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -82,7 +82,7 @@ impl<'a> TutorialAnswers<'a> {
     }
 
     /// Takes note of an event of the recording.
-    pub fn note(&mut self, stamped: &Stamped) {
+    pub fn note(&mut self, stamped: &TimestampedEvent) {
         let Event::Protocol(event) = &stamped.event else { return };
         match event {
             ProtocolEvent::PhaseStarted { phase: StudyPhase::Tutorial, .. } => {
@@ -126,10 +126,10 @@ impl<'a> TutorialAnswers<'a> {
     }
 }
 
-impl TableRow for TutorialAnswer {
-    const TABLE: Table = Table::Tutorial;
+impl CsvRow for TutorialAnswer {
+    const TABLE: CsvTable = CsvTable::Tutorial;
 
-    fn columns() -> Vec<Column<Self>> {
+    fn columns() -> Vec<CsvColumn<Self>> {
         let right = "whether the last answer was right; empty: not answered";
         let seconds = "from the question's first appearance to the right answer";
         vec![

@@ -2,8 +2,8 @@
 
 use nalgebra::{Point3, Vector3};
 use rand::RngExt;
-use tomcom::arm::controller::{ControlCycle, PhysicalArm};
-use tomcom::arm::kinematics::Arm;
+use tomcom::arm::controller::{ArmController, ControlCycleResult};
+use tomcom::arm::kinematics::SerialArm;
 use tomcom::arm::physics::CYCLE_S;
 use tomcom::arm::physics::hand_body::HandPose;
 use tomcom::arm::report::PressFailure;
@@ -39,8 +39,8 @@ fn put_hand(found: &mut Contacts, watches_hands: bool, random: &mut Stream) {
     let total_s = arm.set_out(any_button(random)).expect("a way");
     let _ = until_report(&mut arm, None, random.random::<f64>() * 0.9 * total_s);
     let mut within = |half: f64| (random.random::<f64>() - 0.5) * 2.0 * half;
-    let model = Arm::ur5();
-    let tip = |arm: &PhysicalArm| model.tip(&arm.joints()).translation.vector;
+    let model = SerialArm::ur5();
+    let tip = |arm: &ArmController| model.tip(&arm.joints()).translation.vector;
     let aim = tip(&arm) + Vector3::new(within(0.05), within(0.05), 0.06 + within(0.05));
     let from = Vector3::new(aim.x + 0.25, aim.y + within(0.2), 0.15);
     let step = (aim - from).normalize() * (0.4 + within(0.2)) * CYCLE_S;
@@ -55,7 +55,7 @@ fn put_hand(found: &mut Contacts, watches_hands: bool, random: &mut Stream) {
             arm.press();
         }
         let (threshold_n, was_stopped, tip_before) = (arm.mode.threshold_n(), arm.mode.is_stopped(), tip(&arm));
-        let ControlCycle { report, felt, touched_n, .. } = arm.cycle(Some(hand));
+        let ControlCycleResult { report, felt, touched_n, .. } = arm.cycle(Some(hand));
         if felt.human_n > 0.0 && !was_stopped {
             touched_m_s = touched_m_s.max((tip(&arm) - tip_before).norm() / CYCLE_S);
         }

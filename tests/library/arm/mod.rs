@@ -12,7 +12,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use rand::RngExt;
-use tomcom::arm::controller::{ControlCycle, PhysicalArm};
+use tomcom::arm::controller::{ArmController, ControlCycleResult};
 use tomcom::arm::physics::CYCLE_S;
 use tomcom::arm::physics::hand_body::HandPose;
 use tomcom::arm::report::PressFailure;
@@ -24,7 +24,7 @@ use tomcom::robot::moment::ArmPhase;
 static SUSHI: LazyLock<Kitchen> =
     LazyLock::new(|| read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen loads").kitchen);
 /// Building one takes a while, as it settles.
-static AT_REST: LazyLock<PhysicalArm> = LazyLock::new(|| PhysicalArm::new(&SUSHI));
+static AT_REST: LazyLock<ArmController> = LazyLock::new(|| ArmController::new(&SUSHI));
 
 fn any_button(random: &mut Stream) -> ButtonId {
     ButtonId(random.random_range(0..SUSHI.buttons[Agent::Robot.index()].len()) as u8)
@@ -37,12 +37,12 @@ enum Came {
     Not(PressFailure),
 }
 
-fn came(cycle: &ControlCycle) -> Option<Came> {
+fn came(cycle: &ControlCycleResult) -> Option<Came> {
     cycle.clicked.map(Came::Clicked).or(cycle.report.map(Came::Not))
 }
 
 /// Lets it go on until something comes of its press, or for so long; when that was, in seconds.
-fn until_report(arm: &mut PhysicalArm, hand: Option<HandPose>, at_most_s: f64) -> (Option<Came>, f64) {
+fn until_report(arm: &mut ArmController, hand: Option<HandPose>, at_most_s: f64) -> (Option<Came>, f64) {
     let mut since_s = 0.0;
     while since_s < at_most_s {
         since_s += CYCLE_S;

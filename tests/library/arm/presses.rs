@@ -1,6 +1,6 @@
 //! Presses and contacts in the physics, counted: limits are kept, nobody is touched without a stop, the joints come out bit for bit.
 
-use tomcom::arm::kinematics::Arm;
+use tomcom::arm::kinematics::SerialArm;
 use tomcom::arm::physics::CYCLE_S;
 use tomcom::arm::trajectory::JOINT_SPEED_RAD_S;
 use tomcom::base::rng::stream;
@@ -17,7 +17,7 @@ fn presses(count: usize) {
     let mut arm = AT_REST.clone();
     let mut random = stream(5, "presses", 0);
     let (mut took_s, mut speed, mut missed) = (Vec::new(), 0.0_f64, 0);
-    let model = Arm::ur5();
+    let model = SerialArm::ur5();
     for _ in 0..count {
         let button = any_button(&mut random);
         arm.set_out(button).expect("a way");

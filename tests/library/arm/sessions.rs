@@ -5,34 +5,34 @@ use std::sync::Arc;
 
 use nalgebra::Point3;
 use tomcom::arm::clearance::Capsule;
-use tomcom::arm::controller::PhysicalArm;
+use tomcom::arm::controller::ArmController;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::Sender;
-use tomcom::communication::settings::Shadow;
+use tomcom::communication::settings::ShadowMode;
 use tomcom::edge::files::read_session;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen};
 use tomcom::robot::AbortReason;
 use tomcom::robot::moment::{ArmPhase, ArmSample, JOINTS};
 use tomcom::robot::safety::SafetyMode;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
 use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind};
 
 use super::{STILL_RAD, SUSHI};
 
 /// A session at the keyboard, in which nobody presses anything by himself, in this kitchen.
-fn session(kitchen: Kitchen) -> Engine {
+fn session(kitchen: Kitchen) -> SessionEngine {
     let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
     assert_eq!(spec.robot.arm, ArmKind::Physics);
     (spec.participant.kind, spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::None);
-    spec.assistant.shadow = Shadow::Off;
+    spec.assistant.shadow = ShadowMode::Off;
     let kitchen = Arc::new(kitchen);
-    Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen))
+    SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen))
 }
 
 /// Lets the session go on until such an event, or for so long; everything that happened.
-fn until(engine: &mut Engine, at_most_s: f64, is_it: impl Fn(&Event) -> bool) -> Vec<Event> {
+fn until(engine: &mut SessionEngine, at_most_s: f64, is_it: impl Fn(&Event) -> bool) -> Vec<Event> {
     let end = engine.session().time + SessionTime::from_secs_f64(at_most_s);
     let mut seen = Vec::new();
     while engine.next_due().is_some_and(|due| due <= end) {
@@ -69,14 +69,14 @@ fn modes(events: &[Event]) -> Vec<SafetyMode> {
     events.iter().filter_map(mode).collect()
 }
 
-fn input(engine: &mut Engine, event: Event) -> Vec<Event> {
+fn input(engine: &mut SessionEngine, event: Event) -> Vec<Event> {
     let outcome = engine.input(engine.session().time, event);
     assert_eq!(outcome.refused, None);
     outcome.events.into_iter().map(|stamped| stamped.event).collect()
 }
 
 /// A session whose trial runs, with its arm on its way.
-fn on_its_way() -> Engine {
+fn on_its_way() -> SessionEngine {
     let mut engine = session(SUSHI.clone());
     input(&mut engine, Event::TrialStarted);
     until(&mut engine, 10.0, |event| matches!(event, Event::RobotMoves(moment) if moment.phase == ArmPhase::Travels));
@@ -102,7 +102,7 @@ fn a_session_tells_what_the_arm_does_until_its_press() {
 }
 
 /// A stop that the session tells so; then nothing moves or is pressed until the wizard lets the arm go on.
-fn check_stop(engine: &mut Engine, seen: &[Event], mode: SafetyMode, reason: AbortReason) {
+fn check_stop(engine: &mut SessionEngine, seen: &[Event], mode: SafetyMode, reason: AbortReason) {
     assert_eq!(modes(seen).last(), Some(&mode), "{seen:?}");
     assert_eq!(aborts(seen), [reason]);
     assert!(engine.session().robot.stopped);
@@ -168,7 +168,7 @@ fn the_wizards_key_counts_where_the_arm_has_stopped_by_itself_too() {
 }
 
 /// In a session whose kitchen or arm is changed so, every press is given up for this reason, and tried again later.
-fn check_given_up(change: impl Fn(&mut Kitchen), meddle: impl Fn(&mut PhysicalArm), reason: AbortReason) {
+fn check_given_up(change: impl Fn(&mut Kitchen), meddle: impl Fn(&mut ArmController), reason: AbortReason) {
     let mut kitchen = SUSHI.clone();
     change(&mut kitchen);
     let mut engine = session(kitchen);
@@ -188,10 +188,10 @@ fn a_press_that_cannot_be_made_is_given_up_for_a_reason() {
             kitchen.buttons[Agent::Robot.index()].iter_mut().for_each(|button| button.at_m = at_m)
         }
     };
-    let nothing = |_: &mut PhysicalArm| ();
+    let nothing = |_: &mut ArmController| ();
     check_given_up(moved([1.1, 0.2]), nothing, AbortReason::OutOfReach);
     check_given_up(moved([0.89, 0.0]), nothing, AbortReason::Singular);
-    let walled = |arm: &mut PhysicalArm| {
+    let walled = |arm: &mut ArmController| {
         for button in &SUSHI.buttons[Agent::Robot.index()] {
             let [x, y] = button.at_m;
             let ends_m = [Point3::new(x, y, 0.0), Point3::new(x, y, 0.5)];
@@ -199,7 +199,7 @@ fn a_press_that_cannot_be_made_is_given_up_for_a_reason() {
         }
     };
     check_given_up(|_| (), walled, AbortReason::Obstructed);
-    let jammed = |arm: &mut PhysicalArm| {
+    let jammed = |arm: &mut ArmController| {
         (0..SUSHI.buttons[Agent::Robot.index()].len()).for_each(|button| arm.world().jam(button))
     };
     check_given_up(|_| (), jammed, AbortReason::NoClick);

@@ -2,9 +2,9 @@
 
 use nalgebra::Point3;
 use tomcom::arm::clearance::{Capsule, Obstruction};
-use tomcom::arm::kinematics::Arm;
+use tomcom::arm::kinematics::SerialArm;
 use tomcom::arm::physics::hand_body::HandPose;
-use tomcom::arm::reach::Unreachable;
+use tomcom::arm::reach::UnreachableReason;
 use tomcom::arm::report::PressFailure;
 use tomcom::kitchen::{Agent, ButtonId};
 use tomcom::robot::moment::JOINTS;
@@ -29,10 +29,10 @@ fn after_a_protective_stop_only_the_wizard_lets_it_go_on_and_then_it_goes_up_and
     assert_eq!(arm.mode, SafetyMode::ProtectiveStop);
     assert_eq!(until_report(&mut arm, None, 5.0).0, None);
     assert!(!arm.moves() && !arm.is_busy() && arm.mode == SafetyMode::ProtectiveStop, "the hand is gone, it stays");
-    let low_m = Arm::ur5().tip(&arm.joints()).translation.z;
+    let low_m = SerialArm::ur5().tip(&arm.joints()).translation.z;
     arm.resume();
     until_report(&mut arm, None, 2.0);
-    assert!(Arm::ur5().tip(&arm.joints()).translation.z > low_m + 0.01, "it goes up first");
+    assert!(SerialArm::ur5().tip(&arm.joints()).translation.z > low_m + 0.01, "it goes up first");
     arm.set_out(ButtonId(0)).expect("a way");
     assert_eq!(until_report(&mut arm, None, 10.0).0, Some(Came::Clicked(ButtonId(0))));
 }
@@ -77,7 +77,7 @@ fn a_joint_that_gives_way_is_a_fault_and_the_brakes_hold() {
     assert!(after_s < 0.5 && arm.mode == SafetyMode::Fault);
     until_report(&mut arm, None, 1.0);
     assert!(!arm.moves());
-    assert!(Arm::ur5().tip(&arm.joints()).translation.z > 0.02, "it did not fall on the table");
+    assert!(SerialArm::ur5().tip(&arm.joints()).translation.z > 0.02, "it did not fall on the table");
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn a_way_that_is_blocked_goes_over_what_stands_there_or_is_refused() {
     };
     let mut arm = AT_REST.clone();
     arm.around().obstacles.push(post(0.5, x, y));
-    assert_eq!(arm.set_out(ButtonId(0)), Err(Unreachable::Blocked(Obstruction::Obstacle)));
+    assert_eq!(arm.set_out(ButtonId(0)), Err(UnreachableReason::Blocked(Obstruction::Obstacle)));
     // Between two buttons it is gone over.
     let mut arm = AT_REST.clone();
     arm.set_out(ButtonId(0)).expect("a way");
@@ -105,7 +105,7 @@ fn a_way_that_is_blocked_goes_over_what_stands_there_or_is_refused() {
     let mut direct = arm.clone();
     let direct_s = direct.set_out(ButtonId(3)).expect("a way");
     until_report(&mut direct, None, direct_s / 2.0);
-    let midway = Arm::ur5().tip(&direct.joints()).translation.vector;
+    let midway = SerialArm::ur5().tip(&direct.joints()).translation.vector;
     arm.around().obstacles.push(post(0.12, midway.x, midway.y));
     let around_s = arm.set_out(ButtonId(3)).expect("a way over it");
     assert!(around_s > direct_s, "{around_s} s instead of {direct_s} s");

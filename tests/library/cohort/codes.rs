@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 use tomcom::edge::log::rater_codes::{read_all, write};
 use tomcom::edge::log::{LOG_NAME, consensus_file};
-use tomcom::measures::cause_codes::{AgreementTable, CauseKind, Code, Codes};
-use tomcom::measures::consensus::{Consensus, unsettled};
+use tomcom::measures::cause_codes::{AgreementTable, ErrorCauseCode, ErrorCauseKind, RaterCodes};
+use tomcom::measures::consensus::{RaterConsensus, unsettled};
 use tomcom::measures::rater_choice::RaterChoice;
 use tomcom::run::code_exchange::{export, import};
-use tomcom::run::codes::{CodedRecording, CodesSummary, describe};
-use tomcom::run::simulate::Shard;
+use tomcom::run::codes::{CodedRecording, RaterCodesSummary, describe};
+use tomcom::run::simulate::SimulationShard;
 use tomcom::run::study::reading::{self, AnalysisScope};
 
 use super::{folder, paper, run};
@@ -19,10 +19,10 @@ use super::{folder, paper, run};
 /// The errors of one recording, coded by two people: so many pairs of what the one and the other say.
 fn coded(pairs: &[(&str, &str, u64)]) -> AgreementTable {
     let code = |text: &str| match text.split_once(' ') {
-        Some(("belief", place)) => Code::Belief(place.to_string()),
-        _ => Code::new(CauseKind::named(text).expect("a kind"), None).expect("a code"),
+        Some(("belief", place)) => ErrorCauseCode::Belief(place.to_string()),
+        _ => ErrorCauseCode::new(ErrorCauseKind::named(text).expect("a kind"), None).expect("a code"),
     };
-    let (mut one, mut other) = (Codes::default(), Codes::default());
+    let (mut one, mut other) = (RaterCodes::default(), RaterCodes::default());
     for (a, b, number) in pairs {
         for _ in 0..*number {
             let press = one.0.len() as u64;
@@ -31,7 +31,7 @@ fn coded(pairs: &[(&str, &str, u64)]) -> AgreementTable {
         }
     }
     // What only one of them has coded does not count.
-    one.0.insert(10_000, Code::Slip);
+    one.0.insert(10_000, ErrorCauseCode::Slip);
     let mut table = AgreementTable::default();
     table.add(&one, &other);
     table
@@ -79,7 +79,7 @@ fn kappa_is_that_of_known_tables() {
 
 #[test]
 fn the_two_raters_who_coded_most_errors_are_taken_and_none_by_name() {
-    let rater = |errors: u64| Codes((0..errors).map(|press| (press, Code::Slip)).collect());
+    let rater = |errors: u64| RaterCodes((0..errors).map(|press| (press, ErrorCauseCode::Slip)).collect());
     let choice = |raters: &[u64]| {
         let named = raters.iter().enumerate().map(|(index, errors)| (format!("R{}", index + 1), rater(*errors)));
         match RaterChoice::most_complete(&named.collect()) {
@@ -122,12 +122,12 @@ fn check_wrong_rows(coded: &mut [CodedRecording], recording: &Path, table: &Path
 }
 
 /// Two raters of one recording: the second takes every other belief for a slip, and leaves the last error out.
-fn two_raters(recording: &Path) -> (CodedRecording, [Codes; 2]) {
+fn two_raters(recording: &Path) -> (CodedRecording, [RaterCodes; 2]) {
     let coded = CodedRecording::open(recording).expect("a recording");
     let one = coded.known.clone().expect("a simulated participant tells");
-    let mut other = Codes::default();
+    let mut other = RaterCodes::default();
     for (index, (press, code)) in one.0.iter().enumerate().take(one.0.len() - 1) {
-        other.0.insert(*press, if index % 2 == 0 { code.clone() } else { Code::Race });
+        other.0.insert(*press, if index % 2 == 0 { code.clone() } else { ErrorCauseCode::Race });
     }
     write(recording, "R1", &one).expect("written");
     write(recording, "R2", &other).expect("written");
@@ -137,26 +137,26 @@ fn two_raters(recording: &Path) -> (CodedRecording, [Codes; 2]) {
 #[test]
 fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
     let out = folder("consensus");
-    let made = run(&paper(304), 1, Shard::WHOLE, &out);
+    let made = run(&paper(304), 1, SimulationShard::WHOLE, &out);
     let recording = PathBuf::from(&made.recordings[0]);
     let (coded, [one, other]) = two_raters(&recording);
     let open = unsettled(&coded.codable.errors, [&one, &other]);
     assert!(open.len() > 2, "{open:?}");
-    let before = CodesSummary::from_recordings(std::slice::from_ref(&coded));
+    let before = RaterCodesSummary::from_recordings(std::slice::from_ref(&coded));
     // The last one is not coded by the second rater: to be settled, and no disagreement.
     assert_eq!(before.disagreements.len(), open.len() - 1);
     let first = &before.disagreements[0];
     assert_eq!((first.error.press, first.with_cause.as_str(), &first.with_aspect), (open[0], "race", &None));
     assert_eq!(coded.codable.errors[first.error.error as usize - 1], open[0]);
 
-    let decided = Codes(open.iter().map(|press| (*press, Code::Buttons)).collect());
-    let settled = Consensus::new("R2", "R1").with_agreed([&one, &other]).with_decided(&decided, [&one, &other]);
+    let decided = RaterCodes(open.iter().map(|press| (*press, ErrorCauseCode::Buttons)).collect());
+    let settled = RaterConsensus::new("R2", "R1").with_agreed([&one, &other]).with_decided(&decided, [&one, &other]);
     consensus_file::write(&recording, &settled).expect("written");
     let read = consensus_file::read(&recording, &coded.codable).expect("readable");
     assert_eq!(read.as_ref(), Some(&settled), "it is read as it was written");
 
     let after = CodedRecording::open(&recording).expect("a recording");
-    let figures = CodesSummary::from_recordings(std::slice::from_ref(&after));
+    let figures = RaterCodesSummary::from_recordings(std::slice::from_ref(&after));
     assert_eq!(figures.agreements, before.agreements, "kappa is that of the raters' own codes");
     assert_eq!(after.codes.len(), 2, "a consensus is no rater");
     let found = figures.recordings[0].consensus.clone().expect("a consensus");
@@ -186,9 +186,9 @@ fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
 
     // A rater thinks again.
     let mut later = other.clone();
-    later.0.insert(open[0], Code::Other);
+    later.0.insert(open[0], ErrorCauseCode::Other);
     write(&recording, "R2", &later).expect("written");
-    let stale = CodesSummary::from_recordings(&[CodedRecording::open(&recording).expect("a recording")]);
+    let stale = RaterCodesSummary::from_recordings(&[CodedRecording::open(&recording).expect("a recording")]);
     let found = stale.recordings[0].consensus.clone().expect("a consensus");
     assert_eq!((found.open, found.stale.len()), (1, 1));
     assert_eq!((found.stale[0].press, found.stale[0].rater.as_str()), (open[0], "R2"));
@@ -198,7 +198,7 @@ fn what_two_raters_settle_is_no_rater_and_goes_stale_when_one_changes_a_code() {
 #[test]
 fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     let out = folder("codes");
-    let made = run(&paper(304), 1, Shard::WHOLE, &out);
+    let made = run(&paper(304), 1, SimulationShard::WHOLE, &out);
     let recording = PathBuf::from(&made.recordings[0]);
     let log = fs::read(recording.join(LOG_NAME)).expect("a log");
     let mut coded = vec![CodedRecording::open(&recording).expect("a recording")];
@@ -207,16 +207,16 @@ fn codes_are_kept_beside_the_log_and_come_and_go_as_a_table() {
     assert_eq!(truth.0.len(), coded[0].codable.errors.len());
     write(&recording, "R1", &truth).expect("written");
     // The second rater takes every belief for a slip.
-    let slips = Codes(truth.0.keys().map(|press| (*press, Code::Slip)).collect());
+    let slips = RaterCodes(truth.0.keys().map(|press| (*press, ErrorCauseCode::Slip)).collect());
     write(&recording, "R2", &slips).expect("written");
     assert_eq!(read_all(&recording, &coded[0].codable).expect("readable")["R1"], truth);
 
     coded = vec![CodedRecording::open(&recording).expect("a recording")];
-    let figures = CodesSummary::from_recordings(&coded);
+    let figures = RaterCodesSummary::from_recordings(&coded);
     assert_eq!(figures.agreements.len(), 1);
     let right: Vec<(&str, u64)> =
         figures.known.iter().map(|pair| (pair.of.as_str(), pair.agreement.same_cause)).collect();
-    let slips_in_truth = truth.0.values().filter(|code| **code == Code::Slip).count() as u64;
+    let slips_in_truth = truth.0.values().filter(|code| **code == ErrorCauseCode::Slip).count() as u64;
     assert_eq!(right, [("R1", made.errors), ("R2", slips_in_truth)]);
     assert_eq!(truth.agreed(&slips).0.len() as u64, figures.agreements[0].agreement.same_cause);
 

@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::edge::log::LogReader;
-use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
-use tomcom::session::Stamped;
+use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::session::TimestampedEvent;
 
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cohort").join(name);
@@ -33,14 +33,14 @@ fn paper(presses: u32) -> SessionFiles {
 fn run(
     files: &SessionFiles,
     trials: u64,
-    shard: Shard,
+    shard: SimulationShard,
     out: &Path,
 ) -> tomcom::analysis::trial_summary::SimulationSummary {
     let simulation = SimulationRequest { files: files.clone(), trials, shard, out: out.to_path_buf() };
     simulate(&simulation, || ()).expect("the folder can be written")
 }
 
-fn events(recording: &Path) -> (tomcom::session::Header, Vec<Stamped>) {
+fn events(recording: &Path) -> (tomcom::session::LogHeader, Vec<TimestampedEvent>) {
     let mut log = LogReader::open(recording).expect("a recording");
     let mut all = Vec::new();
     while let Some(line) = log.next_line().expect("an event") {

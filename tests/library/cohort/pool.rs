@@ -4,9 +4,9 @@ use std::path::Path;
 
 use tomcom::edge::files::SessionFiles;
 use tomcom::run::pool::{PoolRequest, simulate};
-use tomcom::run::simulate::Shard;
+use tomcom::run::simulate::SimulationShard;
 use tomcom::session::study_arm::StudyArm;
-use tomcom::study::simulation_pool::{PersonTrial, SimulationPool};
+use tomcom::study::simulation_pool::{PoolParticipantPeriod, SimulationPool};
 
 use super::{folder, paper, run};
 
@@ -14,20 +14,20 @@ use super::{folder, paper, run};
 const PERSONS: u32 = 4;
 const PRESSES: u32 = 80;
 
-fn pool(files: &SessionFiles, shard: Shard, [arms, unassisted]: [bool; 2]) -> SimulationPool {
+fn pool(files: &SessionFiles, shard: SimulationShard, [arms, unassisted]: [bool; 2]) -> SimulationPool {
     let request = PoolRequest { files: files.clone(), participants: PERSONS, shard, arms, unassisted };
     simulate(&request, Path::new("paper.toml"), || ()).expect("a pool")
 }
 
-fn trials(pool: &SimulationPool) -> impl Iterator<Item = &PersonTrial> {
+fn trials(pool: &SimulationPool) -> impl Iterator<Item = &PoolParticipantPeriod> {
     pool.persons.iter().flat_map(|person| &person.trials)
 }
 
 #[test]
 fn a_pool_has_the_trials_of_the_plan_and_their_unassisted_twins() {
     let files = paper(PRESSES);
-    let both = pool(&files, Shard::WHOLE, [true, true]);
-    let recorded = run(&files, 2 * u64::from(PERSONS), Shard::WHOLE, &folder("pool"));
+    let both = pool(&files, SimulationShard::WHOLE, [true, true]);
+    let recorded = run(&files, 2 * u64::from(PERSONS), SimulationShard::WHOLE, &folder("pool"));
     let own = || trials(&both).filter_map(|trial| trial.own.as_ref());
     assert_eq!(own().map(|one| one.errors).sum::<u64>(), recorded.errors);
     assert_eq!(own().map(|one| one.signals).sum::<u64>(), recorded.signals);
@@ -44,7 +44,7 @@ fn a_pool_has_the_trials_of_the_plan_and_their_unassisted_twins() {
         }
     }
     assert!(own().any(|one| one.signals > 0), "nobody signals");
-    let null = pool(&files, Shard::WHOLE, [false, true]);
+    let null = pool(&files, SimulationShard::WHOLE, [false, true]);
     assert!(trials(&null).zip(trials(&both)).all(|(one, other)| one.unassisted == other.unassisted));
     assert!(trials(&null).all(|trial| trial.own.is_some() == (trial.arm == StudyArm::None)));
 }
@@ -52,15 +52,16 @@ fn a_pool_has_the_trials_of_the_plan_and_their_unassisted_twins() {
 #[test]
 fn the_shards_of_a_pool_are_the_whole() {
     let files = paper(30);
-    let whole = pool(&files, Shard::WHOLE, [true, true]);
-    let parts = (1..=3).map(|number| pool(&files, Shard { number, of: 3 }, [true, true])).collect();
+    let whole = pool(&files, SimulationShard::WHOLE, [true, true]);
+    let parts = (1..=3).map(|number| pool(&files, SimulationShard { number, of: 3 }, [true, true])).collect();
     assert_eq!(SimulationPool::joined(parts).expect("the whole"), whole);
 }
 
 #[test]
 fn what_cannot_be_simulated_is_told_beforehand() {
     let refused = |files: SessionFiles| {
-        let request = PoolRequest { files, participants: 2, shard: Shard::WHOLE, arms: true, unassisted: true };
+        let request =
+            PoolRequest { files, participants: 2, shard: SimulationShard::WHOLE, arms: true, unassisted: true };
         simulate(&request, Path::new("plan.toml"), || ()).expect_err("refused").to_string()
     };
     let mut person = paper(30);

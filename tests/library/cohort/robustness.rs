@@ -8,7 +8,7 @@ use tomcom::measures::flags::ThresholdSource;
 use tomcom::participant::population::Population;
 use tomcom::run::check_beliefs;
 use tomcom::run::robustness::{RobustnessRequest, measure};
-use tomcom::run::simulate::Shard;
+use tomcom::run::simulate::SimulationShard;
 use tomcom::session::settings::{ArmKind, Condition};
 
 use super::{folder, run};
@@ -71,7 +71,7 @@ fn the_table_has_what_recordings_of_the_same_trials_give() {
     files.spec.trial.condition = Condition::None;
     let mut recorded = |seed: u64| -> (u64, Vec<PathBuf>) {
         files.spec.seed = seed;
-        let figures = run(&files, TRIALS, Shard::WHOLE, &folder(&format!("robustness-{seed}")));
+        let figures = run(&files, TRIALS, SimulationShard::WHOLE, &folder(&format!("robustness-{seed}")));
         let related = figures.beliefs.belief_related_errors.expect("known of simulated people");
         (related, figures.recordings.iter().map(PathBuf::from).collect())
     };

@@ -6,14 +6,14 @@ use std::path::Path;
 use tomcom::communication::concept::ConceptName;
 use tomcom::edge::files::read_session;
 use tomcom::edge::log::LOG_NAME;
-use tomcom::run::simulate::Shard;
+use tomcom::run::simulate::SimulationShard;
 use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::session::settings::{ArmKind, Condition};
-use tomcom::study::trial_statistics::Trial;
+use tomcom::study::trial_statistics::TrialStatistics;
 
 use super::{folder, run};
 
-fn analysed(recording: &Path) -> Trial {
+fn analysed(recording: &Path) -> TrialStatistics {
     let scope = AnalysisScope { concepts: true, events: false };
     let (_, analysis) = reading::read(recording, "one", scope, None).expect("readable").expect("no practice");
     analysis.trial
@@ -27,9 +27,10 @@ fn proposals_of_simulated_trials_are_judged_by_the_next_presses() {
     (files.spec.trial.presses, files.spec.seed) = (200, 9702);
     (files.spec.assistant.concept, files.spec.assistant.proposed_presses) = (ConceptName::Dev, 2);
     files.spec.robot.arm = ArmKind::Timed;
-    let figures = run(&files, 3, Shard::WHOLE, &folder("twins-dev"));
-    let trials: Vec<Trial> = figures.recordings.iter().map(|recording| analysed(Path::new(recording))).collect();
-    let sum = |of: fn(&Trial) -> u64| trials.iter().map(of).sum::<u64>();
+    let figures = run(&files, 3, SimulationShard::WHOLE, &folder("twins-dev"));
+    let trials: Vec<TrialStatistics> =
+        figures.recordings.iter().map(|recording| analysed(Path::new(recording))).collect();
+    let sum = |of: fn(&TrialStatistics) -> u64| trials.iter().map(of).sum::<u64>();
     let (signals, contents) = (sum(|trial| trial.signals), sum(|trial| trial.signal_contents));
     let useful = sum(|trial| trial.useful_signals.expect("it comes out the same again"));
     assert!(0 < useful && useful < signals, "{useful} of {signals} useful");
@@ -46,8 +47,9 @@ fn signals_of_simulated_trials_are_useful_or_useless_and_those_of_trials_that_co
     files.spec.assistant.concept = ConceptName::Tom;
     files.spec.robot.arm = ArmKind::Timed;
     files.spec.seed = 21;
-    let figures = run(&files, 3, Shard::WHOLE, &folder("twins"));
-    let trials: Vec<Trial> = figures.recordings.iter().map(|recording| analysed(Path::new(recording))).collect();
+    let figures = run(&files, 3, SimulationShard::WHOLE, &folder("twins"));
+    let trials: Vec<TrialStatistics> =
+        figures.recordings.iter().map(|recording| analysed(Path::new(recording))).collect();
     let useful: u64 = trials.iter().map(|trial| trial.useful_signals.expect("it comes out the same again")).sum();
     let signals: u64 = trials.iter().map(|trial| trial.signals).sum();
     assert_eq!(signals, figures.signals);

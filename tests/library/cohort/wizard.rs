@@ -8,12 +8,12 @@ use tomcom::communication::Sender;
 use tomcom::edge::files::read_session;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{DishId, LocationId};
-use tomcom::run::simulate::Shard;
+use tomcom::run::simulate::SimulationShard;
 use tomcom::run::verify::verify;
 use tomcom::session::admit::hygiene;
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
-use tomcom::session::{Event, Session, Stamped};
+use tomcom::session::{Event, Session, TimestampedEvent};
 use tomcom::wizard::settings::{OfferReading, WizardKind, WizardSpec};
 use tomcom::wizard::{ScriptedWizard, WizardAction};
 
@@ -22,13 +22,14 @@ use super::{events, folder, paper, run};
 #[test]
 fn a_scripted_wizard_signals_in_its_trials_and_comes_out_the_same_again() {
     let (files, out) = (paper(120), folder("wizard"));
-    let figures = run(&files, 4, Shard::WHOLE, &out);
+    let figures = run(&files, 4, SimulationShard::WHOLE, &out);
     let mut signals = 0;
     for recording in &figures.recordings {
         let (header, events) = events(Path::new(recording));
         let shown = events.iter().filter(|stamped| matches!(stamped.event, Event::SignalShown { .. }));
         let times: Vec<SessionTime> = shown.clone().map(|stamped| stamped.time).collect();
-        let by_wizard = |stamped: &Stamped| matches!(stamped.event, Event::SignalShown { by: Sender::Wizard, .. });
+        let by_wizard =
+            |stamped: &TimestampedEvent| matches!(stamped.event, Event::SignalShown { by: Sender::Wizard, .. });
         assert!(shown.clone().all(by_wizard), "{recording}");
         match header.session.trial.condition {
             Condition::Wizard => signals += times.len(),
@@ -48,10 +49,10 @@ fn a_scripted_wizard_signals_in_its_trials_and_comes_out_the_same_again() {
 fn a_wizard_who_sees_nothing_says_nothing_and_no_hand_signals_in_its_place() {
     let mut files = paper(120);
     (files.spec.wizard.sees_errors, files.spec.wizard.sees_overlooked) = (0.0, 0.0);
-    assert_eq!(run(&files, 2, Shard::WHOLE, &folder("blind")).signals, 0);
+    assert_eq!(run(&files, 2, SimulationShard::WHOLE, &folder("blind")).signals, 0);
     // A wizard who is a person is not there in a simulation.
     files.spec.wizard = WizardSpec { kind: WizardKind::Person, sees_errors: 1.0, ..files.spec.wizard };
-    let figures = run(&files, 2, Shard::WHOLE, &folder("person"));
+    let figures = run(&files, 2, SimulationShard::WHOLE, &folder("person"));
     assert!(figures.arms.iter().all(|one| one.arm == StudyArm::None));
 
     let mut spec = paper(120).spec;
@@ -174,7 +175,7 @@ fn a_scripted_wizard_takes_offers_in_the_arm_with_advice_alone() {
     files.spec.wizard.kind = WizardKind::Scripted;
     (files.spec.seed, files.spec.trial.presses) = (9701, 160);
     (files.spec.assistant.rollout.rollouts, files.spec.human.inference.beliefs) = (64, 128);
-    let figures = run(&files, 5, Shard::WHOLE, &folder("arms"));
+    let figures = run(&files, 5, SimulationShard::WHOLE, &folder("arms"));
     let arms: Vec<StudyArm> = figures.arms.iter().map(|one| one.arm).collect();
     let wanted = [StudyArm::None, StudyArm::Wizard, StudyArm::WizardWithAdvice, StudyArm::TomCom, StudyArm::Tom];
     assert_eq!(arms, wanted);

@@ -6,13 +6,13 @@ use ratatui::backend::TestBackend;
 use ratatui::buffer::Cell;
 use ratatui::style::{Color, Modifier};
 use tomcom::base::time::SessionTime;
-use tomcom::communication::recommendation::{Reason, Recommendation, SignalOption};
-use tomcom::communication::settings::Shadow;
+use tomcom::communication::recommendation::{Recommendation, SignalOption, SignalReason};
+use tomcom::communication::settings::ShadowMode;
 use tomcom::communication::{Sender, Signal};
 use tomcom::console::view;
 use tomcom::console::view::theme::{TerminalBackground, TextRole, Theme};
-use tomcom::session::event::{Event, SignalEnd};
-use tomcom::session::settings::{ParticipantKind, Visibility};
+use tomcom::session::event::{Event, SignalEndReason};
+use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, input};
 use crate::check_snapshot;
@@ -20,8 +20,8 @@ use crate::check_snapshot;
 /// The sushi kitchen with an assistant that advises beside the wizard, and its advice.
 fn advised(best: bool) -> Stage {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.session.spec.assistant.shadow = Shadow::On;
-    stage.at(21.85, Event::SignalEnded { reason: SignalEnd::TakenBack });
+    stage.session.spec.assistant.shadow = ShadowMode::On;
+    stage.at(21.85, Event::SignalEnded { reason: SignalEndReason::TakenBack });
     let option = |signal, benefit: f64, standard_error| SignalOption {
         signal,
         benefit,
@@ -37,7 +37,7 @@ fn advised(best: bool) -> Stage {
         option(recipe("order_2"), 0.3, 0.1),
         option(highlight("robot_hand"), 0.0, 0.0),
     ];
-    let reason = Reason {
+    let reason = SignalReason {
         aspect: "recipe of tuna nigiri".to_string(),
         believes: "salmon nigiri".to_string(),
         truth: "tuna nigiri".to_string(),
@@ -113,7 +113,7 @@ fn enter_accepts_what_is_recommended_and_says_so() {
     assert_eq!((signal, taken), (Signal::ShowRecipe("order_1".to_string()), offer));
     assert_eq!(input(advised(false).key(KeyCode::Enter)), None, "there is nothing to accept");
     let mut unseen = advised(true);
-    unseen.session.spec.console.visibility = Visibility::State;
+    unseen.session.spec.console.visibility = WizardVisibility::State;
     assert_eq!(input(unseen.key(KeyCode::Enter)), None, "what is not shown is not accepted");
 }
 
@@ -132,7 +132,7 @@ fn what_was_sent_is_not_offered_again_before_there_is_newer_advice() {
     stage.at(23.7, Event::Advised(late(22.5)));
     stage.offer(23.7);
     assert_eq!(input(stage.key(KeyCode::Enter)), None);
-    stage.at(26.6, Event::SignalEnded { reason: SignalEnd::TakenBack });
+    stage.at(26.6, Event::SignalEnded { reason: SignalEndReason::TakenBack });
     stage.at(30.0, Event::Advised(late(30.0)));
     stage.offer(30.0);
     stage.wait(1.0);
@@ -172,7 +172,7 @@ fn the_timeline_shows_offers_from_their_opening_to_their_close() {
     stage.at(27.0, Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer });
     stage.offer(27.0);
     assert!(row(&stage).contains("──────✓"), "taken: {}", row(&stage));
-    stage.session.spec.console.visibility = Visibility::Belief;
+    stage.session.spec.console.visibility = WizardVisibility::Belief;
     assert!(!stage.screen((200, 60)).contains(" offers "));
 }
 

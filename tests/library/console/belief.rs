@@ -4,7 +4,7 @@ use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
 use tomcom::history::belief_track;
 use tomcom::session::event::Event;
-use tomcom::session::settings::{ParticipantKind, Visibility};
+use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, panels};
 use crate::check_snapshot;
@@ -42,7 +42,7 @@ fn one_belief_is_looked_at_over_time_and_then_the_next() {
 #[test]
 fn the_belief_has_the_room_of_the_recommendation_where_there_is_none() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.session.spec.console.visibility = Visibility::Belief;
+    stage.session.spec.console.visibility = WizardVisibility::Belief;
     check_snapshot("console", "belief_120x40", stage.screen((120, 40)));
 }
 

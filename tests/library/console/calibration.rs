@@ -2,9 +2,9 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::gaze_advice::CalibrationAdvice;
+use tomcom::console::gaze_advice::AccuracyCheckAction;
 use tomcom::gaze::calibration::{GazeAccuracy, TargetAccuracy};
-use tomcom::session::accuracy_check::CalibrationEvent;
+use tomcom::session::accuracy_check::GazeCheckEvent;
 use tomcom::session::event::Event;
 use tomcom::session::settings::ParticipantKind;
 
@@ -15,9 +15,9 @@ use crate::check_snapshot;
 fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
     let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
     let begun = input(stage.control('v')).expect("a check begins");
-    assert_eq!(begun, Event::Calibration(CalibrationEvent::begin()));
+    assert_eq!(begun, Event::Calibration(GazeCheckEvent::begin()));
     stage.at(1.0, begun);
-    stage.at(2.0, Event::Calibration(CalibrationEvent::TargetShown { target: 1 }));
+    stage.at(2.0, Event::Calibration(GazeCheckEvent::TargetShown { target: 1 }));
     check_snapshot("console", "calibration_target_120x40", stage.screen((120, 40)));
     assert!(stage.screen((80, 24)).contains("look here: 2 of 5"));
     let target = |samples, accuracy_deg| TargetAccuracy { samples, accuracy_deg };
@@ -28,8 +28,8 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
         offset: [0.02, -0.01],
         targets: vec![target(130, Some(2.1)), target(2, None), target(131, Some(2.6))],
     };
-    stage.at(3.0, Event::Calibration(CalibrationEvent::TargetsHidden));
-    stage.at(3.0, Event::Calibration(CalibrationEvent::Measured { found: Some(found) }));
+    stage.at(3.0, Event::Calibration(GazeCheckEvent::TargetsHidden));
+    stage.at(3.0, Event::Calibration(GazeCheckEvent::Measured { found: Some(found) }));
     for size in SIZES {
         check_snapshot("console", format!("calibration_{}x{}", size.0, size.1), stage.screen(size));
     }
@@ -40,7 +40,7 @@ fn the_gaze_is_checked_by_targets_and_the_wizard_decides() {
         assert!(stage.screen((80, 24)).contains(marked), "{}", stage.screen((80, 24)));
     }
     let accepted = input(stage.key(KeyCode::Enter));
-    assert_eq!(accepted, Some(Event::Calibration(CalibrationEvent::Accepted { corrected: true })));
+    assert_eq!(accepted, Some(Event::Calibration(GazeCheckEvent::Accepted { corrected: true })));
     assert_eq!(stage.model.dialog, None);
 }
 
@@ -49,12 +49,12 @@ fn enter_takes_the_better_gaze_and_none_that_is_too_far_off() {
     let best = |accuracy_deg, corrected_deg| {
         let found =
             GazeAccuracy { accuracy_deg, corrected_deg, precision_deg: 0.2, offset: [0.0, 0.0], targets: Vec::new() };
-        CalibrationAdvice::for_result(Some(&found))
+        AccuracyCheckAction::for_result(Some(&found))
     };
-    assert_eq!(best(2.0, 0.5), CalibrationAdvice::Corrected);
-    assert_eq!(best(1.0, 1.4), CalibrationAdvice::AsItIs);
-    assert_eq!(best(8.5, 9.7), CalibrationAdvice::Repeat);
-    assert_eq!(CalibrationAdvice::for_result(None), CalibrationAdvice::Repeat);
+    assert_eq!(best(2.0, 0.5), AccuracyCheckAction::Corrected);
+    assert_eq!(best(1.0, 1.4), AccuracyCheckAction::AsItIs);
+    assert_eq!(best(8.5, 9.7), AccuracyCheckAction::Repeat);
+    assert_eq!(AccuracyCheckAction::for_result(None), AccuracyCheckAction::Repeat);
 }
 
 #[test]
@@ -62,17 +62,17 @@ fn a_check_without_enough_samples_can_be_repeated_or_left_and_not_accepted() {
     let mut stage = Stage::new("burger", ParticipantKind::Simulated);
     let begun = input(stage.control('v')).expect("a check begins");
     stage.at(1.0, begun);
-    stage.at(2.0, Event::Calibration(CalibrationEvent::TargetShown { target: 4 }));
-    stage.at(3.0, Event::Calibration(CalibrationEvent::TargetsHidden));
-    stage.at(3.0, Event::Calibration(CalibrationEvent::Measured { found: None }));
+    stage.at(2.0, Event::Calibration(GazeCheckEvent::TargetShown { target: 4 }));
+    stage.at(3.0, Event::Calibration(GazeCheckEvent::TargetsHidden));
+    stage.at(3.0, Event::Calibration(GazeCheckEvent::Measured { found: None }));
     assert!(stage.screen((120, 40)).contains("too few usable samples"));
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('o')), None);
     for key in [KeyCode::Char('r'), KeyCode::Enter] {
-        assert_eq!(input(stage.key(key)), Some(Event::Calibration(CalibrationEvent::begin())));
+        assert_eq!(input(stage.key(key)), Some(Event::Calibration(GazeCheckEvent::begin())));
         assert_eq!(stage.model.dialog, Some(Dialog::Calibration));
     }
     let left = input(stage.key(KeyCode::Esc));
-    assert_eq!(left, Some(Event::Calibration(CalibrationEvent::Dismissed)));
+    assert_eq!(left, Some(Event::Calibration(GazeCheckEvent::Dismissed)));
     assert_eq!(stage.model.dialog, None);
 }

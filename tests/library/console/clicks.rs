@@ -6,9 +6,9 @@ use tomcom::communication::Signal;
 use tomcom::console::click_question;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
-use tomcom::console::playback::{Playback, ReplayKey};
+use tomcom::console::playback::{Playback, ReplayAction};
 use tomcom::console::view::click_targets;
-use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyMap, update};
+use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom::session::Event;
 use tomcom::session::settings::ParticipantKind;
 
@@ -156,7 +156,8 @@ fn nothing_below_a_dialog_can_be_clicked() {
 #[test]
 fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys = KeyBindings::replay(&stage.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    stage.model.keys =
+        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
     let length = SessionTime::from_secs_f64(40.0);
     stage.model.playback = Some(Playback { length, event: 10, events: 90, ..Playback::new("S001".to_string()) });
     for size in SIZES {
@@ -167,7 +168,7 @@ fn the_scrub_bar_and_the_timeline_seek_in_a_replay() {
             &stage.session,
             ConsoleMessage::Click(column, row),
         ) {
-            Some(ConsoleCommand::Move(ReplayKey::ToTime(time))) => time.as_secs_f64(),
+            Some(ConsoleCommand::Move(ReplayAction::ToTime(time))) => time.as_secs_f64(),
             other => panic!("{other:?} at {column}, {row} of {size:?}"),
         };
         let row = rows - 3;

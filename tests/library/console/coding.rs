@@ -2,31 +2,31 @@
 
 use crossterm::event::KeyCode;
 use tomcom::analysis::error_list::ListedError;
-use tomcom::console::key_action::{KeyAction, RaterKey};
-use tomcom::console::playback::{Playback, ReplayKey};
-use tomcom::console::rater_session::{CodingParty, RaterSession};
-use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyMap, update};
-use tomcom::measures::cause_codes::{Code, Codes};
-use tomcom::measures::consensus::Consensus;
+use tomcom::console::key_action::{KeyAction, RaterAction};
+use tomcom::console::playback::{Playback, ReplayAction};
+use tomcom::console::rater_session::{CodingRaters, RaterSession};
+use tomcom::console::{ConsoleCommand, ConsoleMessage, KeyBindings, KeyFileBindings, update};
+use tomcom::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use tomcom::measures::consensus::RaterConsensus;
 use tomcom::session::TimelineEvent;
-use tomcom::session::settings::{ParticipantKind, Visibility};
+use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;
 
-fn codes(of: &[(u64, Code)]) -> Codes {
-    Codes(of.iter().cloned().collect())
+fn codes(of: &[(u64, ErrorCauseCode)]) -> RaterCodes {
+    RaterCodes(of.iter().cloned().collect())
 }
 
 /// A recording with twelve errors, of which the third is the present one.
-fn rated(party: CodingParty, given: Codes) -> Stage {
+fn rated(party: CodingRaters, given: RaterCodes) -> Stage {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.session.spec.console.visibility = Visibility::State;
+    stage.session.spec.console.visibility = WizardVisibility::State;
     // As in a blinded replay, from which signals are taken out.
     let is_signal = |what: &TimelineEvent| matches!(what, TimelineEvent::Signal { .. } | TimelineEvent::SignalEnded(_));
     stage.session.timeline.retain(|entry| !is_signal(&entry.what));
     stage.session.shown = None;
-    let (kitchen, map) = (stage.session.kitchen.clone(), KeyMap::default());
+    let (kitchen, map) = (stage.session.kitchen.clone(), KeyFileBindings::default());
     stage.model.keys = KeyBindings::replay(&kitchen, &map).expect("the keys are free").with_coding(&kitchen);
     let buttons = ["take salmon", "cutting board", "assembly board", "trash"];
     let error = |index: usize| ListedError {
@@ -41,12 +41,12 @@ fn rated(party: CodingParty, given: Codes) -> Stage {
     stage
 }
 
-fn rater(given: Codes) -> Stage {
-    rated(CodingParty::Rater("R1".to_string()), given)
+fn rater(given: RaterCodes) -> Stage {
+    rated(CodingRaters::Rater("R1".to_string()), given)
 }
 
-fn belief() -> Code {
-    Code::Belief("cutting_board".to_string())
+fn belief() -> ErrorCauseCode {
+    ErrorCauseCode::Belief("cutting_board".to_string())
 }
 
 fn coding(stage: &Stage) -> &RaterSession {
@@ -55,7 +55,7 @@ fn coding(stage: &Stage) -> &RaterSession {
 
 #[test]
 fn codebook_and_errors_stand_beside_the_kitchen_at_three_sizes() {
-    let stage = rater(codes(&[(0, Code::Slip), (100, belief()), (200, Code::Buttons)]));
+    let stage = rater(codes(&[(0, ErrorCauseCode::Slip), (100, belief()), (200, ErrorCauseCode::Buttons)]));
     for size in SIZES {
         let screen = stage.screen(size);
         for name in ["slip", "race", "other cause", "mixed up buttons", "wrong about", "h human hand", "3 of 12 coded"]
@@ -71,7 +71,7 @@ fn codebook_and_errors_stand_beside_the_kitchen_at_three_sizes() {
 
 #[test]
 fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
-    let mut stage = rater(Codes::default());
+    let mut stage = rater(RaterCodes::default());
     for _ in 0..5 {
         stage.wait(1.0);
         stage.key(KeyCode::Tab);
@@ -82,12 +82,12 @@ fn every_code_has_its_key_in_every_panel_and_no_key_tells_what_is_estimated() {
     }
     let tells = |action: &KeyAction| *action == KeyAction::Belief || matches!(action, KeyAction::Differ(_));
     assert!(stage.model.keys.bindings.iter().all(|line| !tells(&line.action)));
-    assert!(stage.model.keys.chord_for(&KeyAction::Rate(RaterKey::Undo)).is_some());
+    assert!(stage.model.keys.chord_for(&KeyAction::Rate(RaterAction::Undo)).is_some());
 }
 
 #[test]
 fn codes_are_undone_and_redone_step_by_step() {
-    let mut stage = rater(codes(&[(0, Code::Slip)]));
+    let mut stage = rater(codes(&[(0, ErrorCauseCode::Slip)]));
     let press = 200;
     assert_eq!(stage.key(KeyCode::Char('2')), Some(ConsoleCommand::Code { press }));
     stage.wait(1.0);
@@ -96,7 +96,7 @@ fn codes_are_undone_and_redone_step_by_step() {
     assert_eq!(coding(&stage).codes.0[&press], belief());
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('u')), Some(ConsoleCommand::Code { press }));
-    assert_eq!(coding(&stage).codes.0[&press], Code::Race);
+    assert_eq!(coding(&stage).codes.0[&press], ErrorCauseCode::Race);
     stage.wait(1.0);
     stage.key(KeyCode::Char('u'));
     assert!(!coding(&stage).codes.0.contains_key(&press));
@@ -115,8 +115,8 @@ fn codes_are_undone_and_redone_step_by_step() {
 
 #[test]
 fn arrows_and_clicks_go_to_an_error_of_the_list() {
-    let mut stage = rater(Codes::default());
-    let go = |press| Some(ConsoleCommand::Move(ReplayKey::ToEvent(press)));
+    let mut stage = rater(RaterCodes::default());
+    let go = |press| Some(ConsoleCommand::Move(ReplayAction::ToEvent(press)));
     assert_eq!(stage.key(KeyCode::Enter), go(300));
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Backspace), go(100));
@@ -137,8 +137,8 @@ fn arrows_and_clicks_go_to_an_error_of_the_list() {
 #[test]
 fn a_click_on_the_codebook_gives_the_code() {
     for size in SIZES {
-        for (words, code) in [("2 race", Code::Race), ("c cutting board", belief())] {
-            let mut stage = rater(Codes::default());
+        for (words, code) in [("2 race", ErrorCauseCode::Race), ("c cutting board", belief())] {
+            let mut stage = rater(RaterCodes::default());
             stage.model.size = size;
             let command = stage.click(words);
             assert_eq!(command, Some(ConsoleCommand::Code { press: 200 }), "{words} at {size:?}");
@@ -150,10 +150,10 @@ fn a_click_on_the_codebook_gives_the_code() {
 #[test]
 fn two_raters_settle_with_both_codes_in_view() {
     let all: Vec<u64> = (0..12).map(|index| 100 * index).collect();
-    let one = Codes(all.iter().map(|press| (*press, Code::Slip)).collect());
-    let other = Codes(all.iter().skip(1).map(|press| (*press, belief())).collect());
-    let party = CodingParty::Pair { consensus: Consensus::new("R1", "R2"), own: [one, other] };
-    let mut stage = rated(party, codes(&[(0, Code::Slip)]));
+    let one = RaterCodes(all.iter().map(|press| (*press, ErrorCauseCode::Slip)).collect());
+    let other = RaterCodes(all.iter().skip(1).map(|press| (*press, belief())).collect());
+    let party = CodingRaters::Pair { consensus: RaterConsensus::new("R1", "R2"), own: [one, other] };
+    let mut stage = rated(party, codes(&[(0, ErrorCauseCode::Slip)]));
     stage.key(KeyCode::Char('4'));
     assert_eq!(coding(&stage).progress(), "2 of 12 settled, 1 since opening");
     for size in SIZES {
@@ -165,7 +165,7 @@ fn two_raters_settle_with_both_codes_in_view() {
 
 #[test]
 fn the_last_code_says_what_comes_next() {
-    let all = Codes((0..12).map(|index| (100 * index, Code::Slip)).collect());
+    let all = RaterCodes((0..12).map(|index| (100 * index, ErrorCauseCode::Slip)).collect());
     let mut stage = rater(all);
     for size in SIZES {
         assert!(stage.screen(size).contains("all 12 coded; next: a second rater"), "{}", stage.screen(size));

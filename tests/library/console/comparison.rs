@@ -14,7 +14,7 @@ use tomcom::console::screen::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
 use tomcom::history::belief_track::BeliefSnapshot;
 use tomcom::history::comparison::{
-    Communication, CommunicationContent, CommunicationContext, CommunicationLane, LaneComparison,
+    Communication, CommunicationContent, CommunicationContext, SenderCommunications, SenderComparison,
 };
 use tomcom::measures::matching::CommunicationEvent;
 use tomcom::session::settings::ParticipantKind;
@@ -47,7 +47,7 @@ fn compared(assistants: usize) -> Stage {
         let said = CommunicationEvent { press, clock, content: what.content(&kitchen) };
         Communication { said, time: SessionTime::from_secs_f64(seconds), what, known: Some(Arc::new(known)) }
     };
-    let lane = |name: &str, concept, spoken| CommunicationLane { name: name.to_string(), concept, spoken };
+    let lane = |name: &str, concept, spoken| SenderCommunications { name: name.to_string(), concept, spoken };
     let sent = vec![said(5, 12.0, highlight("cutting_board")), said(9, 21.8, recipe("order_1"))];
     let planned = vec![
         said(2, 8.2, highlight("cooking_pot")),
@@ -63,7 +63,7 @@ fn compared(assistants: usize) -> Stage {
     ];
     lanes.truncate(assistants + 1);
     let mut comparison = ComparisonView::default();
-    comparison.show(LaneComparison::new(lanes, 3, 10, false));
+    comparison.show(SenderComparison::new(lanes, 3, 10, false));
     stage.model.comparison = Some(comparison);
     stage
 }

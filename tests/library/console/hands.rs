@@ -4,7 +4,7 @@ use crossterm::event::KeyCode;
 use tomcom::communication::Sender;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
-use tomcom::session::event::{EndReason, Event};
+use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::settings::ParticipantKind;
 
 use super::{SIZES, Stage, input, type_in};
@@ -68,7 +68,7 @@ fn the_robot_is_held_skipped_and_driven_by_keys() {
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(driven));
     stage.wait(1.0);
     assert_eq!(input(stage.control('p')), Some(Event::RobotReleased { by }));
-    stage.at(30.0, Event::TrialEnded { reason: EndReason::Wizard });
+    stage.at(30.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
     assert_eq!(stage.control('d'), None);
     assert!(stage.notice().contains("while the trial runs"), "{}", stage.notice());
 }

@@ -4,8 +4,8 @@ use crossterm::event::KeyCode;
 use tomcom::console::console_model::Dialog;
 use tomcom::console::picker::{Picker, PickerQuestion};
 use tomcom::console::playback::Playback;
-use tomcom::console::{KeyBindings, KeyMap};
-use tomcom::session::event::{Event, SignalEnd};
+use tomcom::console::{KeyBindings, KeyFileBindings};
+use tomcom::session::event::{Event, SignalEndReason};
 use tomcom::session::settings::ParticipantKind;
 
 use super::Stage;
@@ -30,7 +30,7 @@ fn a_live_session_shows_the_keys_that_do_something_now() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.size = (200, 60);
     check(&stage, &["STOP ROBOT", ". pause", "take back", "^e end", "^k find", "1-5 note"], &["resume", "send offer"]);
-    stage.at(23.0, Event::SignalEnded { reason: SignalEnd::TakenBack });
+    stage.at(23.0, Event::SignalEnded { reason: SignalEndReason::TakenBack });
     check(&stage, &[], &["take back"]);
     stage.at(23.1, Event::RobotStopped);
     check(&stage, &["^r resume robot"], &["STOP ROBOT"]);
@@ -60,7 +60,8 @@ fn over_a_dialog_only_what_passes_it_is_shown() {
 fn a_replay_shows_no_way_beyond_its_ends() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     stage.model.size = (200, 60);
-    stage.model.keys = KeyBindings::replay(&stage.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    stage.model.keys =
+        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
     let replay = |event, speed| Playback { event, events: 90, speed, ..Playback::new("S001".to_string()) };
     stage.model.playback = Some(replay(10, 2));
     check(&stage, &[". play", "left/right step", "pgup/pgdn 10 s", "+/- speed"], &["pause", "STOP ROBOT"]);

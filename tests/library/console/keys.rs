@@ -3,12 +3,12 @@
 use crossterm::event::{KeyCode, KeyEventKind};
 use tomcom::communication::Sender;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::key_action::{KeyLayer, KeyPlace};
+use tomcom::console::key_action::{KeyErrorSource, KeyLayer};
 use tomcom::console::picker::{Picker, PickerQuestion};
-use tomcom::console::{ConsoleCommand, KeyBindings, KeyMap};
+use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
 use tomcom::kitchen::{Agent, Kitchen, LocationKind};
 use tomcom::session::SessionSpec;
-use tomcom::session::event::{EndReason, Event, SignalEnd};
+use tomcom::session::event::{Event, SignalEndReason, TrialEndReason};
 use tomcom::session::settings::ParticipantKind;
 
 use super::{Stage, input, kitchen};
@@ -88,7 +88,7 @@ fn without_key_releases_two_presses_count_twice_and_a_held_key_once() {
     assert_eq!(stage.model.dialog, Some(Dialog::Quit));
     assert_eq!(stage.key(KeyCode::Enter), None, "only y does");
     assert_eq!(stage.model.dialog, None);
-    stage.at(stage.model.now.as_secs_f64(), Event::TrialEnded { reason: EndReason::Time });
+    stage.at(stage.model.now.as_secs_f64(), Event::TrialEnded { reason: TrialEndReason::Time });
     stage.control('c');
     stage.wait(1.0);
     assert_eq!(stage.control('c'), Some(ConsoleCommand::Quit), "after the trial it does");
@@ -103,7 +103,7 @@ fn a_signal_is_not_sent_again_while_it_is_shown() {
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('a')), None);
     assert!(stage.notice().contains("shown already"), "{}", stage.notice());
-    stage.at(3.0, Event::SignalEnded { reason: SignalEnd::TakenBack });
+    stage.at(3.0, Event::SignalEnded { reason: SignalEndReason::TakenBack });
     assert_eq!(input(stage.key(KeyCode::Char('a'))), Some(signal));
 }
 
@@ -140,8 +140,8 @@ fn a_layout_cannot_take_a_key_twice() {
     let mut kitchen = Kitchen::clone(&kitchen("sushi"));
     let spec: SessionSpec = toml::from_str("layout = \"\"").expect("the settings have defaults");
     kitchen.locations[0].signal_key = Some('3');
-    let clash = KeyBindings::live(&kitchen, &spec, &KeyMap::default()).expect_err("3 is a marker");
-    assert_eq!(clash.place, KeyPlace::Layout(KeyLayer::Wizard, '3'));
+    let clash = KeyBindings::live(&kitchen, &spec, &KeyFileBindings::default()).expect_err("3 is a marker");
+    assert_eq!(clash.place, KeyErrorSource::Layout(KeyLayer::Wizard, '3'));
 }
 
 #[test]

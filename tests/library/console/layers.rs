@@ -2,21 +2,21 @@
 
 use crossterm::event::KeyCode;
 use tomcom::console::ConsoleCommand;
-use tomcom::session::event::{EndReason, Event};
-use tomcom::session::settings::{ParticipantKind, Visibility};
-use tomcom::session::wizard_screen::VisibleScreen;
+use tomcom::session::event::{Event, TrialEndReason};
+use tomcom::session::settings::{ParticipantKind, WizardVisibility};
+use tomcom::session::wizard_screen::WizardScreenContent;
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;
 
-fn seen(stage: &Stage) -> VisibleScreen {
+fn seen(stage: &Stage) -> WizardScreenContent {
     tomcom::console::screen::screen(&stage.session, &stage.model)
 }
 
 #[test]
 fn the_participant_at_the_keyboard_sees_no_estimate() {
     let mut stage = Stage::sushi(ParticipantKind::Keyboard);
-    assert_eq!(seen(&stage).visibility, Visibility::Recommendation);
+    assert_eq!(seen(&stage).visibility, WizardVisibility::Recommendation);
     assert_eq!(stage.control('b'), None);
     assert!(stage.screen((120, 40)).contains("probability of"), "the wizard looks at one belief");
     assert_eq!(stage.key(KeyCode::Tab), None);
@@ -28,7 +28,7 @@ fn the_participant_at_the_keyboard_sees_no_estimate() {
             assert!(!screen.contains(words), "{words} is shown at {size:?}:\n{screen}");
         }
         let seen = seen(&stage);
-        assert_eq!(seen.visibility, Visibility::State, "and the record says so");
+        assert_eq!(seen.visibility, WizardVisibility::State, "and the record says so");
         assert!(seen.panels.iter().all(|panel| panel != "belief" && panel != "recommendation"), "{seen:?}");
     }
     stage.wait(1.0);
@@ -66,15 +66,15 @@ fn signals_are_judged_at_the_end_where_the_wizard_may_know() {
     let end = |participant, visibility| {
         let mut stage = Stage::sushi(participant);
         stage.session.spec.console.visibility = visibility;
-        stage.at(30.0, Event::TrialEnded { reason: EndReason::Wizard });
+        stage.at(30.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
         stage.screen((80, 24))
     };
     let judged = "2 about a false belief, 0 late, 0 needless";
-    let known = end(ParticipantKind::Simulated, Visibility::State);
+    let known = end(ParticipantKind::Simulated, WizardVisibility::State);
     assert!(known.contains("2 by the wizard, 1 taken back") && known.contains(judged), "{known}");
     assert!(!known.contains("estimated"), "{known}");
-    let estimated = end(ParticipantKind::Display, Visibility::Belief);
+    let estimated = end(ParticipantKind::Display, WizardVisibility::Belief);
     assert!(estimated.contains(&format!("estimated    {judged}")), "{estimated}");
-    let blind = end(ParticipantKind::Display, Visibility::State);
+    let blind = end(ParticipantKind::Display, WizardVisibility::State);
     assert!(blind.contains("2 by the wizard") && !blind.contains("needless"), "{blind}");
 }

@@ -32,7 +32,7 @@ use tomcom::communication::{Sender, Signal};
 use tomcom::console::console_model::RecordingStatus;
 use tomcom::console::screen::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyMap, update, view};
+use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update, view};
 use tomcom::edge::files::read_kitchen;
 use tomcom::gaze::GazeSample;
 use tomcom::history::belief_track::BeliefSnapshot;
@@ -40,7 +40,7 @@ use tomcom::kitchen::{Agent, Kitchen};
 use tomcom::measures::sequences::FALSE_BELOW;
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
 use tomcom::mind::model::PriorModel;
-use tomcom::session::event::{Event, SignalEnd, Stamped};
+use tomcom::session::event::{Event, SignalEndReason, TimestampedEvent};
 use tomcom::session::settings::{GazeSource, ParticipantKind};
 use tomcom::session::{Session, SessionSpec, apply, offers};
 
@@ -66,7 +66,7 @@ impl Stage {
             spec.participant.gaze = GazeSource::Mouse;
         }
         let kitchen = kitchen(kitchen_name);
-        let keys = KeyBindings::live(&kitchen, &spec, &KeyMap::default()).expect("the layout's keys are free");
+        let keys = KeyBindings::live(&kitchen, &spec, &KeyFileBindings::default()).expect("the layout's keys are free");
         let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
         let mut model = ConsoleModel::new(keys, theme, (120, 40));
         model.recording = RecordingStatus::On("sessions/2026-03-14-P01-1".to_string());
@@ -79,7 +79,7 @@ impl Stage {
     fn at(&mut self, seconds: f64, event: Event) {
         self.model.now = SessionTime::from_secs_f64(seconds);
         self.model.clock = self.model.now;
-        let stamped = Stamped { seq: self.seq, time: self.model.now, event };
+        let stamped = TimestampedEvent { seq: self.seq, time: self.model.now, event };
         apply(&mut self.session, &stamped).expect("the event fits");
         self.model.signals.judge(&stamped, &self.session);
         self.seq += 1;
@@ -143,7 +143,7 @@ impl Stage {
             },
         );
         stage.press(13.2, Agent::Human, "assembly_board");
-        stage.at(13.5, Event::SignalEnded { reason: SignalEnd::TakenBack });
+        stage.at(13.5, Event::SignalEnded { reason: SignalEndReason::TakenBack });
         stage.estimate(&[("recipe of tuna nigiri", "salmon nigiri", 0.61), ("assembly_board", "nori", 0.98)], false);
         stage.press(15.0, Agent::Human, "trash");
         stage.at(15.5, Event::Marker { note: "slip".to_string() });

@@ -2,13 +2,13 @@
 
 use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
-use tomcom::console::console_model::{LslStatus, ViewerStreamStatus};
+use tomcom::console::console_model::{LslStatus, RerunStreamStatus};
 use tomcom::console::gaze_pairing::GazePairing;
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::preflight::checks;
-use tomcom::console::{ConsoleMessage, KeyBindings, KeyMap, update};
+use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom::robot::safety::SafetyMode;
-use tomcom::session::event::{EndReason, Event};
+use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::preflight_checks::PreflightVerdict;
 use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind};
 use tomcom::session::tracker::TrackerEvent;
@@ -27,7 +27,7 @@ fn ages_stand_still_in_a_pause_and_after_the_end() {
     assert_eq!(age_s(&stage, 100.0), 3.0);
     stage.at(105.0, Event::TrialResumed);
     assert_eq!(age_s(&stage, 106.0), 4.0);
-    stage.at(107.0, Event::TrialEnded { reason: EndReason::Wizard });
+    stage.at(107.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
     assert_eq!(age_s(&stage, 200.0), 5.0);
     let screen = stage.screen((120, 40));
     assert!(screen.contains("^c close the session"), "{screen}");
@@ -77,7 +77,7 @@ fn what_mends_is_told_with_the_keys_that_hold() {
         checks.into_iter().find(|check| check.name == "calibration").and_then(|check| check.remedy).unwrap_or_default()
     };
     assert!(remedy(&stage).starts_with("^v checks gaze accuracy"), "{}", remedy(&stage));
-    let map: KeyMap = toml::from_str("[console]\ncheck_gaze = \"f9\"\n").expect("a key file");
+    let map: KeyFileBindings = toml::from_str("[console]\ncheck_gaze = \"f9\"\n").expect("a key file");
     stage.model.keys = KeyBindings::live(&stage.session.kitchen, &stage.session.spec, &map).expect("f9 is free");
     assert!(remedy(&stage).starts_with("F9 checks gaze accuracy"), "{}", remedy(&stage));
 }
@@ -87,7 +87,7 @@ fn the_notes_are_those_of_the_session() {
     let mut stage = Stage::new("sushi", ParticipantKind::Simulated);
     stage.session.spec.console.notes = vec!["asked for help".to_string()];
     stage.model.keys =
-        KeyBindings::live(&stage.session.kitchen, &stage.session.spec, &KeyMap::default()).expect("free keys");
+        KeyBindings::live(&stage.session.kitchen, &stage.session.spec, &KeyFileBindings::default()).expect("free keys");
     assert_eq!(input(stage.key(KeyCode::Char('1'))), Some(Event::Marker { note: "asked for help".to_string() }));
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Char('2')), None);
@@ -163,7 +163,7 @@ fn an_open_port_for_viewers_is_a_warning_in_whole_sentences() {
         all.into_iter().find(|check| check.name == "rerun").expect("a check of the stream")
     };
     for (address, verdict) in [("127.0.0.1:9876", PreflightVerdict::Ok), ("0.0.0.0:9876", PreflightVerdict::Warning)] {
-        stage.model.viewers = Some(ViewerStreamStatus { address: Some(address.to_string()), written: 0, dropped: 0 });
+        stage.model.viewers = Some(RerunStreamStatus { address: Some(address.to_string()), written: 0, dropped: 0 });
         let check = of_viewers(&stage);
         assert_eq!(check.verdict, verdict, "{address}");
         assert_eq!(check.remedy.is_some(), verdict == PreflightVerdict::Warning);

@@ -5,8 +5,8 @@ use tomcom::console::console_model::Dialog;
 use tomcom::console::key_action::KeyLayer;
 use tomcom::console::list_cursor::ListCursor;
 use tomcom::console::palette::actions;
-use tomcom::console::playback::{Playback, ReplayKey};
-use tomcom::console::{ConsoleCommand, KeyBindings, KeyMap};
+use tomcom::console::playback::{Playback, ReplayAction};
+use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
 use tomcom::session::event::Event;
 use tomcom::session::settings::ParticipantKind;
 
@@ -88,13 +88,14 @@ fn space_stops_the_robot_in_the_palette_and_esc_goes_back() {
 #[test]
 fn a_replay_has_its_actions_in_the_palette_and_the_space_bar_does_nothing() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys = KeyBindings::replay(&stage.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    stage.model.keys =
+        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
     stage.model.playback = Some(Playback { event: 10, events: 90, ..Playback::new("S001".to_string()) });
     stage.control('k');
     assert_eq!(stage.key(KeyCode::Char(' ')), None);
     type_in(&mut stage, "faster");
     stage.wait(0.1);
-    assert_eq!(stage.key(KeyCode::Enter), Some(ConsoleCommand::Move(ReplayKey::Faster)));
+    assert_eq!(stage.key(KeyCode::Enter), Some(ConsoleCommand::Move(ReplayAction::Faster)));
 }
 
 #[test]
@@ -111,7 +112,7 @@ fn rows_are_found_by_parts_and_by_beginnings_of_words() {
 
 #[test]
 fn a_key_file_that_has_the_palettes_key_for_something_else_is_still_read() {
-    let map: KeyMap = toml::from_str("[console]\ncorrect = \"ctrl+k\"\n").expect("a key file");
+    let map: KeyFileBindings = toml::from_str("[console]\ncorrect = \"ctrl+k\"\n").expect("a key file");
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
     let kitchen = stage.session.kitchen.clone();
     stage.model.keys = KeyBindings::live(&kitchen, &stage.session.spec, &map).expect("the palette has another key");

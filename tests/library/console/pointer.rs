@@ -1,9 +1,9 @@
 //! The mouse: the place on the display under the pointer, clicks and the wheel.
 
-use tomcom::console::arrange::{KitchenMap, MapElement};
-use tomcom::console::view::regions::Regions;
+use tomcom::console::arrange::{KitchenMap, KitchenMapElement};
+use tomcom::console::view::regions::PanelAreas;
 use tomcom::console::{ConsoleMessage, update};
-use tomcom::session::settings::{ParticipantKind, Visibility};
+use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, kitchen, panels};
 
@@ -12,13 +12,13 @@ fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
     for name in ["sushi", "burger"] {
         let kitchen = kitchen(name);
         for size in SIZES {
-            let panel = Regions::new(size, Visibility::Recommendation, None).kitchen_inside();
+            let panel = PanelAreas::new(size, WizardVisibility::Recommendation, None).kitchen_inside();
             let plan = KitchenMap::new(&kitchen, panel, size.0 == 120);
             assert_eq!(plan.spots.len(), kitchen.locations.len() + kitchen.storages.len());
             for spot in &plan.spots {
                 let area = match spot.thing {
-                    MapElement::Location(id) => kitchen.location(id).display,
-                    MapElement::Storage(index) => kitchen.storages[index].display,
+                    KitchenMapElement::Location(id) => kitchen.location(id).display,
+                    KitchenMapElement::Storage(index) => kitchen.storages[index].display,
                 };
                 assert_eq!(panel.union(spot.cells), panel, "{name} {size:?}: inside of the panel");
                 for (x, y) in [(spot.cells.x, spot.cells.y), (spot.cells.right() - 1, spot.cells.bottom() - 1)] {
@@ -39,10 +39,10 @@ fn every_place_of_the_panel_is_its_place_on_the_display_and_back() {
 #[test]
 fn a_click_beside_the_keys_explains_a_place_or_shows_a_panel_and_the_wheel_goes_back_in_time() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    let regions = Regions::new((120, 40), Visibility::Recommendation, None);
+    let regions = PanelAreas::new((120, 40), WizardVisibility::Recommendation, None);
     let plan = KitchenMap::new(&stage.session.kitchen, regions.kitchen_inside(), false);
     for spot in &plan.spots {
-        let MapElement::Location(location) = spot.thing else { continue };
+        let KitchenMapElement::Location(location) = spot.thing else { continue };
         let click = ConsoleMessage::Click(spot.cells.x + 1, spot.cells.bottom() - 1);
         assert_eq!(update(&mut stage.model, &stage.session, click), None);
         let label = stage.session.kitchen.location(location).label();

@@ -1,16 +1,16 @@
 //! Freeze probes at the console: the sheet at three sizes, its keys, and what it does not show.
 
 use crossterm::event::KeyCode;
-use tomcom::console::display_status::DisplayHealth;
+use tomcom::console::display_status::ParticipantDisplayHealth;
 use tomcom::console::preflight::checks;
 use tomcom::console::probe_keys::status;
-use tomcom::console::{ConsoleCommand, KeyBindings, KeyMap};
+use tomcom::console::{ConsoleCommand, KeyBindings, KeyFileBindings};
 use tomcom::kitchen::{AspectId, AspectKind};
 use tomcom::session::Event;
 use tomcom::session::preflight_checks::PreflightVerdict;
-use tomcom::session::probes::{ProbeEnd, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
-use tomcom::session::settings::{ParticipantKind, Visibility};
-use tomcom::session::wall_display::Answering;
+use tomcom::session::probes::{ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
+use tomcom::session::settings::{ParticipantKind, WizardVisibility};
+use tomcom::session::wall_display::AnswerEntry;
 
 use super::{SIZES, Stage, input};
 use crate::check_snapshot;
@@ -21,10 +21,13 @@ fn probed(kitchen: &str, has_page: bool, confidence: bool) -> Stage {
     let settings = format!("confidence = {confidence}");
     stage.session.spec.probes = Some(toml::from_str(&settings).expect("settings of probes"));
     let (kitchen, spec) = (stage.session.kitchen.clone(), &stage.session.spec);
-    stage.model.keys = KeyBindings::live(&kitchen, spec, &KeyMap::default()).expect("the keys are free");
+    stage.model.keys = KeyBindings::live(&kitchen, spec, &KeyFileBindings::default()).expect("the keys are free");
     let page = has_page.then_some([1920, 1080]);
-    stage.model.display =
-        Some(DisplayHealth { url: "http://127.0.0.1:50022".to_string(), page, ..DisplayHealth::default() });
+    stage.model.display = Some(ParticipantDisplayHealth {
+        url: "http://127.0.0.1:50022".to_string(),
+        page,
+        ..ParticipantDisplayHealth::default()
+    });
     stage.at(3.0, Event::TrialStarted);
     stage
 }
@@ -91,7 +94,7 @@ fn the_sheet_of_a_probe_fits_every_size() {
         let mut stage = probed("sushi", true, true);
         stage.model.size = size;
         stage.begin(&ASPECTS);
-        let (answer, confidence, on) = (Some("rice cooked".to_string()), Some(2), Answering::Display);
+        let (answer, confidence, on) = (Some("rice cooked".to_string()), Some(2), AnswerEntry::Display);
         stage.probe(66.0, ProbeEvent::Answered { probe: 1, question: 1, answer, confidence, on });
         stage.probe(66.0, ProbeEvent::Asked { probe: 1, question: 2 });
         check_snapshot("console", format!("probe_on_display_{columns}x{rows}"), stage.screen(size));
@@ -116,7 +119,7 @@ fn an_answer_is_entered_where_no_page_is_connected() {
         question: 1,
         answer: answer.cloned(),
         confidence,
-        on: Answering::Console,
+        on: AnswerEntry::Console,
     };
     assert_eq!(stage.type_keys(&[KeyCode::Enter]), None, "nothing is chosen yet");
     assert!(stage.notice().contains("the number of the choice first"), "{}", stage.notice());
@@ -187,7 +190,7 @@ fn a_probe_is_asked_for_paused_and_skipped() {
     stage.wait(1.0);
     let reason = stage.session.spec.console.reasons[0].clone();
     assert_eq!(input(stage.key(KeyCode::Enter)), Some(Event::Probe(ProbeEvent::Skipped { probe: 1, reason })));
-    stage.probe(75.0, ProbeEvent::Closed { probe: 1, reason: ProbeEnd::Skipped });
+    stage.probe(75.0, ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::Skipped });
     assert!(stage.screen((80, 24)).contains("after the count-down"), "{}", stage.screen((80, 24)));
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Delete), None);
@@ -202,7 +205,7 @@ fn a_list_of_reasons_is_closed_with_its_probe() {
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Delete), None);
     assert!(stage.screen((120, 40)).contains("Skip the rest of probe 1: why?"));
-    stage.probe(90.0, ProbeEvent::Closed { probe: 1, reason: ProbeEnd::TimeOver });
+    stage.probe(90.0, ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::TimeOver });
     stage.wait(1.0);
     assert_eq!(stage.key(KeyCode::Enter), None);
     assert!(!stage.screen((120, 40)).contains("why?"), "{}", stage.screen((120, 40)));
@@ -210,14 +213,14 @@ fn a_list_of_reasons_is_closed_with_its_probe() {
 
 #[test]
 fn answers_are_seen_where_beliefs_are_and_nothing_says_whether_they_are_right() {
-    for (visibility, is_seen) in [(Visibility::State, false), (Visibility::Belief, true)] {
+    for (visibility, is_seen) in [(WizardVisibility::State, false), (WizardVisibility::Belief, true)] {
         let mut screens = Vec::new();
         // The pot is empty.
         for answer in ["empty", "crab cooked"] {
             let mut stage = probed("sushi", true, false);
             stage.session.spec.console.visibility = visibility;
             stage.begin(&["cooking_pot", "counter"]);
-            let (answer, confidence, on) = (Some(answer.to_string()), None, Answering::Display);
+            let (answer, confidence, on) = (Some(answer.to_string()), None, AnswerEntry::Display);
             stage.probe(66.0, ProbeEvent::Answered { probe: 1, question: 1, answer, confidence, on });
             stage.probe(66.0, ProbeEvent::Asked { probe: 1, question: 2 });
             screens.push(stage.screen((200, 60)));

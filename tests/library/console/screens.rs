@@ -9,10 +9,10 @@ use tomcom::console::notice::NoticeLevel;
 use tomcom::console::playback::Playback;
 use tomcom::console::screen::screen;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleMessage, KeyBindings, KeyMap, update};
+use tomcom::console::{ConsoleMessage, KeyBindings, KeyFileBindings, update};
 use tomcom::gaze::GazeSample;
-use tomcom::session::event::{EndReason, Event};
-use tomcom::session::settings::{ParticipantKind, Visibility};
+use tomcom::session::event::{Event, TrialEndReason};
+use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage, panels};
 use crate::check_snapshot;
@@ -42,7 +42,7 @@ fn the_participants_keys_stand_at_their_places() {
 #[test]
 fn a_gaze_map_fills_the_room_of_what_the_wizard_may_not_see() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.session.spec.console.visibility = Visibility::State;
+    stage.session.spec.console.visibility = WizardVisibility::State;
     stage.model.see(stage.model.now, GazeSample::new(0.30, 0.4, 0.97));
     check_snapshot("console", "gaze_map_120x40", stage.screen((120, 40)));
 }
@@ -92,12 +92,13 @@ fn what_a_wizard_sees_at_each_size() {
     let mut away = Stage::sushi(ParticipantKind::Simulated);
     away.model.focused = false;
     let mut replay = Stage::sushi(ParticipantKind::Simulated);
-    replay.model.keys = KeyBindings::replay(&replay.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    replay.model.keys =
+        KeyBindings::replay(&replay.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
     let mut playback = Playback::new("2026-03-14-P01-1".to_string());
     (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
     replay.model.playback = Some(playback);
     let mut state = Stage::sushi(ParticipantKind::Simulated);
-    state.session.spec.console.visibility = Visibility::State;
+    state.session.spec.console.visibility = WizardVisibility::State;
     let mut ascii = Stage::sushi(ParticipantKind::Simulated);
     ascii.model.theme = Theme { colour: false, unicode: false, ground: TerminalBackground::Light };
     let stages = [
@@ -172,7 +173,7 @@ fn a_card_tells_how_to_start_and_another_what_came_of_the_trial() {
         assert!(screen.contains("Ready to start") && screen.contains(". start the trial"), "{screen}");
     }
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.at(30.0, Event::TrialEnded { reason: EndReason::Wizard });
+    stage.at(30.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
     for size in SIZES {
         let screen = stage.screen(size);
         for words in ["0 served", "9 by the human", "2 in 9 presses of the human (22 %)", "2 by the wizard", "0:27"] {
@@ -185,7 +186,8 @@ fn a_card_tells_how_to_start_and_another_what_came_of_the_trial() {
 #[test]
 fn the_keys_of_a_replay_and_the_served_orders_fit_the_smallest_console() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.model.keys = KeyBindings::replay(&stage.session.kitchen, &KeyMap::default()).expect("the keys are free");
+    stage.model.keys =
+        KeyBindings::replay(&stage.session.kitchen, &KeyFileBindings::default()).expect("the keys are free");
     let mut playback = Playback::new("2026-03-14-P01-1".to_string());
     (playback.playing, playback.event, playback.events) = (true, 43210, 59289);
     stage.model.playback = Some(playback);
@@ -220,7 +222,7 @@ fn each_panel_can_be_looked_at_alone() {
     assert_ne!(stage.screen((80, 24)), now, "an earlier time is seen");
     stage.key(KeyCode::Esc);
     assert_eq!((panels(&stage), stage.model.timeline_back_s), (all, 0));
-    stage.session.spec.console.visibility = Visibility::State;
+    stage.session.spec.console.visibility = WizardVisibility::State;
     for _ in 0..2 {
         stage.wait(0.2);
         stage.control('w');
@@ -243,9 +245,9 @@ fn what_the_wizard_sees_is_told_by_size_visibility_and_dialog() {
         rooms.push(seen.room);
     }
     assert_eq!(rooms, ["too_small", "small", "medium", "large"]);
-    stage.session.spec.console.visibility = Visibility::State;
+    stage.session.spec.console.visibility = WizardVisibility::State;
     stage.control('u');
     let seen = screen(&stage.session, &stage.model);
     assert!(!seen.panels.iter().any(|panel| panel == "belief" || panel == "recommendation"), "{seen:?}");
-    assert_eq!((seen.visibility, seen.dialog.as_deref()), (Visibility::State, Some("correct_place")));
+    assert_eq!((seen.visibility, seen.dialog.as_deref()), (WizardVisibility::State, Some("correct_place")));
 }

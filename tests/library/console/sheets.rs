@@ -5,11 +5,11 @@ use std::path::Path;
 use crossterm::event::KeyCode;
 use tomcom::base::time::SessionTime;
 use tomcom::console::ConsoleCommand;
-use tomcom::console::form::{SheetContent, sheet};
+use tomcom::console::form::{FormContent, sheet};
 use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
 use tomcom::session::Session;
-use tomcom::session::event::{EndReason, Event};
+use tomcom::session::event::{Event, TrialEndReason};
 use tomcom::session::plan::{QuestionnaireSpec, TutorialStepKind, WantedRecording};
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::ParticipantKind;
@@ -51,7 +51,7 @@ fn the_sheets_around_a_trial_fit_every_size() {
         assert!(stage.screen(size).contains("P01 trial 2/2 wizard"), "{}", stage.screen(size));
         stage.at(0.0, Event::TrialStarted);
         assert!(stage.screen(size).contains("P01 trial 2/2 wizard"), "{}", stage.screen(size));
-        stage.at(9.0, Event::TrialEnded { reason: EndReason::Wizard });
+        stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
         assert!(stage.screen(size).contains(". next: questionnaire"), "{}", stage.screen(size));
         stage.at(9.0, Event::Protocol(ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 2 }));
         stage.at(
@@ -111,10 +111,10 @@ fn only_enter_confirms_answers_and_a_reason_to_go_on() {
     };
     let mut stage = planned(2, true);
     stage.at(0.0, Event::TrialStarted);
-    stage.at(9.0, Event::TrialEnded { reason: EndReason::Wizard });
+    stage.at(9.0, Event::TrialEnded { reason: TrialEndReason::Wizard });
     let questionnaire = ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 2 };
     stage.at(9.0, Event::Protocol(questionnaire));
-    let Some(SheetContent::Questions(questionnaire)) = sheet(&stage.session) else { panic!("a questionnaire") };
+    let Some(FormContent::Questions(questionnaire)) = sheet(&stage.session) else { panic!("a questionnaire") };
     let items = questionnaire.items.len();
     let tell = |stage: &mut Stage, key: KeyCode| {
         stage.wait(1.0);

@@ -6,7 +6,7 @@ use tomcom::console::console_model::Dialog;
 use tomcom::console::lesson::{TrainingFeedback, TrainingPanel};
 use tomcom::console::notice::NoticeLevel;
 use tomcom::console::playback::Playback;
-use tomcom::session::settings::{ParticipantKind, Visibility};
+use tomcom::session::settings::{ParticipantKind, WizardVisibility};
 
 use super::{SIZES, Stage};
 use crate::check_snapshot;
@@ -14,7 +14,7 @@ use crate::check_snapshot;
 #[test]
 fn a_training_says_what_to_do_keeps_what_it_said_and_ends_when_that_is_read() {
     let mut stage = Stage::sushi(ParticipantKind::Simulated);
-    stage.session.spec.console.visibility = Visibility::State;
+    stage.session.spec.console.visibility = WizardVisibility::State;
     stage.model.playback = Some(Playback::new("seed1-S001".to_string()));
     let task = ["Press . to start.", "A hit is the first signal about a false belief that leads to an error."];
     let lesson = TrainingPanel {

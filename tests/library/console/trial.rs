@@ -3,8 +3,8 @@
 use crossterm::event::KeyCode;
 use tomcom::console::ConsoleCommand;
 use tomcom::console::console_model::Dialog;
-use tomcom::console::display_status::DisplayHealth;
-use tomcom::session::Phase;
+use tomcom::console::display_status::ParticipantDisplayHealth;
+use tomcom::session::TrialPhase;
 use tomcom::session::event::Event;
 use tomcom::session::preflight_checks::PreflightVerdict;
 use tomcom::session::settings::{GazeSource, ParticipantKind};
@@ -21,7 +21,7 @@ fn the_trial_is_started_paused_and_ended_by_keys() {
     stage.at(1.0, Event::TrialStarted);
     assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialPaused));
     stage.at(2.0, Event::TrialPaused);
-    assert_eq!(stage.session.phase, Phase::Paused);
+    assert_eq!(stage.session.phase, TrialPhase::Paused);
     assert_eq!(input(stage.key(KeyCode::Char('.'))), Some(Event::TrialResumed));
     stage.at(3.0, Event::TrialResumed);
     assert_eq!(input(stage.key(KeyCode::Char('3'))), Some(Event::Marker { note: "slip".to_string() }));
@@ -131,7 +131,7 @@ fn what_is_not_ok_before_a_trial_is_listed_mended_or_overridden() {
 fn an_upright_page_has_no_gaze_and_the_checks_say_so() {
     let check = |upright, gaze| {
         let page = Some(if upright { [1170, 2532] } else { [2532, 1170] });
-        DisplayHealth { page, upright, ..DisplayHealth::default() }.check(gaze)
+        ParticipantDisplayHealth { page, upright, ..ParticipantDisplayHealth::default() }.check(gaze)
     };
     let mouse = check(true, GazeSource::Mouse);
     assert_eq!((mouse.verdict, mouse.found.as_str()), (PreflightVerdict::Warning, "1170x2532 upright"));

@@ -3,23 +3,23 @@
 use tomcom::base::time::SessionTime;
 use tomcom::gaze::GazeSample;
 use tomcom::gaze::calibration::{TARGETS, ViewingGeometry, measure};
-use tomcom::run::engine::Engine;
-use tomcom::session::accuracy_check::{CalibrationEvent, RunningGazeCheck};
+use tomcom::run::engine::SessionEngine;
+use tomcom::session::accuracy_check::{GazeCheckEvent, RunningGazeCheck};
 use tomcom::session::admit::is_external;
-use tomcom::session::{Event, Stamped};
+use tomcom::session::{Event, TimestampedEvent};
 
 use super::engine;
 
 /// Checks the calibration as the live session does, from `from_s` on; all events of the check.
-fn check_calibration(engine: &mut Engine, from_s: f64, accept: CalibrationEvent) -> Vec<Stamped> {
+fn check_calibration(engine: &mut SessionEngine, from_s: f64, accept: GazeCheckEvent) -> Vec<TimestampedEvent> {
     let at = SessionTime::from_secs_f64;
     let mut events = Vec::new();
-    let mut input = |engine: &mut Engine, time, event| {
+    let mut input = |engine: &mut SessionEngine, time, event| {
         let outcome = engine.input(time, event);
         events.extend(outcome.events);
         outcome.refused
     };
-    assert_eq!(input(engine, at(from_s), Event::Calibration(CalibrationEvent::begin())), None);
+    assert_eq!(input(engine, at(from_s), Event::Calibration(GazeCheckEvent::begin())), None);
     while let Some((time, event)) = engine.session().calibration.as_ref().and_then(RunningGazeCheck::next) {
         let now = engine.session().time;
         let refused = input(engine, now, Event::TrialStarted);
@@ -34,7 +34,7 @@ fn check_calibration(engine: &mut Engine, from_s: f64, accept: CalibrationEvent)
 #[test]
 fn simulated_gaze_is_checked_by_targets_corrected_and_comes_out_the_same_again() {
     let mut checked = engine(|spec| spec.seed = 4);
-    let events = check_calibration(&mut checked, 2.0, CalibrationEvent::Accepted { corrected: true });
+    let events = check_calibration(&mut checked, 2.0, GazeCheckEvent::Accepted { corrected: true });
     let calibrated = checked.session().calibrated.clone().expect("accepted");
     let found = &calibrated.found;
     println!("{found:?}");
@@ -62,7 +62,7 @@ fn a_check_changes_nothing_in_the_trial_but_the_offset_of_the_gaze() {
     let trial = |checks: bool| {
         let mut engine = engine(|spec| (spec.seed, spec.trial.presses) = (4, 12));
         if checks {
-            check_calibration(&mut engine, 0.0, CalibrationEvent::Dismissed);
+            check_calibration(&mut engine, 0.0, GazeCheckEvent::Dismissed);
         }
         let start = SessionTime::from_secs_f64(60.0);
         let mut events = engine.input(start, Event::TrialStarted).events;
@@ -70,7 +70,7 @@ fn a_check_changes_nothing_in_the_trial_but_the_offset_of_the_gaze() {
             assert!(due >= start);
             events.extend(engine.fire());
         }
-        let told = |stamped: Stamped| match stamped.event {
+        let told = |stamped: TimestampedEvent| match stamped.event {
             Event::BeliefEstimated(_) | Event::Advised(_) => None,
             event => Some((stamped.time, event)),
         };
@@ -105,18 +105,18 @@ fn a_check_measures_what_the_gaze_is_off_by() {
 #[test]
 fn a_check_is_refused_where_it_cannot_be() {
     let mut engine = engine(|_| {});
-    let refused = |engine: &mut Engine, event: Event| {
+    let refused = |engine: &mut SessionEngine, event: Event| {
         let now = engine.session().time;
         engine.input(now, event).refused.unwrap_or_default()
     };
     let calibration = Event::Calibration;
-    assert!(refused(&mut engine, calibration(CalibrationEvent::TargetsHidden)).contains("no target is shown"));
-    assert!(refused(&mut engine, calibration(CalibrationEvent::Accepted { corrected: true })).contains("nothing was"));
+    assert!(refused(&mut engine, calibration(GazeCheckEvent::TargetsHidden)).contains("no target is shown"));
+    assert!(refused(&mut engine, calibration(GazeCheckEvent::Accepted { corrected: true })).contains("nothing was"));
     assert_eq!(refused(&mut engine, Event::TrialStarted), "");
-    assert!(refused(&mut engine, calibration(CalibrationEvent::begin())).contains("pause the trial first"));
+    assert!(refused(&mut engine, calibration(GazeCheckEvent::begin())).contains("pause the trial first"));
     assert_eq!(refused(&mut engine, Event::TrialPaused), "");
-    assert_eq!(refused(&mut engine, calibration(CalibrationEvent::begin())), "");
+    assert_eq!(refused(&mut engine, calibration(GazeCheckEvent::begin())), "");
     assert!(refused(&mut engine, Event::TrialResumed).contains("being checked"));
-    assert_eq!(refused(&mut engine, calibration(CalibrationEvent::Dismissed)), "");
+    assert_eq!(refused(&mut engine, calibration(GazeCheckEvent::Dismissed)), "");
     assert_eq!(refused(&mut engine, Event::TrialResumed), "");
 }

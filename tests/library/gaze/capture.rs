@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use rmpv::Value;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::pupil::eye_events::{BlinkMerger, FixationMerger, FixationWindow};
-use tomcom::edge::pupil::message::{self, PupilBlink, RecorderNews};
-use tomcom::edge::pupil::recorder::{CaptureAction, CaptureRecorder, CaptureRequest};
+use tomcom::edge::pupil::message::{self, CaptureNotification, PupilBlink};
+use tomcom::edge::pupil::recorder::{CaptureAction, CaptureRecordingControl, CaptureRequest};
 use tomcom::session::settings::GazeSource;
 use tomcom::session::tracker::TrackerEvent;
 use tomcom::session::{Event, preflight_checks};
@@ -141,13 +141,13 @@ fn words(actions: Vec<CaptureAction>) -> Vec<String> {
 }
 
 struct Desk {
-    recorder: CaptureRecorder,
+    recorder: CaptureRecordingControl,
     start: Instant,
 }
 
 impl Desk {
     fn new(records: bool) -> Desk {
-        Desk { recorder: CaptureRecorder::new(records), start: Instant::now() }
+        Desk { recorder: CaptureRecordingControl::new(records), start: Instant::now() }
     }
 
     fn at(&self, ms: u64) -> Instant {
@@ -177,11 +177,11 @@ impl Desk {
     }
 
     fn started(&mut self, ms: u64, name: &str) -> Vec<String> {
-        words(self.recorder.heard(RecorderNews::Started(name.to_string()), self.at(ms)))
+        words(self.recorder.heard(CaptureNotification::Started(name.to_string()), self.at(ms)))
     }
 
     fn stopped(&mut self, ms: u64) -> Vec<String> {
-        words(self.recorder.heard(RecorderNews::Stopped, self.at(ms)))
+        words(self.recorder.heard(CaptureNotification::Stopped, self.at(ms)))
     }
 
     fn pass(&mut self, ms: u64) -> Vec<String> {

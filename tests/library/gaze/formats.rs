@@ -8,9 +8,9 @@ use tomcom::base::rng::stream;
 use tomcom::edge::file_error::FileError;
 use tomcom::edge::files::read_session;
 use tomcom::edge::gaze_file;
-use tomcom::edge::pupil::message::{self, PupilMessage, RecorderNews};
-use tomcom::edge::pupil::zmtp::FrameAssembler;
-use tomcom::gaze::surface::SurfaceMap;
+use tomcom::edge::pupil::message::{self, CaptureNotification, PupilMessage};
+use tomcom::edge::pupil::zmtp::ZmtpFrameAssembler;
+use tomcom::gaze::surface::SurfaceHomography;
 use tomcom::run::options::SettingOverrides;
 use tomcom::session::settings::GazeSource;
 
@@ -60,9 +60,12 @@ fn an_undecided_blink_detector_is_no_fault_and_the_recorder_is_heard() {
     }
     let started = packed(&[("subject", "recording.started".into()), ("session_name", "2025-P07".into())]);
     let told = message::read(b"notify.recording.started", &started, "wall");
-    assert_eq!(told.recorder, Some(RecorderNews::Started("2025-P07".to_string())));
+    assert_eq!(told.recorder, Some(CaptureNotification::Started("2025-P07".to_string())));
     let stopped = packed(&[("subject", "recording.stopped".into())]);
-    assert_eq!(message::read(b"notify.recording.stopped", &stopped, "wall").recorder, Some(RecorderNews::Stopped));
+    assert_eq!(
+        message::read(b"notify.recording.stopped", &stopped, "wall").recorder,
+        Some(CaptureNotification::Stopped)
+    );
     assert_eq!(message::read(b"notify.recording.started", &stopped, "wall").malformed, 1);
     assert_eq!(message::read(b"notify.recording.started2", &started, "wall"), PupilMessage::default());
 }
@@ -125,7 +128,7 @@ fn frames_are_put_together_from_any_pieces_and_claims_are_not_believed() {
     // A command in between, then a message of one empty frame.
     bytes.extend([4, 2, b'o', b'k', 0, 0]);
     for piece in [1, 2, 3, 7, 64, 1000] {
-        let mut inbox = FrameAssembler::default();
+        let mut inbox = ZmtpFrameAssembler::default();
         let mut found = Vec::new();
         for part in bytes.chunks(piece) {
             inbox.push(part);
@@ -136,7 +139,7 @@ fn frames_are_put_together_from_any_pieces_and_claims_are_not_believed() {
         assert_eq!(found, [vec![b"surfaces".to_vec(), long.clone()], vec![Vec::new()]], "pieces of {piece}");
     }
     let refused = |bytes: &[u8]| {
-        let mut inbox = FrameAssembler::default();
+        let mut inbox = ZmtpFrameAssembler::default();
         inbox.push(bytes);
         inbox.next_message().is_err()
     };
@@ -145,8 +148,8 @@ fn frames_are_put_together_from_any_pieces_and_claims_are_not_believed() {
     assert!(refused(&[1, 0].repeat(17)), "a message of very many frames");
 }
 
-fn map() -> SurfaceMap {
-    SurfaceMap::new([[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [0.1, 0.9]]).expect("a surface")
+fn map() -> SurfaceHomography {
+    SurfaceHomography::new([[0.1, 0.1], [0.9, 0.1], [0.9, 0.9], [0.1, 0.9]]).expect("a surface")
 }
 
 #[test]

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::SessionSpec;
 
 fn load(layout: &str) -> Kitchen {
@@ -24,9 +24,9 @@ fn load(layout: &str) -> Kitchen {
 }
 
 /// A session of the sushi kitchen with these settings.
-fn engine(change: impl Fn(&mut SessionSpec)) -> Engine {
+fn engine(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
     let mut files = read_session(Path::new("sessions/default.toml")).expect("the default session");
     change(&mut files.spec);
     let kitchen = Arc::new(files.kitchen.kitchen);
-    Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
+    SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen))
 }

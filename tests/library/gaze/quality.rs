@@ -3,8 +3,8 @@
 use tomcom::base::time::SessionTime;
 use tomcom::gaze::GazeSample;
 use tomcom::gaze::device_clock::DeviceClock;
-use tomcom::gaze::quality::{GazeFault, RateLimit, SampleChecker};
-use tomcom::run::engine::Engine;
+use tomcom::gaze::quality::{GazeFault, GazeFaultDetector, RateLimit};
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
 use tomcom::session::settings::{GazeSource, ParticipantKind};
 
@@ -17,7 +17,7 @@ fn what_is_wrong_with_a_stream_is_counted_by_kind_and_not_read() {
     });
     let at = |ms: u64| SessionTime(ms * 1_000_000);
     assert_eq!(engine.input(at(0), Event::TrialStarted).refused, None);
-    let send = |engine: &mut Engine, arrived: u64, taken: u64, x: f64| {
+    let send = |engine: &mut SessionEngine, arrived: u64, taken: u64, x: f64| {
         let sample =
             GazeSample { device_ns: Some(taken + 5), taken_ns: Some(at(taken)), ..GazeSample::new(x, 0.35, 0.9) };
         let before = engine.belief().clone();
@@ -51,7 +51,7 @@ fn what_is_read_is_what_the_display_showed_when_the_sample_was_taken() {
         let kitchen = engine.session().kitchen.clone();
         let counter = kitchen.location_named("counter").expect("a counter");
         let [x, y] = kitchen.location(counter).display.centre();
-        let input = |engine: &mut Engine, ms: u64, event: Event| {
+        let input = |engine: &mut SessionEngine, ms: u64, event: Event| {
             assert_eq!(engine.input(at(ms), event).refused, None);
         };
         input(&mut engine, 0, Event::TrialStarted);
@@ -85,7 +85,7 @@ fn device_time_is_told_from_the_samples_that_took_the_shortest_way() {
 /// A stream at 100 Hz with delays of 3 to 12 ms, whose clock does what it says. Gives the samples that are not read, the largest error
 /// of the time of those that are, in ms, in the last second, and by how much the clock was set, in s.
 fn stream(device_ms: impl Fn(u64) -> u64) -> (u64, f64, Vec<f64>) {
-    let (mut clock, mut checker) = (DeviceClock::default(), SampleChecker::default());
+    let (mut clock, mut checker) = (DeviceClock::default(), GazeFaultDetector::default());
     let (mut unread, mut most_off, mut steps) = (0, 0.0f64, Vec::new());
     for sample in 0..2000u64 {
         let taken_ms = 20_000 + 10 * sample;

@@ -1,6 +1,6 @@
 //! The tags in the corners of the wall display, and the map from a tracker's surface to it.
 
-use tomcom::gaze::surface::SurfaceMap;
+use tomcom::gaze::surface::SurfaceHomography;
 use tomcom::gaze::tags::{CELLS, DisplayTags};
 use tomcom::kitchen::DisplayArea;
 
@@ -75,7 +75,7 @@ fn a_location_in_a_corner_leaves_no_room_for_its_tag() {
 fn the_surface_maps_its_corners_and_straight_lines_to_the_display() {
     // The hull of the tags: what Pupil calls (0, 0) is the outer black corner of the bottom left tag.
     let hull = DisplayTags::place(&load("layouts/sushi.toml")).expect("room for the tags").hull();
-    let map = SurfaceMap::new(hull).expect("a surface");
+    let map = SurfaceHomography::new(hull).expect("a surface");
     for (norm_pos, expected) in
         [([0.0, 1.0], hull[0]), ([1.0, 1.0], hull[1]), ([1.0, 0.0], hull[2]), ([0.0, 0.0], hull[3])]
     {
@@ -86,7 +86,7 @@ fn the_surface_maps_its_corners_and_straight_lines_to_the_display() {
     assert!(centre.iter().all(|value| (value - 0.5).abs() < 1e-12), "{centre:?}");
     // A surface that was drawn by hand, seen askew: its diagonals still meet where its centre is, which no affine map does.
     let corners = [[0.1, 0.1], [0.9, 0.2], [0.8, 0.9], [0.2, 0.7]];
-    let map = SurfaceMap::new(corners).expect("a surface");
+    let map = SurfaceHomography::new(corners).expect("a surface");
     let [x, y] = map.to_display([0.5, 0.5]).expect("a point");
     let off_line = |a: [f64; 2], b: [f64; 2]| (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0]);
     assert!(off_line(corners[0], corners[2]).abs() < 1e-12 && off_line(corners[1], corners[3]).abs() < 1e-12);
@@ -96,12 +96,12 @@ fn the_surface_maps_its_corners_and_straight_lines_to_the_display() {
 #[test]
 fn corners_that_are_no_surface_are_none() {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    assert!(SurfaceMap::new(square).is_some());
+    assert!(SurfaceHomography::new(square).is_some());
     let reversed = [square[3], square[2], square[1], square[0]];
     let crossed = [square[0], square[2], square[1], square[3]];
     let flat = [[0.0, 0.5], [1.0, 0.5], [1.0, 0.5], [0.0, 0.5]];
     let endless = [[0.0, 0.0], [f64::NAN, 0.0], [1.0, 1.0], [0.0, 1.0]];
     for corners in [reversed, crossed, flat, endless] {
-        assert_eq!(SurfaceMap::new(corners), None, "{corners:?}");
+        assert_eq!(SurfaceHomography::new(corners), None, "{corners:?}");
     }
 }

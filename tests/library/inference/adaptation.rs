@@ -9,7 +9,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, ButtonId, Press};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::ReferenceFilter;
 
 use super::observed::recorded;
@@ -34,13 +34,16 @@ fn lapses_after(slips: usize) -> [f64; 2] {
     let mut own = 0;
     for Observation { time, what } in recorded(&kitchen, 9803, 90) {
         let mut all = vec![Observation { time, what }];
-        if let Observed::Pressed(Press { agent: Agent::Human, after, .. }) = what {
+        if let ObservedEvidence::Pressed(Press { agent: Agent::Human, after, .. }) = what {
             own += 1;
             // Who knows the kitchen does not press what does nothing.
             if slips > 0 && own % slips == 0 {
                 let presses = (0..buttons).map(|button| kitchen.try_press(after, Agent::Human, ButtonId(button)));
                 let slip = presses.into_iter().find(|press| !press.effective).expect("a press that does nothing");
-                all.push(Observation { time: time + SessionTime::from_secs_f64(0.1), what: Observed::Pressed(slip) });
+                all.push(Observation {
+                    time: time + SessionTime::from_secs_f64(0.1),
+                    what: ObservedEvidence::Pressed(slip),
+                });
             }
         }
         for observation in all {

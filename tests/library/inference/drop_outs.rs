@@ -9,10 +9,10 @@ use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{AspectId, AspectKind, Kitchen, State};
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::settings::{ArmKind, Condition, GazeSource};
 use tomcom::session::tracker::GazeGapSpec;
-use tomcom::session::{Event, Phase, SessionSpec, Stamped};
+use tomcom::session::{Event, SessionSpec, TimestampedEvent, TrialPhase};
 
 /// Seed and number of the sessions.
 const SEED: u64 = 61;
@@ -34,7 +34,7 @@ enum Tracker {
 fn settings(files: &SessionFiles, tracker: Tracker) -> SessionSpec {
     let mut spec = files.spec.clone();
     (spec.seed, spec.trial.condition, spec.robot.arm) = (SEED, Condition::None, ArmKind::Timed);
-    spec.assistant.shadow = tomcom::communication::settings::Shadow::Off;
+    spec.assistant.shadow = tomcom::communication::settings::ShadowMode::Off;
     match tracker {
         Tracker::Full => {}
         Tracker::DropsOut => {
@@ -57,15 +57,16 @@ fn play(
     kitchen: &Arc<Kitchen>,
     trial: u64,
     tracker: Tracker,
-    mut edge: impl FnMut(Edge, &BeliefFilter, &Engine),
+    mut edge: impl FnMut(Edge, &BeliefFilter, &SessionEngine),
 ) -> Vec<Judged> {
-    let mut engine = Engine::new(kitchen.clone(), settings(files, tracker), trial, CostToGo::new(kitchen.clone()));
+    let mut engine =
+        SessionEngine::new(kitchen.clone(), settings(files, tracker), trial, CostToGo::new(kitchen.clone()));
     let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
     let (mut judged, mut held): (Vec<Judged>, Vec<bool>) = (Vec::new(), Vec::new());
     let mut seen = SessionTime::ZERO;
     // The filter in a drop-out, after the last event.
     let mut inside: Option<BeliefFilter> = None;
-    while engine.session().phase == Phase::Running {
+    while engine.session().phase == TrialPhase::Running {
         let now = engine.next_due().expect("a running session has a next event");
         let is_gone = now.secs_since(seen) > GONE_S;
         if is_gone && inside.is_none() {
@@ -73,7 +74,7 @@ fn play(
             edge(Edge::Begin { last: seen }, &filter, &engine);
             inside = Some(filter);
         }
-        let events: Vec<Stamped> = engine.fire();
+        let events: Vec<TimestampedEvent> = engine.fire();
         for stamped in &events {
             match &stamped.event {
                 Event::Gaze(_) => {

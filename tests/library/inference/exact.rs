@@ -5,7 +5,7 @@ use tomcom::kitchen::{Kitchen, Press};
 use tomcom::mind::dirichlet::DirichletBelief;
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::ReferenceFilter;
 
 use super::grid::{GridFilter, quadrature};
@@ -63,7 +63,7 @@ fn the_estimate_is_close_to_exact_assumed_density_filtering() {
             filters.iter_mut().for_each(|filter| filter.observe(observation, cost));
             reference.observe(observation, cost);
             particles.observe(observation, cost);
-            if !matches!(observation.what, Observed::Gaze { .. }) {
+            if !matches!(observation.what, ObservedEvidence::Gaze { .. }) {
                 events += 1;
                 let found =
                     [&filters[1].belief().clone(), &filters[0].belief().clone(), &reference.belief()].map(means);
@@ -93,13 +93,13 @@ fn the_estimate_is_close_to_exact_assumed_density_filtering() {
     assert!(mean(1) <= 0.05, "at the default number of samples: {}", mean(1));
 }
 
-fn told(kitchen: &Kitchen, what: &Observed) -> String {
+fn told(kitchen: &Kitchen, what: &ObservedEvidence) -> String {
     match what {
-        Observed::Pressed(Press { agent, button, effective, .. }) => {
+        ObservedEvidence::Pressed(Press { agent, button, effective, .. }) => {
             let effect = if *effective { "" } else { " (nothing)" };
             format!("{} {}{effect}", agent.name(), kitchen.button(*agent, *button).name)
         }
-        Observed::Displayed { .. } => "the display changes".to_string(),
+        ObservedEvidence::Displayed { .. } => "the display changes".to_string(),
         _ => "the start".to_string(),
     }
 }

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use tomcom::analysis::fitting::{FitPlan, FitSummary, describe};
+use tomcom::analysis::fitting::{FitSettings, FitSummary, describe};
 use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::mind::fitting::{FitObservations, Parameter};
+use tomcom::mind::fitting::{FitObservations, HumanModelParameter};
 use tomcom::mind::model::HumanModel;
 use tomcom::mind::observation::Observation;
 use tomcom::run::fit::{FitTrials, fit};
@@ -45,7 +45,7 @@ fn trials(kitchen: &Arc<Kitchen>, model: &HumanModel, experiment: &Experiment) -
 }
 
 /// Fits, tells, and demands that each parameter is within so many standard errors of the truth, on the scale of the fit.
-fn check(found: &FitSummary, plan: &FitPlan, truth: &HumanModel, errors: f64) {
+fn check(found: &FitSummary, plan: &FitSettings, truth: &HumanModel, errors: f64) {
     println!("{}", describe(found));
     assert!(found.converged, "{found:?}");
     for (parameter, fitted) in plan.parameters.iter().zip(&found.parameters) {
@@ -73,7 +73,11 @@ fn fitting_recovers_how_a_human_decides() {
     (truth.decision.tau, truth.decision.lapse) = (2.0, 0.15);
     let experiment = Experiment { humans: 12, presses: 60, gaze_hz: 15.0, signal_s: None, seed: 17 };
     let trials = trials(&kitchen, &truth, &experiment);
-    let plan = FitPlan { parameters: vec![Parameter::Tau, Parameter::Lapse], start: Some(coarse()), most_tries: 150 };
+    let plan = FitSettings {
+        parameters: vec![HumanModelParameter::Tau, HumanModelParameter::Lapse],
+        start: Some(coarse()),
+        most_tries: 150,
+    };
     check(&fit(&trials, &plan, || {}), &plan, &truth, 4.0);
 }
 
@@ -84,7 +88,11 @@ fn a_tau_that_no_press_tells_is_bounded_from_below() {
     (truth.decision.tau, truth.decision.lapse) = (1000.0, 0.05);
     let experiment = Experiment { humans: 8, presses: 60, gaze_hz: 15.0, signal_s: None, seed: 23 };
     let trials = trials(&kitchen, &truth, &experiment);
-    let plan = FitPlan { parameters: vec![Parameter::Tau, Parameter::Lapse], start: Some(coarse()), most_tries: 200 };
+    let plan = FitSettings {
+        parameters: vec![HumanModelParameter::Tau, HumanModelParameter::Lapse],
+        start: Some(coarse()),
+        most_tries: 200,
+    };
     let found = fit(&trials, &plan, || {});
     println!("{}", describe(&found));
     let [tau, lapse] = &found.parameters[..] else { panic!("{found:?}") };
@@ -104,8 +112,8 @@ fn a_search_that_did_not_end_gives_nothing_worse_than_it_began_with() {
     let experiment = Experiment { humans: 2, presses: 40, gaze_hz: 30.0, signal_s: None, seed: 23 };
     let trials = trials(&kitchen, &truth, &experiment);
     for most_tries in [1, 12, 30] {
-        let parameters = vec![Parameter::Tau, Parameter::Lapse];
-        let plan = FitPlan { parameters, start: Some(truth.clone()), most_tries };
+        let parameters = vec![HumanModelParameter::Tau, HumanModelParameter::Lapse];
+        let plan = FitSettings { parameters, start: Some(truth.clone()), most_tries };
         let found = fit(&trials, &plan, || {});
         println!("{}", describe(&found));
         assert!(!found.converged && found.log_likelihood >= found.log_likelihood_before, "{found:?}");
@@ -134,8 +142,13 @@ fn fitting_recovers_how_a_human_decides_and_looks() {
     start.transition = truth.transition.clone();
     let kitchen = kitchen("layouts/sushi.toml");
     let experiment = Experiment { humans: 32, presses: 100, gaze_hz: 30.0, signal_s: Some(15.0), seed: 19 };
-    let parameters = vec![Parameter::Tau, Parameter::Lapse, Parameter::RadiusDeg, Parameter::ReadingRateHz];
-    let plan = FitPlan { parameters, start: Some(start), most_tries: 600 };
+    let parameters = vec![
+        HumanModelParameter::Tau,
+        HumanModelParameter::Lapse,
+        HumanModelParameter::RadiusDeg,
+        HumanModelParameter::ReadingRateHz,
+    ];
+    let plan = FitSettings { parameters, start: Some(start), most_tries: 600 };
     check(&fit(&trials(&kitchen, &truth, &experiment), &plan, || {}), &plan, &truth, 4.0);
 }
 
@@ -147,6 +160,7 @@ fn fitting_recovers_how_a_human_forgets() {
     (start.decision, start.perception) = (truth.decision.clone(), truth.perception.clone());
     let kitchen = kitchen("layouts/sushi.toml");
     let experiment = Experiment { humans: 48, presses: 200, gaze_hz: 30.0, signal_s: Some(15.0), seed: 29 };
-    let plan = FitPlan { parameters: vec![Parameter::RecipeHalfLifeS], start: Some(start), most_tries: 200 };
+    let plan =
+        FitSettings { parameters: vec![HumanModelParameter::RecipeHalfLifeS], start: Some(start), most_tries: 200 };
     check(&fit(&trials(&kitchen, &truth, &experiment), &plan, || {}), &plan, &truth, 4.0);
 }

@@ -1,16 +1,16 @@
 //! Answers to probes in a fit: their likelihood, and what they tell that presses do not.
 
 use rand::RngExt;
-use tomcom::analysis::fitting::{FitPlan, describe};
+use tomcom::analysis::fitting::{FitSettings, describe};
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, AspectKind};
 use tomcom::mind::dirichlet::Dirichlet;
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::fitting::{FitObservations, Likelihood, Parameter, ProbedValue, likelihood, p_answer};
+use tomcom::mind::fitting::{FitObservations, HumanModelParameter, ProbedValue, TrialLikelihood, likelihood, p_answer};
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::run::fit::{FitTrials, fit};
 
 use super::world::{Human, World, kitchen, live};
@@ -25,9 +25,9 @@ fn an_answer_is_as_likely_as_the_estimate_at_the_freeze_says() {
     let mut cost = CostToGo::new(kitchen.clone());
     let state = kitchen.empty_state();
     let observations: Vec<Observation> = [
-        (0.0, Observed::Started { state }),
-        (40.0, Observed::Frozen),
-        (60.0, Observed::Thawed { by: at(20.0), asked: 0, teaches: 0.0 }),
+        (0.0, ObservedEvidence::Started { state }),
+        (40.0, ObservedEvidence::Frozen),
+        (60.0, ObservedEvidence::Thawed { by: at(20.0), asked: 0, teaches: 0.0 }),
     ]
     .map(|(seconds, what)| Observation { time: at(seconds), what })
     .to_vec();
@@ -46,7 +46,7 @@ fn an_answer_is_as_likely_as_the_estimate_at_the_freeze_says() {
     assert!((found.log_p_answers - wanted).abs() < 1e-12, "{found:?} instead of {wanted}");
     assert_eq!(found.total(), found.log_p_answers);
     let none = FitObservations { answers: Vec::new(), ..trial };
-    assert_eq!(likelihood(&kitchen, &model, &none, &mut cost), Likelihood::default());
+    assert_eq!(likelihood(&kitchen, &model, &none, &mut cost), TrialLikelihood::default());
 }
 
 /// People who know half of the recipes at first, forget within a minute, and are asked about four recipes every ten presses.
@@ -68,11 +68,11 @@ fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
         let mut trial = FitObservations { seed: index, ..FitObservations::default() };
         let mut pressed = 0;
         live(&mut world, &mut human, presses, |observation, human, _| {
-            if matches!(observation.what, Observed::Pressed(press) if press.agent == Agent::Human) {
+            if matches!(observation.what, ObservedEvidence::Pressed(press) if press.agent == Agent::Human) {
                 pressed += 1;
                 if pressed % 10 == 0 {
                     let pause = |what| Observation { time: observation.time, what };
-                    trial.observations.push(pause(Observed::Frozen));
+                    trial.observations.push(pause(ObservedEvidence::Frozen));
                     let after = trial.observations.len();
                     for _ in 0..4 {
                         let about = places + random.random_range(0..recipes);
@@ -80,7 +80,7 @@ fn probed(people: u64, presses: usize) -> (FitTrials, HumanModel) {
                         let value = believed.iter().position(|p| *p >= 0.5);
                         trial.answers.push(ProbedValue { after, aspect: AspectId(about as u8), value });
                     }
-                    let going_on = Observed::Thawed { by: SessionTime::ZERO, asked: 0, teaches: 0.0 };
+                    let going_on = ObservedEvidence::Thawed { by: SessionTime::ZERO, asked: 0, teaches: 0.0 };
                     trial.observations.push(pause(going_on));
                 }
             }
@@ -114,8 +114,8 @@ fn chances_of_answers_sum_to_one() {
 #[test]
 fn answers_narrow_the_interval_of_what_presses_hardly_tell() {
     let (trials, truth) = probed(10, 60);
-    let parameters = vec![Parameter::RecipeHalfLifeS];
-    let plan = FitPlan { parameters, start: None, most_tries: 60 };
+    let parameters = vec![HumanModelParameter::RecipeHalfLifeS];
+    let plan = FitSettings { parameters, start: None, most_tries: 60 };
     let found = fit(&trials, &plan, || {});
     println!("{}", describe(&found));
     let answers = found.answers.as_ref().expect("answers were used");

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use tomcom::analysis::fitting::FitPlan;
+use tomcom::analysis::fitting::FitSettings;
 use tomcom::analysis::fitting::people_summary::{PeopleSummary, describe_people};
 use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::mind::fitting::{FitObservations, Parameter};
+use tomcom::mind::fitting::{FitObservations, HumanModelParameter};
 use tomcom::mind::model::HumanModel;
 use tomcom::run::fit::{FitTrials, fit};
 use tomcom::run::fit_people;
@@ -14,7 +14,7 @@ use tomcom::run::fit_people;
 use super::world::{Human, World, kitchen, live};
 
 /// A parameter that differs between persons: the median person, and the standard deviation on the scale of the fit.
-type Spread = (Parameter, f64, f64);
+type Spread = (HumanModelParameter, f64, f64);
 
 /// Where persons stand in the population, in standard deviations: quantiles of a normal distribution, so that small groups have the
 /// population's mean, and about its standard deviation.
@@ -61,7 +61,7 @@ fn trials(
 }
 
 /// Means and standard deviations of persons lie within the intervals of the population.
-fn check_population(found: &PeopleSummary, truths: &[HumanModel], parameters: &[Parameter]) {
+fn check_population(found: &PeopleSummary, truths: &[HumanModel], parameters: &[HumanModelParameter]) {
     for (parameter, one) in parameters.iter().zip(&found.population) {
         let at: Vec<f64> = truths.iter().map(|truth| parameter.to_scale(parameter.get(truth))).collect();
         let mean = at.iter().sum::<f64>() / at.len() as f64;
@@ -75,7 +75,7 @@ fn check_population(found: &PeopleSummary, truths: &[HumanModel], parameters: &[
 
 /// Root mean square errors on the scale of the fit: of the persons' modes, of fits to each person's presses alone, and of the median
 /// person.
-fn errors(found: &PeopleSummary, trials: &FitTrials, plan: &FitPlan, truths: &[HumanModel]) -> Vec<[f64; 3]> {
+fn errors(found: &PeopleSummary, trials: &FitTrials, plan: &FitSettings, truths: &[HumanModel]) -> Vec<[f64; 3]> {
     let alone: Vec<Vec<f64>> = fit_people::by_person(trials)
         .into_values()
         .map(|own| {
@@ -85,7 +85,7 @@ fn errors(found: &PeopleSummary, trials: &FitTrials, plan: &FitPlan, truths: &[H
             fit(&one, plan, || {}).parameters.iter().map(|parameter| parameter.value).collect()
         })
         .collect();
-    let each = |(index, parameter): (usize, &Parameter)| {
+    let each = |(index, parameter): (usize, &HumanModelParameter)| {
         let off = |value: f64, truth: &HumanModel| {
             (parameter.to_scale(value) - parameter.to_scale(parameter.get(truth))).powi(2)
         };
@@ -123,10 +123,10 @@ fn coarse() -> HumanModel {
 fn people_who_differ_are_found_better_with_their_population() {
     let kitchen = kitchen("layouts/burger.toml");
     let start = coarse();
-    let spreads = [(Parameter::Lapse, 0.1, 1.3)];
+    let spreads = [(HumanModelParameter::Lapse, 0.1, 1.3)];
     let truths = people(&start, &spreads, 8);
     let trials = trials(&kitchen, &truths, &start, (2, 60), (5.0, 9824));
-    let plan = FitPlan { parameters: vec![Parameter::Lapse], start: None, most_tries: 60 };
+    let plan = FitSettings { parameters: vec![HumanModelParameter::Lapse], start: None, most_tries: 60 };
     let found = fit_people::fit(&trials, &plan, || {});
     println!("{}", describe_people(&found));
     assert!(found.converged, "{found:?}");
@@ -144,12 +144,12 @@ fn people_who_differ_are_found_better_with_their_population() {
 fn a_person_with_one_trial_counts_for_the_population_and_is_not_judged() {
     let kitchen = kitchen("layouts/burger.toml");
     let start = coarse();
-    let truths = people(&start, &[(Parameter::Lapse, 0.12, 1.0)], 3);
+    let truths = people(&start, &[(HumanModelParameter::Lapse, 0.12, 1.0)], 3);
     let mut trials = trials(&kitchen, &truths, &start, (2, 12), (10.0, 9825));
     // The first person's second trial.
     trials.observations.remove(1);
     trials.people.remove(1);
-    let plan = FitPlan { parameters: vec![Parameter::Lapse], start: None, most_tries: 40 };
+    let plan = FitSettings { parameters: vec![HumanModelParameter::Lapse], start: None, most_tries: 40 };
     let found = fit_people::fit(&trials, &plan, || {});
     let held_out = found.held_out.as_ref().expect("two persons have two trials");
     assert_eq!(held_out.left_out, ["P00"]);
@@ -169,11 +169,15 @@ fn people_who_differ_in_three_parameters_are_found() {
     (start.inference.beliefs, start.inference.max_beliefs) = (256, 256);
     // Their radius reaches beyond the place that is looked at: else the rate of reading would matter little.
     start.perception.radius_deg = 3.0;
-    let spreads = [(Parameter::Tau, 2.0, 0.4), (Parameter::Lapse, 0.1, 0.9), (Parameter::ReadingRateHz, 2.0, 0.9)];
+    let spreads = [
+        (HumanModelParameter::Tau, 2.0, 0.4),
+        (HumanModelParameter::Lapse, 0.1, 0.9),
+        (HumanModelParameter::ReadingRateHz, 2.0, 0.9),
+    ];
     let truths = people(&start, &spreads, 16);
     let trials = trials(&kitchen, &truths, &start, (3, 80), (15.0, 9826));
     let parameters = spreads.map(|(parameter, _, _)| parameter).to_vec();
-    let plan = FitPlan { parameters, start: None, most_tries: 300 };
+    let plan = FitSettings { parameters, start: None, most_tries: 300 };
     let found = fit_people::fit(&trials, &plan, || {});
     println!("{}", describe_people(&found));
     check_population(&found, &truths, &plan.parameters);

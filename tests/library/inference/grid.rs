@@ -11,12 +11,12 @@ use tomcom::base::rng::stream;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, Kitchen};
 use tomcom::mind::dirichlet::{Dirichlet, DirichletBelief};
-use tomcom::mind::gaze_presence::GazePresence;
+use tomcom::mind::gaze_presence::GazeAvailability;
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
-use tomcom::mind::reference::belief_set::Particles;
+use tomcom::mind::observation::{Observation, ObservedEvidence};
+use tomcom::mind::reference::belief_set::ParticleSet;
 use tomcom::mind::reference::person::Particle;
-use tomcom::mind::reference::reading_effect::GazeFollower;
+use tomcom::mind::reference::reading_effect::LookTracker;
 
 use super::looks_at_nothing;
 
@@ -39,9 +39,9 @@ pub struct GridFilter {
     kitchen: Arc<Kitchen>,
     model: HumanModel,
     /// On the grid, everybody thinks every press of the robot through.
-    people: Particles,
-    sight: GazeFollower,
-    presence: GazePresence,
+    people: ParticleSet,
+    sight: LookTracker,
+    presence: GazeAvailability,
     looks: Vec<Look>,
     pub belief: DirichletBelief,
     /// The largest grid so far.
@@ -54,11 +54,11 @@ impl GridFilter {
         thoughtful.transition.foresight = 1.0;
         // The grid reads gaze itself, and there is no time without gaze.
         thoughtful.looking = looks_at_nothing().looking;
-        let people = Particles::new(kitchen.clone(), thoughtful);
+        let people = ParticleSet::new(kitchen.clone(), thoughtful);
         let belief = people.prior.clone();
         let places = belief.aspects.iter().take(kitchen.locations.len());
         let looks = places.map(|of| Look { before: of.clone(), unread: 1.0, survived: 1.0 }).collect();
-        let (sight, presence) = (GazeFollower::default(), GazePresence::new(&model));
+        let (sight, presence) = (LookTracker::default(), GazeAvailability::new(&model));
         GridFilter { kitchen, people, model, sight, presence, looks, belief, nodes: 0 }
     }
 
@@ -67,7 +67,7 @@ impl GridFilter {
         let mut random = stream(0, "unused", 0);
         let now = observation.time;
         match observation.what {
-            Observed::Gaze { sample, taken } => {
+            ObservedEvidence::Gaze { sample, taken } => {
                 let perception = &self.model.perception;
                 let time = self.presence.sample(&sample, perception.known_share(sample.confidence), taken);
                 let known_s = time.known * time.covers_s;
@@ -86,14 +86,14 @@ impl GridFilter {
                 }
                 return;
             }
-            Observed::Started { state } => {
+            ObservedEvidence::Started { state } => {
                 self.people.start(now, state, 0, &mut random);
                 self.belief = self.people.prior.clone();
                 self.sight.show(now, state);
                 return;
             }
-            Observed::Pressed(press) => self.sight.show(now, press.after),
-            Observed::Displayed { state } => self.sight.show(now, state),
+            ObservedEvidence::Pressed(press) => self.sight.show(now, press.after),
+            ObservedEvidence::Displayed { state } => self.sight.show(now, state),
             _ => {}
         }
         let (people, mut weights) = grid(&self.kitchen, &self.belief);
@@ -104,7 +104,7 @@ impl GridFilter {
         weights.iter_mut().zip(&likelihoods).for_each(|(weight, p)| *weight *= p);
         let after = self.people.projected(&weights);
         let share = match observation.what {
-            Observed::Pressed(press) if press.agent == Agent::Robot => self.model.transition.foresight,
+            ObservedEvidence::Pressed(press) if press.agent == Agent::Robot => self.model.transition.foresight,
             _ => 1.0,
         };
         for (of, after) in self.belief.aspects.iter_mut().zip(&after.aspects) {

@@ -11,8 +11,8 @@ use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, ButtonId, ContentId, DishId, Kitchen, LocationId, OrderContent, Press, State};
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::model::{HumanModel, InferenceModel};
-use tomcom::mind::observation::{Observation, Observed, ProposedPresses};
+use tomcom::mind::model::{HumanModel, InferenceSettings};
+use tomcom::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
 use super::{any_number, any_state, check_proper, looks_at_nothing};
 
@@ -44,11 +44,11 @@ impl Bench {
         let filter = BeliefFilter::new(kitchen.clone(), model, seed);
         let (cost, state) = (CostToGo::new(kitchen.clone()), kitchen.empty_state());
         let mut bench = Bench { kitchen, filter, cost, state };
-        bench.observe(0.0, Observed::Started { state });
+        bench.observe(0.0, ObservedEvidence::Started { state });
         bench
     }
 
-    fn observe(&mut self, seconds: f64, what: Observed) {
+    fn observe(&mut self, seconds: f64, what: ObservedEvidence) {
         self.filter.observe(&Observation { time: at(seconds), what }, &mut self.cost);
     }
 
@@ -72,14 +72,14 @@ impl Bench {
         let dish = self.kitchen.dishes.iter().position(|other| other.name == dish).expect("a dish");
         let order = self.location(order);
         self.state.set_order(order, OrderContent::Dish(DishId(dish as u8)));
-        self.observe(seconds, Observed::Displayed { state: self.state });
+        self.observe(seconds, ObservedEvidence::Displayed { state: self.state });
     }
 
     fn press(&mut self, seconds: f64, agent: Agent, name: &str) {
         let button = self.kitchen.button_named(agent, name).expect("a button");
         let press = self.kitchen.try_press(self.state, agent, button);
         self.state = press.after;
-        self.observe(seconds, Observed::Pressed(press));
+        self.observe(seconds, ObservedEvidence::Pressed(press));
     }
 
     /// Looks at the middle of a location for some time, `hz` samples a second.
@@ -88,7 +88,7 @@ impl Bench {
         let sample = GazeSample::new(x, y, 1.0);
         for step in 0..(seconds * hz).round() as u32 {
             let time = from_s + f64::from(step) / hz;
-            self.observe(time, Observed::Gaze { sample, taken: at(time) });
+            self.observe(time, ObservedEvidence::Gaze { sample, taken: at(time) });
         }
     }
 
@@ -105,26 +105,32 @@ impl Bench {
 
 /// Coarse, for tests of many presses.
 fn coarse() -> HumanModel {
-    let inference =
-        InferenceModel { beliefs: 8, states: 4, min_effective: 2.0, max_beliefs: 16, predictions: 8, waiting: false };
+    let inference = InferenceSettings {
+        beliefs: 8,
+        states: 4,
+        min_effective: 2.0,
+        max_beliefs: 16,
+        predictions: 8,
+        waiting: false,
+    };
     HumanModel { inference, ..HumanModel::default() }
 }
 
 /// Something that may happen in a session, or cannot happen at all.
-fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observed {
+fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> ObservedEvidence {
     let agent = if random.random::<bool>() { Agent::Human } else { Agent::Robot };
     match random.random_range(0..14) {
-        0 => Observed::Started { state: any_state(kitchen, random) },
-        1 => Observed::Paused,
-        2 => Observed::Resumed,
-        3 => Observed::Displayed { state: any_state(kitchen, random) },
-        12 => Observed::Waited { longer: random.random() },
-        4 => Observed::Told { location: LocationId(random.random_range(0..kitchen.locations.len()) as u8) },
+        0 => ObservedEvidence::Started { state: any_state(kitchen, random) },
+        1 => ObservedEvidence::Paused,
+        2 => ObservedEvidence::Resumed,
+        3 => ObservedEvidence::Displayed { state: any_state(kitchen, random) },
+        12 => ObservedEvidence::Waited { longer: random.random() },
+        4 => ObservedEvidence::Told { location: LocationId(random.random_range(0..kitchen.locations.len()) as u8) },
         5..=7 => {
             let button = ButtonId(random.random_range(0..kitchen.buttons[agent.index()].len()) as u8);
             let before = any_state(kitchen, random);
             let after = random.random::<bool>().then(|| any_state(kitchen, random));
-            Observed::Pressed(Press {
+            ObservedEvidence::Pressed(Press {
                 agent,
                 button,
                 before,
@@ -135,7 +141,7 @@ fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observ
         13 => {
             let buttons = kitchen.buttons[Agent::Human.index()].len();
             let button = |_| ButtonId(random.random_range(0..buttons) as u8);
-            Observed::Proposed(ProposedPresses::new((0..3).map(button)))
+            ObservedEvidence::Proposed(ProposedPresses::new((0..3).map(button)))
         }
         _ => {
             let [x, y, confidence] = [(); 3].map(|()| any_number(random));
@@ -144,7 +150,7 @@ fn anything(kitchen: &Kitchen, time: SessionTime, random: &mut Stream) -> Observ
                 1 => SessionTime(time.0.saturating_add(random.random_range(0..2_000_000_000))),
                 _ => time,
             };
-            Observed::Gaze { sample: GazeSample::new(x, y, confidence), taken }
+            ObservedEvidence::Gaze { sample: GazeSample::new(x, y, confidence), taken }
         }
     }
 }
@@ -183,7 +189,7 @@ fn the_estimate_is_a_function_of_seed_and_events_alone() {
         for number in 0..120 {
             let time = at(number as f64);
             let what = if number == 0 {
-                Observed::Started { state: kitchen.empty_state() }
+                ObservedEvidence::Started { state: kitchen.empty_state() }
             } else {
                 anything(kitchen, time, &mut random)
             };
@@ -310,7 +316,7 @@ fn a_serve_press_without_effect_speaks_against_plate_order_or_recipe() {
     let stack = bench.kitchen.content_named("tuna nigiri").expect("a stack");
     let plate = bench.location("plate");
     bench.state.set_content(plate, stack);
-    bench.observe(0.6, Observed::Displayed { state: bench.state });
+    bench.observe(0.6, ObservedEvidence::Displayed { state: bench.state });
     bench.look(1.0, 3.0, "order_1", 120.0);
     bench.look(4.0, 3.0, "plate", 120.0);
     let held = bench.p("recipe of salmon nigiri", "tuna nigiri");
@@ -318,13 +324,13 @@ fn a_serve_press_without_effect_speaks_against_plate_order_or_recipe() {
     let learned = bench.p("recipe of salmon nigiri", "tuna nigiri");
     assert!(learned < held / 2.0, "{held} {learned}");
     bench.state.set_content(plate, bench.kitchen.content_named("salmon nigiri").expect("a stack"));
-    bench.observe(8.5, Observed::Displayed { state: bench.state });
+    bench.observe(8.5, ObservedEvidence::Displayed { state: bench.state });
     bench.look(9.0, 3.0, "plate", 120.0);
     bench.press(13.0, Agent::Human, "serve 1");
     assert!(bench.p("order_1", "served") > 0.99 && bench.p("plate", "empty") > 0.99);
     assert!(bench.p("recipe of salmon nigiri", "salmon nigiri") > 0.9, "it could be served as it was");
     bench.state.set_order(bench.location("order_1"), OrderContent::None);
-    bench.observe(15.0, Observed::Displayed { state: bench.state });
+    bench.observe(15.0, ObservedEvidence::Displayed { state: bench.state });
     assert!(bench.p("order_1", "none") > 0.99, "it is expected to be cleared");
 }
 
@@ -350,16 +356,16 @@ fn an_unseen_press_of_the_robot_makes_uncertain_what_its_policy_may_change_and_n
 fn recipes_are_forgotten_with_their_half_life_and_pauses_do_not_count() {
     let mut bench = Bench::new("sushi", HumanModel::default());
     bench.order(0.5, "order_1", "tuna maki");
-    bench.observe(1.0, Observed::Told { location: bench.location("order_1") });
+    bench.observe(1.0, ObservedEvidence::Told { location: bench.location("order_1") });
     assert!(bench.p("recipe of tuna maki", "tuna maki") > 0.999 && bench.p("order_1", "tuna maki") > 0.999);
     let prior = HumanModel::default().prior.recipe_truth;
     let beyond = |bench: &Bench| (bench.p("recipe of tuna maki", "tuna maki") - prior) / (1.0 - prior);
-    bench.observe(1.0, Observed::Paused);
-    bench.observe(5000.0, Observed::Resumed);
-    bench.observe(5200.0, Observed::Displayed { state: bench.state });
+    bench.observe(1.0, ObservedEvidence::Paused);
+    bench.observe(5000.0, ObservedEvidence::Resumed);
+    bench.observe(5200.0, ObservedEvidence::Displayed { state: bench.state });
     assert!((beyond(&bench) - 0.5).abs() < 1e-3, "{}", beyond(&bench));
     for step in 0..20 {
-        bench.observe(5210.0 + 10.0 * f64::from(step), Observed::Displayed { state: bench.state });
+        bench.observe(5210.0 + 10.0 * f64::from(step), ObservedEvidence::Displayed { state: bench.state });
     }
     assert!((beyond(&bench) - 0.25).abs() < 1e-3, "in small steps alike: {}", beyond(&bench));
 }
@@ -372,10 +378,10 @@ fn a_signal_makes_certain_what_it_is_about_as_often_as_it_is_noticed() {
         let mut bench = Bench::new("burger", model);
         let place = bench.kitchen.board;
         bench.state.set_content(place, ContentId(1));
-        bench.observe(1.0, Observed::Displayed { state: bench.state });
+        bench.observe(1.0, ObservedEvidence::Displayed { state: bench.state });
         let aspect = AspectId::of_location(place);
         let before = bench.filter.belief().p_truth(&bench.kitchen, bench.state, aspect);
-        bench.observe(2.0, Observed::Told { location: place });
+        bench.observe(2.0, ObservedEvidence::Told { location: place });
         let after = bench.filter.belief().p_truth(&bench.kitchen, bench.state, aspect);
         assert!((after - (noticed + (1.0 - noticed) * before)).abs() < 1e-4, "{noticed}: {before} {after}");
     }
@@ -383,7 +389,7 @@ fn a_signal_makes_certain_what_it_is_about_as_often_as_it_is_noticed() {
 
 #[test]
 fn too_few_effective_samples_are_met_with_more() {
-    let inference = InferenceModel {
+    let inference = InferenceSettings {
         beliefs: 32,
         states: 8,
         min_effective: 30.0,

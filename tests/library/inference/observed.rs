@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use tomcom::analysis::follower::Follower;
+use tomcom::analysis::follower::SessionFollower;
 use tomcom::base::time::SessionTime;
 use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::observation::Observation;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::{Event, Session, SessionSpec};
 
 /// All observations of an unassisted trial, until so many presses of both agents.
@@ -17,8 +17,8 @@ pub fn recorded(kitchen: &Arc<Kitchen>, seed: u64, presses: u32) -> Vec<Observat
     // The estimate of the session itself is of no interest here.
     (spec.human.inference.beliefs, spec.human.inference.states, spec.human.inference.max_beliefs) = (1, 1, 1);
     let cost = CostToGo::new(kitchen.clone());
-    let mut engine = Engine::new(kitchen.clone(), spec.clone(), 0, cost.clone());
-    let mut follower = Follower::new(Session::new(kitchen.clone(), spec, 0), cost);
+    let mut engine = SessionEngine::new(kitchen.clone(), spec.clone(), 0, cost.clone());
+    let mut follower = SessionFollower::new(Session::new(kitchen.clone(), spec, 0), cost);
     let mut observations = Vec::new();
     let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
     loop {

@@ -8,11 +8,11 @@ use tomcom::base::rng::{Stream, stream};
 use tomcom::kitchen::Kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
-use tomcom::mind::reference::belief_set::Particles;
+use tomcom::mind::observation::{Observation, ObservedEvidence};
+use tomcom::mind::reference::belief_set::ParticleSet;
 
 pub struct ParticleFilter {
-    pub people: Particles,
+    pub people: ParticleSet,
     pub weights: Vec<f64>,
     count: usize,
     chance: Stream,
@@ -20,12 +20,12 @@ pub struct ParticleFilter {
 
 impl ParticleFilter {
     pub fn new(kitchen: &Arc<Kitchen>, model: &HumanModel, count: usize, seed: u64, index: u64) -> ParticleFilter {
-        let people = Particles::new(kitchen.clone(), model.clone());
+        let people = ParticleSet::new(kitchen.clone(), model.clone());
         ParticleFilter { people, weights: Vec::new(), count, chance: stream(seed, "particles", index) }
     }
 
     pub fn observe(&mut self, observation: &Observation, cost: &mut CostToGo) {
-        if let Observed::Started { state } = observation.what {
+        if let ObservedEvidence::Started { state } = observation.what {
             self.people.start(observation.time, state, self.count, &mut self.chance);
             self.weights = vec![1.0 / self.count as f64; self.count];
             return;

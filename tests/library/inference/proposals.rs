@@ -9,7 +9,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, OrderContent};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::{HumanModel, LookingModel};
-use tomcom::mind::observation::{Observation, Observed, ProposedPresses};
+use tomcom::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 use tomcom::mind::reference::ReferenceFilter;
 
 /// Fall of P(truth) about the recipe of an order by a press of its look-alike's ingredient, and ln p of that press.
@@ -35,9 +35,9 @@ fn lessons(proposed: &[&str], follows: f64) -> [Lesson; 2] {
     let order = AspectId::of_location(kitchen.orders[0]);
     let crab = kitchen.try_press(wanted, Agent::Human, named(&"take crab"));
     let story = [
-        (0.0, Observed::Started { state: wanted }),
-        (1.5, Observed::Proposed(ProposedPresses::new(proposed.iter().map(named)))),
-        (1.5, Observed::Pressed(crab)),
+        (0.0, ObservedEvidence::Started { state: wanted }),
+        (1.5, ObservedEvidence::Proposed(ProposedPresses::new(proposed.iter().map(named)))),
+        (1.5, ObservedEvidence::Pressed(crab)),
     ];
     let mut filter = BeliefFilter::new(kitchen.clone(), model.clone(), 9706);
     model.inference.beliefs = 1500;
@@ -46,14 +46,14 @@ fn lessons(proposed: &[&str], follows: f64) -> [Lesson; 2] {
     let mut before = [0.0; 2];
     for (seconds, what) in story {
         let observation = Observation { time: SessionTime::from_secs_f64(seconds), what };
-        if matches!(what, Observed::Pressed(_)) {
+        if matches!(what, ObservedEvidence::Pressed(_)) {
             assert!(filter.belief().p_truth(&kitchen, wanted, order) > 0.8, "the order is known");
             before = [filter.belief(), &reference.belief()].map(|belief| belief.p_truth(&kitchen, wanted, recipe));
         }
         let belief = filter.belief().clone();
         filter.observe(&observation, &mut cost);
         reference.observe(&observation, &mut cost);
-        if matches!(what, Observed::Proposed(_)) {
+        if matches!(what, ObservedEvidence::Proposed(_)) {
             assert_eq!(filter.belief(), &belief, "a proposal says nothing about contents and recipes");
         }
     }

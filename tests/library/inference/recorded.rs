@@ -6,7 +6,7 @@ use tomcom::kitchen::{Agent, LocationId, Press};
 use tomcom::mind::dirichlet::DirichletBelief;
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::reference::ReferenceFilter;
 use tomcom::mind::signal_model::SignalModel;
 
@@ -30,7 +30,7 @@ fn the_fast_filter_and_the_reference_agree_on_recorded_steps() {
 
 #[test]
 fn they_agree_without_gaze() {
-    agree(HumanModel::default(), |what| !matches!(what, Observed::Gaze { .. }), |same| same);
+    agree(HumanModel::default(), |what| !matches!(what, ObservedEvidence::Gaze { .. }), |same| same);
 }
 
 #[test]
@@ -67,19 +67,19 @@ fn they_agree_where_signals_take_time() {
 
 #[test]
 fn they_agree_without_gaze_where_signals_take_time() {
-    agree(reads_in_time(), |what| !matches!(what, Observed::Gaze { .. }), with_signals);
+    agree(reads_in_time(), |what| !matches!(what, ObservedEvidence::Gaze { .. }), with_signals);
 }
 
 /// After every third press of the human a signal is shown for up to four seconds: about an order, a place, in turn.
 fn with_signals(observations: Vec<Observation>) -> Vec<Observation> {
-    let is_own = |what: &Observed| matches!(what, Observed::Pressed(Press { agent: Agent::Human, .. }));
+    let is_own = |what: &ObservedEvidence| matches!(what, ObservedEvidence::Pressed(Press { agent: Agent::Human, .. }));
     let own = observations.iter().filter(|one| is_own(&one.what)).step_by(3);
     let signals = own.enumerate().flat_map(|(number, one)| {
         let location = LocationId([0, 5, 1, 6, 0, 4][number % 6]);
         let after = |seconds: f64| one.time + SessionTime::from_secs_f64(seconds);
         [
-            Observation { time: after(0.1), what: Observed::Told { location } },
-            Observation { time: after(4.1), what: Observed::SignalOver },
+            Observation { time: after(0.1), what: ObservedEvidence::Told { location } },
+            Observation { time: after(4.1), what: ObservedEvidence::SignalOver },
         ]
     });
     let mut all = [observations.clone(), signals.collect()].concat();
@@ -89,12 +89,12 @@ fn with_signals(observations: Vec<Observation>) -> Vec<Observation> {
 
 /// After every third press of the human, a second later, it has waited for longer than usual.
 fn with_waits(observations: Vec<Observation>) -> Vec<Observation> {
-    let is_own = |what: &Observed| matches!(what, Observed::Pressed(Press { agent: Agent::Human, .. }));
+    let is_own = |what: &ObservedEvidence| matches!(what, ObservedEvidence::Pressed(Press { agent: Agent::Human, .. }));
     let own = observations.iter().filter(|one| is_own(&one.what)).step_by(3);
     let waits: Vec<Observation> = own
         .map(|one| Observation {
             time: one.time + SessionTime::from_secs_f64(1.0),
-            what: Observed::Waited { longer: 0.2 },
+            what: ObservedEvidence::Waited { longer: 0.2 },
         })
         .collect();
     let mut all = [observations, waits].concat();
@@ -103,7 +103,11 @@ fn with_waits(observations: Vec<Observation>) -> Vec<Observation> {
 }
 
 /// Holds the two against each other on recorded steps, as far as they are `kept` and with what is `added`.
-fn agree(model: HumanModel, kept: impl Fn(&Observed) -> bool, added: impl Fn(Vec<Observation>) -> Vec<Observation>) {
+fn agree(
+    model: HumanModel,
+    kept: impl Fn(&ObservedEvidence) -> bool,
+    added: impl Fn(Vec<Observation>) -> Vec<Observation>,
+) {
     for layout in ["layouts/sushi.toml", "layouts/burger.toml"] {
         let kitchen = kitchen(layout);
         let mut observations = recorded(&kitchen, 21, 45);
@@ -120,11 +124,11 @@ fn agree(model: HumanModel, kept: impl Fn(&Observed) -> bool, added: impl Fn(Vec
         for observation in &observations {
             fast.observe(observation, &mut cost);
             reference.observe(observation, &mut cost);
-            if let Observed::Waited { .. } = observation.what {
+            if let ObservedEvidence::Waited { .. } = observation.what {
                 let apart = mean_distance(&means(fast.belief()), &means(&reference.belief()));
                 (sum, most, steps) = (sum + apart, most.max(apart), steps + 1);
             }
-            if let Observed::Pressed(Press { agent, .. }) = observation.what {
+            if let ObservedEvidence::Pressed(Press { agent, .. }) = observation.what {
                 let apart = mean_distance(&means(fast.belief()), &means(&reference.belief()));
                 (sum, most, steps) = (sum + apart, most.max(apart), steps + 1);
                 if let (Agent::Human, Some(evidence), Some(plain)) = (agent, fast.evidence(), reference.log_p()) {

@@ -10,7 +10,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, DishId, Kitchen, LocationKind, OrderContent, State};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::observation::{Observation, ObservedEvidence};
 use tomcom::mind::signal_model::SignalModel;
 
 use super::looks_at_nothing;
@@ -40,17 +40,17 @@ impl SignalBench {
         let filter = BeliefFilter::new(kitchen.clone(), model, 9803);
         let (cost, recipe) = (CostToGo::new(kitchen.clone()), kitchen.aspect_of_dish(dish));
         let mut bench = SignalBench { kitchen, filter, cost, state, recipe };
-        bench.observe(0.0, Observed::Started { state });
+        bench.observe(0.0, ObservedEvidence::Started { state });
         bench
     }
 
-    fn observe(&mut self, seconds: f64, what: Observed) {
+    fn observe(&mut self, seconds: f64, what: ObservedEvidence) {
         let observation = Observation { time: SessionTime::from_secs_f64(seconds), what };
         self.filter.observe(&observation, &mut self.cost);
     }
 
     fn tell(&mut self, seconds: f64) {
-        self.observe(seconds, Observed::Told { location: self.kitchen.orders[0] });
+        self.observe(seconds, ObservedEvidence::Told { location: self.kitchen.orders[0] });
     }
 
     /// Gaze at the middle of a location between two times, in seconds, with 50 samples a second.
@@ -61,7 +61,7 @@ impl SignalBench {
             let seconds = from + f64::from(step) / 50.0;
             let taken = SessionTime::from_secs_f64(seconds);
             let sample = GazeSample { x, y, confidence: 1.0, device_ns: None, taken_ns: None };
-            self.observe(seconds, Observed::Gaze { sample, taken });
+            self.observe(seconds, ObservedEvidence::Gaze { sample, taken });
         }
     }
 
@@ -73,7 +73,7 @@ impl SignalBench {
 
     /// Ends the signal; the probability that it was read.
     fn read(&mut self, seconds: f64) -> f64 {
-        self.observe(seconds, Observed::SignalOver);
+        self.observe(seconds, ObservedEvidence::SignalOver);
         let over = self.filter.take_signal_over().expect("a signal that is over");
         assert_eq!(over.location, self.kitchen.orders[0]);
         over.read
@@ -150,7 +150,7 @@ fn a_press_by_the_look_alike_recipe_is_evidence_that_it_was_missed() {
         bench.tell(1.0);
         let pressed = bench.kitchen.button_named(Agent::Human, button).expect("a button");
         let press = bench.kitchen.try_press(bench.state, Agent::Human, pressed);
-        bench.observe(2.5, Observed::Pressed(press));
+        bench.observe(2.5, ObservedEvidence::Pressed(press));
         (bench.read(2.5), bench.filter.belief().p_truth(&bench.kitchen, bench.state, bench.recipe))
     };
     let (right, knows) = read_after("take shrimp");
@@ -185,7 +185,7 @@ fn without_a_delay_a_signal_is_believed_at_once_and_never_counted() {
     let mut bench = SignalBench::new(looks_at_nothing());
     bench.tell(1.0);
     assert!(bench.learned() > 0.999, "{}", bench.learned());
-    bench.observe(5.0, Observed::SignalOver);
+    bench.observe(5.0, ObservedEvidence::SignalOver);
     assert_eq!(bench.filter.take_signal_over(), None);
     assert_eq!(bench.filter.forecast().probability(LocationKind::Order), 1.0);
 }

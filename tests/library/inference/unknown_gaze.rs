@@ -11,10 +11,10 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, State};
 use tomcom::mind::dirichlet::Dirichlet;
 use tomcom::mind::filter::BeliefFilter;
-use tomcom::mind::gaze_presence::GazePresence;
+use tomcom::mind::gaze_presence::GazeAvailability;
 use tomcom::mind::model::{HumanModel, LookingModel};
-use tomcom::mind::observation::{Observation, Observed};
-use tomcom::participant::gaze_gaps::GazeGaps;
+use tomcom::mind::observation::{Observation, ObservedEvidence};
+use tomcom::participant::gaze_gaps::GazeDropoutSchedule;
 
 fn at(seconds: f64) -> SessionTime {
     SessionTime::from_secs_f64(seconds)
@@ -53,23 +53,23 @@ impl Trial {
         let (cost, state) = (CostToGo::new(kitchen.clone()), kitchen.empty_state());
         let filter = BeliefFilter::new(kitchen.clone(), model.clone(), 3);
         let mut trial = Trial { kitchen, filter, cost, state };
-        trial.observe(0.0, Observed::Started { state });
+        trial.observe(0.0, ObservedEvidence::Started { state });
         before(&mut trial);
         let button = trial.kitchen.button_named(Agent::Robot, "take rice").expect("a button");
         let press = trial.kitchen.try_press(state, Agent::Robot, button);
         trial.state = press.after;
-        trial.observe(1.0, Observed::Pressed(press));
+        trial.observe(1.0, ObservedEvidence::Pressed(press));
         trial
     }
 
-    fn observe(&mut self, seconds: f64, what: Observed) {
+    fn observe(&mut self, seconds: f64, what: ObservedEvidence) {
         self.filter.observe(&Observation { time: at(seconds), what }, &mut self.cost);
     }
 
     fn gaze(&mut self, from_s: f64, to_s: f64, sample: GazeSample) {
         for step in 0..((to_s - from_s) * 60.0) as u32 {
             let time = from_s + f64::from(step) / 60.0;
-            self.observe(time, Observed::Gaze { sample, taken: at(time) });
+            self.observe(time, ObservedEvidence::Gaze { sample, taken: at(time) });
         }
     }
 
@@ -114,7 +114,7 @@ fn dividing_a_gap_changes_nothing() {
     whole.advance(9.0);
     let mut divided = Trial::with(&model, |_| ());
     divided.gaze(1.2, 4.0, sample(0.1));
-    divided.observe(5.0, Observed::DisplayInView(true));
+    divided.observe(5.0, ObservedEvidence::DisplayInView(true));
     divided.gaze(6.0, 6.5, GazeSample::new(f64::NAN, 0.5, 1.0));
     divided.gaze(7.0, 8.0, sample(f64::NAN));
     divided.advance(9.0);
@@ -143,7 +143,7 @@ fn a_look_elsewhere_is_evidence_and_a_missing_sample_is_not() {
     assert!(unknown > 0.5, "{unknown}");
     let low = rice_after(&|trial| trial.gaze(1.0, 4.0, sample(0.3)));
     assert!((low - unknown).abs() < 0.02, "samples of no confidence tell as little as none: {low} and {unknown}");
-    let away = rice_after(&|trial| trial.observe(1.0, Observed::DisplayInView(false)));
+    let away = rice_after(&|trial| trial.observe(1.0, ObservedEvidence::DisplayInView(false)));
     assert!((0.02..unknown / 2.0).contains(&away), "a head that is turned away looks less: {away}");
 }
 
@@ -151,7 +151,7 @@ fn a_look_elsewhere_is_evidence_and_a_missing_sample_is_not() {
 /// follows, in seconds.
 fn unknown_s(confidence: f64, gap_s: f64) -> f64 {
     let model = HumanModel::default();
-    let mut presence = GazePresence::new(&model);
+    let mut presence = GazeAvailability::new(&model);
     presence.rest(at(0.0));
     let mut sum = 0.0;
     for step in 0..240 {
@@ -177,7 +177,7 @@ fn confidence_joins_smoothly_and_a_blink_is_not_unknown() {
 
 #[test]
 fn without_a_source_all_time_is_unknown() {
-    let mut presence = GazePresence::new(&HumanModel::default());
+    let mut presence = GazeAvailability::new(&HumanModel::default());
     presence.rest(at(2.0));
     assert!((presence.pass(at(7.0)) - 5.0).abs() < 1e-9);
     assert_eq!(presence.pass(at(7.0)), 0.0, "time counts once");
@@ -188,7 +188,7 @@ fn without_a_source_all_time_is_unknown() {
 #[test]
 fn drop_outs_follow_their_seed() {
     let schedule = |seed| {
-        let mut gaps = GazeGaps::new(10.0, [1.0, 8.0], stream(seed, "drop-outs", 0));
+        let mut gaps = GazeDropoutSchedule::new(10.0, [1.0, 8.0], stream(seed, "drop-outs", 0));
         (0..60_000).map(|step| gaps.swallows(at(f64::from(step) / 100.0))).collect::<Vec<bool>>()
     };
     let lost = schedule(4);

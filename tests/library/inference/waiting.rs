@@ -7,7 +7,7 @@ use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, DishId, Kitchen, OrderContent};
 use tomcom::mind::filter::BeliefFilter;
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
+use tomcom::mind::observation::{Observation, ObservedEvidence};
 
 use super::world::kitchen;
 
@@ -26,13 +26,13 @@ impl AfterAnOrder {
         let (filter, cost) = (BeliefFilter::new(kitchen.clone(), model, 1), CostToGo::new(kitchen.clone()));
         let mut one = AfterAnOrder { kitchen, cost, filter };
         let mut state = one.kitchen.empty_state();
-        one.observe(0.0, Observed::Started { state });
+        one.observe(0.0, ObservedEvidence::Started { state });
         state.set_order(one.kitchen.orders[0], OrderContent::Dish(DishId(0)));
-        one.observe(0.5, Observed::Displayed { state });
+        one.observe(0.5, ObservedEvidence::Displayed { state });
         one
     }
 
-    fn observe(&mut self, seconds: f64, what: Observed) {
+    fn observe(&mut self, seconds: f64, what: ObservedEvidence) {
         let time = SessionTime::from_secs_f64(seconds);
         self.filter.observe(&Observation { time, what }, &mut self.cost);
     }
@@ -50,7 +50,7 @@ impl AfterAnOrder {
         let mut state = self.kitchen.empty_state();
         state.set_order(self.kitchen.orders[0], OrderContent::Dish(DishId(0)));
         let press = self.kitchen.try_press(state, Agent::Human, button);
-        self.observe(seconds, Observed::Pressed(press));
+        self.observe(seconds, ObservedEvidence::Pressed(press));
     }
 }
 
@@ -60,7 +60,7 @@ fn who_waits_is_thought_to_believe_that_nothing_is_useful() {
     let mut last = None;
     for longer in [1.0, 0.2, 0.0] {
         let mut one = AfterAnOrder::new(true);
-        one.observe(1.5, Observed::Waited { longer });
+        one.observe(1.5, ObservedEvidence::Waited { longer });
         let p_none = one.p_none();
         println!("share of longer intervals {longer}: P(no order) {p_none:.3}");
         if let Some(last) = last {

@@ -12,8 +12,8 @@ use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::{CostToGo, Fidelity};
 use tomcom::kitchen::{Agent, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use tomcom::mind::model::HumanModel;
-use tomcom::mind::observation::{Observation, Observed};
-use tomcom::mind::reference::belief_set::Particles;
+use tomcom::mind::observation::{Observation, ObservedEvidence};
+use tomcom::mind::reference::belief_set::ParticleSet;
 use tomcom::mind::reference::person::pick;
 use tomcom::robot::policy;
 
@@ -80,7 +80,7 @@ impl World {
 
     /// The beginning of a trial.
     pub fn start(&mut self) -> Observation {
-        self.observation(0.0, Observed::Started { state: self.state })
+        self.observation(0.0, ObservedEvidence::Started { state: self.state })
     }
 
     /// What happens next; the human presses what `choose` says.
@@ -121,7 +121,7 @@ impl World {
         least + (most - least) * self.chance.random::<f64>()
     }
 
-    fn observation(&mut self, now: f64, what: Observed) -> Observation {
+    fn observation(&mut self, now: f64, what: ObservedEvidence) -> Observation {
         Observation { time: SessionTime::from_secs_f64(now), what }
     }
 
@@ -135,7 +135,7 @@ impl World {
         }
         let [x, y] = self.fixation.1;
         let sample = GazeSample::new(x, y, 0.9);
-        self.observation(now, Observed::Gaze { sample, taken: SessionTime::from_secs_f64(now) })
+        self.observation(now, ObservedEvidence::Gaze { sample, taken: SessionTime::from_secs_f64(now) })
     }
 
     /// Shows a recipe, mostly, or highlights what a place holds.
@@ -148,14 +148,14 @@ impl World {
             true => orders[self.chance.random_range(0..orders.len())],
             false => LocationId(self.chance.random_range(0..self.kitchen.locations.len()) as u8),
         };
-        self.observation(now, Observed::Told { location })
+        self.observation(now, ObservedEvidence::Told { location })
     }
 
     fn change(&mut self, now: f64) -> Observation {
         let first = (0..self.changes.len()).min_by(|&a, &b| self.changes[a].0.total_cmp(&self.changes[b].0));
         let (_, order, content) = self.changes.swap_remove(first.expect("a change"));
         self.state.set_order(order, content);
-        self.observation(now, Observed::Displayed { state: self.state })
+        self.observation(now, ObservedEvidence::Displayed { state: self.state })
     }
 
     fn press(&mut self, now: f64, agent: Agent, button: ButtonId) -> Observation {
@@ -169,20 +169,20 @@ impl World {
                 self.changes.push((now + self.kitchen.new_order_after_s, order, OrderContent::Dish(dish)));
             }
         }
-        self.observation(now, Observed::Pressed(press))
+        self.observation(now, ObservedEvidence::Pressed(press))
     }
 }
 
 /// A human who is simulated from the model.
 pub struct Human {
-    pub people: Particles,
+    pub people: ParticleSet,
     model: HumanModel,
     chance: Stream,
 }
 
 impl Human {
     pub fn new(kitchen: &Arc<Kitchen>, model: &HumanModel, seed: u64, index: u64) -> Human {
-        let people = Particles::new(kitchen.clone(), model.clone());
+        let people = ParticleSet::new(kitchen.clone(), model.clone());
         Human { people, model: model.clone(), chance: stream(seed, "human of the model", index) }
     }
 
@@ -196,7 +196,7 @@ impl Human {
 
     pub fn experience(&mut self, observation: &Observation, cost: &mut CostToGo) {
         match observation.what {
-            Observed::Started { state } => self.people.start(observation.time, state, 1, &mut self.chance),
+            ObservedEvidence::Started { state } => self.people.start(observation.time, state, 1, &mut self.chance),
             _ => {
                 self.people.experience(observation, cost, &mut self.chance);
             }
@@ -217,7 +217,7 @@ pub fn live(
     loop {
         each(&observation, human, &mut world.cost);
         human.experience(&observation, &mut world.cost);
-        if matches!(observation.what, Observed::Pressed(press) if press.agent == Agent::Human) {
+        if matches!(observation.what, ObservedEvidence::Pressed(press) if press.agent == Agent::Human) {
             left -= 1;
         }
         if left == 0 {

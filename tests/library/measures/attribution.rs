@@ -2,9 +2,9 @@
 
 use tomcom::kitchen::Agent;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::measures::attribution::{Attributor, Cause};
+use tomcom::measures::attribution::{ErrorAttributor, ErrorCause};
 use tomcom::measures::errors::PressJudge;
-use tomcom::mind::choice_parameters::DecisionModel;
+use tomcom::mind::choice_parameters::ChoiceParameters;
 
 use super::{at, belief, kitchen, state};
 
@@ -17,13 +17,13 @@ fn check(layout: &str, there: &[&str], falsely: &[&str], pressed: &str, why: &[&
     let press = kitchen.try_press(state, Agent::Human, button);
     let verdict = PressJudge::new(kitchen.clone()).human_pressed(&mut cost, at(1.0), &press);
     assert!(verdict.error, "{pressed} is no error: {verdict:?}");
-    let attributor = Attributor::new(DecisionModel::default(), 1);
+    let attributor = ErrorAttributor::new(ChoiceParameters::default(), 1);
     for (sure, index) in [(1.0, 0), (0.97, 1), (0.97, 2), (0.97, 3)] {
         let belief = belief(&kitchen, state, falsely, sure);
         let cause = attributor.cause(&kitchen, &mut cost, &belief, &press, index);
         let found: Vec<String> = match cause {
-            Cause::Slip | Cause::Planning => vec!["slip".to_string()],
-            Cause::Belief { target, with, .. } => {
+            ErrorCause::Slip | ErrorCause::Planning => vec!["slip".to_string()],
+            ErrorCause::Belief { target, with, .. } => {
                 [Some(target), with].into_iter().flatten().map(|target| target.label(&kitchen)).collect()
             }
         };

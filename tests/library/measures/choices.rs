@@ -2,19 +2,19 @@
 
 use std::convert::Infallible;
 
-use tomcom::analysis::follower::Follower;
-use tomcom::analysis::likelihood::LogLikelihood;
+use tomcom::analysis::follower::SessionFollower;
+use tomcom::analysis::likelihood::PressLogLikelihood;
 use tomcom::analysis::trial_summary::{BeliefErrorSummary, TrialSummary};
 use tomcom::base::rng::stream;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, WeightedWorlds, World};
-use tomcom::measures::belief_detection::{EstimateView, PressView, TrialView};
+use tomcom::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, TrialView};
 use tomcom::mind::belief::Belief;
-use tomcom::mind::choice_parameters::DecisionModel;
-use tomcom::mind::{BeliefWitness, ChoiceModel};
-use tomcom::run::engine::Engine;
+use tomcom::mind::choice_parameters::ChoiceParameters;
+use tomcom::mind::{ChoiceModel, RecordedBelief};
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
-use tomcom::session::{Event, Session, SessionSpec, Stamped};
+use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
 
 use super::{aspect, kitchen, state};
 
@@ -44,7 +44,7 @@ fn decisions_are_distributions_and_exact_sums_agree_with_many_draws() {
             weights[labels.iter().position(|other| other == label).expect("a value")] += 0.6;
             held.set(id, &weights);
         }
-        let exact_model = DecisionModel::default();
+        let exact_model = ChoiceParameters::default();
         let exact_worlds = exact_model.worlds(&kitchen, &held, &mut stream(1, "test", 0));
         assert!(exact_worlds.all.len() <= 4, "{layout}: {} worlds", exact_worlds.all.len());
         let weight: f64 = exact_worlds.all.iter().map(|one| one.weight).sum();
@@ -58,7 +58,7 @@ fn decisions_are_distributions_and_exact_sums_agree_with_many_draws() {
             held.set(id, &weights);
         }
         for (index, count) in [1usize, 2, 32, 4096].into_iter().enumerate() {
-            let model = DecisionModel { cases: count, ..DecisionModel::default() };
+            let model = ChoiceParameters { cases: count, ..ChoiceParameters::default() };
             let worlds = model.worlds(&kitchen, &held, &mut stream(1, "test", index as u64));
             let drawn = ChoiceModel::new(&kitchen, &model).probabilities(&mut cost, &worlds);
             let sum: f64 = drawn.press.iter().sum();
@@ -75,7 +75,7 @@ fn decisions_are_distributions_and_exact_sums_agree_with_many_draws() {
 fn one_waits_where_only_the_robot_can_go_on() {
     let kitchen = kitchen("sushi");
     let mut cost = CostToGo::new(kitchen.clone());
-    let model = DecisionModel::default();
+    let model = ChoiceParameters::default();
     let mut waits = |there: &[&str]| {
         let belief = Belief::of_truth(&kitchen, state(&kitchen, there));
         let worlds = model.worlds(&kitchen, &belief, &mut stream(1, "test", 0));
@@ -92,11 +92,12 @@ fn one_waits_where_only_the_robot_can_go_on() {
 fn a_belief_can_be_told_from_its_witness() {
     for layout in ["sushi", "burger"] {
         let kitchen = kitchen(layout);
-        let mut engine = Engine::new(kitchen.clone(), settings(""), 0, CostToGo::new(kitchen.clone()));
-        let mut witnesses: Vec<BeliefWitness> = Vec::new();
+        let mut engine = SessionEngine::new(kitchen.clone(), settings(""), 0, CostToGo::new(kitchen.clone()));
+        let mut witnesses: Vec<RecordedBelief> = Vec::new();
         let mut told = Vec::new();
-        let mut replay = Follower::new(Session::new(kitchen.clone(), settings(""), 0), CostToGo::new(kitchen.clone()));
-        let mut keep = |stamped: &Stamped| {
+        let mut replay =
+            SessionFollower::new(Session::new(kitchen.clone(), settings(""), 0), CostToGo::new(kitchen.clone()));
+        let mut keep = |stamped: &TimestampedEvent| {
             replay.apply(stamped).expect("what was recorded can be replayed");
             if let Event::ParticipantBelieves(witness) = &stamped.event {
                 let state = replay.session.state;
@@ -119,7 +120,7 @@ fn a_belief_can_be_told_from_its_witness() {
         }
         // What does not fit is no belief, and brings nothing down.
         let (state, good) = (told[0].0, &witnesses[0]);
-        let spoilt = |change: fn(&mut BeliefWitness)| {
+        let spoilt = |change: fn(&mut RecordedBelief)| {
             let mut witness = good.clone();
             change(&mut witness);
             Belief::of_witness(&kitchen, state, &witness)
@@ -138,8 +139,10 @@ fn a_belief_can_be_told_from_its_witness() {
 fn what_nobody_knows_stays_unknown() {
     let kitchen = kitchen("sushi");
     let figures = |participant: &str| {
-        let follower =
-            Follower::new(Session::new(kitchen.clone(), settings(participant), 0), CostToGo::new(kitchen.clone()));
+        let follower = SessionFollower::new(
+            Session::new(kitchen.clone(), settings(participant), 0),
+            CostToGo::new(kitchen.clone()),
+        );
         BeliefErrorSummary::from_trials([&TrialSummary::from_follower(&follower)])
     };
     let nobody = figures("kind = \"keyboard\"\ngaze = \"none\"");
@@ -156,11 +159,11 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
     let there = state(&kitchen, &["order_1: salmon maki", "human_hand: nori"]);
     let (board, trash) = (kitchen.board, kitchen.button_named(Agent::Human, "trash").expect("a button"));
     let put = kitchen.button_named(Agent::Human, &kitchen.location(board).name.clone()).expect("a button");
-    let press = |button, log_p| PressView {
+    let press = |button, log_p| BeliefsBeforePress {
         state: there,
         button,
         held: None,
-        estimate: Some(EstimateView {
+        estimate: Some(EstimateBeforePress {
             p_wrong: vec![0.0; kitchen.aspects.len()],
             p_false: vec![0.0; kitchen.aspects.len()],
             log_p,
@@ -172,8 +175,8 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
     // The wise press nine times of ten.
     let of_trial: TrialView = (0..20).map(|index| press(if index % 10 == 0 { trash } else { put }, -0.1)).collect();
     let trials = vec![of_trial; 5];
-    let model = DecisionModel::default();
-    let found = LogLikelihood::from_trials(&kitchen, &mut cost, &model, &trials, 1);
+    let model = ChoiceParameters::default();
+    let found = PressLogLikelihood::from_trials(&kitchen, &mut cost, &model, &trials, 1);
     let informed = found.informed.expect("presses");
     let best = 0.9 * 0.9_f64.ln() + 0.1 * 0.1_f64.ln();
     assert!(informed < 0.0 && informed <= best + 1e-9, "no better than knowing the shares: {found:?}");
@@ -187,5 +190,5 @@ fn a_human_who_knows_everything_is_fitted_to_the_presses() {
     // Trials that are all alike leave no doubt.
     let [from, to] = found.gain_interval.expect("an interval");
     assert!((from - gain).abs() < 1e-9 && (to - gain).abs() < 1e-9);
-    assert_eq!(LogLikelihood::from_trials(&kitchen, &mut cost, &model, &[], 1), LogLikelihood::default());
+    assert_eq!(PressLogLikelihood::from_trials(&kitchen, &mut cost, &model, &[], 1), PressLogLikelihood::default());
 }

@@ -2,10 +2,10 @@
 
 use tomcom::base::incomplete_beta::regularized_incomplete_beta;
 use tomcom::kitchen::{AspectId, ButtonId, Kitchen};
-use tomcom::measures::belief_detection::{Detection, EstimateView, PressView, TrialView};
+use tomcom::measures::belief_detection::{BeliefsBeforePress, EstimateBeforePress, FalseBeliefDetection, TrialView};
 use tomcom::measures::detection::{Calibration, auc};
-use tomcom::measures::flags::{ThresholdSource, Thresholds};
-use tomcom::mind::recorded_estimate::{AspectEstimate, EstimateWitness};
+use tomcom::measures::flags::{FlagThresholds, ThresholdSource};
+use tomcom::mind::recorded_estimate::{AspectEstimate, RecordedEstimate};
 
 use super::{aspect, kitchen};
 
@@ -54,11 +54,11 @@ fn trial(kitchen: &Kitchen, place: AspectId, recipe: AspectId, text: [&str; 4]) 
             let tenths = letters[group + 2][index].to_digit(10).expect("a digit");
             p_wrong[aspect.index()] = f64::from(tenths) / 10.0;
         }
-        PressView {
+        BeliefsBeforePress {
             state: kitchen.empty_state(),
             button: ButtonId(0),
             held: Some(held),
-            estimate: Some(EstimateView { p_false: p_wrong.clone(), p_wrong, log_p: -1.0 }),
+            estimate: Some(EstimateBeforePress { p_false: p_wrong.clone(), p_wrong, log_p: -1.0 }),
             unseen_change: vec![false; kitchen.locations.len()],
             since_change_s: vec![None; kitchen.locations.len()],
             errs_about,
@@ -73,8 +73,8 @@ fn flags_catch_an_episode_between_its_beginning_and_the_third_error() {
     let (place, recipe) = (aspect(&kitchen, "cooking_pot"), aspect(&kitchen, "recipe of crab maki"));
     let check = |text: [&str; 4], episodes: u64, caught: Option<f64>, false_flags: f64| {
         let trials = [trial(&kitchen, place, recipe, text)];
-        let thresholds = Thresholds { locations: 0.5, recipes: 0.3 };
-        let flags = Detection::from_trials(&kitchen, &trials, Some(thresholds)).flags;
+        let thresholds = FlagThresholds { locations: 0.5, recipes: 0.3 };
+        let flags = FalseBeliefDetection::from_trials(&kitchen, &trials, Some(thresholds)).flags;
         assert_eq!((flags.episodes, flags.flagged_before_third_error), (Some(episodes), caught), "{text:?}");
         let rate = 20.0 * false_flags / text[0].len() as f64;
         assert!((flags.false_flags_per_20_actions.expect("a rate") - rate).abs() < 1e-12, "{text:?}: {flags:?}");
@@ -99,7 +99,8 @@ fn thresholds_are_chosen_that_catch_most_within_what_is_allowed() {
     let quiet = ".".repeat(60);
     let zero = "0".repeat(60);
     let text = [&format!("{quiet}EEw."), &format!("{quiet}...."), &format!("{zero}0702"), &format!("{zero}0000")];
-    let found = Detection::from_trials(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None);
+    let found =
+        FalseBeliefDetection::from_trials(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None);
     let flags = &found.flags;
     assert_eq!((flags.episodes, flags.flagged_before_third_error), (Some(1), Some(1.0)), "{flags:?}");
     assert_eq!(
@@ -128,7 +129,8 @@ fn what_may_be_flagged_wrongly_is_a_share_of_the_time_of_all_aspects_together() 
         let (right, known) = (".".repeat(64), "0".repeat(66));
         let estimates = format!("{}{}33", "0".repeat(64 - doubted), "3".repeat(doubted));
         let text = [&format!("{right}.."), &format!("{right}EE"), &known, &estimates];
-        Detection::from_trials(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None).flags
+        FalseBeliefDetection::from_trials(&kitchen, &[trial(&kitchen, place, recipe, text.map(String::as_str))], None)
+            .flags
     };
     // 66 presses and 16 aspects: 1,056 pairs, of which 52 may be flagged wrongly; of the recipes' alone 5 % were 19.
     assert_eq!(of(40).flagged_before_third_error, Some(1.0));
@@ -147,10 +149,10 @@ fn thresholds_are_judged_on_the_other_half_of_the_trials() {
     };
     // The first trial's episode is found from 0.7 on, the second's from 0.2 on; each is judged with the other's threshold.
     let (high, low) = (one("0700"), one("0200"));
-    let flags = |trials: &[TrialView], given| Detection::from_trials(&kitchen, trials, given).flags;
+    let flags = |trials: &[TrialView], given| FalseBeliefDetection::from_trials(&kitchen, trials, given).flags;
     let found = flags(&[high.clone(), low.clone()], None);
     assert_eq!(found.thresholds_from, Some(ThresholdSource::OtherHalf));
-    let given = |locations| Some(Thresholds { locations, recipes: 1.0 });
+    let given = |locations| Some(FlagThresholds { locations, recipes: 1.0 });
     let single = |trial: &TrialView| {
         let found = flags(std::slice::from_ref(trial), None);
         assert_eq!(found.thresholds_from, Some(ThresholdSource::SameTrial));
@@ -187,7 +189,7 @@ fn calibration_judges_the_probability_that_the_belief_in_the_truth_is_below_one_
     check(2.0, 0.0, 0.0);
     // Somebody who holds one value for certain, the truth with probability 0.7: alphas near 0. The expected belief beside the truth
     // is 0.3 at every precision; the probability of a false belief is 0.3 only here, and near 0 if the belief itself is 0.7.
-    let witness = |precision: f64| EstimateWitness {
+    let witness = |precision: f64| RecordedEstimate {
         press: 1,
         log_p: -1.0,
         effective: 64.0,
@@ -199,7 +201,7 @@ fn calibration_judges_the_probability_that_the_belief_in_the_truth_is_below_one_
             values: [("empty".to_string(), 0.7)].into(),
         }],
     };
-    let view = |precision: f64| EstimateView::from_witness(&witness(precision));
+    let view = |precision: f64| EstimateBeforePress::from_witness(&witness(precision));
     assert!((view(0.001).p_false[0] - 0.3).abs() < 1e-3, "{:?}", view(0.001));
     assert!(view(200.0).p_false[0] < 1e-6, "{:?}", view(200.0));
     assert!((view(200.0).p_wrong[0] - 0.3).abs() < 1e-12);

@@ -1,9 +1,9 @@
 //! Signals that are judged when they are sent.
 
 use tomcom::communication::{Sender, Signal};
-use tomcom::history::signal_judge::{SignalJudge, SignalTally};
+use tomcom::history::signal_judge::{SignalJudge, SignalJudgementCounts};
 use tomcom::kitchen::Agent;
-use tomcom::session::event::{Event, SignalEnd, Stamped};
+use tomcom::session::event::{Event, SignalEndReason, TimestampedEvent};
 use tomcom::session::{Session, SessionSpec, apply};
 
 use super::{aspect, at, kitchen};
@@ -26,7 +26,7 @@ impl Trial {
 
     fn event(&mut self, event: Event) {
         self.seq += 1;
-        let stamped = Stamped { seq: self.seq, time: at(10.0 * self.seq as f64), event };
+        let stamped = TimestampedEvent { seq: self.seq, time: at(10.0 * self.seq as f64), event };
         apply(&mut self.session, &stamped).expect("the event fits");
         self.judge.judge(&stamped, &self.session);
     }
@@ -53,10 +53,10 @@ fn a_signal_is_judged_by_what_was_believed_before_it() {
     trial.believes_wrong(&["cooking_pot"]);
     trial.highlight("cooking_pot", Sender::Wizard);
     trial.highlight("cutting_board", Sender::Wizard);
-    trial.event(Event::SignalEnded { reason: SignalEnd::TakenBack });
-    let tally = SignalTally { hits: 1, late: 0, needless: 1, taken_back: 1 };
+    trial.event(Event::SignalEnded { reason: SignalEndReason::TakenBack });
+    let tally = SignalJudgementCounts { hits: 1, late: 0, needless: 1, taken_back: 1 };
     assert_eq!((trial.judge.tally(Sender::Wizard), tally.sent()), (tally, 2));
-    assert_eq!(trial.judge.tally(Sender::Assistant), SignalTally::default());
+    assert_eq!(trial.judge.tally(Sender::Assistant), SignalJudgementCounts::default());
 }
 
 #[test]
@@ -68,8 +68,14 @@ fn it_is_late_up_to_three_presses_after_the_belief_became_right() {
         trial.press();
     }
     trial.highlight("cooking_pot", Sender::Wizard);
-    assert_eq!(trial.judge.tally(Sender::Wizard), SignalTally { late: 1, ..SignalTally::default() });
+    assert_eq!(
+        trial.judge.tally(Sender::Wizard),
+        SignalJudgementCounts { late: 1, ..SignalJudgementCounts::default() }
+    );
     trial.press();
     trial.highlight("cooking_pot", Sender::Wizard);
-    assert_eq!(trial.judge.tally(Sender::Wizard), SignalTally { late: 1, needless: 1, ..SignalTally::default() });
+    assert_eq!(
+        trial.judge.tally(Sender::Wizard),
+        SignalJudgementCounts { late: 1, needless: 1, ..SignalJudgementCounts::default() }
+    );
 }

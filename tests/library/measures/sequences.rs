@@ -3,9 +3,9 @@
 use tomcom::base::time::SessionTime;
 use tomcom::kitchen::{DishId, LocationId};
 use tomcom::measures::JudgedPress;
-use tomcom::measures::attribution::{Cause, Target};
+use tomcom::measures::attribution::{ErrorCause, FalseBeliefTarget};
 use tomcom::measures::errors::PressVerdict;
-use tomcom::measures::sequences::{Episodes, Sequence, sequences, sequences_any_aspect};
+use tomcom::measures::sequences::{ErrorSequence, FalseBeliefTracker, sequences, sequences_any_aspect};
 
 use super::{at, belief, kitchen, state};
 
@@ -15,10 +15,10 @@ fn presses(text: &str) -> Vec<JudgedPress> {
     let press = |(index, letter): (usize, char)| {
         let cause = match letter {
             '.' | 'r' => None,
-            's' => Some(Cause::Slip),
+            's' => Some(ErrorCause::Slip),
             letter => {
-                let target = Target::Place(LocationId(letter as u8 - b'A'));
-                Some(Cause::Belief { gain_nats: 2.0, target, with: None })
+                let target = FalseBeliefTarget::Place(LocationId(letter as u8 - b'A'));
+                Some(ErrorCause::Belief { gain_nats: 2.0, target, with: None })
             }
         };
         let (race, error) = (letter == 'r', cause.is_some());
@@ -33,14 +33,14 @@ fn presses(text: &str) -> Vec<JudgedPress> {
 fn an_order_and_its_recipe_are_one_false_belief() {
     let (order, tuna, salmon) = (LocationId(0), DishId(0), DishId(1));
     let targets = [
-        Target::Order(order, Some(tuna)),
-        Target::Order(order, Some(salmon)),
-        Target::Recipe(tuna),
-        Target::Order(LocationId(1), Some(tuna)),
+        FalseBeliefTarget::Order(order, Some(tuna)),
+        FalseBeliefTarget::Order(order, Some(salmon)),
+        FalseBeliefTarget::Recipe(tuna),
+        FalseBeliefTarget::Order(LocationId(1), Some(tuna)),
     ];
     let mut all = presses("AAAA");
     for (press, target) in all.iter_mut().zip(targets) {
-        press.cause = Some(Cause::Belief { gain_nats: 2.0, target, with: None });
+        press.cause = Some(ErrorCause::Belief { gain_nats: 2.0, target, with: None });
     }
     let found = sequences(&all);
     // The salmon that comes in place of the tuna is another false belief.
@@ -49,9 +49,9 @@ fn an_order_and_its_recipe_are_one_false_belief() {
 }
 
 /// Sequences as target, length, beginning and recovery in seconds (-1: none).
-fn told(sequences: &[Sequence]) -> Vec<(char, u32, i32, i32)> {
-    let tell = |one: &Sequence| {
-        let Target::Place(LocationId(place)) = one.target else { panic!("a place") };
+fn told(sequences: &[ErrorSequence]) -> Vec<(char, u32, i32, i32)> {
+    let tell = |one: &ErrorSequence| {
+        let FalseBeliefTarget::Place(LocationId(place)) = one.target else { panic!("a place") };
         let recovered = one.recovered.map_or(-1, |time| time.as_secs_f64() as i32);
         (char::from(b'A' + place), one.length(), one.began.as_secs_f64() as i32, recovered)
     };
@@ -87,22 +87,22 @@ fn an_episode_lasts_from_the_change_that_was_missed_to_the_look_that_mends_it() 
     let unseen = ["cooking_pot: rice raw"];
     let confused = ["cooking_pot: rice raw", "recipe of crab maki: rice cooked + nori + shrimp cut"];
     let mut changed_at = vec![SessionTime::ZERO; kitchen.locations.len()];
-    let mut episodes = Episodes::default();
-    let believe = |episodes: &mut Episodes, seconds, state, falsely: &[&str], changed_at: &[SessionTime]| {
+    let mut episodes = FalseBeliefTracker::default();
+    let believe = |episodes: &mut FalseBeliefTracker, seconds, state, falsely: &[&str], changed_at: &[SessionTime]| {
         episodes.believed(&kitchen, at(seconds), state, &belief(&kitchen, state, falsely, 0.9), changed_at);
     };
-    let wrong = Cause::Belief { gain_nats: 3.0, target: Target::Place(pot), with: None };
+    let wrong = ErrorCause::Belief { gain_nats: 3.0, target: FalseBeliefTarget::Place(pot), with: None };
     believe(&mut episodes, 2.0, raw, &[], &changed_at);
     changed_at[pot.index()] = at(3.0);
     // A harmless false belief (the recipe) is no episode.
     believe(&mut episodes, 4.0, cooked, &confused, &changed_at);
     assert_eq!(episodes.harmful().count(), 0, "no error yet");
-    episodes.erred(&kitchen, Cause::Slip);
+    episodes.erred(&kitchen, ErrorCause::Slip);
     episodes.erred(&kitchen, wrong);
     believe(&mut episodes, 6.0, cooked, &unseen, &changed_at);
     episodes.erred(&kitchen, wrong);
-    let tell = |episodes: &Episodes| {
-        let tell = |one: &tomcom::measures::sequences::Episode| {
+    let tell = |episodes: &FalseBeliefTracker| {
+        let tell = |one: &tomcom::measures::sequences::FalseBeliefEpisode| {
             (one.began.as_secs_f64(), one.corrected.map(SessionTime::as_secs_f64), one.errors)
         };
         episodes.harmful().map(tell).collect::<Vec<_>>()

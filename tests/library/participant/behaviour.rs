@@ -6,7 +6,7 @@ use tomcom::base::time::SessionTime;
 use tomcom::communication::Signal;
 use tomcom::gaze::{GazeSample, MIN_CONFIDENCE, nearest_location};
 use tomcom::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, Press, State};
-use tomcom::mind::{BeliefWitness, PressOrigin};
+use tomcom::mind::{PressOrigin, RecordedBelief};
 use tomcom::participant::population::{Experience, Population, TraitSpread};
 use tomcom::participant::{ParticipantAction, SimulatedParticipant};
 
@@ -20,7 +20,7 @@ pub struct Bench {
     pub one: SimulatedParticipant,
     samples: Vec<GazeSample>,
     presses: Vec<(f64, ButtonId)>,
-    reasons: Vec<BeliefWitness>,
+    reasons: Vec<RecordedBelief>,
 }
 
 impl Bench {
@@ -264,10 +264,10 @@ fn it_records_where_its_presses_come_from() {
         assert!(reasons(&knowing, seed).iter().all(|one| one.origin == Some(PressOrigin::Plan)), "seed {seed}");
         let slips = reasons(&clumsy, seed).iter().filter(|one| one.origin == Some(PressOrigin::Slip)).count();
         assert!(slips > 5, "seed {seed}: {slips}");
-        let of_recipe = |one: &&BeliefWitness| one.targets == ["recipe of shrimp nigiri"];
+        let of_recipe = |one: &&RecordedBelief| one.targets == ["recipe of shrimp nigiri"];
         let believed = reasons(&ignorant, seed);
         about_the_recipe += usize::from(believed.iter().filter(of_recipe).count() > 0);
-        let named = |one: &BeliefWitness| (one.origin == Some(PressOrigin::Belief)) != one.targets.is_empty();
+        let named = |one: &RecordedBelief| (one.origin == Some(PressOrigin::Belief)) != one.targets.is_empty();
         assert!(
             believed.iter().all(named),
             "seed {seed}: a target for every press from a false belief, and for no other"

@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen};
-use tomcom::measures::attribution::Cause;
+use tomcom::measures::attribution::ErrorCause;
 use tomcom::measures::sequences::sequences;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
-use tomcom::session::{Event, SessionSpec, Stamped};
+use tomcom::session::{Event, SessionSpec, TimestampedEvent};
 
 use super::kitchen;
 
@@ -46,9 +46,9 @@ fn play(kitchen: &Arc<Kitchen>, seed: u64, trials: u64) -> Figures {
     let mut figures = Figures::default();
     let cost = CostToGo::new(kitchen.clone());
     for trial in 0..trials {
-        let mut engine = Engine::new(kitchen.clone(), settings(seed), trial, cost.clone());
-        let mut events: Vec<Stamped> = Vec::new();
-        let keep = |stamped: &Stamped| {
+        let mut engine = SessionEngine::new(kitchen.clone(), settings(seed), trial, cost.clone());
+        let mut events: Vec<TimestampedEvent> = Vec::new();
+        let keep = |stamped: &TimestampedEvent| {
             if !matches!(stamped.event, Event::Gaze(_)) {
                 events.push(stamped.clone());
             }
@@ -61,7 +61,7 @@ fn play(kitchen: &Arc<Kitchen>, seed: u64, trials: u64) -> Figures {
     figures
 }
 
-fn measure(engine: &Engine, events: &[Stamped], figures: &mut Figures) {
+fn measure(engine: &SessionEngine, events: &[TimestampedEvent], figures: &mut Figures) {
     let session = engine.session();
     figures.seconds += session.trial_clock(session.time).as_secs_f64();
     figures.robot += session.presses[Agent::Robot.index()] as usize;
@@ -80,7 +80,7 @@ fn measure(engine: &Engine, events: &[Stamped], figures: &mut Figures) {
     let errors = || judged.iter().filter(|press| press.verdict.error);
     for press in errors() {
         let name = match press.cause {
-            Some(Cause::Belief { target, .. }) => {
+            Some(ErrorCause::Belief { target, .. }) => {
                 figures.related += 1;
                 format!("{target:?}")
             }
@@ -89,7 +89,7 @@ fn measure(engine: &Engine, events: &[Stamped], figures: &mut Figures) {
         };
         *figures.causes.entry(name).or_default() += 1;
     }
-    figures.planning += errors().filter(|press| press.cause == Some(Cause::Planning)).count();
+    figures.planning += errors().filter(|press| press.cause == Some(ErrorCause::Planning)).count();
     figures.sequences.extend(sequences(judged).iter().map(|one| one.length() as usize));
     figures.human += judged.len();
     figures.errors += errors().count();

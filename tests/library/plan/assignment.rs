@@ -6,8 +6,8 @@ use std::fs;
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::kitchen::DishId;
 use tomcom::session::orders::OrderList;
-use tomcom::session::plan::{Item, Participants, Study, WantedRecording, orders as orders_of_conditions};
-use tomcom::session::settings::{ArmKind, ParticipantKind, ThemeChoice, Visibility};
+use tomcom::session::plan::{Participants, QuestionnaireItem, Study, WantedRecording, orders as orders_of_conditions};
+use tomcom::session::settings::{ArmKind, ColourTheme, ParticipantKind, WizardVisibility};
 use tomcom::session::wall_display::DisplayedArm;
 
 use super::{folder, study};
@@ -44,7 +44,7 @@ fn a_session_asks_in_its_own_language() {
     assert_eq!(german.items.len(), english.items.len());
     for (one, other) in german.items.iter().zip(&english.items) {
         assert_ne!(one.text, other.text);
-        assert_eq!(Item { text: other.text.clone(), ..one.clone() }, *other);
+        assert_eq!(QuestionnaireItem { text: other.text.clone(), ..one.clone() }, *other);
     }
 }
 
@@ -148,7 +148,7 @@ fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
         ("arm", |files| files.spec.robot.arm = ArmKind::Timed),
         ("signals", |files| files.spec.signals.shown_s += 1.0),
         ("cost", |files| files.spec.assistant.cost_of_communication += 0.1),
-        ("what the wizard sees", |files| files.spec.console.visibility = Visibility::Belief),
+        ("what the wizard sees", |files| files.spec.console.visibility = WizardVisibility::Belief),
         ("human model", |files| files.spec.human.decision.tau += 0.1),
         ("display", |files| files.spec.display.intention = true),
         ("reasons of presses without effect", |files| files.spec.display.reasons = Some(false)),
@@ -167,7 +167,7 @@ fn the_digest_covers_all_that_can_change_a_trial_and_nothing_else() {
     let same: [NamedChange; 4] = [
         ("port", |files| files.spec.display.port += 1),
         ("viewer", |files| files.spec.rerun.live = !files.spec.rerun.live),
-        ("theme", |files| files.spec.console.theme = ThemeChoice::Light),
+        ("theme", |files| files.spec.console.theme = ColourTheme::Light),
         ("who takes part", |files| files.spec.participant.kind = ParticipantKind::Keyboard),
     ];
     for (what, change) in same {

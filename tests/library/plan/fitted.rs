@@ -7,12 +7,12 @@ use std::sync::Arc;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::files::{read_human_model, read_session, write_human_model};
 use tomcom::mind::fitted_people::{FittedPeople, HumanModelFile};
-use tomcom::mind::fitting::Parameter;
+use tomcom::mind::fitting::HumanModelParameter;
 use tomcom::mind::model::HumanModel;
 use tomcom::run::simulate::settings_of_trial;
 use tomcom::session::fitted_parameters::ParametersOf;
 use tomcom::session::plan::Study;
-use tomcom::session::{Header, Session, SessionSpec, preflight_checks};
+use tomcom::session::{LogHeader, Session, SessionSpec, preflight_checks};
 
 use super::folder;
 
@@ -57,10 +57,10 @@ fn a_header_has_the_values_in_force_and_nothing_of_the_others() {
     let (_, study) = study_with("fitted-header", HUMAN);
     let (spec, trial) = study.simulated(1, 2);
     let files = tomcom::edge::files::read_kitchen(Path::new("layouts/sushi.toml")).expect("the kitchen");
-    let header = Header::new(spec.clone(), trial, files.layout, files.recipes);
+    let header = LogHeader::new(spec.clone(), trial, files.layout, files.recipes);
     let text = serde_json::to_string(&header).expect("a header");
     assert!(text.contains("\"parameters_of\":\"person\"") && !text.contains("\"people\""), "{text}");
-    let read: Header = serde_json::from_str(&text).expect("the header");
+    let read: LogHeader = serde_json::from_str(&text).expect("the header");
     assert_eq!(read.session, spec);
 }
 
@@ -101,7 +101,11 @@ fn preflight_says_whose_parameters_are_in_force() {
 #[test]
 fn a_file_of_people_is_read_as_it_was_written() {
     let mut people = FittedPeople::default();
-    let own = [(Parameter::Tau, 1.25), (Parameter::RecipeHalfLifeS, 61.5), (Parameter::RecipeTruth, 0.7)];
+    let own = [
+        (HumanModelParameter::Tau, 1.25),
+        (HumanModelParameter::RecipeHalfLifeS, 61.5),
+        (HumanModelParameter::RecipeTruth, 0.7),
+    ];
     people.0.insert("P07".to_string(), own.into_iter().collect());
     people.0.insert("seed9821-S001".to_string(), own[..1].iter().copied().collect());
     let file = HumanModelFile::new(HumanModel::default(), Some(people));

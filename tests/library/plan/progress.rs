@@ -1,6 +1,8 @@
 //! What comes next, whatever was recorded, cut or left.
 
-use tomcom::session::plan::{NextRecording, PlanRecording, Progress, RecordingOutcome, Study, WantedRecording};
+use tomcom::session::plan::{
+    NextRecording, ParticipantProgress, PlanRecording, RecordingOutcome, Study, WantedRecording,
+};
 
 use super::study;
 
@@ -25,12 +27,13 @@ fn check_next(recorded: &[(usize, u32, RecordingOutcome)], next: NextRecording) 
     let study = study(|_| ());
     let mut all: Vec<PlanRecording> =
         recorded.iter().map(|(slot, attempt, outcome)| made(&study, *slot, *attempt, outcome.clone())).collect();
-    let progress = |all: &[PlanRecording]| Progress::from_recordings(&study, 0, all).expect("recordings of the plan");
+    let progress =
+        |all: &[PlanRecording]| ParticipantProgress::from_recordings(&study, 0, all).expect("recordings of the plan");
     assert_eq!(progress(&all).next, next, "{recorded:?}");
     all.reverse();
     assert_eq!(progress(&all).next, next, "in whatever order they are found");
     assert_eq!(
-        Progress::from_recordings(&study, 1, &all).expect("another one").next,
+        ParticipantProgress::from_recordings(&study, 1, &all).expect("another one").next,
         NextRecording::Begin { slot: 0, attempt: 1 }
     );
 }
@@ -68,6 +71,6 @@ fn recordings_of_another_group_are_told_and_not_mixed_in() {
     let study = study(|_| ());
     let mut other = made(&study, 0, 1, RecordingOutcome::Complete);
     other.step.group = if other.step.group == "AB" { "BA" } else { "AB" }.to_string();
-    let told = Progress::from_recordings(&study, 0, &[other]).expect_err("another group");
+    let told = ParticipantProgress::from_recordings(&study, 0, &[other]).expect_err("another group");
     assert!(told.contains("2026-03-14-P01-01") && told.contains("AB") && told.contains("BA"), "{told}");
 }

@@ -7,24 +7,24 @@ use std::sync::Arc;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use tomcom::base::time::SessionTime;
 use tomcom::console::view::theme::{TerminalBackground, Theme};
-use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyMap, update};
+use tomcom::console::{ConsoleCommand, ConsoleMessage, ConsoleModel, KeyBindings, KeyFileBindings, update};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::edge::recordings;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::verify::verify;
-use tomcom::session::event::EndReason;
-use tomcom::session::plan::{NextRecording, PhaseSpec, Progress, RecordingOutcome, WantedRecording};
+use tomcom::session::event::TrialEndReason;
+use tomcom::session::plan::{NextRecording, ParticipantProgress, PhaseSpec, RecordingOutcome, WantedRecording};
 use tomcom::session::protocol::ProtocolEvent;
 use tomcom::session::study_arm::StudyArm;
-use tomcom::session::wall_display::Answering;
-use tomcom::session::{Event, Header, Phase};
+use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::{Event, LogHeader, TrialPhase};
 
 use super::{files, folder, study};
 
 /// A recording of the plan, driven as a wizard would, without a console.
 struct Run {
-    engine: Engine,
+    engine: SessionEngine,
     log: LogWriter,
     now_s: f64,
 }
@@ -37,11 +37,11 @@ impl Run {
         plan.familiarisation.as_mut().expect("practice").presses = 30;
         let study = files.study().expect("a plan");
         let (spec, trial) = study.settings(wanted);
-        let mut header = Header::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
+        let mut header = LogHeader::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
         header.started = Some("2026-03-14T09:00:00.000Z".to_string());
         let log = LogWriter::create_live(out, "2026-03-14", &header).expect("the folder can be written");
         let kitchen = Arc::new(files.kitchen.kitchen);
-        let engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
+        let engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
         Run { engine, log, now_s: 0.0 }
     }
 
@@ -72,7 +72,7 @@ impl Run {
     /// Runs the trial to its end by itself.
     fn trial(&mut self) {
         assert_eq!(self.input(Event::TrialStarted), None);
-        while self.engine.session().phase == Phase::Running {
+        while self.engine.session().phase == TrialPhase::Running {
             let events = self.engine.fire();
             events.iter().for_each(|stamped| self.log.append(stamped).expect("the log can be written"));
         }
@@ -109,7 +109,7 @@ impl Run {
 }
 
 fn consent() -> ProtocolEvent {
-    study(|_| ()).consent_given(Answering::Console)
+    study(|_| ()).consent_given(AnswerEntry::Console)
 }
 
 fn wanted(slot: usize, instructed: bool) -> WantedRecording {
@@ -190,7 +190,8 @@ fn hasty_answers_are_all_taken() {
     run.next_phase();
     run.trial();
     run.next_phase();
-    let keys = KeyBindings::live(&run.engine.session().kitchen, &run.engine.session().spec, &KeyMap::default());
+    let keys =
+        KeyBindings::live(&run.engine.session().kitchen, &run.engine.session().spec, &KeyFileBindings::default());
     let theme = Theme { colour: true, unicode: true, ground: TerminalBackground::Dark };
     let mut model = ConsoleModel::new(keys.expect("keys"), theme, (80, 24));
     let items = run.engine.session().questionnaire().expect("it is asked").items.clone();
@@ -260,7 +261,7 @@ fn wherever_a_recording_is_cut_it_is_open_verified_and_known() {
     cut(&whole, &cuts, 100);
     assert_eq!(recordings::of_plan(&cuts, "study").expect("readable"), Vec::new());
     assert_eq!(recordings::of_plan(whole.parent().expect("a folder"), "other").expect("readable"), Vec::new());
-    let progress = Progress::from_recordings(&study, 0, &[]).expect("nothing recorded");
+    let progress = ParticipantProgress::from_recordings(&study, 0, &[]).expect("nothing recorded");
     assert_eq!(progress.next, NextRecording::Begin { slot: 0, attempt: 1 });
 }
 
@@ -273,7 +274,7 @@ fn a_trial_of_a_plan_that_the_wizard_ends_counts_and_one_that_is_left_stays_open
     let outcome = || recordings::of_plan(&out, "study").expect("readable")[0].outcome.clone();
     assert_eq!(outcome(), RecordingOutcome::Open);
     assert!(!run.engine.session().is_step_done(), "left now, it can be continued");
-    assert_eq!(run.input(Event::TrialEnded { reason: EndReason::Wizard }), None);
+    assert_eq!(run.input(Event::TrialEnded { reason: TrialEndReason::Wizard }), None);
     run.go_through();
     run.close();
     assert_eq!(outcome(), RecordingOutcome::Complete);

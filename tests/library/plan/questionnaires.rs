@@ -8,12 +8,12 @@ use tomcom::base::time::SessionTime;
 use tomcom::edge::log::LogWriter;
 use tomcom::edge::parse::parse;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::verify::verify;
 use tomcom::session::answer_value::AnswerValue;
-use tomcom::session::plan::{ItemForm, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
+use tomcom::session::plan::{AnswerFormat, PhaseSpec, Questionnaire, QuestionnaireSpec, WantedRecording};
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
-use tomcom::session::{Event, Header};
+use tomcom::session::{Event, LogHeader};
 
 use super::{files, folder};
 
@@ -101,15 +101,16 @@ fn the_questionnaires_ask_the_same_in_both_languages() {
                 (&other.id, other.kind, &other.about, other.reversed)
             );
             assert_ne!(one.text, other.text, "{}", one.id);
-            let ids =
-                |item: &tomcom::session::plan::Item| item.options.iter().map(|one| one.id.clone()).collect::<Vec<_>>();
+            let ids = |item: &tomcom::session::plan::QuestionnaireItem| {
+                item.options.iter().map(|one| one.id.clone()).collect::<Vec<_>>()
+            };
             assert_eq!(ids(one), ids(other));
-            let shape = |form: Option<ItemForm>| match form.expect("a form") {
-                ItemForm::Scale(scale) => (1, i64::from(scale.points)),
-                ItemForm::Number { range, .. } => (range[0], range[1]),
-                ItemForm::Slider { step, .. } => (0, step),
-                ItemForm::Text { length } => (0, i64::from(length)),
-                ItemForm::Choice { several, .. } => (0, i64::from(several)),
+            let shape = |form: Option<AnswerFormat>| match form.expect("a form") {
+                AnswerFormat::Scale(scale) => (1, i64::from(scale.points)),
+                AnswerFormat::Number { range, .. } => (range[0], range[1]),
+                AnswerFormat::Slider { step, .. } => (0, step),
+                AnswerFormat::Text { length } => (0, i64::from(length)),
+                AnswerFormat::Choice { several, .. } => (0, i64::from(several)),
             };
             assert_eq!(shape(english.form(index)), shape(german.form(index)), "{}", one.id);
         }
@@ -138,23 +139,23 @@ fn the_person_is_asked_before_the_first_trial_and_only_then() {
 
     let (spec, trial) = settings(1);
     let out = folder("person");
-    let header = Header::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
+    let header = LogHeader::new(spec.clone(), trial, files.kitchen.layout, files.kitchen.recipes);
     let mut log = LogWriter::create_live(&out, "2026-03-14", &header).expect("the folder can be written");
     let kitchen = Arc::new(files.kitchen.kitchen);
-    let mut engine = Engine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
+    let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, CostToGo::new(kitchen));
     let mut now_s = 0.0;
-    let mut tell = |engine: &mut Engine, event: ProtocolEvent| {
+    let mut tell = |engine: &mut SessionEngine, event: ProtocolEvent| {
         now_s += 0.5;
         let outcome = engine.input(SessionTime::from_secs_f64(now_s), Event::Protocol(event));
         outcome.events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
         outcome.refused
     };
-    let item = |engine: &Engine| {
+    let item = |engine: &SessionEngine| {
         let (asked, protocol) = (engine.session().questionnaire(), engine.session().protocol.as_ref());
         asked.zip(protocol).and_then(|(asked, protocol)| Some(asked.items.get(protocol.item)?.id.clone()))
     };
     tell(&mut engine, ProtocolEvent::PhaseStarted { phase: StudyPhase::Questionnaire, number: 1 });
-    let mut answer = |engine: &mut Engine, id: &str, answer: AnswerValue| {
+    let mut answer = |engine: &mut SessionEngine, id: &str, answer: AnswerValue| {
         assert_eq!(item(engine).as_deref(), Some(id));
         tell(engine, ProtocolEvent::ItemAnswered { item: id.to_string(), answer })
     };

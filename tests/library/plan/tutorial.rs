@@ -9,13 +9,13 @@ use tomcom::display::{DisplayStage, sight};
 use tomcom::edge::files::{read_kitchen, read_session};
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::verify::verify;
 use tomcom::session::plan::{PhaseSpec, Tutorial, TutorialStepKind, WantedRecording};
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::ParticipantKind;
 use tomcom::session::tutorial::{TutorialEvent, TutorialReader};
-use tomcom::session::{Event, Header, Session};
+use tomcom::session::{Event, LogHeader, Session};
 
 use super::{files, folder, study};
 
@@ -23,7 +23,7 @@ const BY_PARTICIPANT: TutorialReader = TutorialReader::Participant;
 
 /// A recording of the tutorial alone.
 struct Lesson {
-    engine: Engine,
+    engine: SessionEngine,
     log: LogWriter,
     now_s: f64,
 }
@@ -32,11 +32,11 @@ impl Lesson {
     fn new(out: &Path) -> Lesson {
         let files = files();
         let spec = files.study().and_then(|study| study.tutorial_alone("P07")).expect("a tutorial");
-        let mut header = Header::new(spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+        let mut header = LogHeader::new(spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
         header.started = Some("2026-03-14T09:00:00.000Z".to_string());
         let log = LogWriter::create_live(out, "2026-03-14", &header).expect("the folder can be written");
         let kitchen = Arc::new(files.kitchen.kitchen);
-        let engine = Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
+        let engine = SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
         let mut lesson = Lesson { engine, log, now_s: 0.0 };
         let begun = ProtocolEvent::PhaseStarted { phase: StudyPhase::Tutorial, number: 1 };
         assert_eq!(lesson.input(Event::Protocol(begun)), None);

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use tomcom::base::time::SessionTime;
 use tomcom::edge::log::{LOG_NAME, LogReader, SimulatedLog};
 use tomcom::mind::choice::ChoiceModel;
-use tomcom::mind::choice_parameters::DecisionModel;
+use tomcom::mind::choice_parameters::ChoiceParameters;
 use tomcom::robot::moment::ArmSample;
-use tomcom::session::{Event, Stamped};
+use tomcom::session::{Event, TimestampedEvent};
 
 use super::folder;
 
@@ -64,7 +64,7 @@ fn of_old_headers_only_what_no_version_took_is_refused() {
 fn the_weights_of_a_tau_near_0_take_no_more_memory_than_those_of_others() {
     let kitchen = super::kitchen();
     for tau in [1e-5, f64::MIN_POSITIVE] {
-        let model = ChoiceModel::up_to_draws(&kitchen, &DecisionModel { tau, ..DecisionModel::default() }, 32);
+        let model = ChoiceModel::up_to_draws(&kitchen, &ChoiceParameters { tau, ..ChoiceParameters::default() }, 32);
         assert!(model.tabulated() <= 33 * 33 * 256, "{tau}: {} weights", model.tabulated());
     }
 }
@@ -76,7 +76,7 @@ fn a_number_that_is_not_finite_comes_into_no_log() {
     let recording = folder.join("recording");
     let begun = SimulatedLog::open(&recording, &header).expect("a recording can be begun");
     let SimulatedLog::Begun { mut log, .. } = begun else { panic!("there is no recording yet") };
-    let stamped = |seq, event| Stamped { seq, time: SessionTime::ZERO, event };
+    let stamped = |seq, event| TimestampedEvent { seq, time: SessionTime::ZERO, event };
     for force_n in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let moment = ArmSample { force_n, ..ArmSample::default() };
         let refused = log.append(&stamped(0, Event::RobotMoves(moment))).expect_err("no log can hold it");

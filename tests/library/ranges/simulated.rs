@@ -5,11 +5,11 @@ use std::fs;
 use std::path::Path;
 
 use tomcom::base::number_range::NumberRange;
-use tomcom::communication::settings::Shadow;
+use tomcom::communication::settings::ShadowMode;
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::edge::log::LogReader;
 use tomcom::kitchen::layout_ranges;
-use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::session::apply::apply;
 use tomcom::session::settings::{ArmKind, Condition, SessionSpec};
 use tomcom::session::{Event, ranges};
@@ -25,7 +25,7 @@ const GAZE_HZ: f64 = 120.0;
 
 /// What of a session these settings matter to, so that not every trial plans communication.
 fn in_use(spec: &mut SessionSpec, path: &str) {
-    (spec.trial.condition, spec.assistant.shadow) = (Condition::None, Shadow::Off);
+    (spec.trial.condition, spec.assistant.shadow) = (Condition::None, ShadowMode::Off);
     if path.starts_with("assistant.") || path.starts_with("human.") {
         spec.trial.condition = Condition::Assistant;
     }
@@ -40,7 +40,7 @@ fn in_use(spec: &mut SessionSpec, path: &str) {
 /// Simulates a trial and reads its log.
 fn check(name: &str, files: SessionFiles, out: &Path) {
     let spec = files.spec.clone();
-    let request = SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: out.to_path_buf() };
+    let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.to_path_buf() };
     let figures = simulate(&request, || ()).unwrap_or_else(|error| panic!("{name}: {error}"));
     let recording = Path::new(&figures.recordings[0]);
     let mut log = LogReader::open(recording).unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use rand::RngExt;
-use tomcom::analysis::watcher::{CompareRequest, ComparisonFollower};
+use tomcom::analysis::watcher::{ComparisonFollower, ComparisonRequest};
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
 use tomcom::communication::recommendation::Recommendation;
-use tomcom::communication::settings::Shadow;
+use tomcom::communication::settings::ShadowMode;
 use tomcom::communication::{Sender, Signal};
 use tomcom::edge::files::SessionFiles;
 use tomcom::edge::log::{LOG_NAME, LogReader};
@@ -18,13 +18,13 @@ use tomcom::history::comparison::CommunicationContext;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, LocationId};
 use tomcom::measures::matching::CommunicationTarget;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
-use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::run::verify::verify;
-use tomcom::session::event::EndReason;
+use tomcom::session::event::TrialEndReason;
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
-use tomcom::session::{Event, Session, Stamped};
+use tomcom::session::{Event, Session, TimestampedEvent};
 
 use super::{SESSIONS, folder, same, session};
 
@@ -39,7 +39,7 @@ fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
     files.spec.assistant.rollout.rollouts = 8;
     files.spec.assistant.rollout.states = 8;
     let out = folder(out);
-    simulate(&SimulationRequest { files, trials: 2, shard: Shard::WHOLE, out: out.clone() }, || ())
+    simulate(&SimulationRequest { files, trials: 2, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
         .expect("the folder can be written");
     out
 }
@@ -92,7 +92,7 @@ fn what_is_asked_in_silence_and_by_gaze_comes_out_the_same_again() {
         files.spec.human.inference.waiting = true;
         (files.spec.assistant.rollout.rollouts, files.spec.assistant.rollout.states) = (8, 8);
         let out = folder("other-moments");
-        simulate(&SimulationRequest { files, trials: 2, shard: Shard::WHOLE, out: out.clone() }, || ())
+        simulate(&SimulationRequest { files, trials: 2, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
             .expect("the folder can be written");
         let mut counts = [0; 3];
         for trial in ["seed1-S001", "seed1-S002"] {
@@ -132,7 +132,7 @@ fn advice_that_was_not_given_is_no_verified_advice() {
 
 /// The events of a trial in which somebody presses buttons every two seconds, whatever is shown, and a wizard sends these
 /// signals, each so many seconds after the beginning.
-fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Stamped>) {
+fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<TimestampedEvent>) {
     let mut files = session(name);
     (files.spec.participant.kind, files.spec.participant.gaze) = (ParticipantKind::Keyboard, GazeSource::None);
     files.spec.assistant.concept = ConceptName::Tom;
@@ -140,7 +140,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Stamped>
     (files.spec.human.looking.looks_hz, files.spec.human.looking.other_looks_hz) = (0.0, 0.0);
     files.spec.human.looking.capture = 0.0;
     let kitchen = Arc::new(files.kitchen.kitchen.clone());
-    let mut engine = Engine::new(kitchen.clone(), files.spec.clone(), 0, CostToGo::new(kitchen.clone()));
+    let mut engine = SessionEngine::new(kitchen.clone(), files.spec.clone(), 0, CostToGo::new(kitchen.clone()));
     let mut random = stream(4, "presses", 0);
     let mut inputs = vec![(0.0, Event::TrialStarted)];
     let buttons = &kitchen.buttons[Agent::Human.index()];
@@ -151,7 +151,7 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Stamped>
     inputs.extend(sent.iter().map(|(time_s, signal)| {
         (*time_s, Event::SignalShown { by: Sender::Wizard, signal: signal.clone(), accepted: None, offer: None })
     }));
-    inputs.push((80.0, Event::TrialEnded { reason: EndReason::Wizard }));
+    inputs.push((80.0, Event::TrialEnded { reason: TrialEndReason::Wizard }));
     inputs.push((81.0, Event::SessionEnded));
     inputs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let take = |(time_s, event): (f64, Event)| {
@@ -165,12 +165,12 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Stamped>
 
 #[test]
 fn advice_that_nobody_sees_changes_nothing_else() {
-    let told = |shadow: Shadow| {
+    let told = |shadow: ShadowMode| {
         let mut files = session("default.toml");
         (files.spec.robot.arm, files.spec.assistant.shadow) = (ArmKind::Timed, shadow);
         (files.spec.trial.condition, files.spec.trial.seconds) = (Condition::None, 60.0);
         let kitchen = Arc::new(files.kitchen.kitchen);
-        let mut engine = Engine::new(kitchen.clone(), files.spec, 3, CostToGo::new(kitchen));
+        let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 3, CostToGo::new(kitchen));
         let (mut told, mut advised) = (Vec::new(), 0);
         let noted: Result<(), ()> = headless::run(&mut engine, |stamped| {
             match &stamped.event {
@@ -186,7 +186,7 @@ fn advice_that_nobody_sees_changes_nothing_else() {
         assert_eq!(noted, Ok(()));
         (told, advised)
     };
-    let ((told_beside, advised), (told_alone, none)) = (told(Shadow::On), told(Shadow::Off));
+    let ((told_beside, advised), (told_alone, none)) = (told(ShadowMode::On), told(ShadowMode::Off));
     assert!(advised > 20 && none == 0, "{advised} answers, and {none}");
     assert_eq!(told_beside, told_alone);
 }
@@ -194,10 +194,10 @@ fn advice_that_nobody_sees_changes_nothing_else() {
 /// What was known at every moment at which the concepts were asked, with the presses of the human until then.
 fn asked(
     files: &SessionFiles,
-    events: &[Stamped],
+    events: &[TimestampedEvent],
     window: u32,
 ) -> (Vec<(u32, Arc<CommunicationContext>)>, ComparisonFollower) {
-    let request = CompareRequest { with: vec![ConceptName::Dev], window };
+    let request = ComparisonRequest { with: vec![ConceptName::Dev], window };
     let mut watcher =
         ComparisonFollower::new(Session::new(Arc::new(files.kitchen.kitchen.clone()), files.spec.clone(), 0), &request);
     let mut known: Vec<(u32, Arc<CommunicationContext>)> = Vec::new();
@@ -258,10 +258,10 @@ fn a_shadow_that_is_asked_again_says_the_same_also_on_a_thread() {
     files.spec.trial.seconds = 45.0;
     files.spec.assistant.concept = ConceptName::Tom;
     let out = folder("shadow");
-    simulate(&SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: out.clone() }, || ())
+    simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
         .expect("the folder can be written");
     let mut log = LogReader::open(&out.join("seed1-S001")).expect("a recording");
-    let request = CompareRequest { with: vec![ConceptName::Dev], window: 3 };
+    let request = ComparisonRequest { with: vec![ConceptName::Dev], window: 3 };
     let watcher = || ComparisonFollower::new(log.session(), &request);
     let (mut here, there) = (watcher(), watcher().on_thread());
     let mut compared = 0;

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use tomcom::edge::log::LOG_NAME;
 use tomcom::kitchen::{AspectId, LocationId};
-use tomcom::run::replay::Replay;
+use tomcom::run::replay::RecordingReplay;
 use tomcom::run::verify::{describe, verify};
-use tomcom::session::Phase;
+use tomcom::session::TrialPhase;
 use tomcom::session::header::VERSION;
 use tomcom::session::settings::ArmKind;
 
@@ -42,10 +42,14 @@ fn whatever_hands_do_the_recording_verifies_and_replays_to_the_same_session() {
         let (log, engine) = by_hand(name, arm, &format!("hand-{seed}"), seed);
         let found = verify(&log).expect("a recording");
         assert!(found.verified && !found.cut, "seed {seed}: {found:?}");
-        let mut replay = Replay::open(&log).expect("a recording");
+        let mut replay = RecordingReplay::open(&log).expect("a recording");
         replay.run().expect("a recording");
         let (live, again) = (engine.session(), replay.session());
-        assert_eq!((live.state, live.presses, live.phase), (again.state, again.presses, Phase::Closed), "seed {seed}");
+        assert_eq!(
+            (live.state, live.presses, live.phase),
+            (again.state, again.presses, TrialPhase::Closed),
+            "seed {seed}"
+        );
         assert_eq!(live.timeline, again.timeline, "seed {seed}");
         assert_eq!(engine.judged(), replay.follower.judged, "seed {seed}");
     }
@@ -76,7 +80,7 @@ fn of_simulated_people_of_an_earlier_version_it_is_told_that_they_decide_otherwi
 }
 
 /// What a replay came to, in lines.
-fn summary(replay: &Replay) -> String {
+fn summary(replay: &RecordingReplay) -> String {
     let (session, kitchen) = (replay.session(), &replay.log().kitchen);
     let mut lines = vec![
         format!("{:?} at {:.3} s", session.phase, session.time.as_secs_f64()),
@@ -104,7 +108,7 @@ fn recordings_of_every_format_replay_to_what_they_replayed_to() {
         assert!(is_there, "a golden recording of format version {version}");
     }
     for log in logs {
-        let mut replay = Replay::open(&log).expect("a golden recording");
+        let mut replay = RecordingReplay::open(&log).expect("a golden recording");
         replay.run().unwrap_or_else(|error| panic!("{error}"));
         let name = log.file_stem().expect("a name").to_string_lossy().into_owned();
         check_snapshot("replay", name, summary(&replay));

@@ -22,11 +22,11 @@ use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::gaze::GazeSample;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen};
-use tomcom::run::engine::Engine;
-use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
-use tomcom::session::event::{EndReason, SignalEnd};
+use tomcom::run::engine::SessionEngine;
+use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
+use tomcom::session::event::{SignalEndReason, TrialEndReason};
 use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind};
-use tomcom::session::{Event, Header};
+use tomcom::session::{Event, LogHeader};
 
 /// One session for each kitchen.
 const SESSIONS: [&str; 2] = ["default.toml", "burger.toml"];
@@ -54,7 +54,7 @@ fn simulated(name: &str, arm: ArmKind, out: &str, trials: u64, seed: u64) -> Pat
     files.spec.seed = seed;
     files.spec.trial.seconds = 120.0;
     let out = folder(out);
-    simulate(&SimulationRequest { files, trials, shard: Shard::WHOLE, out: out.clone() }, || ())
+    simulate(&SimulationRequest { files, trials, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
         .expect("the folder can be written");
     out
 }
@@ -69,7 +69,7 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
         3 => Event::RobotStopped,
         4 | 5 => Event::RobotResumed,
         6 => Event::Marker { note: "note 1".to_string() },
-        7 => Event::SignalEnded { reason: SignalEnd::TakenBack },
+        7 => Event::SignalEnded { reason: SignalEndReason::TakenBack },
         8 => {
             let button = &kitchen.buttons[Agent::Robot.index()];
             let button = button[random.random_range(0..button.len())].name.clone();
@@ -101,20 +101,20 @@ fn anything(kitchen: &Kitchen, random: &mut impl RngExt) -> Event {
 }
 
 /// A session as somebody at keyboard and mouse might have it, recorded; with its log and the engine at its end.
-fn by_hand(name: &str, arm: ArmKind, out: &str, seed: u64) -> (PathBuf, Engine) {
+fn by_hand(name: &str, arm: ArmKind, out: &str, seed: u64) -> (PathBuf, SessionEngine) {
     let mut files = session(name);
     files.spec.robot.arm = arm;
     files.spec.participant.kind = ParticipantKind::Keyboard;
     files.spec.participant.gaze = GazeSource::Mouse;
     files.spec.seed = seed;
     let kitchen = Arc::new(files.kitchen.kitchen);
-    let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    let header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
     let mut log = LogWriter::create_live(&folder(out), "2026-03-14", &header).expect("the folder can be written");
-    let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen.clone()));
+    let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen.clone()));
     let mut random = stream(seed, "hand", 0);
     let mut inputs = vec![(0.5, Event::TrialStarted)];
     inputs.extend((0..2000).map(|_| (random.random_range(0.0..0.4), anything(&kitchen, &mut random))));
-    inputs.push((1.0, Event::TrialEnded { reason: EndReason::Wizard }));
+    inputs.push((1.0, Event::TrialEnded { reason: TrialEndReason::Wizard }));
     inputs.push((1.0, Event::SessionEnded));
     let mut now_s = 0.0;
     for (after_s, event) in inputs {

@@ -6,28 +6,28 @@ use std::sync::Arc;
 
 use tomcom::analysis::offer_summary::TimedOffer;
 use tomcom::base::time::SessionTime;
-use tomcom::communication::offer::OfferEnd;
-use tomcom::communication::settings::Shadow;
+use tomcom::communication::offer::OfferCloseReason;
+use tomcom::communication::settings::ShadowMode;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
-use tomcom::run::replay::Replay;
+use tomcom::run::engine::SessionEngine;
+use tomcom::run::replay::RecordingReplay;
 use tomcom::run::resume::resume;
-use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::run::steadiness::measure;
 use tomcom::run::verify::verify;
 use tomcom::session::settings::{Condition, GazeSource, ParticipantKind};
-use tomcom::session::{Event, Header, offers};
+use tomcom::session::{Event, LogHeader, offers};
 
 use super::{folder, session};
 
 /// Trials of an unassisted session with an assistant that advises unseen.
 fn shadowed(out: &str) -> Vec<PathBuf> {
     let mut files = session("default.toml");
-    (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, Shadow::On);
+    (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::None, ShadowMode::On);
     files.spec.assistant.rollout.rollouts = 32;
     (files.spec.seed, files.spec.trial.seconds) = (7, 120.0);
-    let request = SimulationRequest { files, trials: 2, shard: Shard::WHOLE, out: folder(out) };
+    let request = SimulationRequest { files, trials: 2, shard: SimulationShard::WHOLE, out: folder(out) };
     let summary = simulate(&request, || ()).expect("the folder can be written");
     assert!(summary.offers.n > 0, "seed 7: {:?}", summary.offers);
     summary.recordings.iter().map(PathBuf::from).collect()
@@ -57,7 +57,7 @@ fn the_measured_hand_reads_offers_and_every_offer_is_counted() {
     let found = measure(&recordings, || ()).expect("recordings");
     let (mut offers, mut visible) = (0, 0);
     for recording in &recordings {
-        let mut replay = Replay::open(recording).expect("a recording");
+        let mut replay = RecordingReplay::open(recording).expect("a recording");
         replay.run().expect("a recording");
         offers += TimedOffer::all(replay.session()).len() as u64;
         visible += TimedOffer::visible(replay.session()).len();
@@ -73,15 +73,15 @@ fn a_session_that_was_cut_goes_on_with_its_open_offer() {
     let mut files = session("default.toml");
     files.spec.participant.kind = ParticipantKind::Keyboard;
     files.spec.participant.gaze = GazeSource::None;
-    (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::Wizard, Shadow::On);
+    (files.spec.trial.condition, files.spec.assistant.shadow) = (Condition::Wizard, ShadowMode::On);
     files.spec.assistant.rollout.rollouts = 32;
     // Nobody has seen the orders, and signals cost nothing: something is worth saying.
     files.spec.assistant.cost_of_communication = 0.0;
     let kitchen = Arc::new(files.kitchen.kitchen);
-    let mut header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    let mut header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
     header.started = Some("2026-03-14T10:00:00Z".to_string());
     let mut log = LogWriter::create_live(&folder("offers-live"), "2026-03-14", &header).expect("a folder");
-    let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+    let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
     let mut advisor = engine.advisor();
     let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
     while engine.session().offers.open().is_none() {
@@ -103,7 +103,7 @@ fn a_session_that_was_cut_goes_on_with_its_open_offer() {
 fn recordings_of_format_1_have_no_offers() {
     for name in ["hand", "people", "simulated"] {
         let log = format!("tests/golden/format-1-{name}.jsonl");
-        let mut replay = Replay::open(Path::new(&log)).expect("a golden recording");
+        let mut replay = RecordingReplay::open(Path::new(&log)).expect("a golden recording");
         assert!(!offers::are_made(replay.session()), "{name}");
         replay.run().expect("a golden recording");
         assert!(TimedOffer::all(replay.session()).is_empty(), "{name}");
@@ -112,10 +112,12 @@ fn recordings_of_format_1_have_no_offers() {
 
 #[test]
 fn a_recording_of_format_2_keeps_its_offers() {
-    let mut replay = Replay::open(Path::new("tests/golden/format-2-offers.jsonl")).expect("a golden recording");
+    let mut replay =
+        RecordingReplay::open(Path::new("tests/golden/format-2-offers.jsonl")).expect("a golden recording");
     replay.run().expect("a golden recording");
     let offers = TimedOffer::all(replay.session());
-    let told: Vec<(Option<f64>, Option<OfferEnd>)> = offers.iter().map(|one| (one.stood_s, one.reason)).collect();
+    let told: Vec<(Option<f64>, Option<OfferCloseReason>)> =
+        offers.iter().map(|one| (one.stood_s, one.reason)).collect();
     assert_eq!(told.len(), 2, "{told:?}");
     assert!(told.iter().all(|(stood_s, reason)| stood_s.is_some_and(|s| s >= 1.5) && reason.is_some()), "{told:?}");
 }

@@ -9,16 +9,16 @@ use tomcom::base::time::SessionTime;
 use tomcom::edge::files::SessionFiles;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
-use tomcom::run::replay::Replay;
+use tomcom::run::engine::SessionEngine;
+use tomcom::run::replay::RecordingReplay;
 use tomcom::run::resume::resume;
-use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::run::verify::verify;
-use tomcom::session::event::EndReason;
-use tomcom::session::probes::{ProbeEnd, ProbeEvent};
+use tomcom::session::event::TrialEndReason;
+use tomcom::session::probes::{ProbeEndReason, ProbeEvent};
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, ProbeSpec};
-use tomcom::session::wall_display::Answering;
-use tomcom::session::{Event, Header};
+use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::{Event, LogHeader};
 
 use super::{anything, folder, session};
 
@@ -34,7 +34,7 @@ fn a_simulated_recording_with_probes_verifies_whole_and_cut_at_every_event_of_a_
     files.spec.probes =
         Some(ProbeSpec { per_trial: 2, apart_s: 20.0, confidence: true, level_2: true, ..ProbeSpec::default() });
     let out = folder("probes");
-    let request = SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: out.clone() };
+    let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() };
     let recording = simulate(&request, || ()).expect("the folder can be written").recordings.remove(0);
     let log = std::path::Path::new(&recording).join(LOG_NAME);
     let found = verify(&log).expect("a recording");
@@ -56,7 +56,7 @@ fn a_changed_question_or_time_of_a_probe_does_not_verify() {
     let mut files = session("probes.toml");
     files.spec.trial.seconds = 90.0;
     files.spec.probes = Some(ProbeSpec { per_trial: 1, apart_s: 20.0, ..ProbeSpec::default() });
-    let request = SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: folder("probes-changed") };
+    let request = SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: folder("probes-changed") };
     let recording = simulate(&request, || ()).expect("the folder can be written").recordings.remove(0);
     let log = std::path::Path::new(&recording).join(LOG_NAME);
     let text = fs::read_to_string(&log).expect("a log");
@@ -85,7 +85,7 @@ fn by_hand(seed: u64) -> SessionFiles {
 }
 
 /// What may happen around probes, as a seeded mess.
-fn around_probes(engine: &Engine, random: &mut impl RngExt) -> Event {
+fn around_probes(engine: &SessionEngine, random: &mut impl RngExt) -> Event {
     let open = engine.session().probes.open.as_ref();
     let probe = open.map_or(1, |open| open.number);
     let shown = open.and_then(|open| open.question());
@@ -97,7 +97,7 @@ fn around_probes(engine: &Engine, random: &mut impl RngExt) -> Event {
             question: index as u32 + 1,
             answer: random.random_bool(0.8).then(|| question.choices[0].clone()),
             confidence: None,
-            on: Answering::Console,
+            on: AnswerEntry::Console,
         },
         _ => return anything(&engine.session().kitchen, random),
     })
@@ -108,13 +108,13 @@ fn whatever_hands_do_around_probes_the_recording_verifies_and_replays_to_the_sam
     for seed in 0..3 {
         let files = by_hand(seed);
         let kitchen = Arc::new(files.kitchen.kitchen);
-        let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+        let header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
         let mut log = LogWriter::create_live(&folder(&format!("probes-hand-{seed}")), "2026-03-14", &header)
             .expect("the folder can be written");
-        let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+        let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
         let mut random = stream(seed, "hand at probes", 0);
         let mut now_s = 0.5;
-        let mut give = |engine: &mut Engine, now_s: f64, event: Event| {
+        let mut give = |engine: &mut SessionEngine, now_s: f64, event: Event| {
             let events = engine.input(SessionTime::from_secs_f64(now_s), event).events;
             events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
         };
@@ -124,15 +124,15 @@ fn whatever_hands_do_around_probes_the_recording_verifies_and_replays_to_the_sam
             let event = around_probes(&engine, &mut random);
             give(&mut engine, now_s, event);
         }
-        give(&mut engine, now_s, Event::TrialEnded { reason: EndReason::Wizard });
+        give(&mut engine, now_s, Event::TrialEnded { reason: TrialEndReason::Wizard });
         give(&mut engine, now_s, Event::SessionEnded);
-        let ends: Vec<Option<ProbeEnd>> =
+        let ends: Vec<Option<ProbeEndReason>> =
             engine.session().probes.over.iter().map(|over| over.closed.map(|(end, _)| end)).collect();
         assert!(ends.len() >= 3, "seed {seed}: {ends:?}");
         let log = log.folder().join(LOG_NAME);
         let found = verify(&log).expect("a recording");
         assert!(found.verified && !found.cut, "seed {seed}: {found:?}");
-        let mut replay = Replay::open(&log).expect("a recording");
+        let mut replay = RecordingReplay::open(&log).expect("a recording");
         replay.run().expect("a recording");
         assert_eq!(engine.session(), replay.session(), "seed {seed}");
         assert_eq!((engine.belief(), engine.judged()), (replay.follower.filter.belief(), &replay.follower.judged[..]));
@@ -143,20 +143,21 @@ fn whatever_hands_do_around_probes_the_recording_verifies_and_replays_to_the_sam
 fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
     let files = by_hand(5);
     let kitchen = Arc::new(files.kitchen.kitchen);
-    let mut header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    let mut header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
     header.started = Some("2026-03-14T10:00:00Z".to_string());
     let mut log = LogWriter::create_live(&folder("probes-killed"), "2026-03-14", &header).expect("a folder");
-    let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+    let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
     let mut events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
-    let asked = |engine: &Engine| engine.session().probes.open.as_ref().and_then(|open| open.question()).is_some();
+    let asked =
+        |engine: &SessionEngine| engine.session().probes.open.as_ref().and_then(|open| open.question()).is_some();
     while !asked(&engine) {
         events.extend(engine.fire());
     }
-    let answer = |engine: &Engine, after_s: f64| {
+    let answer = |engine: &SessionEngine, after_s: f64| {
         let open = engine.session().probes.open.as_ref().expect("a probe");
         let (shown, asked) = open.question().expect("a question");
         let (question, answer) = (shown as u32 + 1, Some(asked.choices[0].clone()));
-        let on = Answering::Display;
+        let on = AnswerEntry::Display;
         let event = Event::Probe(ProbeEvent::Answered { probe: open.number, question, answer, confidence: None, on });
         (engine.session().time + SessionTime::from_secs_f64(after_s), event)
     };
@@ -179,7 +180,7 @@ fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
         assert_eq!(engine.input(at, event).refused, None);
     }
     let closed = engine.session().probes.open.as_ref().and_then(|open| open.closed).map(|(end, _)| end);
-    assert_eq!(closed, Some(ProbeEnd::Answered));
+    assert_eq!(closed, Some(ProbeEndReason::Answered));
     engine.fire();
     assert!(engine.session().is_running(), "the task goes on");
 }
@@ -187,13 +188,13 @@ fn a_session_that_was_killed_in_a_probe_goes_on_in_it_where_it_was() {
 #[test]
 fn a_recording_of_format_2_keeps_its_probes() {
     let golden = std::path::Path::new("tests/golden/format-2-probes.jsonl");
-    let mut replay = Replay::open(golden).expect("a golden recording");
+    let mut replay = RecordingReplay::open(golden).expect("a golden recording");
     replay.run().expect("a golden recording");
     let over = &replay.session().probes.over;
     assert_eq!(over.iter().map(|one| one.number).collect::<Vec<_>>(), [1, 2]);
     for one in over {
         assert!(one.questions.len() >= 2 && one.answers.iter().all(Option::is_some), "{one:?}");
         assert!(one.questions.iter().all(|question| question.inclusion >= 0.05), "{one:?}");
-        assert_eq!(one.closed.map(|(end, _)| end), Some(ProbeEnd::Answered));
+        assert_eq!(one.closed.map(|(end, _)| end), Some(ProbeEndReason::Answered));
     }
 }

@@ -9,11 +9,11 @@ use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
 use tomcom::edge::log::{LOG_NAME, LogWriter};
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
-use tomcom::run::replay::Replay;
+use tomcom::run::engine::SessionEngine;
+use tomcom::run::replay::RecordingReplay;
 use tomcom::run::verify::verify;
 use tomcom::session::settings::ArmKind;
-use tomcom::session::{Event, Header};
+use tomcom::session::{Event, LogHeader};
 
 use super::{by_hand, folder, session};
 
@@ -21,7 +21,7 @@ use super::{by_hand, folder, session};
 fn refused(log: &Path, line: usize, says: &[&str], change: impl Fn(&str) -> String) {
     let broken = log.with_file_name("broken.jsonl");
     fs::write(&broken, change(&fs::read_to_string(log).expect("a recording"))).expect("the folder can be written");
-    let error = Replay::open(&broken).and_then(|mut replay| replay.run()).expect_err("a broken recording");
+    let error = RecordingReplay::open(&broken).and_then(|mut replay| replay.run()).expect_err("a broken recording");
     let told = format!("{:?}", miette::Report::new(error));
     let place = format!("broken.jsonl:{line}:");
     for text in std::iter::once(place.as_str()).chain(says.iter().copied()) {
@@ -47,7 +47,7 @@ fn a_session_that_is_still_recorded_can_be_followed() {
     let text = fs::read(&log).expect("a recording");
     let growing = log.with_file_name("growing.jsonl");
     fs::write(&growing, &text[..text.len() / 2]).expect("the folder can be written");
-    let mut replay = Replay::open(&growing).expect("the header is there");
+    let mut replay = RecordingReplay::open(&growing).expect("the header is there");
     replay.run().expect("the first half");
     assert!(replay.log().is_cut());
     fs::write(&growing, &text).expect("the folder can be written");
@@ -60,13 +60,13 @@ fn a_session_that_is_still_recorded_can_be_followed() {
 fn what_is_appended_to_a_live_recording_is_there_at_once_and_nothing_is_lost_silently() {
     let files = session("default.toml");
     let kitchen = Arc::new(files.kitchen.kitchen);
-    let header = Header::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
+    let header = LogHeader::new(files.spec.clone(), 0, files.kitchen.layout, files.kitchen.recipes);
     let root = folder("prompt");
     let [mut log, second] =
         [1, 2].map(|_| LogWriter::create_live(&root, "2026-03-14", &header).expect("the folder can be written"));
     let names = [&log, &second].map(|log| log.folder().file_name().map(|name| name.to_string_lossy().into_owned()));
     assert_eq!(names, [1, 2].map(|n| Some(format!("2026-03-14-P01-{n}"))));
-    let mut engine = Engine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
+    let mut engine = SessionEngine::new(kitchen.clone(), files.spec, 0, CostToGo::new(kitchen));
     let events = engine.input(SessionTime::ZERO, Event::TrialStarted).events;
     events.iter().for_each(|stamped| log.append(stamped).expect("the log can be written"));
     let written = fs::read_to_string(log.folder().join(LOG_NAME)).expect("a recording");

@@ -7,18 +7,18 @@ use tomcom::base::time::SessionTime;
 use tomcom::communication::Sender;
 use tomcom::history::probe_wording;
 use tomcom::kitchen::Agent;
-use tomcom::run::replay::Replay;
-use tomcom::run::simulate::{Shard, SimulationRequest, simulate};
+use tomcom::run::replay::RecordingReplay;
+use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::scene::{DerivedData, EntityData, EntityUpdate, SceneUpdate, SessionScene};
 use tomcom::session::probes::ProbeEvent;
 use tomcom::session::settings::ArmKind;
-use tomcom::session::{Event, Stamped};
+use tomcom::session::{Event, TimestampedEvent};
 
 use super::{folder, session, simulated};
 
 /// Everything that a recording shows, and its events.
-fn shown(recording: &Path) -> (Vec<SceneUpdate>, Vec<Stamped>) {
-    let mut replay = Replay::open(recording).expect("a recording");
+fn shown(recording: &Path) -> (Vec<SceneUpdate>, Vec<TimestampedEvent>) {
+    let mut replay = RecordingReplay::open(recording).expect("a recording");
     let mut scene = SessionScene::new(replay.session(), 0);
     let mut moments = vec![scene.opening()];
     let mut events = Vec::new();
@@ -114,7 +114,7 @@ fn a_scene_tells_a_belief_before_the_press_as_the_log_does() {
 #[test]
 fn a_scene_shows_answers_of_probes_beside_the_estimate() {
     let (files, out) = (session("probes.toml"), folder("scene-probes"));
-    simulate(&SimulationRequest { files, trials: 1, shard: Shard::WHOLE, out: out.clone() }, || ())
+    simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out: out.clone() }, || ())
         .expect("the folder can be written");
     let recording = fs::read_dir(out).expect("a folder").next().expect("a recording").expect("an entry").path();
     let (moments, events) = shown(&recording);

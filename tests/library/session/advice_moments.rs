@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use tomcom::gaze::GazeSample;
-use tomcom::run::engine::{Engine, InputResult};
+use tomcom::run::engine::{InputResult, SessionEngine};
 use tomcom::session::Event;
 use tomcom::session::settings::{GazeSource, SessionSpec};
 
@@ -17,7 +17,7 @@ fn asks_in_silence(spec: &mut SessionSpec) {
 }
 
 /// A trial with presses in these intervals; the time of the last.
-fn pressed(engine: &mut Engine, intervals_s: &[f64]) -> (Vec<(&'static str, f64)>, f64) {
+fn pressed(engine: &mut SessionEngine, intervals_s: &[f64]) -> (Vec<(&'static str, f64)>, f64) {
     let mut inputs = vec![(0.0, Event::TrialStarted), (2.0, press("take rice"))];
     let mut now_s = 2.0;
     for interval_s in intervals_s {
@@ -84,7 +84,7 @@ fn where_waiting_is_evidence_it_is_recorded_and_nobody_is_asked() {
 }
 
 /// Looks at one point of the display, 30 times a second, until a time; the events.
-fn gazing(engine: &mut Engine, point: [f64; 2], from_s: f64, until_s: f64) -> Vec<(f64, Event)> {
+fn gazing(engine: &mut SessionEngine, point: [f64; 2], from_s: f64, until_s: f64) -> Vec<(f64, Event)> {
     let samples = ((until_s - from_s) * 30.0) as u32;
     let mut events = Vec::new();
     for number in 0..samples {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use tomcom::console::{KeyBindings, KeyMap};
+use tomcom::console::{KeyBindings, KeyFileBindings};
 use tomcom::edge::files::read_session;
 use tomcom::edge::parse::parse;
 use tomcom::session::settings::{ArmKind, ParticipantKind, RobotSpec, SessionSpec};
@@ -17,7 +17,7 @@ fn every_session_file_loads_and_its_keys_are_unambiguous() {
         }
         let mut files = read_session(&path).unwrap_or_else(|error| panic!("{error}"));
         files.spec.participant.kind = ParticipantKind::Keyboard;
-        KeyBindings::live(&files.kitchen.kitchen, &files.spec, &KeyMap::default())
+        KeyBindings::live(&files.kitchen.kitchen, &files.spec, &KeyFileBindings::default())
             .unwrap_or_else(|clash| panic!("{}: {clash}", path.display()));
     }
 }

@@ -19,7 +19,7 @@ use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_session;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen};
-use tomcom::run::engine::{Engine, InputResult};
+use tomcom::run::engine::{InputResult, SessionEngine};
 use tomcom::session::Event;
 use tomcom::session::settings::{ArmKind, GazeSource, ParticipantKind, SessionSpec};
 
@@ -28,14 +28,14 @@ fn kitchen() -> Arc<Kitchen> {
 }
 
 /// An engine of the default session with a person at the keyboard and a timed arm, and `change`d settings.
-fn engine(change: impl Fn(&mut SessionSpec)) -> Engine {
+fn engine(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
     let mut spec = read_session(Path::new("sessions/default.toml")).expect("the default session").spec;
     spec.participant.kind = ParticipantKind::Keyboard;
     spec.participant.gaze = GazeSource::None;
     spec.robot.arm = ArmKind::Timed;
     change(&mut spec);
     let kitchen = kitchen();
-    Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen))
+    SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen))
 }
 
 fn at(seconds: f64) -> SessionTime {
@@ -47,7 +47,7 @@ fn press(button: &str) -> Event {
 }
 
 /// Gives the inputs in turn; the kinds of all events with their seconds.
-fn check(engine: &mut Engine, inputs: &[(f64, Event)]) -> Vec<(&'static str, f64)> {
+fn check(engine: &mut SessionEngine, inputs: &[(f64, Event)]) -> Vec<(&'static str, f64)> {
     let mut kinds = Vec::new();
     for (seconds, event) in inputs {
         let InputResult { events, refused } = engine.input(at(*seconds), event.clone());
@@ -58,6 +58,6 @@ fn check(engine: &mut Engine, inputs: &[(f64, Event)]) -> Vec<(&'static str, f64
 }
 
 /// Why the input is refused.
-fn refused(engine: &mut Engine, seconds: f64, event: Event) -> String {
+fn refused(engine: &mut SessionEngine, seconds: f64, event: Event) -> String {
     engine.input(at(seconds), event).refused.expect("a refusal")
 }

@@ -1,23 +1,23 @@
 //! The rules of offers: opening, holding, closing, and what `enter` means.
 
 use tomcom::communication::concept::ConceptName;
-use tomcom::communication::offer::OfferEnd;
-use tomcom::communication::recommendation::{Proposal, Recommendation, SignalOption};
-use tomcom::communication::settings::Shadow;
+use tomcom::communication::offer::OfferCloseReason;
+use tomcom::communication::recommendation::{PressProposal, Recommendation, SignalOption};
+use tomcom::communication::settings::ShadowMode;
 use tomcom::communication::{Sender, Signal};
 use tomcom::kitchen::OrderContent;
-use tomcom::run::engine::Engine;
-use tomcom::session::settings::{Condition, SessionSpec, Visibility};
-use tomcom::session::wizard_screen::VisibleScreen;
+use tomcom::run::engine::SessionEngine;
+use tomcom::session::settings::{Condition, SessionSpec, WizardVisibility};
+use tomcom::session::wizard_screen::WizardScreenContent;
 use tomcom::session::{Event, offers};
 
 use super::{at, check, engine};
 
 /// A running trial with an assistant whose advice the test gives.
-fn advised(change: impl Fn(&mut SessionSpec)) -> Engine {
+fn advised(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
     let mut engine = engine(|spec| {
-        (spec.trial.condition, spec.assistant.shadow) = (Condition::Wizard, Shadow::On);
-        spec.console.visibility = Visibility::Recommendation;
+        (spec.trial.condition, spec.assistant.shadow) = (Condition::Wizard, ShadowMode::On);
+        spec.console.visibility = WizardVisibility::Recommendation;
         change(spec);
     });
     check(&mut engine, &[(0.0, Event::TrialStarted)]);
@@ -62,7 +62,7 @@ fn sent(seconds: f64, signal: Signal) -> (f64, Event) {
 }
 
 /// Gives the inputs; the changes of offers with their seconds.
-fn changes(engine: &mut Engine, inputs: &[(f64, Event)]) -> Vec<(String, f64)> {
+fn changes(engine: &mut SessionEngine, inputs: &[(f64, Event)]) -> Vec<(String, f64)> {
     let mut changes = Vec::new();
     for (seconds, event) in inputs {
         let outcome = engine.input(at(*seconds), event.clone());
@@ -119,7 +119,7 @@ fn the_thresholds_of_tom_are_probabilities() {
 fn dev_offers_presses_that_cannot_be_sent() {
     let proposes = |seconds, presses: &[&str]| {
         let presses: Vec<String> = presses.iter().map(|press| press.to_string()).collect();
-        let proposal = (!presses.is_empty()).then_some(Proposal { error: 0, presses });
+        let proposal = (!presses.is_empty()).then_some(PressProposal { error: 0, presses });
         (seconds, Event::Advised(Recommendation { proposal, ..Recommendation::silent(0, at(seconds)) }))
     };
     let mut engine = advised(|spec| spec.assistant.concept = ConceptName::Dev);
@@ -150,21 +150,21 @@ fn an_offer_that_became_impossible_closes_at_once_and_so_does_one_at_the_end_of_
     let cleared = Event::OrderCleared { order: "order_1".to_string() };
     let inputs = [nets(1.0, &[(recipe("order_1"), 2.0)]), (1.3, cleared)];
     assert_eq!(changes(&mut engine, &inputs), expected(&[("opens order_1", 1.0), ("impossible", 1.3)]));
-    let ended = Event::TrialEnded { reason: tomcom::session::event::EndReason::Wizard };
+    let ended = Event::TrialEnded { reason: tomcom::session::event::TrialEndReason::Wizard };
     let inputs = [pot(2.0, 1.0), marker(2.4), (2.6, ended)];
     assert_eq!(changes(&mut engine, &inputs), expected(&[("opens cooking_pot", 2.3), ("trial_ended", 2.6)]));
 }
 
 #[test]
 fn of_two_orders_of_one_dish_the_older_one_is_offered() {
-    let order = |engine: &Engine, name: &str| {
+    let order = |engine: &SessionEngine, name: &str| {
         let session = engine.session();
         session.state.order(session.kitchen.location_named(name).expect("an order"))
     };
     let both =
         |seconds, first: f64, second: f64| nets(seconds, &[(recipe("order_1"), first), (recipe("order_2"), second)]);
     let started = |seed| advised(|spec| spec.seed = seed);
-    let is_same = |engine: &Engine| order(engine, "order_1") == order(engine, "order_2");
+    let is_same = |engine: &SessionEngine| order(engine, "order_1") == order(engine, "order_2");
     let mut engine = (1..200).map(started).find(is_same).expect("a seed with two orders of one dish");
     assert!(matches!(order(&engine, "order_1"), OrderContent::Dish(_)));
     let inputs = [both(1.0, 0.5, 2.0), both(4.0, 0.5, 2.0), both(5.0, 2.0, 0.5)];
@@ -178,7 +178,7 @@ fn of_two_orders_of_one_dish_the_older_one_is_offered() {
 
 #[test]
 fn enter_means_what_was_read() {
-    let target = |engine: &Engine, seconds: f64| {
+    let target = |engine: &SessionEngine, seconds: f64| {
         let meant = offers::enter(engine.session(), at(seconds)).map(|(offer, event)| {
             assert!(matches!(&event, Event::SignalShown { offer: Some(seq), accepted: None, .. } if *seq == offer.seq));
             offer.signal().and_then(Signal::target).expect("a location").to_string()
@@ -210,7 +210,7 @@ fn a_taken_offer_is_named_by_its_signal_and_is_not_sent_twice() {
     assert_eq!(changes(&mut engine, &[(1.8, event.clone())]), expected(&[("taken", 1.8)]));
     assert_eq!(offers::enter(engine.session(), at(2.5)).map(|_| ()), Err("the offer was taken already".to_string()));
     let last = engine.session().offers.last().expect("it closed");
-    assert_eq!((last.offer.seq, last.reason), (seq, OfferEnd::Taken));
+    assert_eq!((last.offer.seq, last.reason), (seq, OfferCloseReason::Taken));
     let again = engine.input(at(8.0), event);
     assert_eq!(again.refused, None, "it is the last offer still");
     let mut unknown = advised(|_| ());
@@ -241,14 +241,14 @@ fn whether_a_wizard_could_see_an_offer_is_recorded() {
         let mut engine = advised(|spec| spec.console.visibility = visibility);
         if has_console {
             let (room, panels, dialog) = ("medium".to_string(), Vec::new(), None);
-            check(&mut engine, &[(0.5, Event::Screen(VisibleScreen { visibility, room, panels, dialog }))]);
+            check(&mut engine, &[(0.5, Event::Screen(WizardScreenContent { visibility, room, panels, dialog }))]);
         }
         changes(&mut engine, &[pot(1.0, 1.0)]);
         engine.session().offers.open().expect("it opens all the same").advice.visible
     };
-    assert!(visible(Visibility::Recommendation, true));
-    assert!(!visible(Visibility::Recommendation, false), "nothing draws it");
-    assert!(!visible(Visibility::State, true), "it is not shown in this session");
+    assert!(visible(WizardVisibility::Recommendation, true));
+    assert!(!visible(WizardVisibility::Recommendation, false), "nothing draws it");
+    assert!(!visible(WizardVisibility::State, true), "it is not shown in this session");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use tomcom::analysis::order_work::{RegretSum, order_times};
 use tomcom::edge::files::read_session;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, ButtonId, Kitchen, State};
-use tomcom::session::{Event, Session, Stamped, apply};
+use tomcom::session::{Event, Session, TimestampedEvent, apply};
 
 use super::{at, kitchen};
 
@@ -21,7 +21,7 @@ struct Recorded {
 impl Recorded {
     fn add(&mut self, after_s: f64, event: Event) {
         self.now_s += after_s;
-        let stamped = Stamped { seq: self.seq, time: at(self.now_s), event };
+        let stamped = TimestampedEvent { seq: self.seq, time: at(self.now_s), event };
         self.seq += 1;
         let applied = apply(&mut self.session, &stamped).expect("an event that fits");
         self.regret.note(&self.session.kitchen.clone(), &applied.change);

@@ -7,7 +7,7 @@ use tomcom::base::time::SessionTime;
 use tomcom::edge::files::read_session;
 use tomcom::kitchen::AspectId;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::probe_sampling::{aspect, questions};
 use tomcom::session::settings::{ParticipantKind, ProbeSpec};
 use tomcom::session::{Event, Session};
@@ -19,7 +19,7 @@ fn midway() -> Session {
     let kitchen = kitchen();
     let mut spec = read_session(Path::new("sessions/probes.toml")).expect("a session").spec;
     spec.participant.kind = ParticipantKind::Simulated;
-    let mut engine = Engine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
+    let mut engine = SessionEngine::new(kitchen.clone(), spec, 0, CostToGo::new(kitchen));
     let _ = engine.input(SessionTime::ZERO, Event::TrialStarted);
     while engine.session().time < at(30.0) {
         engine.fire();

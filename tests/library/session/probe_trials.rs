@@ -7,23 +7,23 @@ use serde_json::Value;
 use tomcom::edge::files::read_session;
 use tomcom::kitchen::AspectKind;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::session::probe_sampling::aspect;
 use tomcom::session::probes::{ProbeEvent, ProbeOrigin};
 use tomcom::session::settings::{Condition, SessionSpec};
-use tomcom::session::{Event, Stamped};
+use tomcom::session::{Event, TimestampedEvent};
 
 use super::probes::probes_of;
 
 /// A simulated trial with these probes, from its events.
-fn simulated(trial: u64, change: impl Fn(&mut SessionSpec)) -> (Engine, Vec<Stamped>) {
+fn simulated(trial: u64, change: impl Fn(&mut SessionSpec)) -> (SessionEngine, Vec<TimestampedEvent>) {
     let mut files = read_session(Path::new("sessions/probes.toml")).expect("a session file of the project");
     let inference = &mut files.spec.human.inference;
     (inference.beliefs, inference.states, inference.max_beliefs) = (16, 8, 32);
     change(&mut files.spec);
     let kitchen = Arc::new(files.kitchen.kitchen);
-    let mut engine = Engine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen));
+    let mut engine = SessionEngine::new(kitchen.clone(), files.spec, trial, CostToGo::new(kitchen));
     let mut events = Vec::new();
     let kept: Result<(), ()> = headless::run(&mut engine, |stamped| {
         events.push(stamped.clone());
@@ -58,7 +58,7 @@ fn scheduled_probes_keep_their_distance_and_half_of_them_ignore_the_estimate() {
 }
 
 /// The events without those of probes, at the times of the trial's clock, without numbers that probes shift.
-fn without_probes(events: &[Stamped]) -> Vec<(u64, Value)> {
+fn without_probes(events: &[TimestampedEvent]) -> Vec<(u64, Value)> {
     let (mut stood, mut frozen, mut told) = (0, None, Vec::new());
     for stamped in events {
         let clock = frozen.unwrap_or(stamped.time.0) - stood;
@@ -100,7 +100,7 @@ fn with_and_without_probes_a_trial_is_the_same_and_so_are_all_estimates() {
         assert_eq!(a.len(), b.len());
         assert!(a.iter().filter(|(_, event)| event["kind"] == "belief_estimated").count() > 50);
         assert_eq!(with.0.belief(), without.0.belief(), "trial {trial}");
-        let verdicts = |engine: &Engine| engine.judged().iter().map(|press| press.verdict).collect::<Vec<_>>();
+        let verdicts = |engine: &SessionEngine| engine.judged().iter().map(|press| press.verdict).collect::<Vec<_>>();
         assert_eq!(verdicts(&with.0), verdicts(&without.0));
     }
 }

@@ -1,21 +1,21 @@
 //! Freeze probes by hand: when they begin, how they end, and what is refused.
 
 use tomcom::base::time::SessionTime;
-use tomcom::communication::settings::Shadow;
+use tomcom::communication::settings::ShadowMode;
 use tomcom::communication::{Sender, Signal};
 use tomcom::gaze::GazeSample;
-use tomcom::run::engine::Engine;
-use tomcom::session::event::EndReason;
+use tomcom::run::engine::SessionEngine;
+use tomcom::session::event::TrialEndReason;
 use tomcom::session::probe_sampling::aspect;
-use tomcom::session::probes::{ProbeBlock, ProbeEnd, ProbeEvent, ProbeOrigin};
+use tomcom::session::probes::{ProbeDelayReason, ProbeEndReason, ProbeEvent, ProbeOrigin};
 use tomcom::session::settings::{Condition, GazeSource, ProbeSpec, SessionSpec};
-use tomcom::session::wall_display::Answering;
-use tomcom::session::{Event, Phase, Stamped};
+use tomcom::session::wall_display::AnswerEntry;
+use tomcom::session::{Event, TimestampedEvent, TrialPhase};
 
 use super::{at, check, engine, kitchen, press, refused};
 
 /// A session in which nothing is scheduled in the first minutes, so that the wizard asks for probes.
-fn on_request(change: impl Fn(&mut SessionSpec)) -> Engine {
+fn on_request(change: impl Fn(&mut SessionSpec)) -> SessionEngine {
     engine(|spec| {
         spec.trial.condition = Condition::Wizard;
         spec.probes = Some(ProbeSpec { per_trial: 0, ..ProbeSpec::default() });
@@ -32,15 +32,15 @@ fn requested() -> Event {
 }
 
 /// The first choice as the answer to a question.
-fn answered(engine: &Engine, question: u32) -> Event {
+fn answered(engine: &SessionEngine, question: u32) -> Event {
     let open = engine.session().probes.open.as_ref().expect("a probe is held");
     let answer = Some(open.questions[question as usize - 1].choices[0].clone());
-    probe(ProbeEvent::Answered { probe: open.number, question, answer, confidence: None, on: Answering::Display })
+    probe(ProbeEvent::Answered { probe: open.number, question, answer, confidence: None, on: AnswerEntry::Display })
 }
 
 /// What probes did, with their times.
-pub fn probes_of(events: &[Stamped]) -> Vec<(SessionTime, ProbeEvent)> {
-    let probe = |stamped: &Stamped| match &stamped.event {
+pub fn probes_of(events: &[TimestampedEvent]) -> Vec<(SessionTime, ProbeEvent)> {
+    let probe = |stamped: &TimestampedEvent| match &stamped.event {
         Event::Probe(event) => Some((stamped.time, event.clone())),
         _ => None,
     };
@@ -48,7 +48,7 @@ pub fn probes_of(events: &[Stamped]) -> Vec<(SessionTime, ProbeEvent)> {
 }
 
 /// Lets the session go on until this time.
-fn until(engine: &mut Engine, seconds: f64) -> Vec<Stamped> {
+fn until(engine: &mut SessionEngine, seconds: f64) -> Vec<TimestampedEvent> {
     engine.input(at(seconds), Event::Marker { note: "now".to_string() }).events
 }
 
@@ -58,7 +58,7 @@ fn a_probe_freezes_the_task_asks_one_question_after_another_and_counts_down() {
     check(&mut engine, &[(0.0, Event::TrialStarted), (1.0, press("take rice"))]);
     let state = engine.session().state;
     check(&mut engine, &[(20.0, requested())]);
-    assert_eq!((engine.session().phase, engine.session().is_frozen()), (Phase::Paused, true));
+    assert_eq!((engine.session().phase, engine.session().is_frozen()), (TrialPhase::Paused, true));
     assert!(engine.session().probes.open.as_ref().is_some_and(|open| open.question().is_none()), "blank first");
     let before = engine.session().state;
     until(&mut engine, 22.0);
@@ -73,7 +73,7 @@ fn a_probe_freezes_the_task_asks_one_question_after_another_and_counts_down() {
     let last = seconds - 1.0;
     assert_eq!(
         engine.session().probes.open.as_ref().and_then(|open| open.closed),
-        Some((ProbeEnd::Answered, at(last)))
+        Some((ProbeEndReason::Answered, at(last)))
     );
     until(&mut engine, last + 2.9);
     assert_eq!(engine.session().trial_clock(at(last + 2.9)), at(20.0), "the trial's clock stands still");
@@ -83,7 +83,7 @@ fn a_probe_freezes_the_task_asks_one_question_after_another_and_counts_down() {
         "presses in it have no effect: {state:?}"
     );
     until(&mut engine, last + 3.1);
-    assert_eq!((engine.session().phase, engine.session().is_frozen()), (Phase::Running, false));
+    assert_eq!((engine.session().phase, engine.session().is_frozen()), (TrialPhase::Running, false));
     assert_eq!(engine.session().trial_clock(at(last + 3.1)), at(20.1));
     let over = &engine.session().probes.over[0];
     assert!(over.answers.iter().all(Option::is_some));
@@ -97,7 +97,7 @@ fn after_its_time_a_probe_closes_and_late_answers_are_refused() {
     until(&mut engine, 24.0);
     let late = answered(&engine, 1);
     let events = probes_of(&until(&mut engine, 45.5));
-    assert_eq!(events, [(at(45.0), ProbeEvent::Closed { probe: 1, reason: ProbeEnd::TimeOver })]);
+    assert_eq!(events, [(at(45.0), ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::TimeOver })]);
     assert!(refused(&mut engine, 46.0, late).contains("questions are over"), "late answers");
     let events = probes_of(&until(&mut engine, 50.0));
     assert_eq!(events, [(at(48.0), ProbeEvent::Ended { probe: 1 })]);
@@ -115,7 +115,7 @@ fn answers_are_taken_for_the_shown_question_and_from_its_choices_only() {
     assert!(refused(&mut engine, 22.0, second).contains("another question"));
     let answer = |answer: &str, confidence| {
         let answer = Some(answer.to_string());
-        probe(ProbeEvent::Answered { probe: 1, question: 1, answer, confidence, on: Answering::Console })
+        probe(ProbeEvent::Answered { probe: 1, question: 1, answer, confidence, on: AnswerEntry::Console })
     };
     assert!(refused(&mut engine, 22.0, answer("a violin", None)).contains("no such choice"));
     let choice = engine.session().probes.open.as_ref().expect("a probe").questions[0].choices[0].clone();
@@ -124,13 +124,13 @@ fn answers_are_taken_for_the_shown_question_and_from_its_choices_only() {
     let corrected = Event::KitchenCorrected { location: "counter".to_string(), content: "nori".to_string() };
     assert!(refused(&mut engine, 22.0, corrected).contains("after the probe"));
     let unknown =
-        probe(ProbeEvent::Answered { probe: 1, question: 1, answer: None, confidence: None, on: Answering::Display });
+        probe(ProbeEvent::Answered { probe: 1, question: 1, answer: None, confidence: None, on: AnswerEntry::Display });
     check(&mut engine, &[(23.0, unknown)]);
     let no_reason = probe(ProbeEvent::Skipped { probe: 1, reason: " ".to_string() });
     assert!(refused(&mut engine, 23.0, no_reason).contains("reason"));
     check(&mut engine, &[(24.0, probe(ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() }))]);
     let closed = engine.session().probes.open.as_ref().and_then(|open| open.closed);
-    assert_eq!(closed, Some((ProbeEnd::Skipped, at(24.0))));
+    assert_eq!(closed, Some((ProbeEndReason::Skipped, at(24.0))));
 }
 
 #[test]
@@ -149,14 +149,17 @@ fn a_pause_in_a_probe_stops_its_time_and_the_trial_goes_on_after_the_probe_only(
         engine.session().probes.open.as_ref().and_then(|open| open.answers[0].as_ref().map(|answer| answer.took));
     assert_eq!(took, Some(at(2.0)), "1 s before the pause and 1 s after it");
     let events = probes_of(&until(&mut engine, 200.0));
-    assert!(events.contains(&(at(125.0), ProbeEvent::Closed { probe: 1, reason: ProbeEnd::TimeOver })), "{events:?}");
+    assert!(
+        events.contains(&(at(125.0), ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::TimeOver })),
+        "{events:?}"
+    );
     assert_eq!(events.last(), Some(&(at(128.0), ProbeEvent::Ended { probe: 1 })));
     assert_eq!(engine.session().trial_clock(at(128.0)), at(20.0));
 }
 
 #[test]
 fn a_trial_that_ends_in_a_probe_closes_it() {
-    let ended = Event::TrialEnded { reason: EndReason::Wizard };
+    let ended = Event::TrialEnded { reason: TrialEndReason::Wizard };
     for end in [ended, Event::TrialAborted { reason: "fire alarm".to_string() }] {
         for is_paused in [false, true] {
             let mut engine = on_request(|_| ());
@@ -165,7 +168,7 @@ fn a_trial_that_ends_in_a_probe_closes_it() {
                 check(&mut engine, &[(21.0, Event::TrialPaused)]);
             }
             let events = engine.input(at(23.0), end.clone()).events;
-            let closed = ProbeEvent::Closed { probe: 1, reason: ProbeEnd::TrialEnded };
+            let closed = ProbeEvent::Closed { probe: 1, reason: ProbeEndReason::TrialEnded };
             assert_eq!(probes_of(&events).last(), Some(&(at(23.0), closed)));
             assert!(!engine.session().is_frozen() && engine.session().probes.over.len() == 1);
             assert_eq!(engine.next_due(), None, "nothing is due any more");
@@ -174,7 +177,7 @@ fn a_trial_that_ends_in_a_probe_closes_it() {
     let mut engine = on_request(|_| ());
     check(&mut engine, &[(0.0, Event::TrialStarted), (20.0, requested()), (22.0, Event::SessionEnded)]);
     let over = &engine.session().probes.over;
-    assert_eq!(over.iter().map(|one| one.closed).collect::<Vec<_>>(), [Some((ProbeEnd::TrialEnded, at(22.0)))]);
+    assert_eq!(over.iter().map(|one| one.closed).collect::<Vec<_>>(), [Some((ProbeEndReason::TrialEnded, at(22.0)))]);
 }
 
 #[test]
@@ -185,7 +188,7 @@ fn no_probe_begins_soon_after_a_signal_or_a_probe_it_waits_and_is_dropped() {
         accepted: None,
         offer: None,
     };
-    let delayed = ProbeEvent::Delayed { probe: 1, reason: ProbeBlock::Signal };
+    let delayed = ProbeEvent::Delayed { probe: 1, reason: ProbeDelayReason::Signal };
     let mut engine = on_request(|_| ());
     check(&mut engine, &[(0.0, Event::TrialStarted), (20.0, signal())]);
     let events = engine.input(at(23.0), requested()).events;
@@ -199,15 +202,15 @@ fn no_probe_begins_soon_after_a_signal_or_a_probe_it_waits_and_is_dropped() {
     check(&mut engine, &[(31.0, probe(ProbeEvent::Skipped { probe: 1, reason: "phone".to_string() }))]);
     until(&mut engine, 35.0);
     let events = engine.input(at(36.0), requested()).events;
-    assert_eq!(probes_of(&events)[1].1, ProbeEvent::Delayed { probe: 2, reason: ProbeBlock::Probe });
+    assert_eq!(probes_of(&events)[1].1, ProbeEvent::Delayed { probe: 2, reason: ProbeDelayReason::Probe });
     let events = probes_of(&until(&mut engine, 44.5));
     assert!(matches!(events[..], [(time, ProbeEvent::Begun { probe: 2, .. })] if time == at(44.0)), "{events:?}");
 
     let mut engine = on_request(|_| ());
     check(&mut engine, &[(0.0, Event::TrialStarted), (20.0, signal()), (21.0, requested()), (28.0, signal())]);
     let events = probes_of(&until(&mut engine, 37.0));
-    assert_eq!(events, [(at(36.0), ProbeEvent::Dropped { probe: 1, reason: ProbeBlock::Signal })]);
-    assert_eq!(engine.session().probes.dropped, [(1, ProbeBlock::Signal)]);
+    assert_eq!(events, [(at(36.0), ProbeEvent::Dropped { probe: 1, reason: ProbeDelayReason::Signal })]);
+    assert_eq!(engine.session().probes.dropped, [(1, ProbeDelayReason::Signal)]);
     check(&mut engine, &[(39.0, requested())]);
     assert_eq!(engine.session().probes.open.as_ref().map(|open| open.number), Some(2), "numbers are not used again");
 }
@@ -239,7 +242,7 @@ fn what_questions_teach_changes_the_estimate_of_the_locations_asked_about() {
 #[test]
 fn advice_that_comes_in_a_probe_is_requested_again_after_it() {
     let mut engine = on_request(|spec| {
-        spec.assistant.shadow = Shadow::On;
+        spec.assistant.shadow = ShadowMode::On;
         (spec.assistant.rollout.rollouts, spec.assistant.rollout.least_rollouts) = (16, 8);
     });
     check(&mut engine, &[(0.0, Event::TrialStarted), (10.0, press("take rice")), (10.1, requested())]);
@@ -256,7 +259,7 @@ fn advice_that_comes_in_a_probe_is_requested_again_after_it() {
 
 #[test]
 fn looks_during_a_probe_are_no_evidence() {
-    let gaze = |engine: &Engine| {
+    let gaze = |engine: &SessionEngine| {
         let centre = engine.session().kitchen.locations[0].display.centre();
         Event::Gaze(GazeSample::new(centre[0], centre[1], 1.0))
     };

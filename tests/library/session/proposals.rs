@@ -4,9 +4,9 @@ use tomcom::communication::concept::ConceptName;
 use tomcom::communication::{Sender, Signal};
 use tomcom::display::sight;
 use tomcom::kitchen::Agent;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
-use tomcom::session::event::SignalEnd;
+use tomcom::session::event::SignalEndReason;
 use tomcom::session::settings::{Condition, SessionSpec};
 
 use super::{at, engine, press, refused};
@@ -17,7 +17,7 @@ fn dev(spec: &mut SessionSpec) {
 }
 
 /// Gives an input, and lets the assistant answer whatever is asked because of it; the events, in order.
-fn with_advice(engine: &mut Engine, seconds: f64, event: Event) -> Vec<Event> {
+fn with_advice(engine: &mut SessionEngine, seconds: f64, event: Event) -> Vec<Event> {
     let mut advisor = engine.advisor();
     let mut events = engine.input(at(seconds), event).events;
     for question in engine.take_questions() {
@@ -28,7 +28,7 @@ fn with_advice(engine: &mut Engine, seconds: f64, event: Event) -> Vec<Event> {
 }
 
 /// A session in which the human has thrown away what an order needs.
-fn after_an_error(change: impl Fn(&mut SessionSpec)) -> (Engine, Vec<Event>) {
+fn after_an_error(change: impl Fn(&mut SessionSpec)) -> (SessionEngine, Vec<Event>) {
     let mut engine = engine(|spec| {
         dev(spec);
         change(spec);
@@ -42,14 +42,14 @@ fn after_an_error(change: impl Fn(&mut SessionSpec)) -> (Engine, Vec<Event>) {
     (engine, events)
 }
 
-fn proposed(engine: &Engine) -> Option<Vec<String>> {
+fn proposed(engine: &SessionEngine) -> Option<Vec<String>> {
     match &engine.session().shown.as_ref()?.signal {
         Signal::Propose(presses) => Some(presses.clone()),
         other => panic!("DEV shows {other:?}"),
     }
 }
 
-fn ends(events: &[Event]) -> Vec<SignalEnd> {
+fn ends(events: &[Event]) -> Vec<SignalEndReason> {
     let reason = |event: &Event| match event {
         Event::SignalEnded { reason } => Some(*reason),
         _ => None,
@@ -58,7 +58,7 @@ fn ends(events: &[Event]) -> Vec<SignalEnd> {
 }
 
 /// What the page is told of the signal.
-fn told(engine: &Engine) -> serde_json::Value {
+fn told(engine: &SessionEngine) -> serde_json::Value {
     serde_json::to_value(sight(engine.session())).expect("a sight is JSON")["signal"].clone()
 }
 
@@ -83,7 +83,7 @@ fn an_error_gets_one_proposal_until_it_is_made() {
     );
     assert!(!again.iter().any(|event| matches!(event, Event::SignalShown { .. })), "{again:?}");
     let followed = with_advice(&mut engine, 2.0, press(&presses[0]));
-    assert_eq!((ends(&followed), proposed(&engine)), (vec![SignalEnd::Outdated], None));
+    assert_eq!((ends(&followed), proposed(&engine)), (vec![SignalEndReason::Outdated], None));
     assert_eq!(told(&engine), serde_json::Value::Null);
     assert!(!engine.judged().last().expect("a press").verdict.error, "a proposed press is a good one");
 }
@@ -97,7 +97,7 @@ fn a_proposal_of_several_presses_is_crossed_off_press_by_press() {
         let left = told(&engine)["next"].as_array().map(Vec::len);
         assert_eq!(left, Some(3 - made), "{presses:?}");
         let events = with_advice(&mut engine, 2.0 + made as f64 / 2.0, press(name));
-        let wanted = if made == 2 { vec![SignalEnd::Outdated] } else { Vec::new() };
+        let wanted = if made == 2 { vec![SignalEndReason::Outdated] } else { Vec::new() };
         assert_eq!(ends(&events), wanted, "after {name} of {presses:?}");
     }
 }
@@ -105,18 +105,18 @@ fn a_proposal_of_several_presses_is_crossed_off_press_by_press() {
 #[test]
 fn a_proposal_ends_by_another_press_by_a_change_that_spoils_it_and_after_its_time() {
     let (mut engine, _) = after_an_error(|spec| spec.assistant.proposed_presses = 2);
-    assert_eq!(ends(&with_advice(&mut engine, 2.0, press("counter"))), [SignalEnd::Outdated]);
+    assert_eq!(ends(&with_advice(&mut engine, 2.0, press("counter"))), [SignalEndReason::Outdated]);
 
     let (mut engine, _) = after_an_error(|_| ());
     // With a full hand nothing can be taken.
     let full = Event::KitchenCorrected { location: "human_hand".to_string(), content: "tuna raw".to_string() };
     let presses = proposed(&engine).expect("a proposal");
     assert!(presses[0].starts_with("take "), "{presses:?}");
-    assert_eq!(ends(&with_advice(&mut engine, 2.0, full)), [SignalEnd::Outdated]);
+    assert_eq!(ends(&with_advice(&mut engine, 2.0, full)), [SignalEndReason::Outdated]);
 
     let (mut engine, _) = after_an_error(|_| ());
     let marker = Event::Marker { note: "later".to_string() };
-    assert_eq!(ends(&with_advice(&mut engine, 6.0, marker)), [SignalEnd::Elapsed]);
+    assert_eq!(ends(&with_advice(&mut engine, 6.0, marker)), [SignalEndReason::Elapsed]);
 }
 
 #[test]

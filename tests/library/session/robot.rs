@@ -2,7 +2,7 @@
 
 use tomcom::communication::Sender;
 use tomcom::kitchen::Agent;
-use tomcom::run::engine::Engine;
+use tomcom::run::engine::SessionEngine;
 use tomcom::session::Event;
 
 use super::{check, engine, press, refused};
@@ -33,7 +33,7 @@ fn driven(button: &str) -> Event {
 }
 
 /// Lets the session run on to this time; what happened until then.
-fn run_on(engine: &mut Engine, seconds: f64) -> Vec<(&'static str, f64)> {
+fn run_on(engine: &mut SessionEngine, seconds: f64) -> Vec<(&'static str, f64)> {
     check(engine, &[(seconds, Event::Marker { note: String::new() })])
 }
 
@@ -59,7 +59,7 @@ fn a_skipped_press_is_given_up_and_not_decided_for_again_at_once() {
     let mut engine = engine(|_| ());
     check(&mut engine, &[(0.0, Event::TrialStarted)]);
     let kitchen = engine.session().kitchen.clone();
-    let intention = |engine: &Engine| engine.session().robot.intention.map(|(button, ..)| button);
+    let intention = |engine: &SessionEngine| engine.session().robot.intention.map(|(button, ..)| button);
     let first = intention(&engine).expect("it sets out at once");
     let kinds = check(&mut engine, &[(0.5, by_wizard(|by| Event::RobotSkipped { by }))]);
     assert_eq!(kinds[..2], [("robot_skipped", 0.5), ("robot_aborts", 0.5)], "{kinds:?}");

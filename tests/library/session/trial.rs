@@ -3,9 +3,9 @@
 use tomcom::communication::{Sender, Signal};
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, Kitchen, State};
-use tomcom::session::event::{EndReason, SignalEnd};
+use tomcom::session::event::{SignalEndReason, TrialEndReason};
 use tomcom::session::settings::Condition;
-use tomcom::session::{Event, Phase};
+use tomcom::session::{Event, TrialPhase};
 
 use super::{at, check, engine, press, refused};
 
@@ -25,7 +25,7 @@ fn a_trial_ends_after_its_time_and_pauses_do_not_count() {
     assert_eq!(engine.session().trial_clock(at(10.0)), at(4.0));
     let kinds = check(&mut engine, &[(30.0, Event::Marker { note: "later".to_string() })]);
     assert!(kinds.contains(&("trial_ended", 16.0)), "{kinds:?}");
-    assert_eq!(engine.session().phase, Phase::Over(EndReason::Time));
+    assert_eq!(engine.session().phase, TrialPhase::Over(TrialEndReason::Time));
     assert_eq!(engine.next_due(), None);
 }
 
@@ -127,8 +127,8 @@ fn what_cannot_be_is_refused_with_its_reason() {
     assert!(refused(&mut engine, 2.0, press("cellar")).contains("a button that the agent has"));
     assert!(refused(&mut engine, 2.0, Event::TrialStarted).contains("started already"));
     assert!(refused(&mut engine, 2.0, Event::RobotResumed).contains("not stopped"));
-    check(&mut engine, &[(2.5, Event::SignalEnded { reason: SignalEnd::TakenBack })]);
-    assert!(refused(&mut engine, 3.0, Event::SignalEnded { reason: SignalEnd::TakenBack }).contains("no signal"));
+    check(&mut engine, &[(2.5, Event::SignalEnded { reason: SignalEndReason::TakenBack })]);
+    assert!(refused(&mut engine, 3.0, Event::SignalEnded { reason: SignalEndReason::TakenBack }).contains("no signal"));
     check(&mut engine, &[(4.0, Event::SessionEnded)]);
     assert!(refused(&mut engine, 5.0, press("take rice")).contains("session is over"));
 }
@@ -141,10 +141,10 @@ fn an_aborted_trial_is_over_says_why_and_can_be_excluded_and_included() {
     assert!(refused(&mut engine, 0.0, aborted()).contains("no trial to abort"));
     assert!(refused(&mut engine, 0.0, excluded()).contains("no trial to exclude"));
     check(&mut engine, &[(0.0, Event::TrialStarted), (1.0, excluded()), (2.0, Event::TrialIncluded)]);
-    let unexplained = Event::TrialEnded { reason: EndReason::Aborted };
+    let unexplained = Event::TrialEnded { reason: TrialEndReason::Aborted };
     assert!(refused(&mut engine, 2.5, unexplained).contains("needs a reason"));
     check(&mut engine, &[(3.0, Event::TrialPaused), (4.0, aborted())]);
-    assert_eq!(engine.session().phase, Phase::Over(EndReason::Aborted));
+    assert_eq!(engine.session().phase, TrialPhase::Over(TrialEndReason::Aborted));
     assert_eq!(engine.session().aborted.as_deref(), Some("technical failure"));
     assert_eq!(engine.next_due(), None);
     check(&mut engine, &[(5.0, excluded())]);
@@ -164,7 +164,7 @@ fn signals_of_the_wizard_keep_apart_and_a_new_one_replaces_the_shown_one() {
     let shown = engine.session().shown.as_ref().and_then(|shown| shown.signal.target().map(str::to_string));
     assert_eq!(shown.as_deref(), Some("plate"));
     // Taken back, it may be sent again; so may the one that was replaced.
-    check(&mut engine, &[(2.2, Event::SignalEnded { reason: SignalEnd::TakenBack })]);
+    check(&mut engine, &[(2.2, Event::SignalEnded { reason: SignalEndReason::TakenBack })]);
     assert!(refused(&mut engine, 2.3, highlight("plate")).contains("too soon"));
     check(&mut engine, &[(3.0, highlight("plate")), (4.0, highlight("counter"))]);
 }

@@ -7,9 +7,9 @@ use tomcom::session::plan::StudyAims;
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
 use tomcom::study::arm_comparison::{compare_arms, holm};
-use tomcom::study::linear_mixed_model::{LinearMixedModel, Measurement};
-use tomcom::study::negative_binomial_model::{NegativeBinomialModel, TrialCount};
-use tomcom::study::trial_statistics::Trial;
+use tomcom::study::linear_mixed_model::{LinearMixedModel, MixedModelMeasurement};
+use tomcom::study::negative_binomial_model::{CountObservation, NegativeBinomialModel};
+use tomcom::study::trial_statistics::TrialStatistics;
 
 use super::trial;
 
@@ -29,7 +29,7 @@ fn the_linear_model_finds_the_variances_of_the_dyestuff_batches() {
         [1520.0, 1455.0, 1450.0, 1480.0, 1445.0],
     ];
     let rows = YIELD.iter().enumerate().flat_map(|(participant, values)| {
-        values.iter().map(move |&value| Measurement { participant, effects: vec![1.0], value })
+        values.iter().map(move |&value| MixedModelMeasurement { participant, effects: vec![1.0], value })
     });
     let model = LinearMixedModel::fit(&rows.collect::<Vec<_>>()).expect("a fit");
     is_close(model.between, 1764.05, 1e-6);
@@ -107,7 +107,7 @@ fn effects(period: u64) -> Vec<f64> {
 
 #[test]
 fn both_models_agree_with_lmertest_and_glmmtmb_on_herds_of_unequal_size() {
-    let rows = CATTLE.map(|[herd, cases, animals, period]| Measurement {
+    let rows = CATTLE.map(|[herd, cases, animals, period]| MixedModelMeasurement {
         participant: herd as usize - 1,
         effects: effects(period),
         value: ((cases as f64 + 0.5) / animals as f64).ln(),
@@ -130,7 +130,7 @@ fn both_models_agree_with_lmertest_and_glmmtmb_on_herds_of_unequal_size() {
         is_close(found.df, df, 1e-3);
         assert!((found.p - p).abs() < 1e-3 * p.max(1e-3), "{index}: {found:?}");
     }
-    let counts = CATTLE.map(|[herd, count, animals, period]| TrialCount {
+    let counts = CATTLE.map(|[herd, count, animals, period]| CountObservation {
         participant: herd as usize - 1,
         effects: effects(period),
         count,
@@ -166,7 +166,7 @@ fn holms_correction_keeps_the_order_and_never_exceeds_one() {
 }
 
 /// A study whose participants differ, get better from trial to trial, and err in runs; the arms' rates are multiplied by `ratios`.
-fn simulated(arms: &[StudyArm], ratios: &[f64], participants: usize, seed: u64) -> Vec<Trial> {
+fn simulated(arms: &[StudyArm], ratios: &[f64], participants: usize, seed: u64) -> Vec<TrialStatistics> {
     let mut random = stream(seed, "study of arms", 0);
     let talent = Normal::new(0.0, 0.3).expect("a spread");
     let runs = Gamma::new(6.0, 1.0 / 6.0).expect("a shape");
@@ -180,7 +180,7 @@ fn simulated(arms: &[StudyArm], ratios: &[f64], participants: usize, seed: u64) 
             let rate = 0.12 * own * ratios[index] * 0.9_f64.powi(period as i32);
             let mean = rate * presses as f64 * runs.sample(&mut random);
             let errors = Poisson::new(mean).expect("a mean").sample(&mut random) as u64;
-            trials.push(Trial {
+            trials.push(TrialStatistics {
                 participant: format!("P{participant:02}"),
                 period: Some(period as u32 + 1),
                 study_arm: arms[index],
@@ -239,9 +239,9 @@ fn an_assistant_is_not_worse_only_if_its_interval_says_so() {
     for one in &found.non_inferiority {
         assert_eq!(one.holds, one.p < 0.025, "{one:?}");
     }
-    let strict: Vec<Trial> = trials
+    let strict: Vec<TrialStatistics> = trials
         .into_iter()
-        .map(|trial| Trial { aims: Some(StudyAims { margin: 1.01, ..StudyAims::default() }), ..trial })
+        .map(|trial| TrialStatistics { aims: Some(StudyAims { margin: 1.01, ..StudyAims::default() }), ..trial })
         .collect();
     let strict = compare_arms(&strict.iter().collect::<Vec<_>>()).expect("a comparison");
     assert_eq!(strict.non_inferiority[0].margin, 1.01, "the plan says what is not worse");
@@ -264,9 +264,9 @@ fn without_an_effect_the_primary_test_finds_one_in_twenty() {
 #[test]
 fn a_repeated_trial_counts_once_and_one_arm_is_no_comparison() {
     let mut trials = simulated(&FOUR[..2], &[1.0, 0.5], 6, 3);
-    let all = |trials: &[Trial]| compare_arms(&trials.iter().collect::<Vec<_>>());
+    let all = |trials: &[TrialStatistics]| compare_arms(&trials.iter().collect::<Vec<_>>());
     let before = all(&trials).expect("a comparison");
-    let spoilt = Trial { errors: 90, ..trials[0].clone() };
+    let spoilt = TrialStatistics { errors: 90, ..trials[0].clone() };
     trials.insert(0, spoilt);
     assert_eq!(all(&trials), Some(before), "the last attempt at a trial counts");
     let alone = simulated(&FOUR[..1], &[1.0], 6, 3);

@@ -6,11 +6,11 @@ use std::path::Path;
 use tomcom::edge::files::{SessionFiles, read_session};
 use tomcom::edge::frozen_file::{freeze, read_frozen};
 use tomcom::session::study_arm::StudyArm;
-use tomcom::study::column::Table;
-use tomcom::study::facts::Facts;
+use tomcom::study::column::CsvTable;
+use tomcom::study::facts::RecordingFacts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::frozen_plan::{FrozenDefinition, FrozenPlan};
-use tomcom::study::preregistration::{Preregistration, RecordedPlan};
+use tomcom::study::preregistration::{PreregistrationCheck, RecordedPlan};
 use tomcom::study::report;
 
 use super::trials;
@@ -32,7 +32,7 @@ fn recordings(frozen: &FrozenPlan) -> Vec<RecordedPlan> {
 }
 
 fn differences(frozen: &FrozenPlan, recordings: &[RecordedPlan]) -> Vec<String> {
-    Preregistration::new("0".to_string(), frozen, recordings).differences
+    PreregistrationCheck::new("0".to_string(), frozen, recordings).differences
 }
 
 #[test]
@@ -102,9 +102,10 @@ fn the_report_says_preregistered_with_the_digest_or_what_differs() {
     let plan = frozen();
     let trials = trials(&[[24, 12], [30, 16]], &[[20, 18], [16, 16]]);
     let page = |recordings: &[RecordedPlan]| {
-        let found = Preregistration::new("abc123".to_string(), &plan, recordings);
-        let summary = StudySummary::from_trials(&trials, &Facts::default(), 0).with_preregistration(Some(found));
-        report::page(&summary, &trials, &Facts::default(), &Table::ALL)
+        let found = PreregistrationCheck::new("abc123".to_string(), &plan, recordings);
+        let summary =
+            StudySummary::from_trials(&trials, &RecordingFacts::default(), 0).with_preregistration(Some(found));
+        report::page(&summary, &trials, &RecordingFacts::default(), &CsvTable::ALL)
     };
     let all = recordings(&plan);
     let same = page(&all);
@@ -119,7 +120,7 @@ fn the_report_says_preregistered_with_the_digest_or_what_differs() {
         fewer.contains("Not as preregistered") && fewer.contains("1 participant is without a recording: P01"),
         "{fewer}"
     );
-    let without = StudySummary::from_trials(&trials, &Facts::default(), 0);
+    let without = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
     let json = serde_json::to_string(&without).expect("JSON");
     assert!(!json.contains("preregistration"), "nothing was frozen");
 }

@@ -1,17 +1,21 @@
 //! Concepts that acted by themselves on the same seeds.
 
 use tomcom::session::study_arm::StudyArm;
-use tomcom::study::acting_arm::ActingArm;
+use tomcom::study::acting_arm::ActingStudyArm;
 use tomcom::study::live_arms::live_arms;
-use tomcom::study::trial_statistics::Trial;
+use tomcom::study::trial_statistics::TrialStatistics;
 
 use super::{near, trial};
 
 /// A trial of 200 presses of the human in an arm, with this number of belief related errors and signals.
-fn acting((arm, parameter): (StudyArm, f64), participant: &str, related: u64, signals: u64) -> Trial {
-    let acting = ActingArm::from_settings(arm, parameter);
-    let mut trial =
-        Trial { acting, signals, signal_contents: 2 * signals, ..trial(participant, 1, arm.condition(), related) };
+fn acting((arm, parameter): (StudyArm, f64), participant: &str, related: u64, signals: u64) -> TrialStatistics {
+    let acting = ActingStudyArm::from_settings(arm, parameter);
+    let mut trial = TrialStatistics {
+        acting,
+        signals,
+        signal_contents: 2 * signals,
+        ..trial(participant, 1, arm.condition(), related)
+    };
     let beliefs = trial.beliefs.as_mut().expect("beliefs");
     (beliefs.errors, beliefs.lengths) = (related, vec![related as u32]);
     trial
@@ -32,7 +36,7 @@ fn arms_are_compared_over_the_trials_that_all_of_them_have() {
         // Not in the other arms.
         acting(none, "S003", 90, 0),
     ];
-    let all: Vec<&Trial> = trials.iter().collect();
+    let all: Vec<&TrialStatistics> = trials.iter().collect();
     let found = live_arms(&all, &[]);
     let names: Vec<(&str, Option<f64>, u64)> =
         found.iter().map(|one| (one.arm.concept, one.arm.parameter, one.trials)).collect();
@@ -56,8 +60,10 @@ fn arms_are_compared_over_the_trials_that_all_of_them_have() {
 fn useless_signals_count_where_every_trial_with_signals_was_judged() {
     let arm = |useful: [Option<u64>; 2]| {
         let none = [("S001", 20), ("S002", 12)].map(|(code, related)| acting((StudyArm::None, 1.5), code, related, 0));
-        let acted = [("S001", useful[0]), ("S002", useful[1])]
-            .map(|(code, useful_signals)| Trial { useful_signals, ..acting((StudyArm::TomCom, 1.5), code, 5, 8) });
+        let acted = [("S001", useful[0]), ("S002", useful[1])].map(|(code, useful_signals)| TrialStatistics {
+            useful_signals,
+            ..acting((StudyArm::TomCom, 1.5), code, 5, 8)
+        });
         live_arms(&none.iter().chain(&acted).collect::<Vec<_>>(), &[]).remove(1)
     };
     let judged = arm([Some(6), Some(4)]);
@@ -74,6 +80,6 @@ fn one_arm_or_arms_without_common_trials_are_not_compared() {
     assert!(live_arms(&[&none, &none], &[]).is_empty());
     assert!(live_arms(&[&none, &tom], &[]).is_empty());
     // DEV by the number of presses that it proposes.
-    let dev = ActingArm::from_settings(StudyArm::Dev, 3.0);
+    let dev = ActingStudyArm::from_settings(StudyArm::Dev, 3.0);
     assert_eq!((dev.concept, dev.parameter), ("dev", Some(3.0)));
 }

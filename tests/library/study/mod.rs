@@ -15,14 +15,14 @@ mod tutorials;
 
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
-use tomcom::measures::belief_basis::BeliefBasis;
+use tomcom::measures::belief_basis::BeliefSource;
 use tomcom::measures::cause_kinds::CauseKindCounts;
-use tomcom::session::event::EndReason;
-use tomcom::session::settings::{ArmKind, Condition, ParticipantKind, Visibility};
+use tomcom::session::event::TrialEndReason;
+use tomcom::session::settings::{ArmKind, Condition, ParticipantKind, WizardVisibility};
 use tomcom::session::study_arm::StudyArm;
-use tomcom::study::acting_arm::ActingArm;
-use tomcom::study::robot_tally::RobotSummary;
-use tomcom::study::trial_statistics::{BeliefErrors, Trial, arrange};
+use tomcom::study::acting_arm::ActingStudyArm;
+use tomcom::study::robot_tally::RobotEventSummary;
+use tomcom::study::trial_statistics::{FalseBeliefErrors, TrialStatistics, arrange};
 
 fn near(found: f64, wanted: f64) {
     assert!((found - wanted).abs() < 1e-9 * wanted.abs().max(1.0), "{found} instead of {wanted}");
@@ -33,10 +33,10 @@ fn at(seconds: f64) -> SessionTime {
 }
 
 /// A trial of 200 presses of the human with this many errors, three of four of them belief related.
-fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> Trial {
+fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> TrialStatistics {
     let related = errors * 3 / 4;
     let lengths = if related > 0 { vec![related as u32] } else { Vec::new() };
-    Trial {
+    TrialStatistics {
         recording: format!("{participant}-{period}"),
         participant: participant.to_string(),
         seed: 1,
@@ -49,18 +49,18 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
         study_arm: StudyArm::from_settings(condition, ConceptName::TomCom, false),
         planned_arm: None,
         aims: None,
-        wizard_sees: Visibility::State,
-        acting: ActingArm::from_settings(StudyArm::from_settings(condition, ConceptName::TomCom, false), 1.5),
+        wizard_sees: WizardVisibility::State,
+        acting: ActingStudyArm::from_settings(StudyArm::from_settings(condition, ConceptName::TomCom, false), 1.5),
         left_out: None,
-        ended: Some(EndReason::Presses),
+        ended: Some(TrialEndReason::Presses),
         arm: ArmKind::Timed,
-        robot: RobotSummary::default(),
+        robot: RobotEventSummary::default(),
         human_presses: 200,
         robot_presses: 100,
         errors,
         races: 0,
-        beliefs: Some(BeliefErrors {
-            basis: BeliefBasis::Recorded,
+        beliefs: Some(FalseBeliefErrors {
+            basis: BeliefSource::Recorded,
             errors: related,
             of_two: 0,
             causes: CauseKindCounts { places: related, ..CauseKindCounts::default() },
@@ -94,7 +94,7 @@ fn trial(participant: &str, period: u32, condition: Condition, errors: u64) -> T
 }
 
 /// Participants with errors in the first and in the second trial; those of the first list are assisted in the second one.
-fn trials(assisted_second: &[[u64; 2]], assisted_first: &[[u64; 2]]) -> Vec<Trial> {
+fn trials(assisted_second: &[[u64; 2]], assisted_first: &[[u64; 2]]) -> Vec<TrialStatistics> {
     let mut trials = Vec::new();
     for (group, errors) in [assisted_second, assisted_first].into_iter().enumerate() {
         for (index, errors) in errors.iter().enumerate() {

@@ -13,14 +13,14 @@ use tomcom::session::plan::{PrimaryOutcome, StudyAims, orders};
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
 use tomcom::study::arm_comparison::compare_arms;
-use tomcom::study::arm_table::ArmTable;
-use tomcom::study::drawn_study::{DrawnEffect, StudySource, TestMethod, results, tests};
+use tomcom::study::arm_table::StudyArmTable;
+use tomcom::study::drawn_study::{DrawnEffect, SignificanceTestMethod, StudySampler, results, tests};
 use tomcom::study::effect::{effect, pairs};
 use tomcom::study::power::{RejectionCount, RejectionShare, least_ratio, ratios};
 use tomcom::study::power_answer::{PowerSummary, describe};
-use tomcom::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, SimulationPool, TrialCounts};
+use tomcom::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
 use tomcom::study::tables::trials::HEADLINE;
-use tomcom::study::trial_statistics::Trial;
+use tomcom::study::trial_statistics::TrialStatistics;
 
 use super::trial;
 
@@ -59,10 +59,10 @@ fn made_up(conditions: &[StudyArm], participants: u32, ratio: f64, seed: u64) ->
             let rate = 0.12 * own * 0.9_f64.powi(index as i32) * human_presses as f64 * runs.sample(&mut random);
             let mut counts = |ratio: f64| {
                 let errors = Poisson::new(rate * ratio).expect("a mean").sample(&mut random) as u64;
-                TrialCounts { human_presses, errors, seconds: 300.0, ..TrialCounts::default() }
+                PoolTrialCounts { human_presses, errors, seconds: 300.0, ..PoolTrialCounts::default() }
             };
             let (unassisted, assisted) = (counts(1.0), counts(ratio));
-            let line = |arm: StudyArm, counts: TrialCounts| PoolTrial {
+            let line = |arm: StudyArm, counts: PoolTrialCounts| PoolTrial {
                 participant,
                 group: order.iter().map(|&index| char::from(b'A' + index as u8)).collect(),
                 period: index as u32 + 1,
@@ -89,7 +89,7 @@ fn a_huge_effect_is_found_and_few_participants_are_needed() {
     let pool = made_up(&TWO, 120, 0.15, 1);
     let found = asked(&pool, &[8, 14], 100, DrawnEffect::AsSimulated);
     assert_eq!(found.needed.len(), 2, "the paper's test, and the contrast of the mixed model");
-    assert_eq!(found.needed[0].test.method, TestMethod::MixedAnova);
+    assert_eq!(found.needed[0].test.method, SignificanceTestMethod::MixedAnova);
     for needed in &found.needed {
         assert_eq!((needed.participants, needed.surely), (Some(8), Some(8)), "{found:?}");
     }
@@ -121,11 +121,11 @@ fn without_an_effect_one_study_in_twenty_finds_one() {
 #[test]
 fn tests_of_a_drawn_study_are_those_of_the_analysis() {
     let pool = made_up(&TWO, 40, 0.6, 4);
-    let study = StudySource::new(&pool).expect("persons").study(14, DrawnEffect::AsSimulated, 7);
+    let study = StudySampler::new(&pool).expect("persons").study(14, DrawnEffect::AsSimulated, 7);
     assert_eq!(study.len(), 28);
-    let trials: Vec<Trial> = study
+    let trials: Vec<TrialStatistics> = study
         .iter()
-        .map(|one| Trial {
+        .map(|one| TrialStatistics {
             participant: format!("P{:02}", one.participant),
             period: Some(one.period),
             study_arm: one.arm,
@@ -140,15 +140,15 @@ fn tests_of_a_drawn_study_are_those_of_the_analysis() {
     let contrast = compare_arms(&trials.iter().collect::<Vec<_>>()).expect("a comparison").contrasts[0];
     assert_eq!(found[0].expect("a test").p, papers);
     assert_eq!(found[1].expect("a contrast").p, contrast.p_holm);
-    let methods: Vec<TestMethod> = tests(&THREE).iter().map(|test| test.method).collect();
-    assert_eq!(methods, [TestMethod::LinearMixedModel; 3], "the paper's test is one of two conditions");
+    let methods: Vec<SignificanceTestMethod> = tests(&THREE).iter().map(|test| test.method).collect();
+    assert_eq!(methods, [SignificanceTestMethod::LinearMixedModel; 3], "the paper's test is one of two conditions");
     assert_eq!(tests(&[StudyArm::Wizard, StudyArm::TomCom]).len(), 1, "both are assisted");
 }
 
 #[test]
 fn studies_have_whole_persons_in_balanced_orders_and_a_ratio_takes_events_away() {
     let pool = made_up(&THREE, 60, 0.5, 5);
-    let source = StudySource::new(&pool).expect("persons");
+    let source = StudySampler::new(&pool).expect("persons");
     let study = source.study(12, DrawnEffect::AsSimulated, 0);
     for trials in study.chunk_by(|a, b| a.participant == b.participant) {
         let is_whole = pool.persons.iter().any(|person| {
@@ -178,7 +178,7 @@ fn studies_have_whole_persons_in_balanced_orders_and_a_ratio_takes_events_away()
     let kept = after as f64 / before as f64;
     assert!((0.42..=0.58).contains(&kept), "{kept}");
     let few = made_up(&THREE, 8, 0.5, 5);
-    assert!(StudySource::new(&few).expect_err("six orders").contains("in the order"));
+    assert!(StudySampler::new(&few).expect_err("six orders").contains("in the order"));
 }
 
 #[test]
@@ -297,7 +297,7 @@ fn table_and_picture_take_the_place_of_their_own_kind_alone() {
 #[test]
 fn the_table_of_arms_has_the_sums_of_its_trials() {
     let pool = made_up(&THREE, 30, 0.5, 11);
-    let table = ArmTable::from_pool(&pool);
+    let table = StudyArmTable::from_pool(&pool);
     assert!(table.arms.iter().map(|row| row.arm).eq(THREE));
     for row in &table.arms {
         let own = || {

@@ -2,15 +2,17 @@
 
 use tomcom::communication::concept::ConceptName;
 use tomcom::kitchen::AspectId;
-use tomcom::study::prevention::{ConceptSignal, FalseBeliefTruth, PressTruth, PreventionCounts, TrialTruth};
-use tomcom::study::roc::{SweptTrial, compare};
+use tomcom::study::prevention::{
+    FalseBeliefGroundTruth, HypotheticalSignal, PressGroundTruth, PreventionCounts, TrialGroundTruth,
+};
+use tomcom::study::roc::{PreventedTrialErrors, compare};
 
 use super::{at, near};
 
 /// Ten presses, a second apart. Aspect 0 is believed wrong from 2.5 to 7.5 s and causes the errors at presses 3, 4 and 6; aspect 1
 /// is believed wrong from 3.5 s to 5.5 s and causes the error at press 5; aspect 2 is believed wrong from 8.5 s and does no harm.
 /// Press 9 is a slip.
-fn truth() -> TrialTruth {
+fn truth() -> TrialGroundTruth {
     let about = |index: usize| match index {
         3 | 4 | 6 => vec![AspectId(0)],
         5 => vec![AspectId(1)],
@@ -18,28 +20,28 @@ fn truth() -> TrialTruth {
     };
     let press = |index: usize| {
         let aspects = about(index);
-        PressTruth { time: at(index as f64), error: index == 9 || !aspects.is_empty(), aspects }
+        PressGroundTruth { time: at(index as f64), error: index == 9 || !aspects.is_empty(), aspects }
     };
-    let spell = |aspect: u8, began: f64, ended: Option<f64>| FalseBeliefTruth {
+    let spell = |aspect: u8, began: f64, ended: Option<f64>| FalseBeliefGroundTruth {
         aspect: AspectId(aspect),
         began: at(began),
         ended: ended.map(at),
         harmful: aspect < 2,
     };
-    TrialTruth {
+    TrialGroundTruth {
         presses: (0..10).map(press).collect(),
         spells: vec![spell(0, 2.5, Some(7.5)), spell(1, 3.5, Some(5.5)), spell(2, 8.5, None)],
         knows_harmless: true,
     }
 }
 
-fn sent(seconds: f64, aspects: &[u8]) -> ConceptSignal {
+fn sent(seconds: f64, aspects: &[u8]) -> HypotheticalSignal {
     let aspects = aspects.iter().map(|&aspect| AspectId(aspect)).collect();
-    ConceptSignal { time: at(seconds), press: seconds as usize + 1, aspects }
+    HypotheticalSignal { time: at(seconds), press: seconds as usize + 1, aspects }
 }
 
 /// Counts of signals: prevented errors, useless signals, of these inside of episodes, presses right after one, harmless ones.
-fn counted(sent: &[ConceptSignal]) -> [u64; 5] {
+fn counted(sent: &[HypotheticalSignal]) -> [u64; 5] {
     let count = truth().count_signals(sent);
     assert_eq!((count.signals, count.contents), (sent.len() as u64, sent.len() as u64));
     [
@@ -92,7 +94,7 @@ fn a_signal_is_useful_only_as_the_first_about_an_episode_with_an_error_to_follow
 
 #[test]
 fn the_lead_of_a_signal_is_the_time_until_the_first_error_that_it_prevents() {
-    let lead = |signals: &[ConceptSignal]| truth().count_signals(signals).lead_s();
+    let lead = |signals: &[HypotheticalSignal]| truth().count_signals(signals).lead_s();
     near(lead(&[sent(2.6, &[0])]).expect("useful"), 0.4);
     // The second is useless, and has no lead.
     near(lead(&[sent(2.6, &[0]), sent(4.0, &[0])]).expect("one useful"), 0.4);
@@ -110,8 +112,10 @@ fn a_proposal_is_one_interruption_and_useless_if_no_press_that_it_spares_is_an_e
     // k = 3: at 3 (4, 5, 6), at 9.
     assert_eq!(counts, [[3, 3, 2, 1], [3, 6, 2, 2], [2, 6, 3, 1]]);
     // A spared slip is no false positive.
-    let slips = TrialTruth {
-        presses: [true, true, false].map(|error| PressTruth { time: at(0.0), error, aspects: Vec::new() }).to_vec(),
+    let slips = TrialGroundTruth {
+        presses: [true, true, false]
+            .map(|error| PressGroundTruth { time: at(0.0), error, aspects: Vec::new() })
+            .to_vec(),
         spells: Vec::new(),
         knows_harmless: true,
     };
@@ -121,7 +125,7 @@ fn a_proposal_is_one_interruption_and_useless_if_no_press_that_it_spares_is_an_e
 
 #[test]
 fn concepts_are_compared_where_they_say_equally_much() {
-    let swept = |concept, parameter, signals, prevented, useless| SweptTrial {
+    let swept = |concept, parameter, signals, prevented, useless| PreventedTrialErrors {
         concept,
         parameter,
         count: PreventionCounts {

@@ -4,18 +4,18 @@ use std::convert::Infallible;
 use std::path::Path;
 use std::sync::Arc;
 
-use tomcom::analysis::follower::Follower;
+use tomcom::analysis::follower::SessionFollower;
 use tomcom::analysis::probe_collector::ProbeCollector;
-use tomcom::analysis::probe_figures::ProbeFigures;
+use tomcom::analysis::probe_figures::ProbeSummary;
 use tomcom::analysis::probe_record::{ProbeResponse, ProbedQuestion, ProbedTrial};
 use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectKind, Kitchen, LocationId};
-use tomcom::mind::BeliefWitness;
-use tomcom::run::engine::Engine;
+use tomcom::mind::RecordedBelief;
+use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::session::probes::{ProbeEvent, ProbeOrigin, ProbeSubject};
-use tomcom::session::{Event, Session, SessionSpec, Stamped};
+use tomcom::session::{Event, Session, SessionSpec, TimestampedEvent};
 
 use super::near;
 
@@ -47,13 +47,13 @@ struct Expected {
 /// Runs a trial and reads its probes, beside what is expected of each drawn question.
 fn probed(spec: &SessionSpec, trial: u64) -> (ProbedTrial, Vec<(u32, Vec<Expected>)>) {
     let kitchen = kitchen();
-    let mut engine = Engine::new(kitchen.clone(), spec.clone(), trial, CostToGo::new(kitchen.clone()));
+    let mut engine = SessionEngine::new(kitchen.clone(), spec.clone(), trial, CostToGo::new(kitchen.clone()));
     let session = Session::new(kitchen.clone(), spec.clone(), trial);
-    let mut follower = Follower::new(session, CostToGo::new(kitchen.clone()));
+    let mut follower = SessionFollower::new(session, CostToGo::new(kitchen.clone()));
     let (mut collector, mut expected) = (ProbeCollector::default(), Vec::new());
     let mut changes: Vec<(LocationId, f64, Option<Agent>)> = Vec::new();
-    let mut witness: Option<BeliefWitness> = None;
-    let keep = |stamped: &Stamped| {
+    let mut witness: Option<RecordedBelief> = None;
+    let keep = |stamped: &TimestampedEvent| {
         let change = follower.apply(stamped).expect("what was recorded can be replayed").change;
         collector.note(stamped, &change, &follower);
         let session = &follower.session;
@@ -153,7 +153,7 @@ fn answers_of_simulated_participants_are_their_beliefs_unless_they_err() {
             assert_eq!(took_s.is_none(), question.response == ProbeResponse::Missing);
             assert!(took_s.is_none_or(|took_s| (0.2..25.0).contains(&took_s)), "{question:?}");
         }
-        ProbeFigures::from_trials(trials.iter().map(|(code, trial)| (code.as_str(), trial))).expect("there are probes")
+        ProbeSummary::from_trials(trials.iter().map(|(code, trial)| (code.as_str(), trial))).expect("there are probes")
     };
     let exact = figures(0.0);
     let known = exact.by_true_beliefs.as_ref().expect("simulated");

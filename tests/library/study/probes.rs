@@ -4,20 +4,20 @@ use std::collections::BTreeMap;
 
 use rand::RngExt;
 use rand::seq::SliceRandom;
-use tomcom::analysis::probe_accuracy::AccuracyGrouping;
-use tomcom::analysis::probe_detection::{ProbeDetection, WeighedBelief};
-use tomcom::analysis::probe_figures::ProbeFigures;
+use tomcom::analysis::probe_accuracy::ProbeAccuracyGrouping;
+use tomcom::analysis::probe_detection::{ProbeDetection, WeightedProbeBelief};
+use tomcom::analysis::probe_figures::ProbeSummary;
 use tomcom::analysis::probe_record::{
-    FrozenAspect, FrozenBelief, ProbeResponse, ProbedKind, ProbedQuestion, ProbedTrial,
+    AspectAtFreeze, BeliefAtFreeze, ProbeQuestionKind, ProbeResponse, ProbedQuestion, ProbedTrial,
 };
 use tomcom::base::rng::{Stream, stream};
 use tomcom::communication::concept::ConceptName;
-use tomcom::measures::belief_basis::BeliefBasis;
+use tomcom::measures::belief_basis::BeliefSource;
 use tomcom::session::probes::ProbeOrigin;
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
-use tomcom::study::column::TableRow;
-use tomcom::study::facts::Facts;
+use tomcom::study::column::CsvRow;
+use tomcom::study::facts::RecordingFacts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::report;
 use tomcom::study::tables::probe_table::{PROBES_WRONG, ProbeRow, probes};
@@ -49,16 +49,16 @@ impl Synthetic {
 
     /// The question about it, answered as it is believed.
     fn question(self, inclusion: f64, uses_estimate: bool) -> ProbedQuestion {
-        let kind = if self.is_recipe { ProbedKind::Recipe } else { ProbedKind::Place };
+        let kind = if self.is_recipe { ProbeQuestionKind::Recipe } else { ProbeQuestionKind::Place };
         let believes = if self.belief < 0.5 { "empty" } else { "rice" };
         ProbedQuestion {
             inclusion,
             uses_estimate,
             response: ProbeResponse::Value(believes.to_string()),
-            frozen: Some(FrozenAspect {
+            frozen: Some(AspectAtFreeze {
                 estimate_p_truth: self.estimate,
                 estimate_p_false: 1.0 - self.estimate,
-                believed: Some(FrozenBelief { believes: believes.to_string(), p_truth: self.belief }),
+                believed: Some(BeliefAtFreeze { believes: believes.to_string(), p_truth: self.belief }),
                 ..frozen(self.is_recipe)
             }),
             ..question(kind)
@@ -66,8 +66,8 @@ impl Synthetic {
     }
 }
 
-fn frozen(is_recipe: bool) -> FrozenAspect {
-    FrozenAspect {
+fn frozen(is_recipe: bool) -> AspectAtFreeze {
+    AspectAtFreeze {
         values: 3,
         estimate: "rice".to_string(),
         estimate_p: BTreeMap::from(
@@ -83,7 +83,7 @@ fn frozen(is_recipe: bool) -> FrozenAspect {
     }
 }
 
-fn question(kind: ProbedKind) -> ProbedQuestion {
+fn question(kind: ProbeQuestionKind) -> ProbedQuestion {
     ProbedQuestion {
         probe: 1,
         question: 1,
@@ -97,7 +97,7 @@ fn question(kind: ProbedKind) -> ProbedQuestion {
         response: ProbeResponse::Value("rice".to_string()),
         confidence: None,
         took_s: Some(3.0),
-        frozen: (!kind.is_level_2()).then(|| frozen(kind == ProbedKind::Recipe)),
+        frozen: (!kind.is_level_2()).then(|| frozen(kind == ProbeQuestionKind::Recipe)),
     }
 }
 
@@ -108,7 +108,7 @@ fn probed(condition: Condition, questions: Vec<ProbedQuestion>) -> ProbedTrial {
 
 /// A trial with one question, rightly answered.
 pub(super) fn one_right_answer(condition: Condition) -> ProbedTrial {
-    probed(condition, vec![question(ProbedKind::Place)])
+    probed(condition, vec![question(ProbeQuestionKind::Place)])
 }
 
 /// Questions of a probe: without the estimate all aspects are as likely; with it, half of the questions are about what it believes
@@ -140,8 +140,8 @@ fn draw(aspects: &[Synthetic], uses_estimate: bool, random: &mut Stream) -> Vec<
 }
 
 fn detection(questions: &[ProbedQuestion], weighted: bool) -> ProbeDetection {
-    let beliefs = questions.iter().filter_map(WeighedBelief::by_answer);
-    let beliefs: Vec<WeighedBelief> = beliefs.map(|one| if weighted { one } else { one.unweighted() }).collect();
+    let beliefs = questions.iter().filter_map(WeightedProbeBelief::by_answer);
+    let beliefs: Vec<WeightedProbeBelief> = beliefs.map(|one| if weighted { one } else { one.unweighted() }).collect();
     ProbeDetection::from_beliefs(&beliefs)
 }
 
@@ -186,7 +186,7 @@ fn weights_take_out_the_choice_of_questions_by_the_estimate() {
 }
 
 /// A study in which answers are as believed, except for this share of wrong ones.
-fn study_with_errors(rate: f64) -> ProbeFigures {
+fn study_with_errors(rate: f64) -> ProbeSummary {
     let mut random = stream(21, "synthetic answers", 0);
     let mut slips = stream(21, "wrong answers", 0);
     let mut trials = Vec::new();
@@ -205,13 +205,13 @@ fn study_with_errors(rate: f64) -> ProbeFigures {
         }
         trials.push((format!("P{participant}"), probed(Condition::None, questions)));
     }
-    ProbeFigures::from_trials(trials.iter().map(|(code, trial)| (code.as_str(), trial))).expect("there are questions")
+    ProbeSummary::from_trials(trials.iter().map(|(code, trial)| (code.as_str(), trial))).expect("there are questions")
 }
 
 #[test]
 fn answers_without_errors_give_the_figures_of_the_true_beliefs() {
     let found = study_with_errors(0.0);
-    assert_eq!(found.beliefs_from, BeliefBasis::Probes);
+    assert_eq!(found.beliefs_from, BeliefSource::Probes);
     let known = found.by_true_beliefs.as_ref().expect("simulated");
     near(known.agreement, 1.0);
     assert_eq!(known.n, found.counts.counted);
@@ -231,13 +231,15 @@ fn answers_without_errors_give_the_figures_of_the_true_beliefs() {
 
 #[test]
 fn only_scheduled_questions_about_what_is_that_were_answered_in_time_count() {
-    let missing = ProbedQuestion { response: ProbeResponse::Missing, ..question(ProbedKind::Place) };
-    let skipped = ProbedQuestion { response: ProbeResponse::Skipped, ..question(ProbedKind::Place) };
-    let by_wizard = ProbedQuestion { origin: ProbeOrigin::Wizard, ..question(ProbedKind::Place) };
-    let next = ProbedQuestion { truth: Some("serve_1".to_string()), ..question(ProbedKind::NextPress) };
-    let unsure = ProbedQuestion { response: ProbeResponse::Unsure, inclusion: 0.25, ..question(ProbedKind::Order) };
-    let trial = probed(Condition::None, vec![question(ProbedKind::Place), missing, skipped, by_wizard, next, unsure]);
-    let found = ProbeFigures::from_trials([("P1", &trial)]).expect("there are questions");
+    let missing = ProbedQuestion { response: ProbeResponse::Missing, ..question(ProbeQuestionKind::Place) };
+    let skipped = ProbedQuestion { response: ProbeResponse::Skipped, ..question(ProbeQuestionKind::Place) };
+    let by_wizard = ProbedQuestion { origin: ProbeOrigin::Wizard, ..question(ProbeQuestionKind::Place) };
+    let next = ProbedQuestion { truth: Some("serve_1".to_string()), ..question(ProbeQuestionKind::NextPress) };
+    let unsure =
+        ProbedQuestion { response: ProbeResponse::Unsure, inclusion: 0.25, ..question(ProbeQuestionKind::Order) };
+    let trial =
+        probed(Condition::None, vec![question(ProbeQuestionKind::Place), missing, skipped, by_wizard, next, unsure]);
+    let found = ProbeSummary::from_trials([("P1", &trial)]).expect("there are questions");
     let counts = found.counts;
     let left_out = [counts.unanswered, counts.questions_skipped, counts.by_wizard, counts.level_2];
     assert_eq!((counts.questions, counts.counted, counts.unsure, left_out), (6, 2, 1, [1, 1, 1, 1]));
@@ -251,19 +253,19 @@ fn only_scheduled_questions_about_what_is_that_were_answered_in_time_count() {
     near(found.log_scores.estimate.unwrap(), 0.7_f64.ln());
     // With nobody to learn from, a base rate is right half of the time.
     near(found.log_scores.truth.unwrap(), 0.5_f64.ln());
-    assert_eq!(ProbeFigures::from_trials([("P1", &probed(Condition::None, Vec::new()))]), None);
+    assert_eq!(ProbeSummary::from_trials([("P1", &probed(Condition::None, Vec::new()))]), None);
 }
 
 #[test]
 fn base_rates_learn_on_other_participants() {
     let stale = || ProbedQuestion {
         response: ProbeResponse::Value("empty".to_string()),
-        frozen: Some(FrozenAspect { last_seen: "empty".to_string(), ..frozen(false) }),
-        ..question(ProbedKind::Place)
+        frozen: Some(AspectAtFreeze { last_seen: "empty".to_string(), ..frozen(false) }),
+        ..question(ProbeQuestionKind::Place)
     };
     let trials: Vec<(String, ProbedTrial)> =
         (0..10).map(|code| (format!("P{code}"), probed(Condition::None, vec![stale(), stale()]))).collect();
-    let found = ProbeFigures::from_trials(trials.iter().map(|(code, trial)| (code.as_str(), trial))).unwrap();
+    let found = ProbeSummary::from_trials(trials.iter().map(|(code, trial)| (code.as_str(), trial))).unwrap();
     // 18 answers of others, all as last seen, none as true: Laplace's rule gives 19/20 and 1/20, the rest evenly to two other values.
     near(found.log_scores.last_seen.unwrap(), (19.0_f64 / 20.0).ln());
     near(found.log_scores.truth.unwrap(), (19.0_f64 / 20.0 / 2.0).ln());
@@ -276,8 +278,8 @@ fn base_rates_learn_on_other_participants() {
 fn accuracy_is_told_by_age_looks_and_condition_and_the_effect_within_participants() {
     let with = |changed_s: Option<f64>, unseen: bool, is_right: bool| ProbedQuestion {
         response: if is_right { ProbeResponse::Value("rice".to_string()) } else { ProbeResponse::Unsure },
-        frozen: Some(FrozenAspect { changed_s, changed_unseen: Some(unseen), ..frozen(false) }),
-        ..question(ProbedKind::Place)
+        frozen: Some(AspectAtFreeze { changed_s, changed_unseen: Some(unseen), ..frozen(false) }),
+        ..question(ProbeQuestionKind::Place)
     };
     let of_people = |codes: &[&str]| {
         let mut trials = Vec::new();
@@ -287,10 +289,10 @@ fn accuracy_is_told_by_age_looks_and_condition_and_the_effect_within_participant
             trials.push((code.to_string(), probed(Condition::None, alone)));
             trials.push((code.to_string(), probed(Condition::Wizard, helped)));
         }
-        ProbeFigures::from_trials(trials.iter().map(|(code, trial)| (code.as_str(), trial))).unwrap()
+        ProbeSummary::from_trials(trials.iter().map(|(code, trial)| (code.as_str(), trial))).unwrap()
     };
     let found = of_people(&["P1", "P2", "P3"]);
-    let of = |by: AccuracyGrouping| -> Vec<(&str, u64, f64)> {
+    let of = |by: ProbeAccuracyGrouping| -> Vec<(&str, u64, f64)> {
         let rows = found.accuracies.iter().filter(|one| one.by == by);
         rows.map(|one| (one.group.as_str(), one.n, (one.accuracy.unwrap() * 6.0).round() / 6.0)).collect()
     };
@@ -301,12 +303,12 @@ fn accuracy_is_told_by_age_looks_and_condition_and_the_effect_within_participant
         "not changed in the trial",
     ];
     assert_eq!(
-        of(AccuracyGrouping::Age),
+        of(ProbeAccuracyGrouping::Age),
         [(ages[0], 3, 0.0), (ages[1], 3, 4.0 / 6.0), (ages[2], 3, 1.0), (ages[3], 3, 1.0)]
     );
     let seen = ["not changed by others since the last look", "changed by others since the last look"];
-    assert_eq!(of(AccuracyGrouping::Seen), [(seen[0], 6, 1.0), (seen[1], 6, 2.0 / 6.0)]);
-    assert_eq!(of(AccuracyGrouping::Condition), [("none", 6, 0.5), ("wizard", 6, 5.0 / 6.0)]);
+    assert_eq!(of(ProbeAccuracyGrouping::Seen), [(seen[0], 6, 1.0), (seen[1], 6, 2.0 / 6.0)]);
+    assert_eq!(of(ProbeAccuracyGrouping::Condition), [("none", 6, 0.5), ("wizard", 6, 5.0 / 6.0)]);
     let effect = found.assistance.expect("all have both");
     assert_eq!(effect.participants, 3);
     near(effect.difference, 1.0 / 3.0);
@@ -320,21 +322,30 @@ fn accuracy_is_told_by_age_looks_and_condition_and_the_effect_within_participant
 #[test]
 fn probes_stand_in_tables_and_report() {
     let mut trials = super::trials(&[[12, 6], [10, 5], [14, 8]], &[[8, 9], [6, 7], [9, 8]]);
-    let none = report::page(&StudySummary::from_trials(&trials, &Facts::default(), 0), &trials, &Facts::default(), &[]);
+    let none = report::page(
+        &StudySummary::from_trials(&trials, &RecordingFacts::default(), 0),
+        &trials,
+        &RecordingFacts::default(),
+        &[],
+    );
     assert!(!none.contains("What people knew"));
     for (index, trial) in trials.iter_mut().enumerate() {
         let is_right = trial.is_assisted() || index % 3 == 0;
         let answer = if is_right { "rice" } else { "empty" };
         let asked = |kind| ProbedQuestion { response: ProbeResponse::Value(answer.to_string()), ..question(kind) };
-        let questions = vec![asked(ProbedKind::Place), question(ProbedKind::Recipe), asked(ProbedKind::NextOrder)];
+        let questions = vec![
+            asked(ProbeQuestionKind::Place),
+            question(ProbeQuestionKind::Recipe),
+            asked(ProbeQuestionKind::NextOrder),
+        ];
         trial.probes = Some(probed(trial.condition, questions));
     }
-    let figures = StudySummary::from_trials(&trials, &Facts::default(), 0);
+    let figures = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
     let found = figures.probes.as_ref().expect("there are probes");
     assert_eq!((found.participants, found.counts.counted), (6, 24));
     let effect = figures.effects.iter().find(|effect| effect.measure == PROBES_WRONG).expect("it is compared");
     assert_eq!(effect.groups, [3, 3]);
-    let page = report::page(&figures, &trials, &Facts::default(), &[]);
+    let page = report::page(&figures, &trials, &RecordingFacts::default(), &[]);
     for part in [
         "What people knew",
         "Calibration of the estimate by answers to probes",

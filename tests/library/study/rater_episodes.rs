@@ -7,13 +7,13 @@ use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, Kitchen, OrderContent, State};
 use tomcom::measures::JudgedPress;
-use tomcom::measures::attribution::Target;
-use tomcom::measures::belief_basis::BeliefBasis;
-use tomcom::measures::cause_codes::{Code, Codes};
+use tomcom::measures::attribution::FalseBeliefTarget;
+use tomcom::measures::belief_basis::BeliefSource;
+use tomcom::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use tomcom::measures::errors::PressJudge;
-use tomcom::study::belief_trace::{BeliefTrace, TraceEvent};
-use tomcom::study::known_beliefs::{KnownBeliefs, SharedBeliefs};
-use tomcom::study::prevention::TrialTruth;
+use tomcom::study::belief_trace::{BeliefTrace, BeliefTraceEvent};
+use tomcom::study::known_beliefs::{FalseBeliefAgreement, KnownFalseBeliefs};
+use tomcom::study::prevention::TrialGroundTruth;
 use tomcom::study::rater_episodes::rater_episodes;
 
 use super::at;
@@ -25,7 +25,7 @@ struct Log {
     judge: PressJudge,
     trace: BeliefTrace,
     judged: Vec<JudgedPress>,
-    coded: Vec<(u64, Target)>,
+    coded: Vec<(u64, FalseBeliefTarget)>,
     state: State,
 }
 
@@ -37,7 +37,7 @@ impl Log {
         at(self.trace.events.len() as f64)
     }
 
-    fn add(&mut self, event: TraceEvent) {
+    fn add(&mut self, event: BeliefTraceEvent) {
         let now = self.now();
         self.trace.events.push((now, event));
     }
@@ -49,14 +49,14 @@ impl Log {
         let location = |name: &str| kitchen.location_named(name).unwrap_or_else(|| panic!("no location {name}"));
         let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
         match verb {
-            "wait" => self.add(TraceEvent::Told { aspects: Vec::new() }),
-            "look" => self.add(TraceEvent::Looked { location: location(rest) }),
+            "wait" => self.add(BeliefTraceEvent::Told { aspects: Vec::new() }),
+            "look" => self.add(BeliefTraceEvent::Looked { location: location(rest) }),
             "tell" => {
                 let mut aspects = vec![AspectId::of_location(location(rest))];
                 if let OrderContent::Dish(dish) = self.state.order(location(rest)) {
                     aspects.extend(rest.starts_with("order").then(|| kitchen.aspect_of_dish(dish)));
                 }
-                self.add(TraceEvent::Told { aspects });
+                self.add(BeliefTraceEvent::Told { aspects });
             }
             "press" => self.press(rest),
             place => {
@@ -65,7 +65,7 @@ impl Log {
                     true => self.state.set_order(place, OrderContent::Dish(kitchen.dish_named(rest).expect("a dish"))),
                     false => self.state.set_content(place, kitchen.content_named(rest).expect("a content")),
                 }
-                self.add(TraceEvent::Changed { before, after: self.state });
+                self.add(BeliefTraceEvent::Changed { before, after: self.state });
             }
         }
     }
@@ -79,17 +79,17 @@ impl Log {
         self.judged.push(JudgedPress { seq, time, before, verdict, belief_known: false, cause: None });
         if let Some(about) = about {
             assert!(verdict.error, "{line} is no error: {verdict:?}");
-            let target = Code::Belief(about.to_string()).target(&self.kitchen, before);
+            let target = ErrorCauseCode::Belief(about.to_string()).target(&self.kitchen, before);
             self.coded.push((seq, target.expect("a target")));
         }
         self.state = press.after;
-        self.add(TraceEvent::Pressed { seq, press });
+        self.add(BeliefTraceEvent::Pressed { seq, press });
     }
 
     fn episodes(&mut self) -> Vec<Told> {
         let seconds = |time: SessionTime| time.as_secs_f64() as i32;
         let found = rater_episodes(&self.kitchen, &mut self.cost, &self.trace, &self.judged, &self.coded);
-        let tell = |one: &tomcom::measures::sequences::Episode| {
+        let tell = |one: &tomcom::measures::sequences::FalseBeliefEpisode| {
             let name = self.kitchen.aspects[one.aspect.index()].name.clone();
             (name, seconds(one.began), one.corrected.map_or(-1, seconds), one.errors)
         };
@@ -110,7 +110,7 @@ fn log(lines: &[&str]) -> Log {
         state,
         kitchen,
     };
-    log.add(TraceEvent::Started { state });
+    log.add(BeliefTraceEvent::Started { state });
     lines.iter().for_each(|line| log.line(line));
     log
 }
@@ -248,12 +248,16 @@ fn an_order_that_changed_and_was_not_looked_at_is_what_is_believed_wrong() {
 
 #[test]
 fn only_what_both_raters_say_counts_and_the_rest_is_counted_beside_it() {
-    let belief = |place: &str| Code::Belief(place.to_string());
-    let one = Codes([(1, belief("plate")), (2, belief("plate")), (3, belief("plate")), (4, Code::Slip)].into());
-    let other = Codes([(1, belief("plate")), (2, belief("counter")), (3, Code::Race), (4, Code::Slip)].into());
-    let shared = SharedBeliefs::count(&[one.clone(), other.clone()]);
+    let belief = |place: &str| ErrorCauseCode::Belief(place.to_string());
+    let one = RaterCodes(
+        [(1, belief("plate")), (2, belief("plate")), (3, belief("plate")), (4, ErrorCauseCode::Slip)].into(),
+    );
+    let other = RaterCodes(
+        [(1, belief("plate")), (2, belief("counter")), (3, ErrorCauseCode::Race), (4, ErrorCauseCode::Slip)].into(),
+    );
+    let shared = FalseBeliefAgreement::count(&[one.clone(), other.clone()]);
     assert_eq!((shared.same, shared.differing, shared.of_one), (1, 1, 1));
-    assert_eq!(SharedBeliefs::count(&[other.clone(), one.clone()]), shared, "nobody is the first");
+    assert_eq!(FalseBeliefAgreement::count(&[other.clone(), one.clone()]), shared, "nobody is the first");
     assert_eq!(one.agreed(&other).0.into_keys().collect::<Vec<_>>(), [1, 4]);
 }
 
@@ -261,13 +265,14 @@ fn only_what_both_raters_say_counts_and_the_rest_is_counted_beside_it() {
 fn errors_prevented_follow_from_the_episodes_and_harmless_ones_are_not_known() {
     let mut log =
         log(&[TUNA, "cooking_pot rice raw", "look cooking_pot", "cooking_pot rice cooked", COOKED_TWICE, COOKED_TWICE]);
-    let codes: Codes =
-        Codes(log.coded.iter().map(|(seq, _)| (*seq, Code::Belief("cooking_pot".to_string()))).collect());
+    let codes: RaterCodes = RaterCodes(
+        log.coded.iter().map(|(seq, _)| (*seq, ErrorCauseCode::Belief("cooking_pot".to_string()))).collect(),
+    );
     let (kitchen, judged) = (log.kitchen.clone(), log.judged.clone());
-    let known = KnownBeliefs::coded(BeliefBasis::Raters, &kitchen, &mut log.cost, &log.trace, &judged, &codes);
-    let truth = TrialTruth::new(&kitchen, &judged, &known);
+    let known = KnownFalseBeliefs::coded(BeliefSource::Raters, &kitchen, &mut log.cost, &log.trace, &judged, &codes);
+    let truth = TrialGroundTruth::new(&kitchen, &judged, &known);
     let pot = AspectId::of_location(kitchen.location_named("cooking_pot").expect("a pot"));
-    let sent = tomcom::study::prevention::ConceptSignal { time: at(4.5), press: 0, aspects: vec![pot] };
+    let sent = tomcom::study::prevention::HypotheticalSignal { time: at(4.5), press: 0, aspects: vec![pot] };
     let count = truth.count_signals(&[sent]);
     assert_eq!((count.related, count.prevented, count.useless, count.harmless), (2, 2, 0, None));
 }

@@ -6,12 +6,14 @@ use std::path::Path;
 use tomcom::analysis::offer_summary::TimedOffer;
 use tomcom::base::time::SessionTime;
 use tomcom::communication::concept::ConceptName;
-use tomcom::communication::offer::{Offer, OfferEnd, OfferUse, OfferedAct, OfferedAdvice, UsedOffer};
+use tomcom::communication::offer::{
+    Offer, OfferCloseReason, OfferKeyUse, OfferedAdvice, OfferedCommunication, UsedOffer,
+};
 use tomcom::communication::{Sender, Signal};
 use tomcom::edge::log::{consensus_file, rater_codes};
-use tomcom::measures::belief_basis::BeliefBasis;
-use tomcom::measures::cause_codes::{Code, Codes};
-use tomcom::measures::consensus::Consensus;
+use tomcom::measures::belief_basis::BeliefSource;
+use tomcom::measures::cause_codes::{ErrorCauseCode, RaterCodes};
+use tomcom::measures::consensus::RaterConsensus;
 use tomcom::robot::AbortReason;
 use tomcom::robot::safety::SafetyMode;
 use tomcom::run::codes::CodedRecording;
@@ -19,17 +21,17 @@ use tomcom::run::study::describe;
 use tomcom::run::study::reading::{self, AnalysisScope};
 use tomcom::session::Event;
 use tomcom::session::answer_value::AnswerValue;
-use tomcom::session::event::EndReason;
-use tomcom::session::plan::ItemKind;
+use tomcom::session::event::TrialEndReason;
+use tomcom::session::plan::QuestionnaireItemKind;
 use tomcom::session::settings::{ArmKind, Condition, ParticipantKind};
-use tomcom::study::column::{Table, TableCell, TableRow};
-use tomcom::study::facts::Facts;
+use tomcom::study::column::{CsvCell, CsvRow, CsvTable};
+use tomcom::study::facts::RecordingFacts;
 use tomcom::study::figures::StudySummary;
 use tomcom::study::prevention::PreventionCounts;
 use tomcom::study::report::{self, page_head};
-use tomcom::study::robot_tally::{ArmSummary, RobotTally};
-use tomcom::study::roc::SweptTrial;
-use tomcom::study::trial_statistics::{QuestionnaireAnswer, Trial};
+use tomcom::study::robot_tally::{RobotArmSummary, RobotEventTally};
+use tomcom::study::roc::PreventedTrialErrors;
+use tomcom::study::trial_statistics::{QuestionnaireAnswer, TrialStatistics};
 
 use super::{at, near, trial, trials};
 
@@ -45,7 +47,7 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
             text: "The signals annoyed me.".to_string(),
             about: Some("acceptance".to_string()),
             reversed: true,
-            kind: ItemKind::Scale,
+            kind: QuestionnaireItemKind::Scale,
             answer: answer.map(AnswerValue::from),
             points: Some(7),
             options: Vec::new(),
@@ -54,10 +56,10 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
             score: None,
         });
     }
-    let figures = StudySummary::from_trials(&trials, &Facts::default(), 0);
+    let figures = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
     let accepted = figures.acceptance.clone().expect("answers");
     assert_eq!((accepted.high, accepted.medium, accepted.undecided, accepted.not_reported), (1, 1, 0, 1));
-    let page = report::page(&figures, &trials, &Facts::default(), &Table::ALL);
+    let page = report::page(&figures, &trials, &RecordingFacts::default(), &CsvTable::ALL);
     assert!(page.contains("<title>No kitchen: a study of simulated participants</title>"));
     let mut names: Vec<&str> = trials.iter().map(|trial| trial.participant.as_str()).collect();
     names.sort_unstable();
@@ -69,13 +71,13 @@ fn the_report_says_who_took_part_and_needs_nothing_beside_it() {
         assert!(!page.contains(outside), "{outside}");
     }
     assert!(!page.contains("NaN") && !page.contains("inf "));
-    let people: Vec<Trial> =
-        trials.into_iter().map(|trial| Trial { kind: ParticipantKind::Display, ..trial }).collect();
+    let people: Vec<TrialStatistics> =
+        trials.into_iter().map(|trial| TrialStatistics { kind: ParticipantKind::Display, ..trial }).collect();
     let page = report::page(
-        &StudySummary::from_trials(&people, &Facts::default(), 0),
+        &StudySummary::from_trials(&people, &RecordingFacts::default(), 0),
         &people,
-        &Facts::default(),
-        &Table::ALL,
+        &RecordingFacts::default(),
+        &CsvTable::ALL,
     );
     assert!(!page.contains("simulated participants</title>"));
 }
@@ -87,8 +89,8 @@ fn few_participants_have_no_r_among_the_main_results() {
         let errors: Vec<[u64; 2]> =
             (0..participants as u64 / 2).map(|index| [24 + index, 12 + index * index]).collect();
         let trials = trials(&errors, &errors);
-        let summary = StudySummary::from_trials(&trials, &Facts::default(), 0);
-        let page = report::page(&summary, &trials, &Facts::default(), &Table::ALL);
+        let summary = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
+        let page = report::page(&summary, &trials, &RecordingFacts::default(), &CsvTable::ALL);
         assert!(!page.contains("&lt; 0.001"), "p < 0.001 is not broken over two lines");
         page.split("class=\"card\"").nth(4).expect("four cards").split("</div>").next().expect("a card").to_string()
     };
@@ -119,13 +121,13 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
         (9.5, Event::RobotSkipped { by: assistant }, true),
         (9.5, aborts(AbortReason::Skipped), true),
         (10.0, Event::RobotStopped, true),
-        (11.0, Event::TrialEnded { reason: EndReason::Wizard }, true),
+        (11.0, Event::TrialEnded { reason: TrialEndReason::Wizard }, true),
         (11.0, Event::RobotStopped, false),
     ];
     let figures_of = |arm| {
-        let mut tally = RobotTally::new(arm);
+        let mut tally = RobotEventTally::new(arm);
         events.iter().for_each(|(clock, event, was_on)| tally.note(event, at(*clock), *was_on));
-        assert_eq!(tally.ended, Some(EndReason::Wizard));
+        assert_eq!(tally.ended, Some(TrialEndReason::Wizard));
         tally.into_figures()
     };
     let found = figures_of(ArmKind::Physics);
@@ -137,11 +139,11 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
     let given_up = [AbortReason::Contact, AbortReason::Skipped, AbortReason::NoClick].map(|why| found.given_up(why));
     assert_eq!(given_up, [Some(1), Some(1), Some(0)]);
     // A timed arm feels nothing: that is unknown, and not nought.
-    let trial = Trial { robot: figures_of(ArmKind::Timed), ..trial("A0", 1, Condition::None, 4) };
-    let columns = Trial::columns();
+    let trial = TrialStatistics { robot: figures_of(ArmKind::Timed), ..trial("A0", 1, Condition::None, 4) };
+    let columns = TrialStatistics::columns();
     let cell = |name: &str| columns.iter().find(|column| column.name == name).expect("a column").cell(&trial);
     for unknown in ["contacts", "peak_force_n", "reduced_s", "given_up_no_click"] {
-        assert_eq!(cell(unknown), TableCell::Unknown, "{unknown}");
+        assert_eq!(cell(unknown), CsvCell::Unknown, "{unknown}");
     }
     assert_eq!(["ended", "arm", "given_up_skipped"].map(cell), ["presses".into(), "timed".into(), 1u64.into()]);
 }
@@ -149,19 +151,25 @@ fn what_the_robot_did_is_counted_while_the_trial_is_on() {
 #[test]
 fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
     let mut trials = trials(&[[24, 12], [30, 16]], &[[20, 18]]);
-    let report = |trials: &[Trial], tables: &[Table]| {
-        report::page(&StudySummary::from_trials(trials, &Facts::default(), 0), trials, &Facts::default(), tables)
+    let report = |trials: &[TrialStatistics], tables: &[CsvTable]| {
+        report::page(
+            &StudySummary::from_trials(trials, &RecordingFacts::default(), 0),
+            trials,
+            &RecordingFacts::default(),
+            tables,
+        )
     };
-    let page = report(&trials, &[Table::Trials]);
+    let page = report(&trials, &[CsvTable::Trials]);
     assert!(page.contains("6 after the set number of presses.") && page.contains("arm was timed."));
     assert!(
         !page.contains("hypothetical signals of each concept")
             && page.contains("Beside this page: <code>trials.csv</code>.")
     );
-    trials[1].ended = Some(EndReason::Wizard);
-    trials[2].ended = Some(EndReason::Time);
+    trials[1].ended = Some(TrialEndReason::Wizard);
+    trials[2].ended = Some(TrialEndReason::Time);
     trials[2].arm = ArmKind::Physics;
-    trials[2].robot.arm = Some(ArmSummary { contacts: 3, peak_force_n: Some(17.25), ..ArmSummary::default() });
+    trials[2].robot.arm =
+        Some(RobotArmSummary { contacts: 3, peak_force_n: Some(17.25), ..RobotArmSummary::default() });
     let count = PreventionCounts {
         presses: 100,
         signals: 4,
@@ -170,8 +178,8 @@ fn methods_tell_how_trials_ended_with_which_arm_and_what_was_computed() {
         outside: 50,
         ..PreventionCounts::default()
     };
-    trials[0].swept = vec![SweptTrial { concept: ConceptName::TomCom, parameter: 1.0, count }];
-    let page = report(&trials, &Table::ALL);
+    trials[0].swept = vec![PreventedTrialErrors { concept: ConceptName::TomCom, parameter: 1.0, count }];
+    let page = report(&trials, &CsvTable::ALL);
     assert!(page.contains("4 after the set number of presses, 1 after the set time, 1 early by the wizard."));
     assert!(page.contains("timed in 5 trials and simulated with contact forces in 1 trial; the statistics pool them."));
     assert!(page.contains("the hypothetical signals of each concept were recomputed"));
@@ -193,24 +201,24 @@ fn two_raters_say_why_people_erred() {
         Ok(None) => panic!("it is no practice"),
         Err(error) => panic!("{error}"),
     };
-    let basis = |trial: &Trial| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
+    let basis = |trial: &TrialStatistics| trial.beliefs.as_ref().map(|beliefs| beliefs.basis);
     let estimated = read();
-    assert_eq!(basis(&estimated.trial), Some(BeliefBasis::Estimate));
+    assert_eq!(basis(&estimated.trial), Some(BeliefSource::Estimate));
     let errors = CodedRecording::open(&folder).expect("a recording").codable.errors;
     assert!(errors.len() as u64 == estimated.trial.errors && errors.len() >= 2, "{errors:?}");
-    let belief = |place: &str| Code::Belief(place.to_string());
-    let say = |rater: &str, of: &dyn Fn(usize) -> Code, count: usize| {
+    let belief = |place: &str| ErrorCauseCode::Belief(place.to_string());
+    let say = |rater: &str, of: &dyn Fn(usize) -> ErrorCauseCode, count: usize| {
         let said = errors.iter().take(count).enumerate().map(|(index, &press)| (press, of(index)));
-        rater_codes::write(&folder, rater, &Codes(said.collect())).expect("a file");
+        rater_codes::write(&folder, rater, &RaterCodes(said.collect())).expect("a file");
     };
     // One of them is not done yet.
     say("anna", &|_| belief("assembly_board"), errors.len());
     say("ben", &|_| belief("plate"), errors.len() - 1);
-    assert_eq!(basis(&read().trial), Some(BeliefBasis::Estimate));
+    assert_eq!(basis(&read().trial), Some(BeliefSource::Estimate));
     // They agree that all but the first come of false beliefs, though not about which.
-    say("ben", &|index| if index == 0 { Code::Slip } else { belief("plate") }, errors.len());
+    say("ben", &|index| if index == 0 { ErrorCauseCode::Slip } else { belief("plate") }, errors.len());
     let coded = read();
-    assert_eq!(basis(&coded.trial), Some(BeliefBasis::Raters));
+    assert_eq!(basis(&coded.trial), Some(BeliefSource::Raters));
     let related = errors.len() as u64 - 1;
     assert_eq!(coded.trial.beliefs.as_ref().map(|beliefs| beliefs.errors), Some(related));
     let figures = StudySummary::from_trials(&[coded.trial], &coded.facts, 0);
@@ -225,10 +233,10 @@ fn two_raters_say_why_people_erred() {
 
 #[test]
 fn what_was_offered_stands_beside_what_the_wizard_did() {
-    let offer = |seq: u64, stood_s: f64, how: Option<OfferUse>, reason| {
+    let offer = |seq: u64, stood_s: f64, how: Option<OfferKeyUse>, reason| {
         let opened = SessionTime::from_secs_f64(10.0 * seq as f64);
         let sent = how.map(|_| opened + SessionTime::from_secs_f64(stood_s));
-        let what = OfferedAct::Signal(Signal::ShowRecipe("order_1".to_string()));
+        let what = OfferedCommunication::Signal(Signal::ShowRecipe("order_1".to_string()));
         let advice = OfferedAdvice { what, for_seq: 1, worth: None, reason: None, visible: true };
         TimedOffer {
             offer: Offer { seq, opened, used: how.zip(sent).map(|(how, at)| UsedOffer { how, at }), advice },
@@ -242,12 +250,12 @@ fn what_was_offered_stands_beside_what_the_wizard_did() {
     let mut trials = trials(&[[12, 5]], &[[9, 15]]);
     let wizards = trials.iter_mut().find(|trial| trial.condition == Condition::Wizard).expect("a wizard's trial");
     wizards.offers = Some(vec![
-        offer(1, 3.0, Some(OfferUse::Taken), OfferEnd::Taken),
-        offer(2, 2.0, Some(OfferUse::OwnKey), OfferEnd::OwnKey),
-        offer(3, 8.0, None, OfferEnd::Fell),
+        offer(1, 3.0, Some(OfferKeyUse::Taken), OfferCloseReason::Taken),
+        offer(2, 2.0, Some(OfferKeyUse::OwnKey), OfferCloseReason::OwnKey),
+        offer(3, 8.0, None, OfferCloseReason::Fell),
     ]);
-    let figures = StudySummary::from_trials(&trials, &Facts::default(), 0);
-    let page = report::page(&figures, &trials, &Facts::default(), &Table::ALL);
+    let figures = StudySummary::from_trials(&trials, &RecordingFacts::default(), 0);
+    let page = report::page(&figures, &trials, &RecordingFacts::default(), &CsvTable::ALL);
     for words in [
         "The wizard saw 3 offers, which stood 3.0 s in the median, 2.0 s at least",
         "1 taken, 1 sent by its own key, 1 no longer worth it",
@@ -267,21 +275,21 @@ fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() 
     let extent = AnalysisScope { concepts: false, events: true };
     let read = || reading::read(&folder, "hand", extent, None).expect("readable").expect("no practice").1;
     let errors = CodedRecording::open(&folder).expect("a recording").codable.errors;
-    let all = |code: Code| Codes(errors.iter().map(|press| (*press, code.clone())).collect());
-    let (slips, beliefs) = (all(Code::Slip), all(Code::Belief("assembly_board".to_string())));
+    let all = |code: ErrorCauseCode| RaterCodes(errors.iter().map(|press| (*press, code.clone())).collect());
+    let (slips, beliefs) = (all(ErrorCauseCode::Slip), all(ErrorCauseCode::Belief("assembly_board".to_string())));
     rater_codes::write(&folder, "anna", &slips).expect("a file");
     rater_codes::write(&folder, "ben", &beliefs).expect("a file");
-    let decided = Codes(beliefs.0.clone().into_iter().skip(1).collect());
-    let settle = |decided: &Codes| {
-        let settled = Consensus::new("anna", "ben").with_decided(decided, [&slips, &beliefs]);
+    let decided = RaterCodes(beliefs.0.clone().into_iter().skip(1).collect());
+    let settle = |decided: &RaterCodes| {
+        let settled = RaterConsensus::new("anna", "ben").with_decided(decided, [&slips, &beliefs]);
         consensus_file::write(&folder, &settled).expect("a file");
     };
     settle(&decided);
-    let basis = |trial: &Trial| trial.beliefs.as_ref().map(|beliefs| (beliefs.basis, beliefs.errors));
-    assert_eq!(basis(&read().trial), Some((BeliefBasis::Raters, 0)), "one error is not settled");
+    let basis = |trial: &TrialStatistics| trial.beliefs.as_ref().map(|beliefs| (beliefs.basis, beliefs.errors));
+    assert_eq!(basis(&read().trial), Some((BeliefSource::Raters, 0)), "one error is not settled");
     settle(&beliefs);
     let settled = read();
-    assert_eq!(basis(&settled.trial), Some((BeliefBasis::Consensus, errors.len() as u64)));
+    assert_eq!(basis(&settled.trial), Some((BeliefSource::Consensus, errors.len() as u64)));
     let rows = String::from_utf8(settled.rows[0].clone()).expect("text");
     assert!(
         rows.lines().any(|row| row.contains("slip,belief assembly_board,") && row.contains(",belief assembly_board,"))
@@ -292,9 +300,9 @@ fn the_consensus_of_two_raters_says_why_people_erred_until_one_changes_a_code() 
     assert_eq!((agreement.errors, agreement.same_cause), (errors.len() as u64, 0));
     assert!(describe(&figures).contains("codes: consensus of anna and ben in 1 trial"));
 
-    rater_codes::write(&folder, "ben", &all(Code::Race)).expect("a file");
+    rater_codes::write(&folder, "ben", &all(ErrorCauseCode::Race)).expect("a file");
     let stale = read();
-    assert_eq!(basis(&stale.trial), Some((BeliefBasis::Raters, 0)));
+    assert_eq!(basis(&stale.trial), Some((BeliefSource::Raters, 0)));
     let figures = StudySummary::from_trials(&[stale.trial], &stale.facts, 0);
     assert!(figures.stale_consensus[0].reason.starts_with("ben changed the code of error 1"));
     assert!(describe(&figures).contains("stale consensus, not used: hand: ben changed"));

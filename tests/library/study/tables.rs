@@ -4,29 +4,29 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tomcom::edge::export::ExportFolder;
+use tomcom::edge::export::AnalysisFolder;
 use tomcom::run::study::reading::{self, AnalysisScope, RecordingAnalysis};
 use tomcom::session::settings::Condition;
 use tomcom::session::study_arm::StudyArm;
-use tomcom::study::column::{Column, Table, TableCell, TableRow};
-use tomcom::study::dictionary::{DictionaryRow, columns, dictionary};
+use tomcom::study::column::{CsvCell, CsvColumn, CsvRow, CsvTable};
+use tomcom::study::dictionary::{DataDictionaryRow, columns, dictionary};
 use tomcom::study::tables::participants::participants;
 use tomcom::study::tables::trials::{HEADLINE, measures};
-use tomcom::study::trial_statistics::Trial;
+use tomcom::study::trial_statistics::TrialStatistics;
 
 use super::probes::one_right_answer;
 
 /// The columns that other people's scripts may name. Columns are appended; none is renamed, moved or taken away.
-const PUBLISHED: [(Table, &str); 10] = [
+const PUBLISHED: [(CsvTable, &str); 10] = [
     (
-        Table::Participants,
+        CsvTable::Participants,
         "participant kind group trials trials_counted assisted_second error_rate_human_1 error_rate_human_2 error_rate_1 \
          error_rate_2 sequence_length_1 sequence_length_2 recovery_s_1 recovery_s_2 order_s_1 order_s_2 presses_per_order_1 \
          presses_per_order_2 press_s_1 press_s_2 additional_presses_per_order_1 additional_presses_per_order_2 errors_1 \
          errors_2 consent_on consent_at consent_digest",
     ),
     (
-        Table::Trials,
+        CsvTable::Trials,
         "recording participant kind seed group period condition assisted counts left_out ended arm human_presses robot_presses \
          errors races error_rate_human error_rate beliefs_from belief_related_errors sequences sequence_length \
          sequences_by_aspect sequence_length_by_aspect recovery_s orders order_s presses_per_order press_s signals duration_s \
@@ -36,25 +36,25 @@ const PUBLISHED: [(Table, &str); 10] = [
          wizard_corrected useful_signals useless_signals sequences_any_aspect sequence_length_any_aspect additional_presses_per_order errors_about_orders \
          errors_about_recipes errors_about_order_or_recipe errors_about_places",
     ),
-    (Table::Questionnaires, "recording participant condition questionnaire item about reversed answer points"),
-    (Table::Tutorial, "recording participant tutorial step question first_answer right tries seconds"),
+    (CsvTable::Questionnaires, "recording participant condition questionnaire item about reversed answer points"),
+    (CsvTable::Tutorial, "recording participant tutorial step question first_answer right tries seconds"),
     (
-        Table::Concepts,
+        CsvTable::Concepts,
         "recording participant concept parameter presses signals related prevented outside false_presses false_inside harmless \
          contents useless beliefs_from lead_s",
     ),
     (
-        Table::Actions,
+        CsvTable::Actions,
         "recording seq time_s agent press button effective since_s regret excess race error cause aspect second_aspect \
          gain_nats sequence cause_estimated rater_1 rater_2 log_p consensus",
     ),
-    (Table::Communications, "recording lane time_s press kind target matched"),
+    (CsvTable::Communications, "recording lane time_s press kind target matched"),
     (
-        Table::Beliefs,
+        CsvTable::Beliefs,
         "recording seq aspect truth estimate estimate_p_truth estimate_precision believed believed_p_truth",
     ),
-    (Table::Gaze, "recording time_s duration_s location x y confidence samples"),
-    (Table::Dictionary, "table column unit meaning"),
+    (CsvTable::Gaze, "recording time_s duration_s location x y confidence samples"),
+    (CsvTable::Dictionary, "table column unit meaning"),
 ];
 
 fn folder(name: &str) -> PathBuf {
@@ -75,8 +75,8 @@ fn analysis(name: &str) -> RecordingAnalysis {
 }
 
 /// The first trial without signals, the second with them; the second has half the errors.
-fn pair() -> [Trial; 2] {
-    let second = Trial {
+fn pair() -> [TrialStatistics; 2] {
+    let second = TrialStatistics {
         participant: "P01".to_string(),
         period: Some(2),
         condition: Condition::Wizard,
@@ -87,7 +87,7 @@ fn pair() -> [Trial; 2] {
         additional_presses_per_order: Some(1.5),
         ..analysis("pair").trial
     };
-    let first = Trial {
+    let first = TrialStatistics {
         recording: "before".to_string(),
         period: Some(1),
         condition: Condition::None,
@@ -99,7 +99,7 @@ fn pair() -> [Trial; 2] {
     [first, second]
 }
 
-fn cell<'a, Row: TableRow>(row: &'a Row, name: &str) -> TableCell<'a> {
+fn cell<'a, Row: CsvRow>(row: &'a Row, name: &str) -> CsvCell<'a> {
     let columns = Row::columns();
     let column = columns.iter().find(|column| column.name == name).unwrap_or_else(|| panic!("no column {name}"));
     column.cell(row)
@@ -118,24 +118,24 @@ fn published_columns_keep_their_names_and_places() {
 
 #[test]
 fn columns_have_names_of_their_own_that_need_no_quotes() {
-    for table in Table::ALL {
+    for table in CsvTable::ALL {
         let columns = columns(table);
         let names: BTreeSet<&str> = columns.iter().map(|column| column.column.as_ref()).collect();
         assert_eq!(names.len(), columns.len(), "{}", table.name());
         let is_plain = |name: &&str| name.chars().all(|sign| matches!(sign, 'a'..='z' | '0'..='9' | '_'));
         assert_eq!(names.iter().find(|name| !is_plain(name)), None, "{}", table.name());
     }
-    let described: BTreeSet<Table> = dictionary().map(|row| row.table).collect();
-    assert_eq!(described, BTreeSet::from(Table::ALL));
+    let described: BTreeSet<CsvTable> = dictionary().map(|row| row.table).collect();
+    assert_eq!(described, BTreeSet::from(CsvTable::ALL));
 }
 
 /// A statistic that is compared is declared once, and is then a column of trials and two of participants.
 #[test]
 fn statistics_stand_in_both_tables_with_the_same_values() {
-    let trials = pair().map(|trial| Trial { probes: Some(one_right_answer(trial.condition)), ..trial });
+    let trials = pair().map(|trial| TrialStatistics { probes: Some(one_right_answer(trial.condition)), ..trial });
     let rows: Vec<_> = participants(&trials, &[]).collect();
     let [participant] = &rows[..] else { panic!("one participant") };
-    assert_eq!(cell(participant, "assisted_second"), TableCell::Flag(true));
+    assert_eq!(cell(participant, "assisted_second"), CsvCell::Flag(true));
     assert_eq!(measures()[0], HEADLINE);
     let names: BTreeSet<&str> = measures().iter().map(|measure| measure.name).collect();
     assert_eq!(names.len(), measures().len());
@@ -143,10 +143,10 @@ fn statistics_stand_in_both_tables_with_the_same_values() {
         let values = trials.each_ref().map(|trial| cell(trial, measure.name));
         assert_eq!(values.clone(), trials.each_ref().map(|trial| (measure.value)(trial).into()), "{}", measure.name);
         for (value, period) in values.into_iter().zip(1..) {
-            assert_ne!(value, TableCell::Unknown, "{}", measure.name);
+            assert_ne!(value, CsvCell::Unknown, "{}", measure.name);
             assert_eq!(cell(participant, &format!("{}_{period}", measure.name)), value, "{}", measure.name);
         }
-        let meanings = columns(Table::Participants).into_iter().filter(|row| row.column.starts_with(measure.name));
+        let meanings = columns(CsvTable::Participants).into_iter().filter(|row| row.column.starts_with(measure.name));
         let said: Vec<String> = meanings.map(|row| row.meaning.into_owned()).collect();
         assert!(said.iter().any(|text| text.contains("first")), "{said:?}");
         assert!(said.iter().all(|text| !text.contains("{}")), "{said:?}");
@@ -154,7 +154,7 @@ fn statistics_stand_in_both_tables_with_the_same_values() {
 }
 
 /// The fields of a column of a table in a folder.
-fn fields(folder: &Path, table: Table, column: &str) -> Vec<String> {
+fn fields(folder: &Path, table: CsvTable, column: &str) -> Vec<String> {
     let mut file = csv::Reader::from_path(folder.join(format!("{}.csv", table.name()))).expect("a table");
     let heads = file.headers().expect("a first line").clone();
     let index = heads.iter().position(|name| name == column).unwrap_or_else(|| panic!("no column {column}"));
@@ -164,16 +164,16 @@ fn fields(folder: &Path, table: Table, column: &str) -> Vec<String> {
 #[test]
 fn tables_are_written_as_they_are_declared() {
     let folder = folder("written");
-    let export = ExportFolder::create(&folder).expect("a folder");
+    let export = AnalysisFolder::create(&folder).expect("a folder");
     let [mut first, second] = pair();
     first.left_out = Some("excluded: \"slipped\", and\nleft".to_string());
     let trials = [first, second];
-    assert_eq!(export.table::<Trial>(&trials).expect("a table"), Some(Table::Trials));
-    assert_eq!(export.table::<DictionaryRow>(dictionary()).expect("a table"), Some(Table::Dictionary));
-    assert_eq!(export.table::<Trial>(&[]).expect("a table"), None, "a table without rows");
-    assert_eq!(fields(&folder, Table::Trials, "recording"), Vec::<String>::new());
-    export.table::<Trial>(&trials).expect("a table");
-    let trial = |column: &str| fields(&folder, Table::Trials, column);
+    assert_eq!(export.table::<TrialStatistics>(&trials).expect("a table"), Some(CsvTable::Trials));
+    assert_eq!(export.table::<DataDictionaryRow>(dictionary()).expect("a table"), Some(CsvTable::Dictionary));
+    assert_eq!(export.table::<TrialStatistics>(&[]).expect("a table"), None, "a table without rows");
+    assert_eq!(fields(&folder, CsvTable::Trials, "recording"), Vec::<String>::new());
+    export.table::<TrialStatistics>(&trials).expect("a table");
+    let trial = |column: &str| fields(&folder, CsvTable::Trials, column);
     assert_eq!(trial("left_out"), ["excluded: \"slipped\", and\nleft", ""]);
     assert_eq!(trial("counts"), ["false", "true"]);
     assert_eq!(trial("period"), ["1", "2"]);
@@ -181,10 +181,11 @@ fn tables_are_written_as_they_are_declared() {
     // What a timed arm would have felt is unknown, and not nought.
     assert_eq!([trial("contacts"), trial("given_up_fault")], [["", ""], ["", ""]]);
     assert!(trial("given_up_stopped").iter().all(|count| count.parse::<u64>().is_ok()));
-    let described = fields(&folder, Table::Dictionary, "column");
-    let of_trials: Vec<String> = fields(&folder, Table::Dictionary, "table");
+    let described = fields(&folder, CsvTable::Dictionary, "column");
+    let of_trials: Vec<String> = fields(&folder, CsvTable::Dictionary, "table");
     let of_trials = of_trials.iter().zip(described).filter(|(table, _)| *table == "trials").map(|(_, column)| column);
-    let heads: Vec<String> = Trial::columns().into_iter().map(|Column { name, .. }| name.into_owned()).collect();
+    let heads: Vec<String> =
+        TrialStatistics::columns().into_iter().map(|CsvColumn { name, .. }| name.into_owned()).collect();
     assert_eq!(of_trials.collect::<Vec<_>>(), heads);
 }
 
@@ -193,12 +194,12 @@ fn tables_are_written_as_they_are_declared() {
 fn tables_of_events_say_what_happened() {
     let folder = folder("events");
     let RecordingAnalysis { trial, rows, .. } = analysis("recording");
-    let export = ExportFolder::create(&folder).expect("a folder");
+    let export = AnalysisFolder::create(&folder).expect("a folder");
     export.keep(0, &rows).expect("files");
     // Nobody could see an offer.
-    let written: Vec<Table> = Table::OF_EVENTS.into_iter().filter(|&table| table != Table::Offers).collect();
+    let written: Vec<CsvTable> = CsvTable::OF_EVENTS.into_iter().filter(|&table| table != CsvTable::Offers).collect();
     assert_eq!(export.tables_of_events(&[0]).expect("tables"), written);
-    let actions = |column: &str| fields(&folder, Table::Actions, column);
+    let actions = |column: &str| fields(&folder, CsvTable::Actions, column);
     let agents = actions("agent");
     let count = |agent: &str| agents.iter().filter(|one| *one == agent).count() as u64;
     assert_eq!([count("human"), count("robot")], [trial.human_presses, trial.robot_presses]);
@@ -209,10 +210,10 @@ fn tables_of_events_say_what_happened() {
     assert!(judged);
     let human: BTreeSet<String> =
         actions("seq").into_iter().zip(&agents).filter(|(_, agent)| *agent == "human").map(|(seq, _)| seq).collect();
-    let believed: BTreeSet<String> = fields(&folder, Table::Beliefs, "seq").into_iter().collect();
+    let believed: BTreeSet<String> = fields(&folder, CsvTable::Beliefs, "seq").into_iter().collect();
     assert_eq!(believed, human);
     let sequences: BTreeSet<String> = actions("sequence").into_iter().filter(|number| !number.is_empty()).collect();
     assert_eq!(sequences.len(), trial.beliefs.expect("an estimate").lengths.len());
-    let sent = fields(&folder, Table::Communications, "lane").len() as u64;
+    let sent = fields(&folder, CsvTable::Communications, "lane").len() as u64;
     assert_eq!((sent, sent > 0), (trial.signals, true));
 }

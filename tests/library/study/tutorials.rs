@@ -8,8 +8,8 @@ use tomcom::session::plan::WantedRecording;
 use tomcom::session::protocol::{ProtocolEvent, StudyPhase};
 use tomcom::session::settings::ParticipantKind;
 use tomcom::session::tutorial::{TutorialEvent, TutorialReader};
-use tomcom::session::{Event, SessionSpec, Stamped};
-use tomcom::study::column::{TableCell, TableRow};
+use tomcom::session::{Event, SessionSpec, TimestampedEvent};
+use tomcom::study::column::{CsvCell, CsvRow};
 use tomcom::study::tables::tutorial_answers::{TutorialAnswer, TutorialAnswers};
 use tomcom::study::tutorial_summary::TutorialSummary;
 
@@ -26,7 +26,7 @@ fn answers(spec: &SessionSpec, events: Vec<(f64, ProtocolEvent)>) -> Vec<Tutoria
     let mut answers = TutorialAnswers::new("first", spec).expect("a tutorial");
     for (seq, (time_s, event)) in events.into_iter().enumerate() {
         let time = SessionTime::from_secs_f64(time_s);
-        answers.note(&Stamped { seq: seq as u64, time, event: Event::Protocol(event) });
+        answers.note(&TimestampedEvent { seq: seq as u64, time, event: Event::Protocol(event) });
     }
     answers.finish()
 }
@@ -72,7 +72,7 @@ fn a_row_tells_the_first_answer_the_tries_and_the_time_to_the_right_one() {
         ]
     );
     let unanswered = rows[2].cells();
-    assert_eq!(unanswered[5..7], [TableCell::Unknown, TableCell::Unknown], "a question that was left out is not wrong");
+    assert_eq!(unanswered[5..7], [CsvCell::Unknown, CsvCell::Unknown], "a question that was left out is not wrong");
     let summary = TutorialSummary::from_answers(&rows);
     assert_eq!(summary, Some(TutorialSummary { participants: 1, questions: 2, right_at_once: 1 }));
 }

@@ -13,7 +13,7 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serial_test::serial;
-use tomcom::session::event::Stamped;
+use tomcom::session::event::TimestampedEvent;
 
 use self::markdown::{Block, Page, matches};
 use crate::tmux::TOMCOM;
@@ -92,7 +92,7 @@ fn hold(page: &Page) -> Counts {
             }
             (None, "json") => {
                 for line in block.text.lines() {
-                    let event: Result<Stamped, _> = serde_json::from_str(line);
+                    let event: Result<TimestampedEvent, _> = serde_json::from_str(line);
                     assert!(event.is_ok(), "{place}: {event:?}");
                 }
                 "snippets of logs read".to_string()

@@ -4,12 +4,12 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 use serial_test::serial;
-use tomcom::console::arrange::{KitchenMap, MapElement};
-use tomcom::console::view::regions::Regions;
+use tomcom::console::arrange::{KitchenMap, KitchenMapElement};
+use tomcom::console::view::regions::PanelAreas;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, ButtonAction, ButtonId};
-use tomcom::run::replay::Replay;
-use tomcom::session::settings::Visibility;
+use tomcom::run::replay::RecordingReplay;
+use tomcom::session::settings::WizardVisibility;
 
 use super::kitchen;
 use crate::tmux::{PATIENCE, SIZE, TOMCOM, Terminal};
@@ -22,10 +22,10 @@ fn check_by_hand(session: &str) {
     terminal.start();
     terminal.key("Tab");
     terminal.see("KEYS: PARTICIPANT");
-    let panel = Regions::new(SIZE, Visibility::Recommendation, None).kitchen_inside();
+    let panel = PanelAreas::new(SIZE, WizardVisibility::Recommendation, None).kitchen_inside();
     let plan = KitchenMap::new(&kitchen, panel, true);
     let mut cost = CostToGo::new(kitchen.clone());
-    let mut replay = Replay::open(&terminal.recording()).expect("it opens while it is written");
+    let mut replay = RecordingReplay::open(&terminal.recording()).expect("it opens while it is written");
     let recipes = kitchen.true_recipes();
     let mut hands = 0;
     let began = Instant::now();
@@ -44,12 +44,14 @@ fn check_by_hand(session: &str) {
             continue;
         };
         let button = kitchen.button(Agent::Human, button);
-        let place = |thing: &MapElement| match button.action {
-            ButtonAction::Use(location) | ButtonAction::Serve(location) => *thing == MapElement::Location(location),
-            ButtonAction::Take(item) => matches!(thing, MapElement::Storage(index)
+        let place = |thing: &KitchenMapElement| match button.action {
+            ButtonAction::Use(location) | ButtonAction::Serve(location) => {
+                *thing == KitchenMapElement::Location(location)
+            }
+            ButtonAction::Take(item) => matches!(thing, KitchenMapElement::Storage(index)
                 if kitchen.storages[*index].agent == Agent::Human && kitchen.storages[*index].item == item),
             ButtonAction::Process(_) | ButtonAction::Trash => {
-                *thing == MapElement::Location(kitchen.hands[Agent::Human.index()])
+                *thing == KitchenMapElement::Location(kitchen.hands[Agent::Human.index()])
             }
         };
         let spot = plan.spots.iter().find(|spot| place(&spot.thing)).expect("every button is about a place");

@@ -13,15 +13,15 @@ use tomcom::edge::language::LanguageFile;
 use tomcom::edge::log::{EXCLUSION_NAME, LogReader, consensus_file, rater_codes, ruling};
 use tomcom::edge::parse::parse;
 use tomcom::edge::pupil::message as pupil_message;
-use tomcom::edge::pupil::zmtp::FrameAssembler;
+use tomcom::edge::pupil::zmtp::ZmtpFrameAssembler;
 use tomcom::edge::{gaze_file, gaze_line, stream_head, training, written_tables};
-use tomcom::gaze::surface::SurfaceMap;
+use tomcom::gaze::surface::SurfaceHomography;
 use tomcom::kitchen::cost_to_go::CostToGo;
-use tomcom::measures::cause_codes::Codable;
+use tomcom::measures::cause_codes::CodableErrors;
 use tomcom::mind::fitted_people::HumanModelFile;
 use tomcom::session::SessionSpec;
 use tomcom::session::apply::apply;
-use tomcom::session::header::FileText;
+use tomcom::session::header::RecordedFile;
 use tomcom::session::plan::{Questionnaire, Study};
 
 const LAYOUT: &str = include_str!("../../../../layouts/sushi.toml");
@@ -91,7 +91,7 @@ fn parameters(bytes: &[u8]) {
 }
 
 fn keys(bytes: &[u8]) {
-    shown(key_map(Some(&FileText { path: "keys".to_string(), text: text(bytes) })).map(drop));
+    shown(key_map(Some(&RecordedFile { path: "keys".to_string(), text: text(bytes) })).map(drop));
 }
 
 fn language(bytes: &[u8]) {
@@ -136,8 +136,8 @@ fn consensus(bytes: &[u8]) {
     shown(consensus_file::read(&folder(), &codable()).map(drop));
 }
 
-fn codable() -> Codable {
-    Codable { errors: (1..20).collect(), places: vec!["cooking_pot".to_string(), "plate".to_string()] }
+fn codable() -> CodableErrors {
+    CodableErrors { errors: (1..20).collect(), places: vec!["cooking_pot".to_string(), "plate".to_string()] }
 }
 
 fn trained(bytes: &[u8]) {
@@ -151,7 +151,8 @@ fn table(bytes: &[u8]) {
 }
 
 fn gaze_export(bytes: &[u8]) {
-    let map = SurfaceMap::new([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]).expect("the corners of a square");
+    let map =
+        SurfaceHomography::new([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]).expect("the corners of a square");
     shown(gaze_file::read(&file("gaze.csv", bytes), &map, 0.0).map(drop));
 }
 
@@ -174,7 +175,7 @@ fn pupil(bytes: &[u8]) {
 
 /// What a sender of frames may send, in pieces.
 fn frames(bytes: &[u8]) {
-    let mut inbox = FrameAssembler::default();
+    let mut inbox = ZmtpFrameAssembler::default();
     for piece in bytes.chunks(7) {
         inbox.push(piece);
         loop {

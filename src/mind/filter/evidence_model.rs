@@ -1,0 +1,19 @@
+//! The models that define the likelihood of what the human does.
+
+use crate::kitchen::Kitchen;
+use crate::mind::choice::ChoiceModel;
+use crate::mind::model::InferenceSettings;
+
+/// The models that define the likelihood of an action of the human.
+pub struct EvidenceModel<'a> {
+    /// The kitchen, with the rules of its buttons.
+    pub kitchen: &'a Kitchen,
+    /// The human's choice model.
+    pub choice: &'a ChoiceModel,
+    /// Sample sizes of the inference, and which evidence it uses.
+    pub inference: &'a InferenceSettings,
+    /// For each button of the human, the bit set of locations at which the human looks before the press.
+    pub watched: &'a [u32],
+    /// The expected lapse of this person; `None` where it is that of the choice model.
+    pub lapse: Option<f64>,
+}

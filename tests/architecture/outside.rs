@@ -65,7 +65,7 @@ const ONLY_IN: [(&str, &[&str]); 18] = [
     ("flate2", &["src/edge/bids_tree.rs"]),
     ("mcap", &["src/edge/mcap_file.rs"]),
     ("libloading", &["src/edge/lsl/library.rs"]),
-    ("sha2", &["src/edge/frozen_file.rs"]),
+    ("sha2", &["src/edge/frozen_file.rs", "src/edge/list_cache.rs"]),
 ];
 
 /// Collects the paths, macros and kinds of code that a file names.

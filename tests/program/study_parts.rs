@@ -78,7 +78,7 @@ fn eight_parts_are_analysed_each_by_itself_and_joined_to_the_bytes_of_one_analys
     let whole = of(&["study"], &shards, &["--out", &at("whole"), "--format", "json"]);
     let joined = of(&["study", "--from"], &parts, &["--out", &at("joined"), "--format", "json"]);
     assert_eq!(whole, joined);
-    assert!(whole.contains("\"trials\":8") && whole.contains("\"roc\""), "{whole}");
+    assert!(whole.contains("\"trials\": 8") && whole.contains("\"roc\""), "{whole}");
     let tables = files(&folder.join("whole"));
     assert!(tables.len() > 10 && tables.iter().any(|(name, _)| name == "report.html"), "{}", tables.len());
     assert!(tables == files(&folder.join("joined")), "tables or report differ");

@@ -17,7 +17,7 @@ fn a_kitchen_takes_no_key_from_the_console() {
     let cases = [
         ("signal = \"w\"", "signal = \"1\"", "the key \"1\" for \"order_2\", which the console has for"),
         ("signal = \"w\"", "signal = \"Q\"", "for \"order_2\", which \"order_1\" has already"),
-        ("key = \"x\"", "key = \"?\"", "the key \"?\" for \"trash\", which the console has for \"this help\""),
+        ("key = \"x\"", "key = \"?\"", "the key \"?\" for \"trash\", which the console has for \"show this help\""),
     ];
     for (from, to, says) in cases {
         let path = folder.join("layout.toml");

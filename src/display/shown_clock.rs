@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::probe_page::probe_left;
-use super::sight::DisplayStage;
 use crate::base::time::SessionTime;
 use crate::session::Session;
 
@@ -15,18 +14,6 @@ pub enum DisplayedClock {
     Goes,
     /// It stands still: before the trial, in a pause, and at the end.
     Stands,
-}
-
-/// The clock, if the session shows it and there is a trial. A probe shows the time that it has itself instead.
-pub(super) fn clock(session: &Session, stage: DisplayStage) -> Option<DisplayedClock> {
-    if !session.spec.display.clock {
-        return None;
-    }
-    match stage {
-        DisplayStage::Running => Some(DisplayedClock::Goes),
-        DisplayStage::Ready | DisplayStage::Paused | DisplayStage::Over => Some(DisplayedClock::Stands),
-        _ => None,
-    }
 }
 
 /// The time that the page shows at `now`: of an open probe what that still has, or else of the trial, if its clock is shown.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::display_place::{DisplayPlace, spot};
 use super::displayed_item::{DisplayedQuestionnaireItem, question};
 use super::probe_page::{DisplayedProbe, probe};
-use super::shown_clock::{DisplayedClock, clock};
+use super::shown_clock::DisplayedClock;
 use super::tutorial_page::{DisplayedTutorial, RecipeCard, card, tutorial};
 use crate::communication::Signal;
 use crate::kitchen::no_effect::NoEffectReason;
@@ -169,6 +169,18 @@ pub fn sight(session: &Session) -> DisplayUpdate {
         probe,
         target: session.calibration.as_ref().and_then(RunningGazeCheck::target),
         checks: session.calibration.as_ref().is_some_and(|check| check.result.is_none()),
+    }
+}
+
+/// The clock, if the session shows it and there is a trial. A probe shows the time that it has itself instead.
+fn clock(session: &Session, stage: DisplayStage) -> Option<DisplayedClock> {
+    if !session.spec.display.clock {
+        return None;
+    }
+    match stage {
+        DisplayStage::Running => Some(DisplayedClock::Goes),
+        DisplayStage::Ready | DisplayStage::Paused | DisplayStage::Over => Some(DisplayedClock::Stands),
+        _ => None,
     }
 }
 

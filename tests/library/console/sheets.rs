@@ -256,7 +256,7 @@ fn the_sheet_of_the_tutorial_tells_where_the_participant_is() {
         }
         stage.model.size = size;
         let screen = stage.screen(size);
-        for text in ["TUTORIAL OF THE PARTICIPANT", "wrong answers: 1", "0 skips the rest"] {
+        for text in ["Tutorial of the participant", "wrong answers: 1", "0 skips the rest"] {
             assert!(screen.contains(text), "{text:?} at {size:?} in\n{screen}");
         }
         check_snapshot("console", format!("tutorial_{}x{}", size.0, size.1), screen);

@@ -169,50 +169,21 @@ pub fn live(kitchen: &Kitchen) -> Vec<KeyBinding> {
 
 /// Default key table of a replay.
 pub fn replay() -> Vec<KeyBinding> {
+    use ReplayAction::{BackTo, On};
     let moves = [
         ("step_forward", plain(Right), ReplayAction::StepForward, "to the next event", Some("step")),
         ("step_back", plain(Left), ReplayAction::StepBack, "to the previous event", None),
-        (
-            "next_error",
-            [KeyChord::char('e')],
-            ReplayAction::On(ReplayLandmark::Error),
-            "to the next error",
-            Some("error"),
-        ),
-        (
-            "last_error",
-            [KeyChord::char('w')],
-            ReplayAction::BackTo(ReplayLandmark::Error),
-            "to the previous error",
-            None,
-        ),
-        ("next_signal", [KeyChord::char('s')], ReplayAction::On(ReplayLandmark::Signal), "to the next signal", None),
-        (
-            "last_signal",
-            [KeyChord::char('a')],
-            ReplayAction::BackTo(ReplayLandmark::Signal),
-            "to the previous signal",
-            None,
-        ),
-        ("next_marker", [KeyChord::char('m')], ReplayAction::On(ReplayLandmark::Marker), "to the next marker", None),
-        (
-            "last_marker",
-            [KeyChord::char('n')],
-            ReplayAction::BackTo(ReplayLandmark::Marker),
-            "to the previous marker",
-            None,
-        ),
-        (
-            "next_false_belief",
-            [KeyChord::char('b')],
-            ReplayAction::On(ReplayLandmark::FalseBelief),
-            "to the next false belief",
-            None,
-        ),
+        ("next_error", [KeyChord::char('e')], On(ReplayLandmark::Error), "to the next error", Some("error")),
+        ("last_error", [KeyChord::char('w')], BackTo(ReplayLandmark::Error), "to the previous error", None),
+        ("next_signal", [KeyChord::char('s')], On(ReplayLandmark::Signal), "to the next signal", None),
+        ("last_signal", [KeyChord::char('a')], BackTo(ReplayLandmark::Signal), "to the previous signal", None),
+        ("next_marker", [KeyChord::char('m')], On(ReplayLandmark::Marker), "to the next marker", None),
+        ("last_marker", [KeyChord::char('n')], BackTo(ReplayLandmark::Marker), "to the previous marker", None),
+        ("next_false_belief", [KeyChord::char('b')], On(ReplayLandmark::FalseBelief), "to the next false belief", None),
         (
             "last_false_belief",
             [KeyChord::char('v')],
-            ReplayAction::BackTo(ReplayLandmark::FalseBelief),
+            BackTo(ReplayLandmark::FalseBelief),
             "to the previous false belief",
             None,
         ),

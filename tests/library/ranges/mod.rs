@@ -13,9 +13,8 @@ use tomcom::edge::files::read_kitchen;
 use tomcom::kitchen::{Kitchen, layout_ranges};
 use tomcom::session::ranges;
 
-/// A session file with every setting that is a number.
-fn every_setting() -> toml::Table {
-    let text = r#"
+/// A session file that has every setting with a range.
+const SETTINGS: &str = r#"
         layout = "../layouts/sushi.toml"
         [trial]
         orders = 3
@@ -74,7 +73,10 @@ fn every_setting() -> toml::Table {
         file = "questionnaires/acceptance.toml"
         after = [1]
     "#;
-    let given: tomcom::session::SessionSpec = toml::from_str(text).expect("a session");
+
+/// A session file with every setting that is a number.
+fn every_setting() -> toml::Table {
+    let given: tomcom::session::SessionSpec = toml::from_str(SETTINGS).expect("a session");
     let mut all = toml::Table::try_from(given).expect("settings are TOML");
     let offers = Some(tomcom::wizard::settings::OfferReading::default());
     let wizard = tomcom::wizard::settings::WizardSpec { offers, ..Default::default() };

@@ -1,5 +1,5 @@
 //! A seekable replay: the recording is read once with all presses judged; the shown session applies the same events. Snapshots, kept while
-//! reading, make every move cheap: at most [`KEEP_EVERY`] events are applied. A console can begin before the recording is read to its end.
+//! reading, make every move cheap: at most `KEEP_EVERY` events are applied. A console can begin before the recording is read to its end.
 
 use std::path::Path;
 
@@ -52,7 +52,7 @@ pub struct SeekableReplay {
     pub session: Session,
     /// Number of events that have been applied to the shown session.
     pub position: usize,
-    /// Snapshots of the session before the first event and after every [`KEEP_EVERY`] events.
+    /// Snapshots of the session before the first event and after every `KEEP_EVERY` events.
     kept: Vec<Session>,
     /// Time of the log's last event and number of its events, until all of them are read.
     unread_end: Option<(SessionTime, usize)>,

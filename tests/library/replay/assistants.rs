@@ -18,6 +18,7 @@ use tomcom::history::comparison::CommunicationContext;
 use tomcom::kitchen::cost_to_go::CostToGo;
 use tomcom::kitchen::{Agent, AspectId, LocationId};
 use tomcom::measures::matching::CommunicationTarget;
+use tomcom::mind::signal_model::SignalModel;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
@@ -139,6 +140,8 @@ fn pressed_on(name: &str, sent: &[(f64, Signal)]) -> (SessionFiles, Vec<Timestam
     // There is no tracker; they look at nothing, so that only signals tell them something.
     (files.spec.human.looking.looks_hz, files.spec.human.looking.other_looks_hz) = (0.0, 0.0);
     files.spec.human.looking.capture = 0.0;
+    // A signal is believed at once: what is tried is from when on it counts.
+    files.spec.human.signal = SignalModel::default();
     let kitchen = Arc::new(files.kitchen.kitchen.clone());
     let mut engine = SessionEngine::new(kitchen.clone(), files.spec.clone(), 0, CostToGo::new(kitchen.clone()));
     let mut random = stream(4, "presses", 0);

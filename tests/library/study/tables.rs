@@ -23,7 +23,7 @@ const PUBLISHED: [(CsvTable, &str); 10] = [
         "participant kind group trials trials_counted assisted_second error_rate_human_1 error_rate_human_2 error_rate_1 \
          error_rate_2 sequence_length_1 sequence_length_2 recovery_s_1 recovery_s_2 order_s_1 order_s_2 presses_per_order_1 \
          presses_per_order_2 press_s_1 press_s_2 additional_presses_per_order_1 additional_presses_per_order_2 errors_1 \
-         errors_2 consent_on consent_at consent_digest",
+         errors_2 probes_wrong_1 probes_wrong_2 consent_on consent_at consent_digest",
     ),
     (
         CsvTable::Trials,

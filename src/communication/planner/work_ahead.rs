@@ -12,7 +12,7 @@ use crate::base::rng::stream;
 use crate::communication::concept::DecisionPoint;
 use crate::communication::situation::{RobotIntent, Situation};
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
-use crate::kitchen::{Agent, AspectId, ButtonId, Kitchen, State};
+use crate::kitchen::{Agent, AspectId, ButtonId, DishId, Kitchen, LocationId, OrderContent, State};
 use crate::mind::choice::HumanChoice;
 use crate::mind::dirichlet::DirichletBelief;
 
@@ -29,27 +29,31 @@ struct NextSituation {
     belief: DirichletBelief,
     changed: Vec<AspectId>,
     robot: RobotIntent,
+    /// Number of presses until then.
+    presses: u32,
 }
 
 impl Planner {
-    /// Runs the rollouts of the situations after the robot's ongoing press and after the human's likeliest presses.
+    /// Runs the rollouts of the situations after the robot's ongoing press, after the human's likeliest presses, and with any new order where
+    /// there is none.
     pub(super) fn prepare_for_presses(
         &mut self,
         cost: &mut CostToGo,
         moment: &DecisionPoint,
         proceed: &mut dyn FnMut() -> bool,
     ) {
-        let mut nexts: Vec<NextSituation> = self.after_the_robot(&moment.situation).into_iter().collect();
+        let mut nexts: Vec<NextSituation> = self.after_the_robot(moment).into_iter().collect();
         for button in self.likely_presses(cost, moment, proceed) {
-            nexts.extend(self.after_the_human(&moment.situation, button));
+            nexts.extend(self.after_the_human(moment, button));
         }
+        nexts.extend(self.with_new_orders(moment));
         for next in nexts {
             if !proceed() {
                 return;
             }
-            let NextSituation { state, ref belief, ref changed, robot } = next;
+            let NextSituation { state, ref belief, ref changed, robot, presses } = next;
             let situation = Situation { state, belief, changed, robot, ..moment.situation };
-            self.compared(cost, &DecisionPoint { situation, presses: moment.presses + 1, ..*moment }, proceed);
+            self.compared(cost, &DecisionPoint { situation, presses, ..*moment }, proceed);
         }
     }
 
@@ -82,22 +86,52 @@ impl Planner {
     }
 
     /// The situation after the robot's ongoing press, which the human has not seen yet.
-    fn after_the_robot(&self, situation: &Situation) -> Option<NextSituation> {
+    fn after_the_robot(&self, moment: &DecisionPoint) -> Option<NextSituation> {
+        let situation = &moment.situation;
         let RobotIntent::Busy { button, .. } = situation.robot else { return None };
         let state = self.kitchen.press(situation.state, &self.kitchen.true_recipes(), Agent::Robot, button)?;
-        let changed = self.kitchen.changed(situation.state, state).map(AspectId::of_location).collect();
-        Some(NextSituation { state, belief: situation.belief.clone(), changed, robot: RobotIntent::Free })
+        Some(NextSituation {
+            changed: self.kitchen.changed(situation.state, state).map(AspectId::of_location).collect(),
+            robot: RobotIntent::Free,
+            presses: moment.presses + 1,
+            ..unchanged(state, moment)
+        })
     }
 
     /// The situation after a press of the human, which knows what the press changed.
-    fn after_the_human(&self, situation: &Situation, button: ButtonId) -> Option<NextSituation> {
-        let state = self.kitchen.press(situation.state, &self.kitchen.true_recipes(), Agent::Human, button)?;
-        let mut belief = situation.belief.clone();
-        for location in self.kitchen.changed(situation.state, state) {
-            make_certain(&self.kitchen, &mut belief, AspectId::of_location(location), state);
+    fn after_the_human(&self, moment: &DecisionPoint, button: ButtonId) -> Option<NextSituation> {
+        let before = moment.situation.state;
+        let state = self.kitchen.press(before, &self.kitchen.true_recipes(), Agent::Human, button)?;
+        let mut next = NextSituation { presses: moment.presses + 1, ..unchanged(state, moment) };
+        for location in self.kitchen.changed(before, state) {
+            make_certain(&self.kitchen, &mut next.belief, AspectId::of_location(location), state);
         }
-        Some(NextSituation { state, belief, changed: Vec::new(), robot: situation.robot })
+        Some(next)
     }
+
+    /// The situations with a new order of each dish where there is no order now.
+    fn with_new_orders(&self, moment: &DecisionPoint) -> Vec<NextSituation> {
+        let before = moment.situation.state;
+        let is_empty = |order: &&LocationId| !matches!(before.order(**order), OrderContent::Dish(_));
+        let dishes = 0..self.kitchen.dishes.len();
+        let with = |order: LocationId, dish: usize| {
+            let mut state = before;
+            state.set_order(order, OrderContent::Dish(DishId(dish as u8)));
+            NextSituation { changed: vec![AspectId::of_location(order)], ..unchanged(state, moment) }
+        };
+        self.kitchen
+            .orders
+            .iter()
+            .filter(is_empty)
+            .flat_map(|&order| dishes.clone().map(move |dish| with(order, dish)))
+            .collect()
+    }
+}
+
+/// The situation of a decision point in another state.
+fn unchanged(state: State, moment: &DecisionPoint) -> NextSituation {
+    let Situation { belief, robot, .. } = moment.situation;
+    NextSituation { state, belief: belief.clone(), changed: Vec::new(), robot, presses: moment.presses }
 }
 
 /// Makes the estimate certain of the true value of an aspect.

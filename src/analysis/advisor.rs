@@ -86,6 +86,8 @@ impl AdviceRequest {
 pub struct Advisor {
     concept: Box<dyn Concept>,
     cost: CostToGo,
+    /// Whether it works ahead between requests in a live session.
+    pub works_ahead: bool,
 }
 
 impl Advisor {
@@ -97,11 +99,22 @@ impl Advisor {
     /// The assistant with the given communication concept.
     pub fn by(name: ConceptName, session: &Session, cost: CostToGo) -> Advisor {
         let Session { kitchen, spec, .. } = session;
-        Advisor { concept: concept(name, kitchen.clone(), &spec.human, &spec.assistant, session.seed()), cost }
+        let concept = concept(name, kitchen.clone(), &spec.human, &spec.assistant, session.seed());
+        Advisor { concept, cost, works_ahead: spec.assistant.works_ahead }
     }
 
     /// The assistant's recommendation for a request for advice.
     pub fn answer(&mut self, question: &AdviceRequest) -> Recommendation {
         self.concept.advise(&mut self.cost, &question.moment())
+    }
+
+    /// Number of decisions of the cost to go that had to be computed so far, because no cache held them.
+    pub fn computed_decisions(&self) -> u64 {
+        self.cost.counts().decisions_missed
+    }
+
+    /// Prepares for the requests that are likely after this one, as long as `proceed` returns true; see [`Concept::work_ahead`].
+    pub fn work_ahead(&mut self, question: &AdviceRequest, proceed: &mut dyn FnMut() -> bool) {
+        self.concept.work_ahead(&mut self.cost, &question.moment(), proceed);
     }
 }

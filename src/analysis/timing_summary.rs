@@ -14,6 +14,16 @@ pub struct TimingSummary {
     pub plan_us: Option<DurationPercentiles>,
     /// Computing time of filter and planner together for one step.
     pub step_us: Option<DurationPercentiles>,
+    /// Time to plan where the advisor worked ahead between requests, for as long as it had in the session.
+    pub plan_ahead_us: Option<DurationPercentiles>,
+    /// Time for inference and planning together where the advisor worked ahead.
+    pub step_ahead_us: Option<DurationPercentiles>,
+    /// Time spent on working ahead, in seconds.
+    pub ahead_s: f64,
+    /// Number of decisions of the cost to go that planning had to compute, because no cache held them.
+    pub decisions_computed: u64,
+    /// The same where the advisor worked ahead.
+    pub decisions_computed_ahead: u64,
     /// Duration of the recording in session time, in seconds.
     pub session_s: f64,
     /// Duration of the replay by the computer's clock, in seconds.
@@ -54,11 +64,16 @@ pub fn describe(figures: &TimingSummary) -> String {
         None => format!("{what:<34}       -\n"),
     };
     format!(
-        "{}{}{}{}{:.0} s of session replayed in {:.2} s\n",
+        "{}{}{}{}{}{}{:.1} % of the session's time spent on working ahead; planning computed {} decisions without it, {} with it\n{:.0} s of session replayed in {:.2} s\n",
         line("inference, gaze sample", figures.gaze_us),
         line("inference, press", figures.action_us),
         line("planning", figures.plan_us),
         line("inference and planning", figures.step_us),
+        line("planning, worked ahead", figures.plan_ahead_us),
+        line("inference and planning, ahead", figures.step_ahead_us),
+        100.0 * figures.ahead_s / figures.session_s.max(1e-9),
+        figures.decisions_computed,
+        figures.decisions_computed_ahead,
         figures.session_s,
         figures.wall_s
     )

@@ -34,4 +34,8 @@ pub struct DecisionPoint<'a> {
 pub trait Concept: fmt::Debug + Send {
     /// The recommendation at a decision point: the best signal, if any, all options, and the reason.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation;
+
+    /// Works ahead after a decision point: fills the caches with what the decision points after the likeliest next presses will
+    /// need, as long as `proceed` returns true. Recommendations stay the same, they only come sooner.
+    fn work_ahead(&mut self, _cost: &mut CostToGo, _moment: &DecisionPoint, _proceed: &mut dyn FnMut() -> bool) {}
 }

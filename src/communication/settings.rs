@@ -27,7 +27,11 @@ pub struct AssistantSpec {
     /// belief (`seems_unaware`).
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub asks_by_gaze: bool,
-    /// Settings of the planner's rollouts.
+    /// Whether the assistant of a live session works ahead between requests for advice, which makes its answers come sooner, and
+    /// changes nothing else. Recordings name it only where it is off.
+    #[serde(skip_serializing_if = "Clone::clone")]
+    pub works_ahead: bool,
+    /// How finely the planner computes.
     pub rollout: RolloutSettings,
 }
 
@@ -53,6 +57,7 @@ impl Default for AssistantSpec {
             proposed_presses: 1,
             asks_in_silence: false,
             asks_by_gaze: false,
+            works_ahead: true,
             rollout: RolloutSettings::default(),
         }
     }

@@ -1,6 +1,6 @@
 //! The assistant of a live session, which runs on a thread of its own and always answers the latest request.
 
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
@@ -14,15 +14,35 @@ impl Advisor {
         let (ask, questions) = channel::<AdviceRequest>();
         let (answer, answers) = unbounded_channel();
         thread::spawn(move || {
-            while let Ok(question) = questions.recv() {
+            let mut next = questions.recv().ok();
+            while let Some(question) = next {
                 // The newest request replaces earlier ones that have not been answered.
                 let newest = questions.try_iter().last().unwrap_or(question);
                 if answer.send(self.answer(&newest)).is_err() {
                     return;
                 }
+                next = self.until_asked(&newest, &questions);
             }
         });
         LiveAdvisor { ask, answers }
+    }
+
+    /// Waits for the next request, and works ahead meanwhile if the session's settings say so; `None` once nobody asks any more.
+    fn until_asked(&mut self, last: &AdviceRequest, questions: &Receiver<AdviceRequest>) -> Option<AdviceRequest> {
+        let mut next = Err(TryRecvError::Empty);
+        if self.works_ahead {
+            self.work_ahead(last, &mut || {
+                if matches!(next, Err(TryRecvError::Empty)) {
+                    next = questions.try_recv();
+                }
+                matches!(next, Err(TryRecvError::Empty))
+            });
+        }
+        match next {
+            Ok(question) => Some(question),
+            Err(TryRecvError::Empty) => questions.recv().ok(),
+            Err(TryRecvError::Disconnected) => None,
+        }
     }
 }
 

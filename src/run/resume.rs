@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::engine::SessionEngine;
-use super::verify::RerunRecording;
+use super::verify::RepeatedRecording;
 use crate::base::time::SessionTime;
 use crate::edge::file_error::FileError;
 use crate::edge::log::{LOG_NAME, LogReader, RecordingLock, RecordingWriteError, check_continued};
@@ -81,7 +81,7 @@ pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
     log.header.session.require_built_live().map_err(|missing| FileError::not_built(&folder, missing))?;
     let lock = RecordingLock::take(&folder)?;
     check_continued(&folder)?;
-    let RerunRecording { log, mut again, difference, .. } = RerunRecording::from_log(log)?;
+    let RepeatedRecording { log, mut again, difference, .. } = RepeatedRecording::from_log(log)?;
     if let Some(difference) = difference {
         return Err(ResumeError::Differs { log: difference.log, seq: difference.seq });
     }

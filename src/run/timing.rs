@@ -2,12 +2,13 @@
 
 use std::path::Path;
 use std::sync::LazyLock;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::replay::RecordingReplay;
-use crate::analysis::advisor::Advisor;
+use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::analysis::follower::InferenceTiming;
 use crate::analysis::timing_summary::{DurationPercentiles, TimingSummary};
+use crate::base::time::SessionTime;
 use crate::edge::file_error::FileResult;
 use crate::kitchen::cost_to_go::CostToGo;
 
@@ -15,6 +16,39 @@ use crate::kitchen::cost_to_go::CostToGo;
 pub(super) fn monotonic_ns() -> u64 {
     static BEGAN: LazyLock<Instant> = LazyLock::new(Instant::now);
     BEGAN.elapsed().as_nanos() as u64
+}
+
+/// An advisor whose answers are timed.
+struct TimedAdvisor {
+    advisor: Advisor,
+    answer_ns: Vec<u64>,
+    /// Number of decisions that answers had to compute, because no cache held them.
+    decisions_in_answers: u64,
+}
+
+impl TimedAdvisor {
+    fn new(advisor: Advisor) -> TimedAdvisor {
+        TimedAdvisor { advisor, answer_ns: Vec::new(), decisions_in_answers: 0 }
+    }
+
+    /// Answers a request; returns the computing time in nanoseconds.
+    fn answer(&mut self, question: &AdviceRequest) -> u64 {
+        let before = self.advisor.computed_decisions();
+        let began = Instant::now();
+        self.advisor.answer(question);
+        let took_ns = began.elapsed().as_nanos() as u64;
+        self.answer_ns.push(took_ns);
+        self.decisions_in_answers += self.advisor.computed_decisions() - before;
+        took_ns
+    }
+
+    /// Works ahead after a request for at most the time until the next one; returns the computing time in nanoseconds.
+    fn work_ahead(&mut self, last: &AdviceRequest, until: SessionTime) -> u64 {
+        let free = Duration::from_secs_f64(until.secs_since(last.time).max(0.0));
+        let began = Instant::now();
+        self.advisor.work_ahead(last, &mut || began.elapsed() < free);
+        began.elapsed().as_nanos() as u64
+    }
 }
 
 /// Replays a recording and measures computing times.
@@ -25,16 +59,21 @@ pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
     let mut replay = RecordingReplay::open(recording)?;
     replay.follower.timing = Some(InferenceTiming::with_clock(monotonic_ns));
     let session = replay.session();
-    let mut advisor = Advisor::new(session, CostToGo::new(session.kitchen.clone()));
+    let [mut plain, mut ahead] =
+        [(); 2].map(|()| TimedAdvisor::new(Advisor::new(session, CostToGo::new(session.kitchen.clone()))));
     let began = Instant::now();
-    let (mut plan_ns, mut step_ns) = (Vec::new(), Vec::new());
+    let (mut step_ns, mut step_ahead_ns, mut ahead_ns) = (Vec::new(), Vec::new(), 0);
+    let mut last: Option<AdviceRequest> = None;
     while let Some(question) = replay.next_question()? {
-        let began = Instant::now();
-        advisor.answer(&question);
-        let took_ns = began.elapsed().as_nanos() as u64;
-        plan_ns.push(took_ns);
-        let inference = replay.follower.timing.as_ref().and_then(|timing| timing.action_ns.last());
+        // As long as it had in the session.
+        if let Some(last) = last {
+            ahead_ns += ahead.work_ahead(&last, question.time);
+        }
+        let inference = replay.follower.timing.as_ref().and_then(|timing| timing.action_ns.last().copied());
+        let [took_ns, took_ahead_ns] = [&mut plain, &mut ahead].map(|advisor| advisor.answer(&question));
         step_ns.extend(inference.map(|inference| inference + took_ns));
+        step_ahead_ns.extend(inference.map(|inference| inference + took_ahead_ns));
+        last = Some(question);
     }
     let wall_s = began.elapsed().as_secs_f64();
     let measured = replay.follower.timing.take().map(|timing| (timing.gaze_ns, timing.action_ns));
@@ -42,8 +81,13 @@ pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
     Ok(TimingSummary {
         gaze_us: DurationPercentiles::from_nanoseconds(gaze_ns),
         action_us: DurationPercentiles::from_nanoseconds(action_ns),
-        plan_us: DurationPercentiles::from_nanoseconds(plan_ns),
+        decisions_computed: plain.decisions_in_answers,
+        decisions_computed_ahead: ahead.decisions_in_answers,
+        plan_us: DurationPercentiles::from_nanoseconds(plain.answer_ns),
         step_us: DurationPercentiles::from_nanoseconds(step_ns),
+        plan_ahead_us: DurationPercentiles::from_nanoseconds(ahead.answer_ns),
+        step_ahead_us: DurationPercentiles::from_nanoseconds(step_ahead_ns),
+        ahead_s: ahead_ns as f64 / 1e9,
         session_s: replay.session().time.as_secs_f64(),
         wall_s,
     })

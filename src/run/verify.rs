@@ -58,7 +58,8 @@ pub struct VerificationDifference {
 /// # Errors
 /// The recording cannot be read, or its events cannot be applied.
 pub fn verify(recording: &Path) -> FileResult<Verification> {
-    let RerunRecording { log, again, replayed, difference } = RerunRecording::from_log(LogReader::open(recording)?)?;
+    let RepeatedRecording { log, again, replayed, difference } =
+        RepeatedRecording::from_log(LogReader::open(recording)?)?;
     let same_end = difference.is_some() || log.is_cut() || again.ends_like(&replayed);
     let verified = difference.is_none() && same_end;
     let (cut, running) = (log.is_cut(), log.ending() == LogEnding::Running);
@@ -67,28 +68,28 @@ pub fn verify(recording: &Path) -> FileResult<Verification> {
 }
 
 /// A recording whose session was run again to the end.
-pub(super) struct RerunRecording {
+pub(super) struct RepeatedRecording {
     pub log: LogReader,
-    pub again: RerunSession,
+    pub again: RepeatedSession,
     /// The session after applying the recorded events.
     replayed: SessionFollower,
     /// First difference between recording and re-run, if any.
     pub difference: Option<VerificationDifference>,
 }
 
-impl RerunRecording {
+impl RepeatedRecording {
     /// Runs a recording again, from its first event to its last.
     ///
     /// # Errors
     /// The recording cannot be read, or its events cannot be applied.
-    pub fn from_log(mut log: LogReader) -> FileResult<RerunRecording> {
+    pub fn from_log(mut log: LogReader) -> FileResult<RepeatedRecording> {
         let (kitchen, header) = (log.kitchen.clone(), log.header.clone());
         header.session.require_built().map_err(|missing| FileError::not_built(log.path(), missing))?;
         let cost = CostToGo::new(kitchen.clone());
         let mut replayed = SessionFollower::new(log.session(), cost.clone());
         let engine = SessionEngine::for_header(kitchen, &header, cost);
         let advisor = engine.session().spec.asks_assistant().then(|| engine.advisor());
-        let mut again = RerunSession { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };
+        let mut again = RepeatedSession { engine, produced: VecDeque::new(), advisor, questions: VecDeque::new() };
         let mut difference = None;
         while let Some(line) = log.next_line()? {
             replayed
@@ -98,12 +99,12 @@ impl RerunRecording {
                 difference = again.difference_at(&line, log.path());
             }
         }
-        Ok(RerunRecording { log, again, replayed, difference })
+        Ok(RepeatedRecording { log, again, replayed, difference })
     }
 }
 
 /// A recorded session that is being run again.
-pub(super) struct RerunSession {
+pub(super) struct RepeatedSession {
     pub engine: SessionEngine,
     /// Events of the re-run that have not been compared yet; at the end of a cut recording, the events that the
     /// recording lacks.
@@ -113,7 +114,7 @@ pub(super) struct RerunSession {
     questions: VecDeque<AdviceRequest>,
 }
 
-impl RerunSession {
+impl RepeatedSession {
     /// Runs the session up to the recorded line and compares the two.
     fn difference_at(&mut self, line: &LogLine, log: &Path) -> Option<VerificationDifference> {
         let recorded = &line.stamped;

@@ -206,7 +206,7 @@ fn the_page_is_told_what_may_be_seen_and_nothing_else() {
                 }
                 _ => None,
             };
-            run(&mut engine, 100.0, wizard, |session| {
+            run(&mut engine, 50.0, wizard, |session| {
                 check(session);
                 looked += 1;
                 told += usize::from(sight(session).signal.is_some());

@@ -12,6 +12,7 @@ pub mod rollout_human;
 mod rollout_robot;
 mod sample;
 mod tally;
+mod work_ahead;
 
 use std::sync::Arc;
 
@@ -185,6 +186,31 @@ impl Planner {
         candidates.iter().all(|candidate| candidate.is_decided)
     }
 
+    /// The signals with their estimated savings, as far as `proceed` allowed: it is asked before each rollout.
+    fn compared(
+        &mut self,
+        cost: &mut CostToGo,
+        moment: &DecisionPoint,
+        proceed: &mut dyn FnMut() -> bool,
+    ) -> Vec<Candidate> {
+        let situation = &moment.situation;
+        let mut random = stream(self.seed, "communication", u64::from(moment.presses));
+        let mut candidates = self.candidates(situation, moment.signals);
+        let rollouts = self.spec.rollout.rollouts;
+        self.samples.prepare(situation.belief, rollouts, self.spec.rollout.states, &mut random);
+        let lattice = QuasiRandomLattice::shifted(&mut random);
+        for number in 0..rollouts {
+            if !proceed() {
+                break;
+            }
+            self.roll_out(cost, situation, &mut candidates, number, &lattice, &mut random);
+            if (number + 1) % BATCH == 0 && self.is_decided(&mut candidates, number + 1) {
+                break;
+            }
+        }
+        candidates
+    }
+
     fn recommendation(
         &self,
         situation: &Situation,
@@ -221,18 +247,11 @@ impl Planner {
 impl Concept for Planner {
     /// Estimates the net benefit of the available signals and ranks them by it.
     fn advise(&mut self, cost: &mut CostToGo, moment: &DecisionPoint) -> Recommendation {
-        let situation = &moment.situation;
-        let mut random = stream(self.seed, "communication", u64::from(moment.presses));
-        let mut candidates = self.candidates(situation, moment.signals);
-        let rollouts = self.spec.rollout.rollouts;
-        self.samples.prepare(situation.belief, rollouts, self.spec.rollout.states, &mut random);
-        let lattice = QuasiRandomLattice::shifted(&mut random);
-        for number in 0..rollouts {
-            self.roll_out(cost, situation, &mut candidates, number, &lattice, &mut random);
-            if (number + 1) % BATCH == 0 && self.is_decided(&mut candidates, number + 1) {
-                break;
-            }
-        }
-        self.recommendation(situation, candidates, Recommendation::silent(moment.seq, moment.time))
+        let candidates = self.compared(cost, moment, &mut || true);
+        self.recommendation(&moment.situation, candidates, Recommendation::silent(moment.seq, moment.time))
+    }
+
+    fn work_ahead(&mut self, cost: &mut CostToGo, moment: &DecisionPoint, proceed: &mut dyn FnMut() -> bool) {
+        self.prepare_for_presses(cost, moment, proceed);
     }
 }

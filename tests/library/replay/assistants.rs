@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use rand::RngExt;
+use tomcom::analysis::advisor::Advisor;
 use tomcom::analysis::watcher::{ComparisonFollower, ComparisonRequest};
 use tomcom::base::rng::stream;
 use tomcom::base::time::SessionTime;
@@ -21,13 +22,14 @@ use tomcom::measures::matching::CommunicationTarget;
 use tomcom::mind::signal_model::SignalModel;
 use tomcom::run::engine::SessionEngine;
 use tomcom::run::headless;
+use tomcom::run::replay::RecordingReplay;
 use tomcom::run::simulate::{SimulationRequest, SimulationShard, simulate};
 use tomcom::run::verify::verify;
 use tomcom::session::event::TrialEndReason;
 use tomcom::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind};
 use tomcom::session::{Event, Session, TimestampedEvent};
 
-use super::{SESSIONS, folder, same, session};
+use super::{SESSIONS, folder, same, session, simulated};
 
 /// Two trials in which the assistant acts by this concept, quickly and for little reason.
 fn assisted(name: &str, out: &str, by: ConceptName) -> PathBuf {
@@ -79,6 +81,36 @@ fn each_concept_acts_by_itself_and_comes_out_the_same_again() {
             assert_eq!(log.contains(r#""signal_shown","by":"assistant""#), acts, "{name}, {by:?}: signals");
             assert_eq!(log.contains(r#""proposal":{"error":"#), proposes, "{name}, {by:?}: proposals");
         }
+    }
+}
+
+#[test]
+fn an_advisor_that_works_ahead_computes_less_in_its_answers_and_answers_the_same() {
+    for name in SESSIONS {
+        let out = simulated(name, ArmKind::Timed, "ahead", 1, 9);
+        let mut replay = RecordingReplay::open(&out.join("seed9-S001")).expect("a recording");
+        let new = || Advisor::new(replay.session(), CostToGo::new(replay.session().kitchen.clone()));
+        let [mut plain, mut ahead, mut hurried] = [new(), new(), new()];
+        let mut computed = [0; 2];
+        while let Some(question) = replay.next_question().expect("a line") {
+            let before = [&plain, &ahead].map(Advisor::computed_decisions);
+            let answer = plain.answer(&question);
+            assert_eq!((ahead.answer(&question), hurried.answer(&question)), (answer.clone(), answer), "{name}");
+            for (sum, (after, before)) in
+                computed.iter_mut().zip([&plain, &ahead].map(Advisor::computed_decisions).into_iter().zip(before))
+            {
+                *sum += after - before;
+            }
+            ahead.work_ahead(&question, &mut || true);
+            // The next request may come at any time.
+            let mut left = question.seq % 40;
+            hurried.work_ahead(&question, &mut || {
+                left = left.saturating_sub(1);
+                left > 0
+            });
+        }
+        let [without, with] = computed;
+        assert!(2 * with < without, "{name}: {with} decisions instead of {without}");
     }
 }
 

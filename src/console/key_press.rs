@@ -101,7 +101,7 @@ pub(super) fn press(
         action if model.dialog.is_some() => answer(model, session, chord, action, touch),
         Some(action) => act(model, session, action),
         None => {
-            unknown(model, session, code);
+            unknown(model, session, chord);
             None
         }
     }
@@ -253,10 +253,10 @@ fn report(model: &mut ConsoleModel, code: KeyCode, action: Option<KeyAction>) {
 }
 
 /// Handles a key without a meaning in the active layer: a notice says whether it has one in the other layer.
-fn unknown(model: &mut ConsoleModel, session: &Session, code: KeyCode) {
-    let KeyCode::Char(key) = code else { return };
+fn unknown(model: &mut ConsoleModel, session: &Session, chord: KeyChord) {
+    let KeyCode::Char(_) = chord.code else { return };
     let other = if model.layer == KeyLayer::Wizard { KeyLayer::Participant } else { KeyLayer::Wizard };
-    let chord = KeyChord { code, ctrl: false };
+    let key = chord.to_string();
     if model.keys.find(other, chord).is_some() {
         let whose = if other == KeyLayer::Wizard { "wizard" } else { "participant" };
         model.say(NoticeLevel::Refused, format!("\"{key}\" is a key of the {whose}: switch with tab"));

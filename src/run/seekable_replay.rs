@@ -19,8 +19,8 @@ const KEEP_EVERY: usize = 4096;
 /// Event without effect that replaces hidden events in a blinded replay, so that sequence numbers stay.
 const HIDDEN: Event = Event::ClockJumped { by_ms: 0 };
 
-/// Whether an event reveals the condition: a signal, an offer, or a recommendation.
-fn tells_condition(event: &Event) -> bool {
+/// Whether an event is hidden from raters: it reveals the condition (a signal, an offer, a recommendation), or what the wizard thought.
+fn is_hidden(event: &Event) -> bool {
     matches!(
         event,
         Event::SignalShown { .. }
@@ -30,6 +30,7 @@ fn tells_condition(event: &Event) -> bool {
             | Event::OfferClosed { .. }
             | Event::Advised(_)
             | Event::Unblinded { .. }
+            | Event::Marker { .. }
     )
 }
 
@@ -100,7 +101,7 @@ impl SeekableReplay {
         for session in self.kept.iter_mut().chain([&mut self.session]) {
             session.spec.console.visibility = WizardVisibility::State;
         }
-        for stamped in self.events.iter_mut().filter(|stamped| tells_condition(&stamped.event)) {
+        for stamped in self.events.iter_mut().filter(|stamped| is_hidden(&stamped.event)) {
             stamped.event = HIDDEN;
         }
         self

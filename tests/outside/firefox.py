@@ -6,6 +6,7 @@
 import argparse
 import os
 import sys
+import time
 from pathlib import Path
 
 from PIL import Image
@@ -33,6 +34,8 @@ def serves_an_order(tomcom, folder, kitchen):
         firefox.screenshot(folder / "running.png")
         keys = firefox.ask("Object.fromEntries(Stage.scene().buttons.map(({ name, key }) => [name, key]))")
         for number, button in enumerate(presses, 1):
+            # The same button within 0.05 s counts as a contact that bounces.
+            time.sleep(0.08)
             firefox.key(keys[button])
             firefox.wait_for(f"Stage.shown().presses[0] && Stage.shown().presses[0].number === {number}")
         firefox.wait_for("Stage.shown().served === 1 && document.querySelector('.served').textContent === '✓ 1'")

@@ -193,8 +193,12 @@ impl Panel<'_> {
         let style = brush.style(role(belief));
         let mut end = self.certainty(belief);
         if are_by_cost(self.session) {
-            let cost = if belief.cost >= 0.5 { format!("{:.0}", belief.cost) } else { String::new() };
-            end = format!("{end}  {cost:>2} {}", if cost.is_empty() { "       " } else { "presses" });
+            let cost = match belief.cost.round() {
+                cost if cost < 1.0 => String::new(),
+                1.0 => " 1 press".to_string(),
+                cost => format!("{cost:>2} presses"),
+            };
+            end = format!("{end}  {cost:<10}");
         }
         brush.text_right(area.right(), y, area.width, &end, style);
         let (thinks, truth) = self.values(belief);

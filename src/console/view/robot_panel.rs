@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::paint::Painter;
+use super::paint::{Painter, width};
 use super::regions::{PanelAreas, ScreenSize};
 use super::theme::TextRole;
 use crate::base::words::count;
@@ -46,7 +46,10 @@ pub fn draw(brush: &mut Painter, regions: &PanelAreas, session: &Session, model:
     let between = if name.is_empty() || remark.is_empty() { "" } else { "  " };
     let title = if is_arm { "UR5" } else { "Robot" };
     let parts = [(name, mode_role(mode)), (between, TextRole::Quiet), (&remark, TextRole::Quiet)];
-    let inside = brush.panel_with(area, title, &parts);
+    // The arm's mode comes before the hint where there is room for one of them.
+    let columns = [title, name, between, &remark].map(width).iter().sum::<u16>();
+    let is_crowded = !name.is_empty() && columns + 6 >= area.width;
+    let inside = brush.panel_with(area, title, if is_crowded { &parts[..1] } else { &parts });
     let (x, columns) = (inside.x + 1, inside.width.saturating_sub(2));
     line(brush, x, inside.y, columns, session, model);
     // In a low panel the pose of the arm has priority over the content of the robot's hand, which the kitchen panel

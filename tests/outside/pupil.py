@@ -223,7 +223,7 @@ def check_fast(tomcom, folder, seconds):
             keys = []
             while time.monotonic() < began + min(seconds, 60):
                 key, note = NOTES[len(keys) % 2]
-                console.watch(lambda rows: any(f"marked: {note}" in row for row in rows))
+                console.watch(lambda rows: any(f"note recorded: {note}" in row for row in rows))
                 pressed = time.monotonic()
                 console.key(key)
                 while console.drawn is None and time.monotonic() < pressed + 5:

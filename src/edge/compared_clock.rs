@@ -150,7 +150,7 @@ mod tests {
             let at = |seconds: f64| clock.anchor + Duration::from_secs_f64(seconds);
             let (asked, answered) = (at(*asked), at(*answered));
             steps.extend(clock.take(asked, answered, *pupil_s));
-            // A time stamp made at the next reply is converted with what is known up to this reply.
+            // A time stamp made at the next reply is converted with the offset estimated up to this reply.
             let Some([_, next_s, _, behind_s]) = answers.get(index + 1) else { continue };
             let told = clock.instant(next_s - behind_s).expect("a clock that was compared");
             let off_s = told.saturating_duration_since(clock.anchor).as_secs_f64() - next_s;

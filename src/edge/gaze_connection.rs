@@ -27,7 +27,7 @@ const ANSWER: Duration = Duration::from_secs(1);
 /// The access check that all gaze connections share.
 pub(super) type SharedGate = Arc<Mutex<GazeAccessCheck>>;
 
-/// A gaze connection and what is known of its sender.
+/// A gaze connection with the state of its sender.
 pub(super) struct GazeConnection {
     /// TCP stream of the connection.
     pub stream: TcpStream,

@@ -20,7 +20,7 @@ use crate::session::settings::Condition;
 use crate::session::study_arm::StudyArm;
 use crate::session::{Event, TimestampedEvent};
 
-/// So many bytes at the end of a log are part of its digest.
+/// Number of bytes at the end of a log that its digest covers.
 const TAIL: u64 = 4096;
 /// Number of recordings that are kept, about 150 bytes each.
 const MOST: usize = 50_000;

@@ -15,7 +15,7 @@ use crate::mind::model::HumanModel;
 pub const ROUNDS: usize = 8;
 /// Step sizes of the first round.
 const FIRST_STEP: f64 = 0.5;
-/// A step lowers a person's log likelihood by so many nats, and by the noise of its surface. It follows from the person's own presses alone:
+/// Number of nats by which one step lowers a person's log likelihood, beside the noise of the surface. Steps follow from the person's own presses alone:
 /// with the population, steps would shrink until noise looks like information.
 const STEP_NATS: f64 = 3.0;
 /// Bounds of a step, and the largest factor between successive steps.

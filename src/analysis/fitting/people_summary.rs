@@ -132,7 +132,7 @@ pub struct PersonSummary {
 pub struct PersonParameter {
     /// The parameter's name in a parameter file.
     pub name: &'static str,
-    /// The mode of what is known of it, from its own presses and from the population.
+    /// The mode of the parameter's posterior, from the person's own presses and from the population.
     pub value: f64,
     /// The 95 % interval by Laplace's approximation around the mode, within the bounds of the search.
     pub interval: [f64; 2],
@@ -144,7 +144,7 @@ pub struct PersonParameter {
 }
 
 impl PersonSummary {
-    /// A person with so many presses.
+    /// Summary of a person with this number of presses.
     pub fn from_posterior(
         person: &FittedPerson,
         human_actions: u64,

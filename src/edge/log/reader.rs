@@ -16,7 +16,7 @@ use crate::session::{Event, LogHeader, Session, TimestampedEvent};
 
 /// Longest line of a log, in bytes; a file with a longer line is not a log.
 const MAX_LINE: usize = 1 << 24;
-/// The last event is looked for in so many bytes at the end of a log.
+/// Number of bytes at the end of a log in which the last event is searched.
 const TAIL: u64 = 1 << 16;
 /// Largest number of parts of a recording.
 const MAX_PARTS: usize = 100;

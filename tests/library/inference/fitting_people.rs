@@ -117,9 +117,9 @@ fn coarse() -> HumanModel {
     model
 }
 
-/// By hand, as below, until its time and its margins are known.
+/// By hand, as below: when it last ran, its search did not converge, and the gain on held-out trials was not told from none.
 #[test]
-#[ignore = "its time and margins are not measured yet"]
+#[ignore = "fails: the fit of persons does not recover them yet"]
 fn people_who_differ_are_found_better_with_their_population() {
     let kitchen = kitchen("layouts/burger.toml");
     let start = coarse();

@@ -1,5 +1,5 @@
-//! The gaze accuracy check in a session: targets are shown one after another on the display, and the gaze is compared
-//! with them. The check runs only while the trial does not.
+//! Rules of the gaze accuracy check in a session: targets are shown one after another on the display, and the measured
+//! gaze is compared with the targets. A gaze accuracy check runs only while the trial does not.
 
 pub use super::gaze_check::{AcceptedGazeCheck, GazeCheckEvent, GazeCheckResult, RunningGazeCheck};
 use super::participant_settings::GazeSource;
@@ -10,12 +10,13 @@ use crate::gaze::GazeSample;
 use crate::gaze::calibration::{GazeAccuracy, ViewingGeometry};
 
 impl Session {
-    /// Size of the wall display, and viewing distance of the participant.
+    /// Size of the wall display, and distance of the participant's eyes from the wall display.
     pub fn viewing(&self) -> ViewingGeometry {
         ViewingGeometry { display_m: self.kitchen.display_m, distance_m: self.spec.tracker.distance_m }
     }
 
-    /// The gaze sample after the accepted offset is corrected.
+    /// The gaze sample, corrected by the measured offset of the accepted accuracy check (unchanged if none is
+    /// corrected).
     pub fn corrected(&self, sample: GazeSample) -> GazeSample {
         match self.calibrated.as_ref().filter(|calibrated| calibrated.corrected) {
             Some(AcceptedGazeCheck { found: GazeAccuracy { offset, .. }, .. }) => {
@@ -34,7 +35,7 @@ impl Session {
 /// Whether the session accepts this event of an accuracy check now.
 ///
 /// # Errors
-/// The reason for the refusal, in words for the wizard.
+/// Why the session refuses the event, in words for the wizard.
 pub(super) fn admit(session: &Session, event: &GazeCheckEvent) -> Result<(), &'static str> {
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
     let check = session.calibration.as_ref();

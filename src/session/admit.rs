@@ -1,5 +1,5 @@
-//! Preconditions of events: whether a session accepts an event now. They are checked before an input is taken, and
-//! again when an event is applied.
+//! Preconditions of events: whether a session accepts an event now. Preconditions are checked before an input is taken,
+//! and again when an event is applied.
 
 use super::event::{Event, SignalEndReason, TrialEndReason};
 use super::phase::TrialPhase;
@@ -14,10 +14,10 @@ use crate::communication::concept::ConceptName;
 use crate::communication::{self, Sender, Signal};
 use crate::kitchen::{Agent, LocationKind};
 
-/// Whether the session accepts this event now.
+/// Whether the session accepts this event now (admits it).
 ///
 /// # Errors
-/// The reason for the refusal, in words for the wizard.
+/// Why the session refuses the event, in words for the wizard.
 pub fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
     let phase = session.phase;
@@ -111,11 +111,11 @@ fn admit_signal(session: &Session, by: Sender, signal: &Signal) -> Result<(), &'
     }
 }
 
-/// Rules for the wizard's keys, such as the cool-down between signals. They apply at the keyboard only, not to
-/// recordings.
+/// Rules for the wizard's keys, such as the cool-down between signals. The rules apply at the keyboard only, not to
+/// events in recordings.
 ///
 /// # Errors
-/// The reason for the refusal, in words for the wizard.
+/// Why the session refuses the event, in words for the wizard.
 pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(), String> {
     let Event::SignalShown { by: Sender::Wizard, signal, .. } = event else { return Ok(()) };
     if session.spec.scripts_wizard() {
@@ -131,7 +131,7 @@ pub fn hygiene(session: &Session, now: SessionTime, event: &Event) -> Result<(),
     }
 }
 
-/// Whether a person's press comes earlier after the previous one than the session's pace allows.
+/// Whether a press of a person comes sooner after the person's previous press than the session setting `pace_s` allows.
 pub(super) fn is_too_early(session: &Session, now: SessionTime) -> bool {
     let spec = &session.spec;
     let Some(pace_s) = spec.trial.pace_s.filter(|_| spec.participant.kind != ParticipantKind::Simulated) else {

@@ -4,7 +4,8 @@ use super::event::Event;
 use super::session_state::Session;
 
 /// Whether the assistant is asked for advice after an event that has just been applied: after a press of either agent,
-/// after a change of the task without a press, and after further events if the session's settings say so.
+/// after a change of the task without a press, and after further events for which the session's settings ask for
+/// advice.
 pub fn leads_to_advice(session: &Session, event: &Event) -> bool {
     let leads = match event {
         Event::Press { .. }

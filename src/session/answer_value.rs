@@ -6,16 +6,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum AnswerValue {
-    /// A point of a scale, from 1; the position of a slider, from 0 to 100; or another number.
+    /// A numeric answer: a point of a rating scale, from 1; the position of a slider, from 0 to 100; or another number.
     Number(i64),
-    /// The participant's words, or the id of the chosen option.
+    /// A text answer: the participant's words, or the id of the chosen option.
     Text(String),
-    /// The ids of the chosen options, where several can be chosen.
+    /// The ids of the chosen options of a questionnaire item that allows several.
     Options(Vec<String>),
 }
 
 impl AnswerValue {
-    /// The number, if the answer is a number.
+    /// The answer as a number; `None` if the answer is a text or a list.
     pub fn number(&self) -> Option<i64> {
         match self {
             AnswerValue::Number(number) => Some(*number),
@@ -23,7 +23,7 @@ impl AnswerValue {
         }
     }
 
-    /// The ids of the chosen options; a text counts as a single option.
+    /// The ids of the chosen options; a text answer counts as a single option.
     pub fn options(&self) -> &[String] {
         match self {
             AnswerValue::Number(_) => &[],
@@ -32,7 +32,7 @@ impl AnswerValue {
         }
     }
 
-    /// The answer as one cell of a table: several options are separated by spaces.
+    /// The questionnaire answer as one cell of a table: several options are separated by spaces.
     pub fn cell(&self) -> String {
         match self {
             AnswerValue::Number(number) => number.to_string(),

@@ -20,7 +20,7 @@ use crate::kitchen::{
 pub enum SessionEffect {
     /// Set a timer; [`SessionEffect::Postpone`] can delay it.
     At {
-        /// The session time at which the timer is due; [`SessionEffect::Postpone`] can delay it.
+        /// Session time at which the timer is due.
         time: SessionTime,
         /// What happens when the timer is due.
         timer: Timer,
@@ -38,19 +38,19 @@ pub enum SessionEffect {
 /// A timer of a session: what happens when it is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Timer {
-    /// An order location stops showing `served`.
+    /// The order location stops showing `served` after a dish was served.
     ClearOrder(LocationId),
-    /// A new order appears; the running session draws its dish.
+    /// A new order appears at this location; the running session draws the ordered dish.
     NewOrder(LocationId),
-    /// The display time of the signal is over.
+    /// The display time of the shown signal is over.
     EndSignal,
-    /// The time of the trial is over.
+    /// The set duration of the trial is over.
     EndTrial,
-    /// The set number of presses was reached.
+    /// The set number of presses that ends the trial was reached.
     EndTrialByPresses,
-    /// The set number of orders was served.
+    /// The set number of served orders that ends the trial was reached.
     EndTrialByOrders,
-    /// An offer to the wizard may have to open or close.
+    /// The rules of offers have to be asked whether an offer to the wizard opens or closes.
     ReviewOffer,
     /// The human has not pressed for unusually long.
     HumanWaits,
@@ -62,16 +62,16 @@ pub enum Timer {
 pub struct ApplyError {
     /// Sequence number of the refused event.
     pub seq: u64,
-    /// What is invalid in the event.
+    /// What is invalid in the refused event.
     pub found: String,
-    /// What a valid event would contain.
+    /// What a valid event would contain in its place.
     pub remedy: String,
 }
 
 /// Result of applying an event: actions to perform, and the change of the kitchen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AppliedEvent {
-    /// The actions to perform because of the event, in order.
+    /// The actions that the running session has to perform because of the event, in order.
     pub effects: Vec<SessionEffect>,
     /// The change of the kitchen's state by the event.
     pub change: KitchenChange,
@@ -207,7 +207,7 @@ fn check(session: &Session, stamped: &TimestampedEvent) -> Result<(), ApplyError
     Ok(())
 }
 
-/// Resolves the names of locations, dishes and buttons in an event.
+/// The locations, dishes and buttons that an event names, looked up in the session's kitchen.
 struct Named<'a> {
     session: &'a Session,
     seq: u64,
@@ -248,7 +248,7 @@ impl Named<'_> {
     }
 }
 
-/// Changes the kitchen, records which locations changed, and returns the state before and after.
+/// Changes the kitchen's state, records which locations changed, and returns the state before and after.
 fn update(session: &mut Session, now: SessionTime, how: impl FnOnce(&mut State)) -> (State, State) {
     let before = session.state;
     how(&mut session.state);
@@ -345,7 +345,7 @@ fn show(
     session.note(now, TimelineEvent::Signal { by, signal: signal.clone() });
 }
 
-/// Stores a recommendation, without a signal that was sent after the recommendation was requested.
+/// Stores a recommendation as the latest, without a signal that was sent since the recommendation was requested.
 fn advise(session: &mut Session, mut advice: Recommendation) {
     let shown = session.shown.as_ref().filter(|shown| shown.by == Sender::Wizard && shown.since >= advice.for_ns);
     if let Some(shown) = shown {

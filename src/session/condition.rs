@@ -6,16 +6,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Condition {
-    /// Nobody sends signals: the human is unassisted.
+    /// Unassisted condition: nobody sends signals to the human.
     None,
-    /// The wizard at the console sends signals.
+    /// Wizard condition: the wizard at the console sends signals.
     Wizard,
-    /// The assistant sends signals by itself.
+    /// Assistant condition: the assistant sends signals by itself.
     Assistant,
 }
 
 impl Condition {
-    /// Name of the condition in files.
+    /// Name of the condition in logs, settings and tables.
     pub fn name(self) -> &'static str {
         match self {
             Condition::None => "none",

@@ -17,20 +17,21 @@ pub struct ConsoleSpec {
     /// Whether a mouse click on a signal or on the offer sends the signal at once, without a question.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub click_sends: bool,
-    /// Path of the key file, relative to the session file; without it the default keys apply.
+    /// Path of the file with the wizard's key bindings, relative to the session file; without a path the default keys
+    /// apply.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub keys: Option<String>,
-    /// Preset notes for markers: key 1 sets a marker with the first note.
+    /// Preset texts for the wizard's markers (time marks with a note): key 1 sets a marker with the first text.
     pub notes: Vec<String>,
     /// Preset reasons for aborting or excluding a trial.
     pub reasons: Vec<String>,
 }
 
-/// Largest number of preset notes (keys 1 to 5).
+/// Largest number of preset notes for the wizard's markers (keys 1 to 5).
 pub const MAX_NOTES: usize = 5;
-/// Largest number of preset reasons.
+/// Largest number of preset reasons for aborting or excluding a trial.
 const MAX_REASONS: usize = 20;
-/// Largest length of a preset text, in characters.
+/// Largest length of a preset note or reason, in characters.
 const MAX_PRESET: usize = 40;
 
 impl Default for ConsoleSpec {
@@ -75,7 +76,8 @@ impl ConsoleSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ColourTheme {
-    /// Colours that fit the background which the terminal reports; dark if it reports none.
+    /// Colours that fit the terminal's background; colours for a dark one if the terminal does not report its
+    /// background.
     Auto,
     /// Colours for a dark terminal background.
     Dark,
@@ -87,16 +89,16 @@ pub enum ColourTheme {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WizardVisibility {
-    /// Kitchen and gaze only, as in the paper.
+    /// The wizard sees kitchen and gaze only, as in the paper.
     State,
     /// The wizard sees kitchen, gaze and estimated belief.
     Belief,
-    /// Kitchen, gaze, estimated belief and recommendations.
+    /// The wizard sees kitchen, gaze, estimated belief and recommendations.
     Recommendation,
 }
 
 impl WizardVisibility {
-    /// Name of the visibility in files.
+    /// Name of the wizard's visibility level in files.
     pub fn name(self) -> &'static str {
         match self {
             WizardVisibility::State => "state",
@@ -105,7 +107,7 @@ impl WizardVisibility {
         }
     }
 
-    /// What the wizard sees, in words.
+    /// Words for what the wizard sees at this visibility level.
     pub fn title(self) -> &'static str {
         match self {
             WizardVisibility::State => "kitchen and gaze",

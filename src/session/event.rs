@@ -1,7 +1,7 @@
 //! Events of a session. A log is a list of events, and a session is determined by its log.
 //!
-//! Facts change the session when they are applied; witnesses are only recorded. Locations, dishes and buttons are
-//! identified by name, so that a log can be read without the program.
+//! Facts change the session when they are applied; witnesses are only recorded. Events identify locations, dishes and
+//! buttons by name, so that a log can be read without the program.
 
 use serde::{Deserialize, Serialize};
 
@@ -44,7 +44,7 @@ pub struct TimestampedEvent {
 pub enum Event {
     /// Results of the preflight checks before the trial, and whether the wizard overrode them.
     Preflight {
-        /// The checks and their results.
+        /// The preflight checks and their results.
         checks: Vec<PreflightCheck>,
         /// Whether the wizard started the trial although not all checks were ok.
         overridden: bool,
@@ -120,7 +120,7 @@ pub enum Event {
         /// Session time at which the robot will touch the button if it is not interrupted.
         until_ns: SessionTime,
     },
-    /// The robot aborts its ongoing press.
+    /// The robot aborts the press that it has begun.
     RobotAborts {
         /// Name of the button that the robot does not press.
         button: String,
@@ -156,25 +156,25 @@ pub enum Event {
     RobotStopped,
     /// The wizard releases the stopped robot.
     RobotResumed,
-    /// The wizard holds the robot: it starts no press and waits before the button of the ongoing press, until it is
-    /// released.
+    /// The wizard holds the robot: while held, the robot starts no press and waits before the button of the ongoing
+    /// press, until the wizard releases it.
     RobotHeld {
-        /// Who holds the robot (wizard or assistant).
+        /// Who holds the robot back (wizard or assistant).
         by: Sender,
     },
-    /// The robot continues after it was held.
+    /// The robot, which was held back, may continue.
     RobotReleased {
-        /// Who releases the robot (wizard or assistant).
+        /// Who lets the held robot continue (wizard or assistant).
         by: Sender,
     },
     /// The wizard skips the robot's ongoing press; the robot decides anew.
     RobotSkipped {
-        /// Who skips the press (wizard or assistant).
+        /// Who skips the robot's press (wizard or assistant).
         by: Sender,
     },
     /// The wizard chooses the robot's next press.
     RobotDriven {
-        /// Who chose the press (wizard or assistant).
+        /// Who chose the robot's next press (wizard or assistant).
         by: Sender,
         /// Name of the button that the robot shall press.
         button: String,
@@ -183,32 +183,33 @@ pub enum Event {
     KitchenCorrected {
         /// Name of the corrected location.
         location: String,
-        /// Name of the content that really is at the location.
+        /// Name of the content that really is at the corrected location.
         content: String,
     },
     /// A signal is shown to the participant and replaces the previous one.
     SignalShown {
         /// Who sent the signal (wizard or assistant).
         by: Sender,
-        /// The signal that is shown.
+        /// The signal that is shown on the participant's display.
         signal: Signal,
-        /// In logs of format 1, which has no offers: sequence number of the event whose recommendation the wizard
-        /// accepted, if any.
+        /// The accepted recommendation, in logs of format 1, which has no offers: sequence number of the event whose
+        /// recommendation the wizard accepted, if any.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         accepted: Option<u64>,
         /// Sequence number of the `offer_opened` whose offer the wizard took, if any.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         offer: Option<u64>,
     },
-    /// A recommendation of the assistant; it refers to an earlier event if it was computed while the session continued.
+    /// A recommendation of the assistant, which refers to an earlier event if it was computed while the session
+    /// continued.
     Advised(Recommendation),
     /// An offer to the wizard opens: the assistant recommends a signal or presses.
     OfferOpened(OfferedAdvice),
     /// The open offer to the wizard closes.
     OfferClosed {
-        /// Sequence number of the offer's event `offer_opened`.
+        /// Sequence number of the event `offer_opened` by which the offer opened.
         offer: u64,
-        /// Why the offer closes.
+        /// Why the offer to the wizard closes.
         reason: OfferCloseReason,
     },
     /// Recorded only (witness): the first frame with the signal of this sequence number was written to the terminal.
@@ -221,7 +222,7 @@ pub enum Event {
         /// Why the signal disappears.
         reason: SignalEndReason,
     },
-    /// The wizard sets a marker with a note.
+    /// The wizard sets a marker, a time mark with a note.
     Marker {
         /// Text of the wizard's note.
         note: String,
@@ -233,16 +234,17 @@ pub enum Event {
     /// Recorded only (witness): the wall clock advanced by this much more than session time, in milliseconds (negative:
     /// less), because the computer was suspended or its clock was set.
     ClockJumped {
-        /// By how much more the wall clock advanced than session time, in milliseconds; negative: less.
+        /// How much further the wall clock advanced than session time, in milliseconds; negative: the wall clock
+        /// advanced less.
         by_ms: i64,
     },
     /// Recorded only (witness): a report of the participant's display.
     Display(DisplayEvent),
     /// Recorded only (witness): the visible content of the wizard's screen changes.
     Screen(WizardScreenContent),
-    /// Recorded only (witness): from now on the wizard sees the comparison with these communication concepts.
+    /// Recorded only (witness): from now on the wizard sees how these communication concepts compare with the wizard.
     Unblinded {
-        /// Names of the communication concepts.
+        /// Names of the communication concepts that the wizard sees compared.
         concepts: Vec<ConceptName>,
     },
     /// Recorded only (witness): the terminal lost or regained keyboard focus; without it no key arrives, including the
@@ -322,20 +324,20 @@ impl Event {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TrialEndReason {
-    /// The set number of presses was reached.
+    /// The trial ended because its set number of presses was reached.
     Presses,
-    /// The set duration of the trial was reached.
+    /// The trial ended because its set duration was reached.
     Time,
-    /// The set number of orders was served.
+    /// The trial ended because its set number of orders was served.
     Orders,
-    /// The wizard ended the trial.
+    /// The trial ended because the wizard ended it.
     Wizard,
     /// The wizard aborted the trial; recorded as `trial_aborted`, never as `trial_ended`.
     Aborted,
 }
 
 impl TrialEndReason {
-    /// Name of the reason in logs.
+    /// Name of the reason for the trial's end in logs.
     pub fn name(self) -> &'static str {
         match self {
             TrialEndReason::Presses => "presses",
@@ -355,7 +357,7 @@ pub enum SignalEndReason {
     Elapsed,
     /// The sender withdrew the signal.
     TakenBack,
-    /// The proposed presses are out of date: they were made, another button was pressed, or the next one would have no
-    /// effect.
+    /// The proposed presses are out of date: they were made, another button was pressed, or the next proposed press
+    /// would have no effect.
     Outdated,
 }

@@ -1,4 +1,4 @@
-//! Parameters of the human model that were fitted to single persons: which person's a recording uses.
+//! Parameters of the human model that were fitted to single persons: whose fitted parameters a recording uses.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ParametersOf {
-    /// The participant's own.
+    /// The recording uses the parameters fitted to its own participant.
     Person,
-    /// The population's: the file has none of this participant.
+    /// The recording uses the population's parameters: the file has none of this participant.
     Population,
 }

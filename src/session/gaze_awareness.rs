@@ -4,9 +4,10 @@
 //! Two rules hold for an aspect about which a signal can be sent. Both use P(truth), the probability that the estimated
 //! belief gives to the true value:
 //!
-//! - P(truth) fell below 0.5 by a gaze sample, after it was at least 0.6 since the last request.
-//! - Somebody other than the human changed a location, P(truth) is below 0.5, and in a second of known gaze since the
-//!   change the human did not look at the location: the human looked past the change. At most once for a change.
+//! - P(truth) fell below 0.5 by a gaze sample, after it was at least 0.6 since the last request for advice.
+//! - Somebody other than the human changed a location, P(truth) is below 0.5, and the human did not look at the
+//!   location in a second of known gaze since the change: the human looked past the change. Advice is requested at most
+//!   once for a change.
 
 use super::session_state::Session;
 use crate::base::time::SessionTime;
@@ -16,7 +17,7 @@ use crate::kitchen::{AspectId, AspectKind, LocationId};
 use crate::measures::sequences::FALSE_BELOW;
 use crate::mind::dirichlet::DirichletBelief;
 
-/// Least P(truth) with which a belief about an aspect counts as right again after it was below [`FALSE_BELOW`].
+/// Least P(truth) with which a belief about an aspect counts as right again after P(truth) was below [`FALSE_BELOW`].
 const RIGHT_FROM: f64 = 0.6;
 /// Time of known gaze since a change of a location after which the human counts as having looked past the change, in
 /// seconds.
@@ -25,37 +26,37 @@ const LOOKED_PAST_S: f64 = 1.0;
 /// What the gaze has revealed about the human's awareness since the assistant was last asked for advice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GazeAwareness {
-    /// Bit set of the aspects about which the belief has been right since the last request.
+    /// Bit set of the state aspects about which the belief has been right since the last request for advice.
     right: u32,
     /// Time of known gaze in the trial so far, in seconds.
     gazed_s: f64,
     /// Time of the last usable gaze sample.
     sampled: SessionTime,
-    /// The last change of each location.
+    /// The last change of each location's content, as far as awareness of that change is concerned.
     changes: [WatchedChange; MAX_LOCATIONS],
     /// The aspect of which the human seems unaware, until the assistant is asked for advice.
     unaware: Option<AspectId>,
 }
 
-/// The last change of a location.
+/// The last change of a location's content, and how much gaze was known before that change.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct WatchedChange {
-    /// Session time of the change.
+    /// Session time at which the location changed.
     at: SessionTime,
     /// Time of known gaze in the trial before the change, in seconds.
     gazed_s: f64,
-    /// Whether the assistant was already asked because the human looked past the change.
+    /// Whether the assistant was already asked for advice because the human looked past the change.
     is_asked: bool,
 }
 
 impl GazeAwareness {
-    /// The aspect of which the human seems unaware since the last gaze sample, if the assistant has not been asked
-    /// since.
+    /// The state aspect of which the human seems unaware since the last gaze sample, if the assistant has not been
+    /// asked for advice since.
     pub fn unaware(&self) -> Option<AspectId> {
         self.unaware
     }
 
-    /// Accounts for a request for advice: present false beliefs do not cause another request.
+    /// Notes that the assistant was asked for advice: false beliefs that exist now do not cause another request.
     pub fn asked(&mut self, session: &Session, belief: &DirichletBelief) {
         self.unaware = None;
         for index in 0..belief.aspects.len() {
@@ -67,8 +68,8 @@ impl GazeAwareness {
         }
     }
 
-    /// Accounts for a gaze sample that has just been applied to session and estimate. `can_be_told` says whether a
-    /// signal about an aspect can be sent.
+    /// Updates the judgement with a gaze sample that has just been applied to session and estimate. `can_be_told` says
+    /// whether a signal about an aspect can be sent.
     pub fn looked(
         &mut self,
         session: &Session,

@@ -1,11 +1,11 @@
-//! The stream of gaze samples in a session: state changes by a sample, and faults of the stream.
+//! The stream of gaze samples in a session: how a sample changes the session's state, and faults of the stream.
 
 use super::accuracy_check;
 use super::session_state::Session;
 use crate::base::time::SessionTime;
 use crate::gaze::{GazeSample, MIN_CONFIDENCE};
 
-/// Gap between gaze samples after which the sampling rate is measured anew, in seconds.
+/// A gap between gaze samples of this length makes the sampling rate be measured anew, in seconds.
 const GAP_S: f64 = 0.5;
 
 /// Applies a gaze sample: counts it, updates the sampling rate, and records which location the participant looks at.
@@ -16,8 +16,8 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
     status.arrived = Some(now);
     match status.steady_since.filter(|_| interval_s < GAP_S) {
         Some(since) => {
-            // Sampling rate: the mean since the last gap; after a second of it, of about the last second. A few
-            // milliseconds at least, because samples of one packet arrive together.
+            // Sampling rate: the mean since the last gap in the gaze, or over about the last second if the gap is
+            // longer ago. The window is a few milliseconds at least, because samples of one packet arrive together.
             let window_s = now.secs_since(since).clamp(0.005, 1.0);
             status.rate_hz += ((1.0 - interval_s * status.rate_hz) / window_s).max(-status.rate_hz);
         }
@@ -50,7 +50,7 @@ pub(super) fn take_sample(session: &mut Session, now: SessionTime, sample: GazeS
     }
 }
 
-/// Faults of the gaze stream so far: the kinds that occurred, with their numbers.
+/// Kinds of faulty gaze samples that have occurred so far, each with its number of samples.
 pub fn faults(session: &Session) -> Vec<(u64, &'static str)> {
     let (dropped, read) = (session.tracker.dropped, session.gaze.judge.counts);
     let all = [

@@ -8,22 +8,22 @@ use crate::kitchen::state::MAX_LOCATIONS;
 /// State of the participant's gaze stream in a session.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GazeStatus {
-    /// Arrival time of the latest gaze sample, usable or not.
+    /// Arrival time of the latest gaze sample, whether the sample was usable or not.
     pub arrived: Option<SessionTime>,
     /// The newest usable gaze sample that lies on the display, and its arrival time.
     pub last: Option<(SessionTime, GazeSample)>,
     /// Time of the participant's last look at each location (gaze inside the location's area).
     pub looked_at: [Option<SessionTime>; MAX_LOCATIONS],
-    /// Number of gaze samples; those with low confidence or outside the display are also counted in `unusable`.
+    /// Number of all gaze samples; samples with low confidence or outside the display are also counted in `unusable`.
     pub samples: u64,
     /// Number of gaze samples with too low a confidence or outside of the display.
     pub unusable: u64,
-    /// Detector of faulty gaze samples, with their counts.
+    /// Detector that finds faulty gaze samples and counts them by kind.
     pub judge: GazeFaultDetector,
     /// Fault of the latest gaze sample.
     pub fault: Option<GazeFault>,
-    /// Sampling rate in Hz, smoothed over about a second: see [`super::Session::gaze_hz`].
+    /// Sampling rate of the gaze in Hz, smoothed over about a second: see [`super::Session::gaze_hz`].
     pub(crate) rate_hz: f64,
-    /// Start of the present gapless run of samples; `None` after a pause.
+    /// Start of the present run of gaze samples without a gap; `None` after a pause.
     pub(crate) steady_since: Option<SessionTime>,
 }

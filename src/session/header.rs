@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::settings::{ParticipantKind, SessionSpec};
 use crate::base::time::SessionTime;
 
-/// The name of the log's format.
+/// The name of the log's format, as every log's header has it.
 pub const FORMAT: &str = "tomcom-session";
-/// The version of the log's format that this program writes. It reads all versions from 1 on.
+/// The version of the log's format that this program writes. The program reads all versions from 1 on.
 pub const VERSION: u32 = 2;
 /// The version of the log's format since which recommendations become offers to the wizard.
 const OFFERS_SINCE: u32 = 2;
@@ -24,25 +24,25 @@ pub struct LogHeader {
     pub version: u32,
     /// The version of the program that wrote the log.
     pub program: String,
-    /// Index of the trial: with the same seed, another index gives other orders and another participant.
+    /// Index of the recorded trial: with the same seed, another index gives other orders and another participant.
     pub trial: u64,
-    /// Wall clock time at the beginning of the recording (UTC, RFC 3339), which is session time 0 or that of
-    /// [`PreviousPart`]. Live sessions only.
+    /// Wall clock time at the beginning of the recording (UTC, RFC 3339), which is session time 0 or the session time
+    /// of [`PreviousPart`]. Only live sessions have it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub started: Option<String>,
-    /// The earlier part that this recording continues.
+    /// The earlier part of the session that this recording continues.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub continues: Option<PreviousPart>,
     /// Name of the recording whose trial this recording repeats.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub redoes: Option<String>,
-    /// All settings in use, including the seed.
+    /// All settings of the session in use, including the seed.
     pub session: SessionSpec,
     /// The layout file of the kitchen, with its text.
     pub layout: RecordedFile,
     /// The recipe file of the kitchen, with its text.
     pub recipes: RecordedFile,
-    /// The file of the wizard's keys, if the session had one.
+    /// The file with the wizard's key bindings, if the session had one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keys: Option<RecordedFile>,
 }
@@ -55,7 +55,7 @@ pub struct PreviousPart {
     pub recording: String,
     /// Number of events in all earlier parts, which is the sequence number of the first event in this part.
     pub events: u64,
-    /// Session time at which the session continues.
+    /// Session time at which this part continues the session.
     pub t_ns: SessionTime,
 }
 
@@ -63,7 +63,7 @@ pub struct PreviousPart {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RecordedFile {
-    /// Path from which the file was read, for messages.
+    /// Path from which the file was read, as messages show it.
     pub path: String,
     /// The complete text of the file.
     pub text: String,
@@ -78,12 +78,12 @@ impl LogHeader {
         self.session.participant.kind == ParticipantKind::Simulated && is_earlier
     }
 
-    /// Whether recommendations became offers in the recording.
+    /// Whether recommendations became offers to the wizard in the recording.
     pub fn has_offers(&self) -> bool {
         self.version >= OFFERS_SINCE
     }
 
-    /// The header of a session that this program runs.
+    /// The header for the log of a session that this program runs.
     pub fn new(session: SessionSpec, trial: u64, layout: RecordedFile, recipes: RecordedFile) -> LogHeader {
         let program = env!("CARGO_PKG_VERSION").to_string();
         let (format, version) = (FORMAT.to_string(), VERSION);

@@ -1,5 +1,5 @@
 //! Manual interventions of the experimenter: correcting the kitchen, holding, skipping and driving the robot, aborting
-//! and excluding trials. This file has their preconditions and state changes.
+//! and excluding trials. This file has the preconditions and state changes of these interventions.
 
 use super::event::Event;
 use super::phase::TrialPhase;
@@ -7,10 +7,10 @@ use super::session_state::Session;
 use crate::communication::Sender;
 use crate::kitchen::{ContentId, LocationKind};
 
-/// Whether the session accepts an intervention now.
+/// Whether the session accepts a manual intervention of the experimenter now.
 ///
 /// # Errors
-/// The reason for the refusal, in words for the wizard.
+/// Why the session refuses the event, in words for the wizard.
 pub(super) fn admit(session: &Session, event: &Event) -> Result<(), &'static str> {
     let refuse_if = |refused: bool, reason: &'static str| if refused { Err(reason) } else { Ok(()) };
     let (phase, robot) = (session.phase, &session.robot);
@@ -49,7 +49,8 @@ fn admit_correction(session: &Session, location: &str, content: &str) -> Result<
         return Err("the kitchen can be corrected only during a trial");
     }
     if session.is_frozen() {
-        // The probe's questions are about the kitchen as it was when the task was frozen.
+        // The kitchen is corrected after the probe, whose questions are about the kitchen as it was when the task was
+        // frozen.
         return Err("the kitchen is corrected after the probe");
     }
     let kitchen = &session.kitchen;

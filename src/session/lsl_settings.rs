@@ -9,7 +9,7 @@ use super::setting_checks::SettingError;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LslSpec {
-    /// Path of the library liblsl, relative to the session file; `None` for the one that the system has.
+    /// Path of the library liblsl, relative to the session file; `None`: the library that the system has.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub library: Option<String>,
     /// The LSL streams that the program sends; none by default.
@@ -20,23 +20,23 @@ pub struct LslSpec {
     pub gaze: Option<LslGazeSpec>,
 }
 
-/// An LSL stream that the program sends.
+/// An LSL stream (outlet) that the program sends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LslOutlet {
-    /// Every event of the session except samples, as a short code.
+    /// Stream of every event of the session except gaze and arm samples, each as a short text code.
     Markers,
-    /// Every event of the session except samples, as JSON, as in the log.
+    /// Stream of every event of the session except gaze and arm samples, each as JSON, as in the log.
     Events,
-    /// Presses of both agents, with their effects.
+    /// Stream of the presses of both agents, with their effects.
     Presses,
-    /// Estimated probability of the true value for every state aspect.
+    /// Stream of the estimated probability of the true value for every state aspect.
     Beliefs,
-    /// Estimated net benefit of every signal.
+    /// Stream of the estimated net benefit of every signal.
     NetBenefit,
-    /// Gaze samples of the participant.
+    /// Stream of the participant's gaze samples.
     Gaze,
-    /// Joint angles of the simulated robot arm.
+    /// Stream of the joint angles of the simulated robot arm.
     Arm,
 }
 
@@ -70,18 +70,18 @@ impl LslOutlet {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LslGazeSpec {
-    /// Name of the gaze stream; `None`: any name.
+    /// Name of the gaze stream; `None`: a stream of any name is accepted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Content type of the gaze stream, such as "Gaze"; `None`: any type.
+    /// Content type of the gaze stream, such as "Gaze"; `None`: a stream of any type is accepted.
     #[serde(rename = "type", default, skip_serializing_if = "Option::is_none")]
     pub content: Option<String>,
-    /// Channel of the horizontal coordinate: its label, or its number from 1.
+    /// Channel of the gaze's horizontal coordinate: its label, or its number from 1.
     pub x: String,
-    /// Channel of the vertical coordinate: its label, or its number from 1.
+    /// Channel of the gaze's vertical coordinate: its label, or its number from 1.
     pub y: String,
-    /// Channel of the confidence, from 0 to 1; `None` if the stream has none, in which case every sample counts as
-    /// certain.
+    /// Channel of the gaze's confidence, from 0 to 1; `None` if the stream has none, in which case every gaze sample
+    /// counts as certain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confidence: Option<String>,
     /// Unit of the gaze coordinates.
@@ -90,7 +90,7 @@ pub struct LslGazeSpec {
     /// Point at which the gaze coordinates are 0, and the direction of y.
     #[serde(default)]
     pub origin: GazeOrigin,
-    /// Width and height of the display in the unit of the coordinates. Without it, 1 and 1 for normalised coordinates,
+    /// Width and height of the display in the unit of the coordinates. By default 1 and 1 for normalised coordinates,
     /// and the layout's size for metres.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<[f64; 2]>,
@@ -138,7 +138,7 @@ impl LslGazeSpec {
         }
     }
 
-    /// How messages call the gaze stream: by its name, else by its type.
+    /// How messages call the gaze stream: by its name, or by its type if the settings have no name.
     pub fn title(&self) -> String {
         match (&self.name, &self.content) {
             (Some(name), _) => format!("\"{name}\""),
@@ -179,7 +179,7 @@ impl LslGazeSpec {
     }
 }
 
-/// Whether a text can be a name in an LSL query for streams, which has names in quotation marks.
+/// Whether a text can be a name in an LSL query for streams; such a query has names in quotation marks.
 fn is_name(text: &str) -> bool {
     let is_plain = |sign: char| !sign.is_control() && !matches!(sign, '\'' | '"');
     (1..=100).contains(&text.chars().count()) && text.chars().all(is_plain)

@@ -1,5 +1,5 @@
 //! A session: its settings, its state, and [`apply()`], the only function that changes the state, in a live run, a
-//! replay and an analysis alike. It uses no clock, no file and no random numbers.
+//! replay and an analysis alike. `apply` uses no clock, no file and no random numbers.
 //!
 //! The files from the ground up:
 //!

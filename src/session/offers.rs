@@ -1,8 +1,8 @@
 //! The rules of offers to the wizard: when one opens and closes, and which one the key `enter` takes.
 //!
 //! A running session asks [`due`] after every event and at [`Timer::ReviewOffer`](super::Timer), and records the event
-//! that it returns; a replay applies the recorded ones. Ages of offers are measured on the trial's clock, so they do
-//! not grow in a pause.
+//! of an offer that `due` returns; a replay applies the recorded events. Ages of offers are measured on the trial's
+//! clock, so offers do not grow older in a pause.
 
 use super::admit::{admit, hygiene};
 use super::event::Event;
@@ -24,7 +24,7 @@ pub fn are_made(session: &Session) -> bool {
     session.makes_offers && session.spec.trial.condition != Condition::Assistant
 }
 
-/// The change of offers that is due now: `offer_opened`, `offer_closed`, or none.
+/// The event by which an offer to the wizard opens or closes now: `offer_opened`, `offer_closed`, or none.
 pub fn due(session: &Session, now: SessionTime) -> Option<Event> {
     match session.offers.unclosed() {
         Some(offer) => {
@@ -35,7 +35,7 @@ pub fn due(session: &Session, now: SessionTime) -> Option<Event> {
     }
 }
 
-/// Why the open offer closes now, if it does.
+/// The reason for which the open offer closes now; `None` if it stays open.
 fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferCloseReason> {
     match session.phase {
         TrialPhase::Running => {}
@@ -57,7 +57,7 @@ fn closing(session: &Session, offer: &Offer, now: SessionTime) -> Option<OfferCl
     outdone(session, offer, session.advice.as_ref()?)
 }
 
-/// Why the latest recommendation closes the open offer, if it does.
+/// The reason for which the latest recommendation closes the open offer; `None` if the offer stays open.
 fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<OfferCloseReason> {
     let signal = match &offer.advice.what {
         OfferedCommunication::Signal(signal) => signal,
@@ -78,7 +78,7 @@ fn outdone(session: &Session, offer: &Offer, advice: &Recommendation) -> Option<
     (other.net >= net + thresholds.better_by).then_some(OfferCloseReason::Replaced)
 }
 
-/// The offer that opens now, if one does.
+/// The offer to the wizard that opens now; `None` if no offer opens.
 fn opening(session: &Session, now: SessionTime) -> Option<OfferedAdvice> {
     if !session.is_running() || !are_made(session) {
         return None;
@@ -110,8 +110,8 @@ fn is_visible(session: &Session) -> bool {
     is_drawn || session.spec.script_reads_offers()
 }
 
-/// The signal that would be offered: the best one that exceeds its cost. If two orders want the same dish, the older
-/// one is chosen, provided that its recipe exceeds its cost, too.
+/// The signal that an offer would propose: the best signal whose benefit exceeds its cost. If two orders want the same
+/// dish, the older order is chosen, provided that the benefit of its recipe signal exceeds the cost, too.
 fn candidate<'a>(session: &Session, advice: &'a Recommendation) -> Option<&'a SignalOption> {
     let is_worth = |option: &&SignalOption| {
         option.net > 0.0 && unavailable(&session.kitchen, session.state, &option.signal).is_none()
@@ -126,7 +126,7 @@ fn candidate<'a>(session: &Session, advice: &'a Recommendation) -> Option<&'a Si
     Some(others.min_by_key(|(at, _)| *at).map_or(best, |(_, option)| option))
 }
 
-/// When the order of a recipe signal appeared (ties in the layout's order), and the dish that it wants.
+/// When the order of a recipe signal appeared (ties go to the layout's order), and the dish that the order wants.
 fn wanted(session: &Session, signal: &Signal) -> Option<((SessionTime, usize), OrderContent)> {
     let Signal::ShowRecipe(order) = signal else { return None };
     let order = session.kitchen.location_named(order)?;
@@ -134,23 +134,24 @@ fn wanted(session: &Session, signal: &Signal) -> Option<((SessionTime, usize), O
     Some(((session.changed_at[order.index()], index), session.state.order(order)))
 }
 
-/// Records that the wizard sent a signal: that of the open offer, or of the last one while it can still be taken.
+/// Records that the wizard sent a signal: the signal of the open offer, or of the last offer while `enter` still takes
+/// it.
 pub(super) fn sends(session: &mut Session, now: SessionTime, signal: &Signal, is_taken: bool) {
     let how = if is_taken { OfferKeyUse::Taken } else { OfferKeyUse::OwnKey };
     let with_last = still_takes(session, now).is_some();
     session.offers.sends(signal, UsedOffer { how, at: now }, with_last);
 }
 
-/// The last offer that closed, as long as it can still be taken.
+/// The last offer that closed, while the key `enter` can still take it.
 fn still_takes(session: &Session, now: SessionTime) -> Option<&Offer> {
     session.offers.last().filter(|last| session.age(last.closed, now) <= TAKEN_AFTER).map(|last| &last.offer)
 }
 
-/// The offer to which the key `enter` refers at `now`: the open one; in its first 0.3 s, or while none is open, the
-/// last one if it closed at most 1.3 s ago and was not taken.
+/// The offer to which the key `enter` refers at `now`: the open one; in the first 0.3 s of an open offer, or while none
+/// is open, the last offer if it closed at most 1.3 s ago and was not taken.
 ///
 /// # Errors
-/// Why `enter` refers to no offer, in words for the wizard.
+/// Why the key `enter` refers to no offer, in words for the wizard.
 pub fn meant(session: &Session, now: SessionTime) -> Result<&Offer, &'static str> {
     let open = session.offers.open();
     if let Some(offer) = open.filter(|offer| session.age(offer.opened, now) >= UNREAD) {
@@ -167,7 +168,7 @@ pub fn meant(session: &Session, now: SessionTime) -> Result<&Offer, &'static str
 /// The offer that the key `enter` takes at `now`, with the event that sends its signal.
 ///
 /// # Errors
-/// Why `enter` has no effect now, in words for the wizard.
+/// Why the key `enter` has no effect now, in words for the wizard.
 pub fn enter(session: &Session, now: SessionTime) -> Result<(&Offer, Event), String> {
     if session.spec.console.visibility != WizardVisibility::Recommendation {
         return Err("recommendations are not shown in this session".to_string());
@@ -185,7 +186,7 @@ pub fn script_takes(session: &Session, now: SessionTime, offer: u64) -> Option<E
     meant(session, now).ok().filter(|meant| meant.seq == offer).and_then(take)
 }
 
-/// The event that sends the signal of an offer; `None` for proposed presses.
+/// The event that sends the signal of an offer; `None` if the offer proposes presses.
 fn take(offer: &Offer) -> Option<Event> {
     let signal = offer.signal()?.clone();
     Some(Event::SignalShown { by: Sender::Wizard, signal, accepted: None, offer: Some(offer.seq) })

@@ -6,7 +6,7 @@ use super::settings::SessionSpec;
 use crate::base::rng::{Stream, stream};
 use crate::kitchen::DishId;
 
-/// Number of orders in a run: after each run, matched lists of orders contain the same dishes.
+/// Number of orders in a run: after each run, all matched lists of orders contain the same dishes.
 const RUN: usize = 3;
 
 /// The sequence of dishes that a trial's orders show, independent of which order location is free.
@@ -18,20 +18,20 @@ pub struct OrderList {
 }
 
 /// Matched lists of orders: blocks contain every dish of the menu once, in an order that all trials of a participant
-/// share. Each block is divided into short runs, and each trial has its own order within a run. So two trials of a
-/// participant have the same dishes up to their last complete run.
+/// share. Each block is divided into short runs, and each trial has its own order of the dishes within a run. So two
+/// trials of a participant have the same dishes up to the last complete run.
 #[derive(Clone, Debug)]
 struct Matched {
     shared: Stream,
-    /// Remaining dishes of the present block, in reverse order.
+    /// Dishes of the present block that are still to be ordered, in reverse order.
     block: Vec<u8>,
-    /// Remaining dishes of the present run, in reverse order.
+    /// Dishes of the present run that are still to be ordered, in reverse order.
     run: Vec<u8>,
 }
 
 impl OrderList {
-    /// The order list of a trial: matched with the participant's other trials in a plan, else independent uniform
-    /// draws. `menu` is the number of dishes.
+    /// The list of ordered dishes of a trial: in a plan, matched with the participant's other trials; else independent
+    /// uniform draws. `menu` is the number of dishes.
     pub fn new(menu: usize, spec: &SessionSpec, trial: u64) -> OrderList {
         let seed = spec.seed;
         let matched = spec.step.as_ref().map(|step| {

@@ -1,4 +1,4 @@
-//! Decides which codes participants of new sessions may have.
+//! Decides which participant codes (anonymous names such as P01) are allowed in new sessions.
 
 use super::plan::Participants;
 use super::settings::{SessionSpec, SettingError, is_code};
@@ -343,7 +343,7 @@ pub fn is_participant_code(code: &str) -> bool {
     is_code(code) && fault(code).is_none()
 }
 
-/// Why a code of valid characters is refused as a participant's code, in words; `None` if it is valid.
+/// Why a code with valid characters is still refused as a participant's code, in words; `None` if the code is allowed.
 pub fn fault(code: &str) -> Option<&'static str> {
     if !code.starts_with(|first: char| first.is_ascii_alphanumeric()) {
         return Some("it does not begin with a letter or digit");
@@ -362,11 +362,11 @@ pub fn without_seed(name: &str) -> Option<&str> {
 }
 
 impl SessionSpec {
-    /// Checks that the participant codes of this session are valid. New sessions are refused otherwise; recordings of
-    /// earlier versions can have other codes, and open all the same.
+    /// Checks that the participant codes in these settings are valid. New sessions with invalid codes are refused, but
+    /// recordings of earlier versions can have other codes, and open all the same.
     ///
     /// # Errors
-    /// The participant's code, or one in the plan, is invalid.
+    /// The participant's code, or a code in the plan, is invalid.
     pub fn check_participant_codes(&self) -> Result<(), SettingError> {
         let wrong = |path, found: String, fault| Err(SettingError::new(path, format!("{found}: {fault}"), REMEDY));
         let code = &self.participant.code;

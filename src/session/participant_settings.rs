@@ -12,7 +12,7 @@ const LOCALHOST: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ParticipantSpec {
-    /// Code of the participant, never a name.
+    /// Anonymous code of the participant, never a name.
     pub code: String,
     /// Whether a simulated participant or a person takes part, and by which input.
     pub kind: ParticipantKind,
@@ -67,9 +67,9 @@ impl ParticipantSpec {
 pub enum ParticipantKind {
     /// A simulated participant.
     Simulated,
-    /// A person at the keyboard of the console.
+    /// A person who presses keys at the keyboard of the console.
     Keyboard,
-    /// A person at the wall display, a page in a browser.
+    /// A person at the wall display, which is a page in a browser.
     Display,
 }
 
@@ -77,19 +77,19 @@ pub enum ParticipantKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GazeSource {
-    /// The eyes of the simulated participant.
+    /// Gaze comes from the eyes of the simulated participant.
     Simulated,
-    /// The mouse pointer: over the console's kitchen, or over the display if the participant plays there.
+    /// Gaze is the mouse pointer: over the console's kitchen, or over the display if the participant plays there.
     Mouse,
-    /// Pupil Core, through Pupil Capture's network API.
+    /// Gaze comes from the eye tracker Pupil Core, through Pupil Capture's network API.
     Pupil,
-    /// A recorded file: Pupil Player's export, or a recording of this program.
+    /// Gaze comes from a recorded file: Pupil Player's export, or a recording of this program.
     File,
-    /// Newline separated JSON over TCP and UDP (network) from another program.
+    /// Gaze comes as newline separated JSON over TCP or UDP (network) from another program.
     Json,
-    /// A stream of the Lab Streaming Layer.
+    /// Gaze comes from a stream of the Lab Streaming Layer.
     Lsl,
-    /// No gaze samples at all.
+    /// There are no gaze samples at all.
     None,
 }
 
@@ -97,9 +97,9 @@ pub enum GazeSource {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GazeSenders {
-    /// The address that sent the first sample, until it has been silent for 5 s.
+    /// Only the address that sent the first gaze sample is accepted, until it has been silent for 5 s.
     First,
-    /// Datagrams from every address are accepted.
+    /// Gaze datagrams from every address are accepted.
     Any,
 }
 

@@ -11,8 +11,8 @@ pub enum TrialPhase {
     Running,
     /// The trial is paused: its clock stands still.
     Paused,
-    /// The trial has ended, for this reason.
+    /// The trial has ended; the reason says why.
     Over(TrialEndReason),
-    /// The session has ended.
+    /// The session has ended, and its recording is closed.
     Closed,
 }

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PreflightVerdict {
-    /// The check found nothing wrong.
+    /// The preflight check found nothing wrong.
     Ok,
-    /// The checked part is usable with limitations.
+    /// The checked part (such as the eye tracker) is usable with limitations.
     Warning,
-    /// The checked part is not usable.
+    /// The checked part (such as the eye tracker) is not usable.
     Failed,
 }
 
@@ -18,19 +18,19 @@ pub enum PreflightVerdict {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PreflightCheck {
-    /// What the check is about: "display", "disk".
+    /// What the preflight check is about: "display", "disk".
     pub name: String,
-    /// The verdict of the check.
+    /// The verdict of the preflight check.
     pub verdict: PreflightVerdict,
-    /// The finding of the check, in words.
+    /// What the preflight check found, in words.
     pub found: String,
-    /// What to do about the finding; none if the verdict is ok.
+    /// What the wizard can do about the finding; `None` if the verdict is ok.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub remedy: Option<String>,
 }
 
 impl PreflightCheck {
-    /// A check with its result; a check with the verdict ok gets no remedy.
+    /// A preflight check with its result; a check with the verdict ok gets no remedy.
     pub fn new(
         name: &str,
         verdict: PreflightVerdict,
@@ -41,7 +41,7 @@ impl PreflightCheck {
         PreflightCheck { name: name.to_string(), verdict, found: found.into(), remedy }
     }
 
-    /// A check with the verdict ok and this finding.
+    /// A preflight check with the verdict ok and this finding.
     pub fn ok(name: &str, found: impl Into<String>) -> PreflightCheck {
         PreflightCheck::new(name, PreflightVerdict::Ok, found, "")
     }

@@ -15,8 +15,8 @@ use crate::gaze::calibration::{GOOD_DEG, USABLE_DEG};
 const SLOW_HZ: f64 = 20.0;
 /// Time without a usable gaze sample after which gaze counts as missing, in seconds.
 const UNUSABLE_S: f64 = 1.0;
-/// Free disk space, in bytes, below which the check warns, and below which it fails; a session of 15 min takes about 10
-/// MB.
+/// Free disk space, in bytes, below which the preflight check warns, and below which it fails; a session of 15 min
+/// takes about 10 MB.
 const FREE_BYTES: (u64, u64) = (1 << 30, 50 << 20);
 
 /// Checks the free disk space for a recording; `None` if the system does not report it.
@@ -38,7 +38,7 @@ pub fn space(free_bytes: Option<u64>) -> PreflightCheck {
     PreflightCheck::new("free space", verdict, format!("{} MB", free / 1_000_000), remedy)
 }
 
-/// Checks whether the settings are those of the study arm that the plan prescribes; `None` outside of plans.
+/// Checks whether the trial's settings are those of the study arm that the plan prescribes; `None` outside of plans.
 fn condition(session: &Session) -> Option<PreflightCheck> {
     let spec = &session.spec;
     let planned = spec.step.as_ref()?.arm?;
@@ -55,7 +55,7 @@ fn condition(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::new("condition", PreflightVerdict::Failed, found, remedy))
 }
 
-/// Whose parameters the human model has, where its file has some of persons.
+/// Says whose parameters the human model has (the participant's or the population's), if its file has some of persons.
 fn human_model(session: &Session) -> Option<PreflightCheck> {
     let spec = &session.spec;
     let file = spec.human_model.as_deref().unwrap_or("its file");
@@ -68,7 +68,8 @@ fn human_model(session: &Session) -> Option<PreflightCheck> {
     Some(PreflightCheck::ok("human model", found))
 }
 
-/// Checks condition, participant, human model, gaze source and gaze accuracy; `check_gaze` is the key that starts a gaze accuracy check.
+/// Checks condition, participant, human model, gaze source and gaze accuracy; `check_gaze` is the key that starts a
+/// gaze accuracy check.
 pub fn participant(session: &Session, now: SessionTime, check_gaze: &str) -> Vec<PreflightCheck> {
     let spec = &session.spec.participant;
     let who = match spec.kind {
@@ -149,11 +150,11 @@ fn gaze(session: &Session, now: SessionTime) -> Vec<PreflightCheck> {
     let faults = faults(session);
     let (samples, wrong) = (session.gaze.samples, faults.iter().map(|(count, _)| count).sum::<u64>());
     if wrong > 0 {
-        // Real gaze streams have some faulty samples; they are ignored, and matter only if there are many.
+        // Real gaze streams have some faulty samples; faulty samples are ignored, and matter only if there are many.
         let verdict = if wrong * 20 > samples { PreflightVerdict::Warning } else { PreflightVerdict::Ok };
         let kinds: Vec<String> = faults.iter().map(|(count, kind)| format!("{count} {kind}")).collect();
         let found = format!("{samples} samples; {}", kinds.join(", "));
-        // Delayed samples come from a slow computer or network, not from wrong values.
+        // Delayed gaze samples come from a slow computer or network, not from wrong values.
         let remedy = match session.tracker.dropped.malformed * 2 > wrong {
             true => "look at what the tracker sends: values are missing, or are no numbers",
             false => "less load on the tracker's computer, a better network",

@@ -1,11 +1,11 @@
-//! The events of freeze probes: the task stands still, and the participant answers questions about its beliefs (SAGAT,
-//! Endsley 1988).
+//! The events of freeze probes: the task stands still, and the participant answers questions about the participant's
+//! beliefs (SAGAT, Endsley 1988).
 
 use serde::{Deserialize, Serialize};
 
 use super::wall_display::AnswerEntry;
 
-/// An event of a freeze probe. Probes are numbered from 1 within a trial, scheduled and requested ones together.
+/// An event of a freeze probe. Probes have numbers from 1 within a trial, scheduled and requested ones together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "did", rename_all = "snake_case")]
 pub enum ProbeEvent {
@@ -13,68 +13,68 @@ pub enum ProbeEvent {
     Requested,
     /// A freeze probe is due but may not begin yet; it waits.
     Delayed {
-        /// Number of the freeze probe in the trial.
+        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Why the probe has to wait.
+        /// Why the freeze probe has to wait.
         reason: ProbeDelayReason,
     },
     /// A freeze probe has waited for the longest allowed time, and is cancelled.
     Dropped {
-        /// Number of the freeze probe in the trial.
+        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Why the probe still had to wait at the end.
+        /// Why the cancelled freeze probe still had to wait at the end.
         reason: ProbeDelayReason,
     },
     /// A freeze probe begins: the task stands still from now on. All questions of the probe are drawn.
     Begun {
-        /// Number of the freeze probe in the trial.
+        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Whether the schedule or the wizard caused the probe.
+        /// Whether the schedule or the wizard caused the freeze probe.
         origin: ProbeOrigin,
-        /// Whether the belief estimate influenced the choice of the questions.
+        /// Whether the belief estimate influenced the choice of the probe's questions.
         uses_estimate: bool,
-        /// The questions, in the order in which they are asked.
+        /// The questions of the freeze probe, in the order in which they are asked.
         questions: Vec<ProbeQuestion>,
     },
     /// A question of the freeze probe is shown.
     Asked {
-        /// Number of the freeze probe in the trial.
+        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Number of the question, from 1.
+        /// Number of the question in the freeze probe, from 1.
         question: u32,
     },
     /// The participant answers the shown question of the freeze probe.
     Answered {
-        /// Number of the freeze probe in the trial.
+        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Number of the question, from 1.
+        /// Number of the question in the freeze probe, from 1.
         question: u32,
-        /// The chosen answer: one of the question's choices; `None`: "I don't know".
+        /// The answer that the participant chose among the question's choices; `None`: "I don't know".
         #[serde(default, skip_serializing_if = "Option::is_none")]
         answer: Option<String>,
         /// The participant's confidence in the answer, from 1 to 3, if it was asked for.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         confidence: Option<u8>,
-        /// Where the answer was entered: on the display or at the console.
+        /// Where the answer to the probe was entered: on the display or at the console.
         on: AnswerEntry,
     },
     /// The wizard skips the remaining questions of the freeze probe.
     Skipped {
-        /// Number of the freeze probe in the trial.
+        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// The wizard's reason for skipping the questions.
+        /// The wizard's reason for skipping the remaining questions.
         reason: String,
     },
     /// No more questions of the freeze probe are asked: the count-down to the task begins, unless the trial is over.
     Closed {
-        /// Number of the freeze probe in the trial.
+        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
-        /// Why no more questions are asked.
+        /// Why no more questions of the freeze probe are asked.
         reason: ProbeEndReason,
     },
     /// The freeze probe ends, and the task continues.
     Ended {
-        /// Number of the freeze probe in the trial.
+        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
     },
 }
@@ -82,9 +82,9 @@ pub enum ProbeEvent {
 /// A question of a freeze probe.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ProbeQuestion {
-    /// What the question of the probe is about.
+    /// What the question of the freeze probe is about.
     pub about: ProbeSubject,
-    /// The possible answers by their names in the log, in the order in which they are shown.
+    /// Possible answers to the probe's question, by their names in the log, in the order in which they are shown.
     pub choices: Vec<String>,
     /// Inclusion probability: the probability with which this question was drawn for the probe, given the settings, the
     /// session so far, and the number of questions.
@@ -97,12 +97,12 @@ pub struct ProbeQuestion {
 pub enum ProbeSubject {
     /// The question is about the content of a location.
     Location {
-        /// The location's name.
+        /// Name of the location that the question is about.
         location: String,
     },
     /// The question is about the recipe of a dish.
     Recipe {
-        /// The dish's name.
+        /// Name of the dish that the question is about.
         dish: String,
     },
     /// The question is about the order that will be served next.
@@ -115,14 +115,14 @@ pub enum ProbeSubject {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeDelayReason {
-    /// A signal was shown a short time before.
+    /// The freeze probe waits because a signal was shown a short time before.
     Signal,
-    /// Another freeze probe ended a short time before.
+    /// The freeze probe waits because another freeze probe ended a short time before.
     Probe,
 }
 
 impl ProbeDelayReason {
-    /// The reason for the delay in words.
+    /// The reason for the freeze probe's delay in words.
     pub fn words(self) -> &'static str {
         match self {
             ProbeDelayReason::Signal => "a signal was shown just before",
@@ -135,14 +135,14 @@ impl ProbeDelayReason {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeOrigin {
-    /// The schedule, which was drawn before the trial.
+    /// The freeze probe comes from the schedule, which was drawn before the trial.
     Schedule,
-    /// A request of the wizard.
+    /// The freeze probe comes from a request of the wizard.
     Wizard,
 }
 
 impl ProbeOrigin {
-    /// Name of the cause in logs.
+    /// Name of the freeze probe's origin in logs.
     pub fn name(self) -> &'static str {
         match self {
             ProbeOrigin::Schedule => "schedule",
@@ -166,7 +166,7 @@ pub enum ProbeEndReason {
 }
 
 impl ProbeEndReason {
-    /// Name of the reason in logs.
+    /// Name of the reason for which no more questions are asked, in logs.
     pub fn name(self) -> &'static str {
         match self {
             ProbeEndReason::Answered => "answered",

@@ -1,15 +1,15 @@
 //! Draws the questions of a freeze probe with known probabilities.
 //!
-//! In a probe that uses the belief estimate, every aspect belongs to one stratum: believed wrong by the estimate,
+//! In a probe that uses the belief estimate, every state aspect belongs to one stratum: believed wrong by the estimate,
 //! changed unseen, recipe of a current order, or any other. Each stratum that is not empty has the same share of the
-//! questions, divided evenly among its aspects, above a minimum probability that every aspect has. In a blind probe all
-//! aspects have the same probability. The inclusion probability of each drawn aspect is recorded, so that an analysis
-//! can weight by its inverse (Horvitz and Thompson 1952).
+//! questions, divided evenly among the stratum's aspects, but every aspect has a minimum probability. In a blind probe
+//! all aspects have the same probability. The inclusion probability of each drawn aspect is recorded, so that an
+//! analysis can weight answers by its inverse (Horvitz and Thompson 1952).
 //!
-//! With `level_2` one further question is about what happens next.
+//! With the setting `level_2` one further question is about what happens next (level 2 of situation awareness).
 //!
-//! The draw is a systematic one of fixed size over the aspects in random order (Madow 1949), whose inclusion
-//! probabilities are exact.
+//! Questions are drawn by systematic sampling of fixed size over the aspects in random order (Madow 1949), whose
+//! inclusion probabilities are exact.
 
 use rand::RngExt;
 
@@ -23,8 +23,8 @@ use crate::kitchen::{Agent, AspectId, AspectKind, DishId, Kitchen, LocationId, O
 /// Number of strata of aspects from which questions are drawn.
 const STRATA: usize = 4;
 
-/// Draws the questions of a freeze probe. `is_wrong` says for each aspect whether the belief is wrong by the estimate;
-/// `None` in a blind probe.
+/// Draws the questions of a freeze probe. `is_wrong` says for each state aspect whether the belief is wrong by the
+/// estimate; `None` in a blind probe.
 pub fn questions(session: &Session, spec: &ProbeSpec, probe: u32, is_wrong: Option<&[bool]>) -> Vec<ProbeQuestion> {
     let name = format!("questions of probes in trial {}", session.trial);
     let mut random = stream(session.spec.seed, &name, u64::from(probe));
@@ -52,7 +52,7 @@ pub fn questions(session: &Session, spec: &ProbeSpec, probe: u32, is_wrong: Opti
     questions
 }
 
-/// Draws a question about what happens next: about the orders, if there is one, or about the robot.
+/// Draws a question about what happens next: about the next served order, if there is an order, or about the robot.
 fn what_next(session: &Session, random: &mut Stream) -> ProbeQuestion {
     let kitchen = &session.kitchen;
     let is_order = |&order: &LocationId| matches!(session.state.order(order), OrderContent::Dish(_));
@@ -67,8 +67,8 @@ fn what_next(session: &Session, random: &mut Stream) -> ProbeQuestion {
     ProbeQuestion { about, choices, inclusion }
 }
 
-/// All possible answers to a question, by their names in the log; none, if the kitchen does not have what the question
-/// is about.
+/// All possible answers to a probe's question, by their names in the log; none, if the kitchen does not have what the
+/// question is about.
 fn labels(kitchen: &Kitchen, about: &ProbeSubject) -> Vec<String> {
     match about {
         ProbeSubject::Location { .. } | ProbeSubject::Recipe { .. } => {
@@ -81,7 +81,7 @@ fn labels(kitchen: &Kitchen, about: &ProbeSubject) -> Vec<String> {
     }
 }
 
-/// The stratum of a state aspect, from 0.
+/// Number of the stratum to which a state aspect belongs, from 0.
 fn stratum(session: &Session, id: AspectId, is_wrong: &[bool]) -> usize {
     let is_current =
         |dish| session.kitchen.orders.iter().any(|&order| session.state.order(order) == OrderContent::Dish(dish));
@@ -93,8 +93,8 @@ fn stratum(session: &Session, id: AspectId, is_wrong: &[bool]) -> usize {
     }
 }
 
-/// The share of each aspect in the questions: strata that are not empty have equal shares, and so have the aspects
-/// within a stratum.
+/// The share of each state aspect in a probe's questions: strata that are not empty have equal shares, and so have the
+/// aspects within a stratum.
 fn stratum_shares(strata: &[usize]) -> Vec<f64> {
     let mut sizes = [0_usize; STRATA];
     strata.iter().for_each(|&stratum| sizes[stratum] += 1);
@@ -102,8 +102,8 @@ fn stratum_shares(strata: &[usize]) -> Vec<f64> {
     strata.iter().map(|&stratum| 1.0 / (filled * sizes[stratum]) as f64).collect()
 }
 
-/// Inclusion probabilities for `number` draws: a minimum for every aspect, and the rest in proportion to these shares,
-/// which sum to 1. None exceeds 1, and they sum to `number`.
+/// Inclusion probabilities for drawing `number` aspects: a minimum for every aspect, and the rest in proportion to
+/// these shares, which sum to 1. No inclusion probability exceeds 1, and they sum to `number`.
 fn inclusions(shares: &[f64], number: usize, floor: f64) -> Vec<f64> {
     let mut is_certain = vec![false; shares.len()];
     loop {
@@ -111,8 +111,8 @@ fn inclusions(shares: &[f64], number: usize, floor: f64) -> Vec<f64> {
         let open = || shares.iter().zip(&is_certain).filter(|(_, certain)| !**certain).map(|(share, _)| share);
         let open_share: f64 = open().sum();
         let left = number as f64 - certain as f64;
-        // If the minimum alone exceeds what the number of questions allows, it is lowered to the highest possible
-        // value.
+        // If the minimum probability alone exceeds what the number of questions allows, the minimum is lowered to the
+        // highest possible value.
         let floor = floor.min(left / open().count().max(1) as f64);
         let rest = left - floor * open().count() as f64;
         let chance = |(share, certain): (&f64, &bool)| match certain {
@@ -129,8 +129,8 @@ fn inclusions(shares: &[f64], number: usize, floor: f64) -> Vec<f64> {
     }
 }
 
-/// A systematic draw of `number` indices: those at which the cumulative sum of the probabilities passes `start`,
-/// `start` + 1, and so on.
+/// A systematic draw of `number` indices: those at which the cumulative sum of the inclusion probabilities passes
+/// `start`, `start` + 1, and so on.
 fn systematic(inclusion: &[f64], number: usize, start: f64) -> Vec<usize> {
     let mut drawn = Vec::with_capacity(number);
     let mut sum = 0.0;
@@ -140,7 +140,7 @@ fn systematic(inclusion: &[f64], number: usize, start: f64) -> Vec<usize> {
             drawn.push(index);
         }
     }
-    // Rounding can leave the cumulative sum just below the last mark.
+    // Rounding can leave the cumulative sum of probabilities just below the last mark.
     if drawn.len() < number
         && let Some(last) = (0..inclusion.len()).rev().find(|index| !drawn.contains(index))
     {
@@ -158,12 +158,12 @@ fn question(kitchen: &Kitchen, id: AspectId, inclusion: f64, random: &mut Stream
     };
     let mut choices = labels(kitchen, &about);
     shuffle(&mut choices, random);
-    // Rounded for the log, because the analysis divides by the recorded value.
+    // The inclusion probability is rounded as in the log, because the analysis divides by the recorded value.
     ProbeQuestion { about, choices, inclusion: (inclusion * 1e9).round() / 1e9 }
 }
 
-/// The state aspect that a question is about; none if the question is about what happens next, or about something that
-/// the kitchen does not have.
+/// The state aspect that a probe's question is about; none if the question is about what happens next, or about
+/// something that the kitchen does not have.
 pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
     match about {
         ProbeSubject::Location { location } => kitchen.location_named(location).map(AspectId::of_location),
@@ -175,7 +175,7 @@ pub fn aspect(kitchen: &Kitchen, about: &ProbeSubject) -> Option<AspectId> {
     }
 }
 
-/// Whether a recorded question fits this kitchen, with all its choices.
+/// Whether a recorded question of a probe fits this kitchen, with all its choices.
 pub(super) fn fits(kitchen: &Kitchen, question: &ProbeQuestion) -> bool {
     let is_chance = question.inclusion > 0.0 && question.inclusion <= 1.0;
     let labels = labels(kitchen, &question.about);

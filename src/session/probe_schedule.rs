@@ -1,7 +1,8 @@
 //! The times of a trial's freeze probes, drawn beforehand from a random stream of their own.
 //!
-//! Each probe comes between once and twice `apart_s` after the previous one (the first: after the start), so that
-//! nobody can foresee it. In a trial that is hardly long enough for all probes, the intervals are closer to `apart_s`.
+//! Each probe comes between once and twice `apart_s` after the previous one (the first probe: after the trial's start),
+//! so that nobody can foresee it. In a trial that is hardly long enough for all probes, intervals are closer to
+//! `apart_s`.
 
 use rand::RngExt;
 
@@ -13,14 +14,14 @@ use crate::base::time::SessionTime;
 /// A freeze probe of the trial's schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScheduledProbe {
-    /// Time at which the probe is due, on the trial's clock.
+    /// Time at which the freeze probe is due, on the trial's clock.
     pub at: SessionTime,
     /// Whether the belief estimate influences the choice of the probe's questions.
     pub uses_estimate: bool,
 }
 
-/// The settings of the freeze probes in this session's trial; none in a practice trial (familiarisation), which does
-/// not count.
+/// The settings of the freeze probes in this session's trial; none in a practice trial (familiarisation), in which
+/// there are no probes because a practice trial does not count.
 pub fn of_trial(spec: &SessionSpec) -> Option<&ProbeSpec> {
     let counts = spec.step.as_ref().is_none_or(|step| step.period.is_some());
     spec.probes.as_ref().filter(|_| counts)
@@ -44,8 +45,8 @@ pub fn draw(spec: &SessionSpec, trial: u64) -> Vec<ScheduledProbe> {
     times.into_iter().zip(blind).map(|(at, is_blind)| ScheduledProbe { at, uses_estimate: !is_blind }).collect()
 }
 
-/// Draws for each probe whether it ignores the estimate (blind): this share of the probes, in random order. A
-/// fractional remainder is the probability of one more.
+/// Draws for each probe whether it ignores the belief estimate (is blind): `share` of the probes are blind, in random
+/// order. A fractional remainder of the number is the probability of one more blind probe.
 fn blind(number: usize, share: f64, random: &mut Stream) -> Vec<bool> {
     let wanted = number as f64 * share;
     let count = wanted.floor() as usize + usize::from(random.random::<f64>() < wanted.fract());
@@ -61,7 +62,7 @@ pub(super) fn shuffle<T>(list: &mut [T], random: &mut Stream) {
     }
 }
 
-/// Whether a freeze probe that the wizard requested uses the estimate: drawn at random, as for scheduled probes.
+/// Whether a freeze probe that the wizard requested uses the belief estimate: drawn at random, as for scheduled probes.
 pub(super) fn requested_uses_estimate(spec: &SessionSpec, trial: u64, number: u32) -> bool {
     let share = spec.probes.as_ref().map_or(0.0, |probes| probes.blind_share);
     let name = format!("requested probes of trial {trial}");

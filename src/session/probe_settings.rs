@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::setting_checks::SettingError;
 use crate::kitchen::Kitchen;
 
-/// Settings of freeze probes: how often the task stands still for questions about the participant's beliefs. Without
-/// this table there are no probes.
+/// Settings of freeze probes: how often the task stands still for questions about the participant's beliefs. A session
+/// file without these settings has no freeze probes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ProbeSpec {
@@ -14,10 +14,10 @@ pub struct ProbeSpec {
     pub per_trial: u32,
     /// Least time before the first freeze probe and between two probes, in seconds of the trial's clock.
     pub apart_s: f64,
-    /// Time after a signal or a probe in which no freeze probe begins, in seconds of the trial's clock.
+    /// Time after a signal or a freeze probe in which no freeze probe begins, in seconds of the trial's clock.
     pub after_signal_s: f64,
-    /// Time for which a freeze probe waits if it may not begin, in seconds of the trial's clock; afterwards it is
-    /// cancelled.
+    /// Longest time for which a freeze probe waits while it may not begin, in seconds of the trial's clock; afterwards
+    /// the probe is cancelled.
     pub wait_s: f64,
     /// Time limit for all questions of a freeze probe, in seconds.
     pub limit_s: f64,
@@ -31,14 +31,14 @@ pub struct ProbeSpec {
     pub blind_share: f64,
     /// The least inclusion probability of any question in a freeze probe.
     pub least_inclusion: f64,
-    /// Probability that the participant looks at a place because a question was about it; the belief filter uses this
-    /// probability.
+    /// Probability that the participant looks at a place because a probe's question was about that place; the belief
+    /// filter uses this probability.
     pub teaches: f64,
     /// Whether the participant also reports the confidence in each answer.
     pub confidence: bool,
-    /// Whether a freeze probe can also ask what happens next.
+    /// Whether a freeze probe can also ask what happens next (level 2 of situation awareness).
     pub level_2: bool,
-    /// Locations, and recipes as "recipe of DISH", about which no questions are asked.
+    /// Names of locations, and recipes as "recipe of DISH", about which freeze probes ask no questions.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub leave_out: Vec<String>,
 }
@@ -65,10 +65,10 @@ impl Default for ProbeSpec {
 }
 
 impl ProbeSpec {
-    /// Checks that the settings fit each other and a trial of this duration.
+    /// Checks that the settings of freeze probes fit each other and a trial of this duration.
     ///
     /// # Errors
-    /// The first setting that does not fit.
+    /// The first setting of freeze probes that does not fit.
     pub(super) fn check(&self, trial_s: f64) -> Result<(), SettingError> {
         let ProbeSpec { per_trial, apart_s, wait_s, least_questions, most_questions, .. } = *self;
         if least_questions > most_questions {
@@ -87,10 +87,10 @@ impl ProbeSpec {
         Ok(())
     }
 
-    /// Checks that the kitchen has what the settings name, and enough aspects for the questions.
+    /// Checks that the kitchen has what the probe settings name, and enough state aspects for the questions.
     ///
     /// # Errors
-    /// The first setting that does not fit the kitchen.
+    /// The first setting of freeze probes that does not fit the kitchen.
     pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
         let is_there = |name: &String| kitchen.aspects.iter().any(|aspect| aspect.name == *name);
         if let Some(name) = self.leave_out.iter().find(|name| !is_there(name)) {
@@ -115,7 +115,7 @@ impl ProbeSpec {
         Ok(())
     }
 
-    /// Whether probes can ask about the state aspect with this name and number of values.
+    /// Whether probes can ask about the state aspect with this name and number of possible values.
     pub fn asks_about(&self, aspect: &str, values: usize) -> bool {
         values > 1 && !self.leave_out.iter().any(|name| name == aspect)
     }

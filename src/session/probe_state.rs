@@ -8,13 +8,13 @@ use crate::base::time::SessionTime;
 /// All freeze probes of a trial: the present one, past ones, and the schedule.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TrialProbes {
-    /// The freeze probe for which the task stands still, from `begun` to `ended`.
+    /// The freeze probe for which the task stands still now, from its event `begun` to its event `ended`.
     pub open: Option<OpenProbe>,
     /// The freeze probes that have ended.
     pub over: Vec<OpenProbe>,
     /// A freeze probe that is due and has not begun.
     pub waiting: Option<WaitingProbe>,
-    /// Numbers of the cancelled freeze probes, with the reason for which they had to wait.
+    /// Numbers of the cancelled freeze probes, each with the reason for which the probe had to wait.
     pub dropped: Vec<(u32, ProbeDelayReason)>,
     /// The scheduled freeze probes of the trial, whose times were drawn at its start.
     pub schedule: Vec<ScheduledProbe>,
@@ -31,7 +31,7 @@ pub struct TrialProbes {
 /// A freeze probe that is due and has not begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WaitingProbe {
-    /// Number of the freeze probe in the trial.
+    /// Number of the freeze probe within the trial, counted from 1.
     pub number: u32,
     /// Whether the schedule or the wizard caused the probe.
     pub origin: ProbeOrigin,
@@ -39,47 +39,47 @@ pub struct WaitingProbe {
     pub uses_estimate: bool,
     /// Time at which the probe became due, on the trial's clock.
     pub since: SessionTime,
-    /// Why the probe has to wait, once that is recorded.
+    /// Why the freeze probe has to wait, once its delay is recorded.
     pub reason: Option<ProbeDelayReason>,
 }
 
 /// A freeze probe that has begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenProbe {
-    /// Number of the freeze probe in the trial.
+    /// Number of the freeze probe within the trial, counted from 1.
     pub number: u32,
     /// Whether the schedule or the wizard caused the probe.
     pub origin: ProbeOrigin,
     /// Whether the belief estimate influenced the choice of the probe's questions.
     pub uses_estimate: bool,
-    /// The questions of the probe.
+    /// The questions of the freeze probe.
     pub questions: Vec<ProbeQuestion>,
-    /// Index of the question that is shown.
+    /// Index of the probe's question that is shown now.
     pub shown: Option<usize>,
-    /// The participant's answers so far, by question.
+    /// The participant's answers so far, one for each question of the probe.
     pub answers: Vec<Option<ProbeAnswer>>,
     /// Session time at which the task was frozen.
     pub begun: SessionTime,
-    /// Session time at which the present question appeared.
+    /// Session time at which the shown question appeared.
     pub asked_at: SessionTime,
     /// The wizard's reason for skipping the remaining questions, if the wizard did.
     pub skipped: Option<String>,
-    /// Why and when the questions ended.
+    /// Why and when the questions of the freeze probe ended.
     pub closed: Option<(ProbeEndReason, SessionTime)>,
-    /// Session time at which the wizard paused the probe, if it is paused.
+    /// Session time at which the wizard paused the freeze probe, if the probe is paused.
     pub paused_since: Option<SessionTime>,
-    /// Session times of start and end of each finished pause of the probe.
+    /// Session times of start and end of each finished pause of the freeze probe.
     pub pauses: Vec<(SessionTime, SessionTime)>,
 }
 
 /// The participant's answer to a question of a freeze probe.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProbeAnswer {
-    /// The chosen answer; `None`: "I don't know".
+    /// The answer that the participant chose; `None`: "I don't know".
     pub answer: Option<String>,
-    /// The participant's confidence in the answer, 1 to 3.
+    /// The participant's confidence in the answer, from 1 to 3.
     pub confidence: Option<u8>,
-    /// Response time: from the question to the answer, without pauses.
+    /// Response time: from the appearance of the question to the answer, without pauses.
     pub took: SessionTime,
     /// Where the answer was entered: on the display or at the console.
     pub on: AnswerEntry,
@@ -91,13 +91,13 @@ impl OpenProbe {
         self.paused_since.is_some()
     }
 
-    /// The shown question, which waits for an answer, with its index.
+    /// The probe's shown question, which waits for an answer, with its index.
     pub fn question(&self) -> Option<(usize, &ProbeQuestion)> {
         let shown = self.shown.filter(|&shown| self.closed.is_none() && self.answers[shown].is_none())?;
         Some((shown, &self.questions[shown]))
     }
 
-    /// Time from `at` to `now` without the pauses of the probe.
+    /// Time from `at` to `now` without the pauses of the freeze probe.
     pub fn age(&self, at: SessionTime, now: SessionTime) -> SessionTime {
         let end = self.paused_since.unwrap_or(now).min(now);
         let paused = self.pauses.iter().map(|&(from, until)| until.min(end) - from.max(at));

@@ -1,8 +1,8 @@
 //! The rules of freeze probes: when one is due, which of its events a session accepts, and what they change.
 //!
-//! A running session asks [`upcoming`] after every event and records the event that is due; a replay applies the
-//! recorded events. While a probe is open the trial is paused, and the probe has its own time, which stands still while
-//! the wizard pauses the probe.
+//! A running session asks [`upcoming`] after every event and records the event of a probe that is due; a replay applies
+//! the recorded events. While a probe is open the trial is paused, and the probe has a time of its own, which stands
+//! still while the wizard pauses the probe.
 
 use super::phase::TrialPhase;
 pub use super::probe_event::{ProbeDelayReason, ProbeEndReason, ProbeEvent, ProbeOrigin, ProbeQuestion, ProbeSubject};
@@ -25,18 +25,18 @@ const BLANK_S: f64 = 1.0;
 pub enum DueProbe {
     /// A freeze probe begins; its questions have to be drawn.
     Begin {
-        /// Number of the freeze probe in the trial.
+        /// Number of the freeze probe within the trial, counted from 1.
         probe: u32,
         /// Whether the schedule or the wizard caused the probe.
         origin: ProbeOrigin,
         /// Whether the belief estimate influences the choice of the probe's questions.
         uses_estimate: bool,
     },
-    /// Any other event of a freeze probe.
+    /// Any event of a freeze probe except its beginning is due.
     Event(ProbeEvent),
 }
 
-/// The next due event of freeze probes and its time; none without probes, and while a probe is paused.
+/// The next due event of freeze probes and its time; none without freeze probes, and while a probe is paused.
 pub fn upcoming(session: &Session) -> Option<(SessionTime, DueProbe)> {
     let spec = of_trial(&session.spec)?;
     match &session.probes.open {
@@ -104,12 +104,13 @@ fn to_begin(session: &Session, spec: &ProbeSpec) -> Option<(SessionTime, DueProb
     })
 }
 
-/// Session time at which the running trial's clock will show `clock`; the present time, if it shows more already.
+/// Session time at which the running trial's clock will show `clock`; the present session time, if it shows more
+/// already.
 fn at_clock(session: &Session, clock: SessionTime) -> SessionTime {
     session.time + (clock - session.trial_clock(session.time))
 }
 
-/// Why a freeze probe cannot begin at `at`, and until when.
+/// Why a freeze probe cannot begin at session time `at`, and the session time until which it cannot.
 fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeDelayReason, SessionTime)> {
     let after = SessionTime::from_secs_f64(spec.after_signal_s);
     let last =
@@ -124,7 +125,7 @@ fn block(session: &Session, spec: &ProbeSpec, at: SessionTime) -> Option<(ProbeD
 /// Whether the session accepts this event of a freeze probe now.
 ///
 /// # Errors
-/// The reason for the refusal, in words for the wizard.
+/// Why the session refuses the event, in words for the wizard.
 pub(super) fn admit(session: &Session, event: &ProbeEvent) -> Result<(), &'static str> {
     let spec = of_trial(&session.spec).ok_or("there are no probes in this trial")?;
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
@@ -188,12 +189,12 @@ fn opened(session: &Session, probe: u32) -> Result<&OpenProbe, &'static str> {
 }
 
 impl Session {
-    /// Whether the task is frozen for a probe: from the probe's beginning until the task continues.
+    /// Whether the task is frozen for a freeze probe: from the probe's beginning until the task continues.
     pub fn is_frozen(&self) -> bool {
         self.probes.open.is_some()
     }
 
-    /// Whether the wizard can pause now: the trial, or the open freeze probe.
+    /// Whether the wizard can pause the trial or the open freeze probe now.
     pub fn can_be_paused(&self) -> bool {
         self.is_running() || self.probes.open.as_ref().is_some_and(|open| !open.is_paused())
     }
@@ -204,8 +205,8 @@ pub(super) fn start(session: &mut Session) {
     session.probes = TrialProbes { schedule: draw(&session.spec, session.trial), ..TrialProbes::default() };
 }
 
-/// Applies an event of a freeze probe that the session accepts; returns for how long the task stood still, if it
-/// continues.
+/// Applies an event of a freeze probe that the session accepts; returns for how long the task stood still, if the event
+/// lets the task continue.
 pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent) -> Option<SessionTime> {
     if !matches!(event, ProbeEvent::Asked { .. } | ProbeEvent::Answered { .. }) {
         session.note(now, TimelineEvent::Probe(event.clone()));
@@ -256,7 +257,7 @@ pub(super) fn apply(session: &mut Session, now: SessionTime, event: &ProbeEvent)
     None
 }
 
-/// Applies an event of the open freeze probe.
+/// Applies an event of the open freeze probe, such as a question or an answer.
 fn in_open(session: &mut Session, now: SessionTime, event: &ProbeEvent) {
     let is_over = matches!(session.phase, TrialPhase::Over(_));
     let Some(open) = &mut session.probes.open else { return };
@@ -283,7 +284,7 @@ fn in_open(session: &mut Session, now: SessionTime, event: &ProbeEvent) {
     }
 }
 
-/// Removes the freeze probe that begins or is delayed: the waiting one, else the next of the schedule.
+/// Removes the freeze probe that begins or is delayed: the waiting probe, or else the next one of the schedule.
 fn take_due(session: &mut Session, now: SessionTime) -> WaitingProbe {
     let clock = session.trial_clock(now);
     let book = &mut session.probes;
@@ -314,8 +315,8 @@ pub(super) fn resume(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Handles the end of the trial: a freeze probe in its count-down ends, too; one with remaining questions is closed by
-/// an event of its own.
+/// Handles the end of the trial: a freeze probe in its count-down ends, too; a probe with remaining questions is closed
+/// by an event of its own.
 pub(super) fn trial_ends(session: &mut Session, now: SessionTime) {
     resume(session, now);
     session.probes.waiting = None;
@@ -324,7 +325,7 @@ pub(super) fn trial_ends(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Handles the end of the session: an open freeze probe ends, too.
+/// Handles the end of the session: an open freeze probe ends with the session.
 pub(super) fn session_ends(session: &mut Session, now: SessionTime) {
     trial_ends(session, now);
     if let Some(mut open) = session.probes.open.take() {

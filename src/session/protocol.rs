@@ -1,4 +1,4 @@
-//! The study protocol: the phases of a recording of a plan, one after another, with their rules.
+//! The study protocol: rules for the phases of a plan's recording, which follow one after another.
 
 use super::phase::TrialPhase;
 use super::plan::{PhaseSpec, Questionnaire, StepSpec};
@@ -8,7 +8,7 @@ use super::session_state::Session;
 use super::tutorial;
 
 impl Session {
-    /// The recording's step in the plan and the protocol's state, if the recording belongs to a plan.
+    /// The recording's step in the study plan and the protocol's state; `None` if the recording belongs to no plan.
     pub fn step(&self) -> Option<(&StepSpec, &StudyProtocolState)> {
         self.spec.step.as_ref().zip(self.protocol.as_ref())
     }
@@ -44,7 +44,7 @@ impl Session {
         }
     }
 
-    /// Why the present phase cannot be left yet; `None` if it can.
+    /// Why the present phase of the study protocol cannot be left yet; `None` if it can be left.
     pub fn phase_lacks(&self) -> Option<&'static str> {
         let protocol = self.protocol.as_ref()?;
         if self.aborted.is_some() {
@@ -65,7 +65,7 @@ impl Session {
         }
     }
 
-    /// Whether all phases of the recording are done or the trial was aborted; true without a plan.
+    /// Whether all phases of the recording are done or the trial was aborted; true for a session without a plan.
     pub fn is_step_done(&self) -> bool {
         match &self.protocol {
             None => true,
@@ -78,7 +78,7 @@ impl Session {
 /// Whether the session accepts this event of the study protocol now.
 ///
 /// # Errors
-/// The reason for the refusal, in words for the wizard.
+/// Why the session refuses the event, in words for the wizard.
 pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static str> {
     let Some((step, protocol)) = session.step() else { return Err("the session has no plan") };
     let unless = |holds: bool, reason: &'static str| if holds { Ok(()) } else { Err(reason) };
@@ -123,7 +123,7 @@ pub fn admit(session: &Session, event: &ProtocolEvent) -> Result<(), &'static st
 /// Whether a trial may start; in a plan, only in the phase of the trial.
 ///
 /// # Errors
-/// The reason for the refusal.
+/// The reason for which the trial may not start, in words.
 pub fn admit_trial(session: &Session) -> Result<(), &'static str> {
     let has_trial = session.study_phase().is_some_and(|phase| phase.phase().has_trial());
     match session.protocol.is_none() || has_trial {
@@ -201,7 +201,7 @@ pub(super) fn apply(session: &mut Session, event: &ProtocolEvent) {
     }
 }
 
-/// Numbers of steps and of questionnaire items in a phase.
+/// Numbers of steps to tick off and of questionnaire items in the phase with this number.
 fn sizes(step: Option<&StepSpec>, number: usize) -> (usize, usize) {
     let phase = step.and_then(|step| step.phases.get(number.checked_sub(1)?));
     let items = match phase {

@@ -14,18 +14,18 @@ pub enum StudyPhase {
     Instruction,
     /// The participant goes through the tutorial on the display.
     Tutorial,
-    /// Practice trial, which does not count.
+    /// Practice trial (familiarisation), which does not count for the analysis.
     Familiarisation,
     /// A trial that counts for the analysis.
     Trial,
     /// The participant answers a questionnaire.
     Questionnaire,
-    /// Debriefing of the wizard after the last trial.
+    /// The wizard debriefs the participant after the last trial.
     Debriefing,
 }
 
 impl StudyPhase {
-    /// The phase's name in logs and tables.
+    /// The study phase's name in logs and tables.
     pub fn name(self) -> &'static str {
         match self {
             StudyPhase::Instruction => "instruction",
@@ -37,7 +37,7 @@ impl StudyPhase {
         }
     }
 
-    /// Whether the phase contains a trial.
+    /// Whether the study phase contains a trial (practice or counted).
     pub fn has_trial(self) -> bool {
         matches!(self, StudyPhase::Trial | StudyPhase::Familiarisation)
     }
@@ -47,7 +47,8 @@ impl StudyPhase {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum ProtocolEvent {
-    /// The participant consented; without consent nothing is recorded. Older recordings contain no further details.
+    /// The participant consented; without consent nothing is recorded. Older recordings contain only that consent was
+    /// given.
     ConsentGiven {
         /// How the participant consented: by holding a button on the display, or by telling the wizard, who confirmed
         /// it on the console.
@@ -62,19 +63,19 @@ pub enum ProtocolEvent {
     },
     /// The next phase of the recording begins.
     PhaseStarted {
-        /// The kind of the phase.
+        /// The kind of the study phase that begins.
         phase: StudyPhase,
         /// Number of the phase in the recording, counted from 1.
         number: usize,
     },
     /// The wizard ticked or unticked a step of an instruction or debriefing.
     Ticked {
-        /// Number of the step, counted from 1.
+        /// Number of the step in the instruction or debriefing, counted from 1.
         step: usize,
-        /// Whether the step is done now.
+        /// Whether the step of the instruction or debriefing is done now.
         done: bool,
     },
-    /// An event of the tutorial.
+    /// An event of the participant's tutorial.
     Tutorial(TutorialEvent),
     /// An item of the questionnaire is shown.
     ItemShown {
@@ -83,15 +84,15 @@ pub enum ProtocolEvent {
     },
     /// All answers to the questionnaire are shown, for the participant to confirm them.
     AnswersShown,
-    /// The participant answered the shown item; a later answer replaces an earlier one. The next item follows at once,
-    /// except after sliders and choices of several options.
+    /// The participant answered the shown questionnaire item; a later answer replaces an earlier one. The next item
+    /// follows at once, except after sliders and choices of several options.
     ItemAnswered {
         /// Identifier of the questionnaire item.
         item: String,
-        /// The participant's answer to the item.
+        /// The participant's answer to the questionnaire item.
         answer: AnswerValue,
     },
-    /// The shown item of the questionnaire is skipped. The next item follows.
+    /// The shown item of the questionnaire is skipped, and the next item follows.
     ItemSkipped {
         /// Identifier of the questionnaire item.
         item: String,

@@ -6,9 +6,9 @@ use super::tutorial_state::TutorialState;
 /// The answer to a questionnaire item, or that it was skipped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ItemAnswer {
-    /// The participant's answer to the item.
+    /// The participant's answer to the questionnaire item.
     Given(AnswerValue),
-    /// The participant gave no answer to the item.
+    /// The participant gave no answer to the questionnaire item.
     Skipped,
 }
 
@@ -32,24 +32,24 @@ pub struct PracticeResult {
 pub struct StudyProtocolState {
     /// Whether the participant consented to what the plan asks for.
     pub consent: bool,
-    /// Number of the present phase, from 1; 0 before the first phase.
+    /// Number of the recording's present phase, from 1; 0 before the first phase.
     pub number: usize,
-    /// Whether each step of the present phase is done.
+    /// Whether each step of the present instruction or debriefing is done.
     pub ticks: Vec<bool>,
     /// Answers to the items of the present phase's questionnaire.
     pub answers: Vec<Option<ItemAnswer>>,
     /// Index of the shown questionnaire item; the number of items while all answers are shown for confirmation.
     pub item: usize,
-    /// Whether the participant has confirmed the answers of the phase.
+    /// Whether the participant has confirmed the answers to the phase's questionnaire.
     pub confirmed: bool,
     /// Result of the practice trial, once it is over.
     pub practice: Option<PracticeResult>,
-    /// State of the tutorial, in the tutorial's phase.
+    /// State of the tutorial, if the present phase is the tutorial.
     pub tutorial: Option<TutorialState>,
 }
 
 impl ItemAnswer {
-    /// The value of the answer; `None` if the item was skipped.
+    /// The value that the participant answered; `None` if the questionnaire item was skipped.
     pub fn value(&self) -> Option<&AnswerValue> {
         match self {
             ItemAnswer::Given(value) => Some(value),
@@ -59,13 +59,13 @@ impl ItemAnswer {
 }
 
 impl StudyProtocolState {
-    /// The answer to the item with this index, if the participant gave one.
+    /// The answer to the questionnaire item with this index, if the participant gave one.
     pub fn given(&self, index: usize) -> Option<&AnswerValue> {
         self.answers.get(index)?.as_ref()?.value()
     }
 
-    /// Records the answer to the shown item and shows the next one, unless the shown item stays; after the last item,
-    /// the first unanswered one or all answers are shown.
+    /// Records the answer to the shown questionnaire item and shows the next one, unless the shown item stays; after
+    /// the last item, the first unanswered one or all answers are shown.
     pub(super) fn answer(&mut self, answer: ItemAnswer, stays: bool) {
         if let Some(place) = self.answers.get_mut(self.item) {
             *place = Some(answer);
@@ -81,7 +81,7 @@ impl StudyProtocolState {
         };
     }
 
-    /// Index of the first item without an answer.
+    /// Index of the first questionnaire item without an answer.
     pub fn open_item(&self) -> Option<usize> {
         self.answers.iter().position(Option::is_none)
     }

@@ -4,10 +4,11 @@ use super::settings::{ArmKind, ParticipantKind, SessionSpec};
 use crate::base::features::{Feature, MissingFeature};
 
 impl SessionSpec {
-    /// Checks that this build can run the session without a console, which may need the simulated arm.
+    /// Checks that this build can run the session without a console; the simulated arm is an optional part of the
+    /// build.
     ///
     /// # Errors
-    /// The missing part.
+    /// The part of the program that this build lacks.
     pub const fn require_built(&self) -> Result<(), MissingFeature> {
         match self.robot.arm {
             ArmKind::Physics => Feature::Physics.require(),
@@ -18,7 +19,7 @@ impl SessionSpec {
     /// Checks that this build can run the session at the console.
     ///
     /// # Errors
-    /// The missing part.
+    /// The part of the program that this build lacks.
     pub fn require_built_live(&self) -> Result<(), MissingFeature> {
         self.require_built()?;
         match self.participant.kind {

@@ -1,11 +1,11 @@
-//! Changes of the robot's state in a session by events.
+//! Changes of the robot's state in a session, as events are applied.
 
 use super::event::Event;
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
 use crate::base::time::SessionTime;
 
-/// Applies an event of the simulated arm to the robot's state.
+/// Applies an event of the simulated arm to the session's state of the robot.
 pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
     match event {
         Event::RobotMoves(moment) => session.robot.arm.last = Some((now, *moment)),
@@ -13,7 +13,7 @@ pub(super) fn arm(session: &mut Session, now: SessionTime, event: &Event) {
         Event::RobotSafety { mode, force_n, joint } => {
             let arm = &mut session.robot.arm;
             (arm.mode, arm.stopped_by_n) = (*mode, *force_n);
-            // A stop by the wizard has an event of its own.
+            // A stop by the wizard has an event of its own, so only other stops are noted here.
             if mode.is_stopped() && !session.robot.stopped {
                 session.robot.stopped = true;
                 session.robot.idle = None;

@@ -2,20 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Kind of the robot's arm: timed, or simulated with physics.
+/// Kind of the robot's arm: timed (presses take a drawn duration), or simulated with physics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ArmKind {
     /// The timed arm: presses have a random duration; the arm's motion is only displayed.
     #[default]
     Timed,
-    /// The arm in the physics simulation: a simulated UR5 presses buttons by contact; it slows near the human's hand
-    /// and stops on contact with it.
+    /// The arm in the physics simulation: a simulated UR5 presses buttons by contact; the UR5 slows near the human's
+    /// hand and stops on contact with the hand.
     Physics,
 }
 
 impl ArmKind {
-    /// Name of the arm in files.
+    /// Name of the robot's arm in files.
     pub fn name(self) -> &'static str {
         match self {
             ArmKind::Timed => "timed",
@@ -28,7 +28,7 @@ impl ArmKind {
     }
 }
 
-/// Settings of the robot.
+/// Settings of the robot: its arm and the duration of its presses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotSpec {

@@ -15,20 +15,20 @@ pub struct RobotStatus {
     pub stopped: bool,
     /// Whether the wizard holds the robot before its next press.
     pub held: bool,
-    /// The press that the wizard chose for the robot, until it is made or aborted.
+    /// The press that the wizard chose for the robot, until the robot has made or aborted that press.
     pub driven_to: Option<ButtonId>,
     /// Why the robot is idle, if it is.
     pub idle: Option<IdleReason>,
-    /// State of the simulated arm.
+    /// State of the simulated robot arm.
     pub arm: ArmStatus,
 }
 
 /// Pose and safety state of the simulated arm.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ArmStatus {
-    /// Last sample with its time; `None` before the first motion and for the timed arm.
+    /// Last sample of the arm's motion with its time; `None` before the first motion and for the timed arm.
     pub last: Option<(SessionTime, ArmSample)>,
-    /// The safety mode of the arm.
+    /// The safety mode of the arm: normal, slowed, or stopped for a reason.
     pub mode: SafetyMode,
     /// Contact force that caused a protective stop, in newtons.
     pub stopped_by_n: Option<f64>,
@@ -48,11 +48,11 @@ impl RobotStatus {
 
     pub(super) fn gives_up(&mut self, reason: AbortReason) {
         self.intention = None;
-        // If the wizard chose another press, that press is still pending.
+        // If the wizard chose another press for the robot, that press is still pending.
         self.driven_to = self.driven_to.filter(|_| reason == AbortReason::Driven);
     }
 
-    /// Records the end of the trial: the robot rests.
+    /// Records the end of the trial: the robot has no press and is not idle for a reason.
     pub(super) fn rests(&mut self) {
         self.intention = None;
         self.driven_to = None;

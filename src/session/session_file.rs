@@ -3,8 +3,8 @@
 use super::settings::{SessionSpec, SettingError};
 
 impl SessionSpec {
-    /// Parses the text of a session file. Missing settings get their defaults; other files to which it refers are not
-    /// read.
+    /// Parses the text of a session file. Missing settings get their defaults; other files to which the session file
+    /// refers are not read.
     ///
     /// # Errors
     /// The text is not TOML, or a setting is unknown or invalid.

@@ -35,7 +35,7 @@ pub struct Session {
     pub trial: u64,
     /// The session time of the last event.
     pub time: SessionTime,
-    /// The phase of the trial: ready, running, paused or over.
+    /// The phase of the session's trial: ready, running, paused or over.
     pub phase: TrialPhase,
     /// Session time of the trial's start.
     pub trial_start: SessionTime,
@@ -43,9 +43,9 @@ pub struct Session {
     pub paused_total: SessionTime,
     /// Session time at which the trial's clock last stopped: at the beginning of a pause, or at the trial's end.
     pub paused_at: SessionTime,
-    /// Session times of start and end of each finished pause.
+    /// Session times of start and end of each finished pause of the trial.
     pub pauses: Vec<(SessionTime, SessionTime)>,
-    /// True state of the kitchen.
+    /// True state of the kitchen: the content of every location.
     pub state: State,
     /// Session time of the last change of each location.
     pub changed_at: [SessionTime; MAX_LOCATIONS],
@@ -61,15 +61,15 @@ pub struct Session {
     pub advice: Option<Recommendation>,
     /// Whether recommendations become offers to the wizard: not in recordings of format 1.
     pub makes_offers: bool,
-    /// The open offer to the wizard, and the closed ones.
+    /// The open offer to the wizard, and the offers that have closed.
     pub offers: OfferHistory,
-    /// Whether a console shows the session to a person.
+    /// Whether a console shows the session to a person (the wizard).
     pub has_console: bool,
-    /// Sequence number of the latest event that the display marks with a flash (trial start, signal).
+    /// Sequence number of the latest event for which the participant's display flashes (trial start, signal).
     pub cue: Option<u64>,
     /// Session time of the wizard's last signal.
     pub signalled_at: Option<SessionTime>,
-    /// Whether the wizard saw the comparison with the assistants.
+    /// Whether the wizard saw the comparison of the wizard's signals with those of the assistants.
     pub unblinded: bool,
     /// Reason for aborting the trial, if it was aborted.
     pub aborted: Option<String>,
@@ -87,18 +87,18 @@ pub struct Session {
     pub timeline: Vec<TimelineEntry>,
     /// The freeze probes of the trial.
     pub probes: TrialProbes,
-    /// Progress within the recording's phases, if it belongs to a plan.
+    /// State of the study protocol (phases and answers), if the recording belongs to a plan.
     pub protocol: Option<StudyProtocolState>,
 }
 
-/// An order that was served.
+/// An order that was served in the trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ServedOrder {
     /// Session time at which the order was served.
     pub time: SessionTime,
-    /// The dish that the order wanted.
+    /// The dish that the served order wanted.
     pub dish: DishId,
-    /// Number of presses of both agents in the trial, including the serving press.
+    /// Number of presses of both agents in the trial up to the serving press, which is included.
     pub presses: u32,
 }
 
@@ -118,13 +118,13 @@ pub struct ShownSignal {
 }
 
 impl Session {
-    /// Locations whose last change was at this session time.
+    /// Locations whose content last changed at this session time.
     pub fn changed_at(&self, time: SessionTime) -> impl Iterator<Item = LocationId> + '_ {
         let times = self.changed_at[..self.kitchen.locations.len()].iter().enumerate();
         times.filter(move |(_, at)| **at == time).map(|(index, _)| LocationId(index as u8))
     }
 
-    /// A session before its first event.
+    /// The state of a session before its first event.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64) -> Session {
         let state = kitchen.empty_state();
         let protocol = spec.step.as_ref().map(|_| StudyProtocolState::default());
@@ -163,7 +163,7 @@ impl Session {
         }
     }
 
-    /// The time on the trial's clock at `now`: time since the trial's start without pauses; zero before the start.
+    /// Reading of the trial's clock at `now`: time since the trial's start without pauses; zero before the start.
     pub fn trial_clock(&self, now: SessionTime) -> SessionTime {
         match self.phase {
             TrialPhase::Ready => SessionTime::ZERO,
@@ -213,7 +213,7 @@ impl Session {
         }
     }
 
-    /// The study arm of the trial, as it was actually carried out.
+    /// The study arm of the trial as it was actually carried out: whether the wizard really saw advice.
     pub fn study_arm(&self) -> StudyArm {
         StudyArm::from_settings(self.spec.trial.condition, self.spec.assistant.concept, self.wizard_saw_advice())
     }
@@ -223,12 +223,12 @@ impl Session {
         self.presses.iter().sum()
     }
 
-    /// Whether the trial is running.
+    /// Whether the trial is running: started, and neither paused nor over.
     pub fn is_running(&self) -> bool {
         self.phase == TrialPhase::Running
     }
 
-    /// Adds an entry to the timeline.
+    /// Adds an entry to the session's timeline.
     pub(super) fn note(&mut self, time: SessionTime, what: TimelineEvent) {
         self.timeline.push(TimelineEntry { time, what });
     }

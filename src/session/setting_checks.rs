@@ -1,4 +1,4 @@
-//! Errors of invalid settings, and checks for several settings.
+//! Errors of invalid settings, and checks that several settings share.
 
 use std::borrow::Cow;
 
@@ -14,7 +14,7 @@ pub struct SettingError {
     pub found: String,
     /// Description of a valid value of the setting.
     pub remedy: Cow<'static, str>,
-    /// Index among several settings with the same path.
+    /// Index of the invalid setting among several settings with the same path, from 0.
     pub nth: usize,
 }
 
@@ -24,7 +24,7 @@ impl SettingError {
         SettingError { path: path.into(), found, remedy: remedy.into(), nth: 0 }
     }
 
-    /// Name of the setting without its tables.
+    /// Name of the invalid setting without the tables in front.
     pub fn key(&self) -> &str {
         self.path.rsplit('.').next().unwrap_or(&self.path)
     }
@@ -36,8 +36,8 @@ impl From<OutOfRange> for SettingError {
     }
 }
 
-/// Whether a text is a valid code: 1 to 32 ASCII letters, digits, `-` and `_`, which are safe in names of folders, keys
-/// and tables.
+/// Whether a text is a valid code: 1 to 32 ASCII letters, digits, `-` and `_`. Such codes are safe in names of folders,
+/// keys and tables.
 pub fn is_code(text: &str) -> bool {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     !text.is_empty() && text.len() <= 32 && text.chars().all(is_plain)

@@ -66,18 +66,20 @@ pub struct SessionSpec {
     /// Settings of the Lab Streaming Layer; `None`: nothing is sent or received.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lsl: Option<LslSpec>,
-    /// Path of a file with the parameters of the human model, relative to the session file; `None` for those in
+    /// Path of a file with the parameters of the human model, relative to the session file; `None`: the parameters are
+    /// in
     /// [`Self::human`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub human_model: Option<String>,
-    /// Parameters of the human model; in a recording, the parameters in use.
+    /// Parameters of the assistant's human model; in a recording, the parameters in use.
     #[serde(default)]
     pub human: HumanModel,
-    /// Whose parameters [`Self::human`] are, where the file of `human_model` has parameters of persons; written by the program, not allowed
-    /// in session files.
+    /// Whose parameters [`Self::human`] are, where the file of `human_model` has parameters of persons. Written by the
+    /// program, not allowed in session files.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub parameters_of: Option<ParametersOf>,
-    /// Parameters of persons in the file of `human_model`, until [`Self::adopt_person`] has chosen among them. Never recorded.
+    /// Parameters of persons in the file of `human_model`, until [`Self::adopt_person`] has chosen among them. Never
+    /// recorded.
     #[serde(skip)]
     pub people: Option<FittedPeople>,
     /// Study plan with several participants and trials.
@@ -93,10 +95,10 @@ fn default_seed() -> u64 {
 }
 
 impl SessionSpec {
-    /// Checks ranges, the participant's code, and settings that exclude each other.
+    /// Checks ranges of the settings, the participant's code, and settings that exclude each other.
     ///
     /// # Errors
-    /// The first invalid setting.
+    /// An error names the first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
         ranges::check_session(self)?;
         self.check_rules()
@@ -105,13 +107,13 @@ impl SessionSpec {
     /// Checks the settings in the header of a recording, whose numbers may have the wider ranges of earlier versions.
     ///
     /// # Errors
-    /// The first invalid setting.
+    /// An error names the first invalid setting.
     pub fn check_recorded(&self) -> Result<(), SettingError> {
         ranges::check_recorded(self)?;
         self.check_rules()
     }
 
-    /// Checks the settings except for the ranges of numbers.
+    /// Checks the session's settings except for the ranges of numbers.
     fn check_rules(&self) -> Result<(), SettingError> {
         if let Some(plan) = &self.plan {
             plan.check()?;
@@ -147,7 +149,7 @@ impl SessionSpec {
 }
 
 impl SessionSpec {
-    /// Checks the settings of the Lab Streaming Layer, and that a stream is set if gaze comes from one.
+    /// Checks the settings of the Lab Streaming Layer, and that a gaze stream is set if gaze comes from the layer.
     fn check_lsl(&self) -> Result<(), SettingError> {
         if self.participant.gaze == GazeSource::Lsl && self.lsl.as_ref().is_none_or(|lsl| lsl.gaze.is_none()) {
             let found = "gaze = \"lsl\", and no stream".to_string();
@@ -158,8 +160,8 @@ impl SessionSpec {
         self.lsl.as_ref().map_or(Ok(()), LslSpec::check)
     }
 
-    /// Gives the human model the parameters of the participant of this recording, whose code is known now. Without parameters of persons
-    /// nothing changes.
+    /// Gives the human model the fitted parameters of the participant of this recording, whose code is known now.
+    /// Without parameters of persons nothing changes.
     pub fn adopt_person(&mut self) {
         let Some(people) = self.people.take() else { return };
         let is_known = people.apply(&self.participant.code, &mut self.human);
@@ -178,12 +180,12 @@ impl SessionSpec {
     }
 
     /// Whether unusually long silence of the human is recorded: where the assistant is then asked for advice, or where
-    /// waiting is evidence.
+    /// waiting is evidence about the human's beliefs.
     pub fn notes_silence(&self) -> bool {
         self.human.inference.waiting || self.assistant.asks_in_silence && self.asks_assistant()
     }
 
-    /// Whether false beliefs that the gaze alone suggests are recorded, so that the assistant is asked for advice.
+    /// Whether false beliefs that the gaze alone suggests are recorded, so that the assistant is then asked for advice.
     pub fn notes_unawareness(&self) -> bool {
         self.assistant.asks_by_gaze && self.asks_assistant()
     }
@@ -193,7 +195,7 @@ impl SessionSpec {
         self.trial.condition == Condition::Wizard && self.wizard.kind == WizardKind::Scripted
     }
 
-    /// Whether a scripted wizard reads the assistant's offers: there are offers, and the session shows recommendations.
+    /// Whether a scripted wizard reads the assistant's offers: offers are made, and the session shows recommendations.
     pub fn script_reads_offers(&self) -> bool {
         let is_shown = self.asks_assistant() && self.console.visibility == WizardVisibility::Recommendation;
         self.scripts_wizard() && self.wizard.offers.is_some() && is_shown
@@ -213,7 +215,7 @@ impl SessionSpec {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrialSpec {
-    /// The condition: who may send signals.
+    /// The trial's condition: who may send signals.
     pub condition: Condition,
     /// Number of presses of both agents at which the trial ends; the default is the paper's mean.
     pub presses: u32,
@@ -223,7 +225,7 @@ pub struct TrialSpec {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orders: Option<u32>,
     /// Least time between two presses of a person, in seconds of the trial's clock; earlier presses are recorded but do
-    /// not count. The pace of simulated participants is that of their population.
+    /// not count. Simulated participants have the pace of their population instead.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pace_s: Option<f64>,
 }
@@ -240,7 +242,7 @@ impl Default for TrialSpec {
 pub struct SignalSpec {
     /// Time for which a signal is shown on the display, in seconds.
     pub shown_s: f64,
-    /// Whether the human's own hand may be highlighted.
+    /// Whether a signal may highlight the human's own hand.
     pub own_hand: bool,
     /// Least time between two signals of the wizard, in seconds.
     pub cool_down_s: f64,

@@ -2,8 +2,8 @@
 //! trial.
 //!
 //! [`apply()`](super::apply()) sets a timer at every counted press of the human where
-//! [`SessionSpec::notes_silence`](super::SessionSpec::notes_silence); the running session then records `human_waits`,
-//! at most once between two presses.
+//! [`SessionSpec::notes_silence`](super::SessionSpec::notes_silence); the running session then records the event
+//! `human_waits`, at most once between two presses.
 
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
@@ -12,7 +12,8 @@ use crate::kitchen::Agent;
 
 /// Share of the human's intervals between presses that are at most as long as the usual silence.
 pub const USUAL_SHARE: f64 = 0.8;
-/// Least number of intervals between presses from which the usual silence is computed; before, no silence is unusual.
+/// Least number of intervals between presses from which the usual silence is computed; with fewer, no silence is
+/// unusual.
 const LEAST_INTERVALS: usize = 8;
 
 /// The longest usual silence after a press that has just been applied: the 80th percentile (nearest rank) of the
@@ -28,8 +29,8 @@ pub(super) fn unusual_after(session: &Session) -> Option<SessionTime> {
     Some(intervals[rank - 1])
 }
 
-/// For how long the human has not pressed at `now`, without pauses; before the human's first press, since the trial's
-/// start.
+/// For how long the human has not pressed at `now`, without pauses; before the human's first press, the time since the
+/// trial's start.
 pub fn lasted(session: &Session, now: SessionTime) -> SessionTime {
     session.age(own_presses(session).next().unwrap_or(session.trial_start), now)
 }

@@ -10,9 +10,9 @@ use super::setting_checks::SettingError;
 pub struct RerunSpec {
     /// Whether Rerun's viewers can connect while the session runs.
     pub live: bool,
-    /// Whether the stream is written to `recording.rrd` beside the log.
+    /// Whether the stream to Rerun is also written to `recording.rrd` beside the log.
     pub record: bool,
-    /// Address at which Rerun's viewers connect; if its port is taken, one of the next ports is used.
+    /// Network address at which Rerun's viewers connect; if its port is taken, one of the next ports is used.
     pub address: String,
 }
 
@@ -23,7 +23,7 @@ impl Default for RerunSpec {
 }
 
 impl RerunSpec {
-    /// Whether there is a Rerun stream at all.
+    /// Whether the session has a stream to Rerun at all, live or recorded.
     pub fn is_on(&self) -> bool {
         self.live || self.record
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::condition::Condition;
 use crate::communication::concept::ConceptName;
 
-/// An arm of a study. A wizard who sees the assistant's recommendations is another arm than one who does not.
+/// An arm of a study. A wizard who sees the assistant's recommendations is another arm than a wizard who does not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StudyArm {
@@ -63,7 +63,7 @@ impl StudyArm {
         }
     }
 
-    /// The communication concept that sends signals in the study arm, if one does.
+    /// The communication concept that sends signals in the study arm; `None` without an assistant.
     pub fn concept(self) -> Option<ConceptName> {
         match self {
             StudyArm::None | StudyArm::Wizard | StudyArm::WizardWithAdvice => None,
@@ -73,7 +73,8 @@ impl StudyArm {
         }
     }
 
-    /// The study arm of a trial with these settings; `saw_advice` says whether the wizard saw the assistant's
+    /// The study arm that a trial with these settings belongs to; `saw_advice` says whether the wizard saw the
+    /// assistant's
     /// recommendations.
     pub fn from_settings(condition: Condition, concept: ConceptName, saw_advice: bool) -> StudyArm {
         match (condition, concept) {

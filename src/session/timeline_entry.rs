@@ -1,4 +1,4 @@
-//! Entries of a session's timeline.
+//! Entries of a session's timeline: what the console and the tables show of events.
 
 use super::event::SignalEndReason;
 use super::phase::TrialPhase;
@@ -14,7 +14,7 @@ use crate::robot::safety::SafetyMode;
 pub struct TimelineEntry {
     /// Session time of the entry.
     pub time: SessionTime,
-    /// What happened, as the timeline shows it.
+    /// What happened at that time, as the timeline shows it.
     pub what: TimelineEvent,
 }
 
@@ -37,25 +37,26 @@ pub enum TimelineEvent {
         /// The signal that appeared.
         signal: Signal,
     },
-    /// The signal disappeared, for this reason.
+    /// The signal disappeared from the display, for this reason.
     SignalEnded(SignalEndReason),
-    /// An order was served.
+    /// An order was served at a location.
     Served {
-        /// The order's location.
+        /// The location of the served order.
         order: LocationId,
     },
-    /// An order appeared.
+    /// An order appeared at a location.
     OrderShown {
-        /// The order's location.
+        /// The location of the order that appeared.
         order: LocationId,
     },
     /// The wizard set a marker with this note.
     Marker(String),
     /// The wizard stopped the robot's arm.
     RobotStopped,
-    /// The arm stopped by itself, with the contact force in newtons or the number of the faulty joint.
+    /// The arm stopped by itself (protective stop or fault), with the contact force in newtons or the number of the
+    /// faulty joint.
     ArmStopped {
-        /// The safety mode since the stop.
+        /// The arm's safety mode since the stop.
         mode: SafetyMode,
         /// The contact force that stopped the arm, in newtons, if a contact did.
         force_n: Option<f64>,

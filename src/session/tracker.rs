@@ -12,28 +12,28 @@ use crate::gaze::surface::SurfaceHomography;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct TrackerSpec {
-    /// Network host on which the program Pupil Capture runs.
+    /// Network address of the computer on which the program Pupil Capture runs.
     pub address: String,
     /// Network port of Pupil Capture's interface Pupil Remote.
     pub port: u16,
     /// Name of the surface that Pupil Capture defines by the AprilTags on the wall display.
     pub surface: String,
-    /// Corners of that surface in fractions of the display: top left, top right, bottom right, bottom left. By default
-    /// the surface that Pupil Capture creates by itself, the hull of the tags' black squares.
+    /// Corners of the tracked surface in fractions of the display: top left, top right, bottom right, bottom left. By
+    /// default the surface that Pupil Capture creates by itself, the hull of the tags' black squares.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corners: Option<[[f64; 2]; 4]>,
-    /// Whether Pupil Capture records every trial. Its recordings are annotated in any case.
+    /// Whether Pupil Capture makes a recording of every trial. Its own recordings are annotated in any case.
     pub record: bool,
     /// Path of the file from which gaze is replayed, relative to the session file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
     /// Time in the replayed gaze file at which the trial starts, in seconds after the file's first sample; negative:
-    /// the trial starts before it.
+    /// the trial starts before the first sample.
     #[serde(skip_serializing_if = "is_zero")]
     pub file_start_s: f64,
     /// Distance from the participant's eyes to the wall display, in metres.
     pub distance_m: f64,
-    /// Drop-outs of the simulated eye tracker; none by default.
+    /// Drop-outs (times without gaze) of the simulated eye tracker; none by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gaps: Option<GazeGapSpec>,
 }
@@ -44,9 +44,9 @@ pub struct TrackerSpec {
 pub struct GazeGapSpec {
     /// Mean time from the end of a drop-out to the beginning of the next one, in seconds.
     pub every_s: f64,
-    /// Shortest duration of a drop-out, in seconds. Durations are distributed evenly on a logarithmic scale.
+    /// Shortest duration of a drop-out of gaze, in seconds. Durations are distributed evenly on a logarithmic scale.
     pub shortest_s: f64,
-    /// Longest duration of a drop-out, in seconds.
+    /// Longest duration of a drop-out of gaze, in seconds.
     pub longest_s: f64,
 }
 
@@ -108,7 +108,7 @@ impl TrackerSpec {
     }
 }
 
-/// An event of the eye tracker. All of these events come from outside.
+/// An event of the eye tracker. All events of the eye tracker come from outside.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
 pub enum TrackerEvent {
@@ -117,14 +117,14 @@ pub enum TrackerEvent {
         /// Name by which the eye tracker identifies itself.
         device: String,
     },
-    /// The eye tracker's program does not respond any more; connecting is retried without limit.
+    /// The eye tracker's program does not respond any more; connecting to the program is retried without limit.
     Lost {
         /// Why the connection to the tracker's program was lost.
         reason: String,
     },
     /// The eye tracker detects the wall display by its AprilTags.
     DisplayFound,
-    /// The eye tracker does not detect the wall display, so there is no gaze on it.
+    /// The eye tracker does not detect the wall display, so no gaze on the display is known.
     DisplayLost,
     /// The eye tracker detects surfaces, but none of them is the wall display.
     OtherSurfaces {
@@ -133,10 +133,11 @@ pub enum TrackerEvent {
     },
     /// The eye tracker's program reports on its own recording of the trial.
     Recording {
-        /// The state of the tracker's recording.
+        /// The state of the eye tracker's own recording.
         state: TrackerRecording,
     },
-    /// Number of inputs from the tracker that could not be recorded since the session began; at most once per second.
+    /// Number of inputs from the tracker that could not be recorded since the session began; reported at most once per
+    /// second.
     Dropped(DroppedInputCounts),
     /// A finished fixation that the eye tracker detected.
     Fixation {
@@ -163,13 +164,13 @@ pub enum TrackerEvent {
     },
     /// Onset or offset of a blink that the eye tracker detected.
     Blink {
-        /// Whether the eyes closed (onset); false: they opened (offset).
+        /// Whether the eyes closed (onset of the blink); false: the eyes opened (offset).
         closed: bool,
         /// The tracker's confidence in the blink, 0 to 1.
         confidence: f64,
-        /// Time of the onset or offset on the tracker's clock, in nanoseconds.
+        /// Time of the blink's onset or offset on the tracker's clock, in nanoseconds.
         device_ns: u64,
-        /// Session time of the onset or offset.
+        /// Session time of the blink's onset or offset.
         taken_ns: SessionTime,
     },
 }
@@ -182,7 +183,7 @@ pub enum TrackerRecording {
     Begun,
     /// The tracker's recording did not begin: its program is recording already, or cannot record.
     NotBegun,
-    /// The tracker's recording ended before the trial.
+    /// The tracker's recording ended before the trial ended.
     Ended,
     /// The tracker's program accepts no annotations.
     NotAnnotated,
@@ -191,7 +192,7 @@ pub enum TrackerRecording {
 /// State of the connection to the eye tracker's program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum TrackerConnection {
-    /// No message has been received yet.
+    /// No message from the eye tracker's program has been received yet.
     #[default]
     Unknown,
     /// The eye tracker's program responds.
@@ -213,13 +214,13 @@ pub enum TrackerConnection {
 pub struct TrackerStatus {
     /// State of the connection to the tracker's program.
     pub link: TrackerConnection,
-    /// Whether the tracker detects the wall display; `None` if it has not reported that.
+    /// Whether the tracker detects the wall display; `None` if the tracker has not reported on the display.
     pub sees_display: Option<bool>,
     /// Names of the surfaces that the tracker detects instead of the wall display.
     pub other_surfaces: Vec<String>,
     /// Number of lost connections to the tracker's program.
     pub losses: u64,
-    /// Numbers of inputs that could not be recorded, by kind.
+    /// Numbers of the tracker's inputs that could not be recorded, by kind.
     pub dropped: DroppedInputCounts,
     /// How often the clock of the tracker's time stamps was set.
     pub clock_steps: u64,
@@ -258,7 +259,7 @@ impl TrackerStatus {
 /// Whether the session accepts this event of the eye tracker.
 ///
 /// # Errors
-/// The reason for the refusal.
+/// The reason for which the event is refused.
 pub(super) fn admit(event: &TrackerEvent) -> Result<(), &'static str> {
     let numbers = match event {
         TrackerEvent::Fixation { at, duration_ms, dispersion_deg, confidence, .. } => {

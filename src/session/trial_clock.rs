@@ -1,4 +1,4 @@
-//! The trial's clock: how it stops and continues. It stands still in pauses and freeze probes.
+//! The trial's clock: how the clock stops and continues. It stands still in pauses and freeze probes.
 
 use super::phase::TrialPhase;
 use super::session_state::Session;
@@ -23,7 +23,7 @@ pub(super) fn stop(session: &mut Session, now: SessionTime) {
     }
 }
 
-/// Resumes the trial; returns for how long it stood still, by which all pending times have to be postponed.
+/// Resumes the trial; returns for how long the trial stood still, by which all pending times have to be postponed.
 pub(super) fn resume(session: &mut Session, now: SessionTime) -> SessionTime {
     let by = now - session.paused_at;
     session.pauses.push((session.paused_at, now));

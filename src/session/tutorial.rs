@@ -1,4 +1,4 @@
-//! The participant's tutorial, a phase of a study plan: which of its events a session accepts, and what they change.
+//! The participant's tutorial, a phase of a study plan: which tutorial events a session accepts, and what they change.
 
 use super::plan::{PhaseSpec, Tutorial, TutorialStep, TutorialStepKind};
 use super::session_state::Session;
@@ -7,7 +7,7 @@ pub use super::tutorial_state::{TutorialPress, TutorialState};
 use crate::kitchen::Agent;
 
 impl Session {
-    /// The tutorial of the present phase and its state, if the phase has one.
+    /// The tutorial of the present phase and the tutorial's state; `None` if the phase has no tutorial.
     pub fn tutorial(&self) -> Option<(&Tutorial, &TutorialState)> {
         let (_, protocol) = self.step()?;
         match self.study_phase()? {
@@ -16,7 +16,7 @@ impl Session {
         }
     }
 
-    /// The shown step of a tutorial that is not over.
+    /// The shown step of the tutorial; `None` if the tutorial is over.
     pub fn tutorial_step(&self) -> Option<(&TutorialStep, &TutorialState)> {
         let (tutorial, state) = self.tutorial().filter(|(_, state)| !state.is_over)?;
         Some((tutorial.steps.get(state.step)?, state))
@@ -26,7 +26,7 @@ impl Session {
 /// Whether the session accepts this event of the tutorial now.
 ///
 /// # Errors
-/// The reason for the refusal, in words for the wizard.
+/// Why the session refuses the event, in words for the wizard.
 pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'static str> {
     let (tutorial, _) = session.tutorial().ok_or("there is no tutorial now")?;
     let (step, state) = session.tutorial_step().ok_or("the tutorial is over")?;
@@ -60,7 +60,7 @@ pub(super) fn admit(session: &Session, event: &TutorialEvent) -> Result<(), &'st
     }
 }
 
-/// Begins the tutorial of the phase that has just begun, if the phase has one.
+/// Begins the tutorial of the study phase that has just begun, if the phase has a tutorial.
 pub(super) fn begin(session: &mut Session) {
     let begun = match session.study_phase() {
         Some(PhaseSpec::Tutorial { tutorial }) => Some(TutorialState::new(tutorial, &session.kitchen)),

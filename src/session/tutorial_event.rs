@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TutorialReader {
-    /// The participant, who can continue only when a step is done.
+    /// The participant, who can turn the tutorial's page only when its step is done.
     Participant,
-    /// The wizard, who may skip a step.
+    /// The wizard, who may skip a step of the tutorial.
     Wizard,
 }
 
 impl TutorialReader {
-    /// Name of the reader in logs.
+    /// Name of the one who turned the tutorial's page (participant or wizard) in logs.
     pub fn name(self) -> &'static str {
         match self {
             TutorialReader::Participant => "participant",
@@ -22,8 +22,8 @@ impl TutorialReader {
     }
 }
 
-/// An event of a tutorial. Presses in a tutorial act on a kitchen of its own: they are no presses of a trial, and no
-/// evidence of beliefs.
+/// An event of a tutorial. Presses in a tutorial act on a kitchen of the tutorial's own: such presses are no presses of
+/// a trial, and no evidence of beliefs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "did", rename_all = "snake_case")]
 pub enum TutorialEvent {
@@ -48,7 +48,7 @@ pub enum TutorialEvent {
     Answered {
         /// Identifier of the tutorial step.
         step: String,
-        /// Number of the choice, counted from 1.
+        /// Number of the participant's choice, counted from 1.
         choice: u8,
     },
     /// The tutorial is over: the participant read its last step, or the wizard skipped the rest.

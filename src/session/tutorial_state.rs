@@ -11,10 +11,10 @@ pub struct TutorialPress {
     pub number: u32,
     /// The button that the participant pressed.
     pub button: ButtonId,
-    /// Whether it was the button that the step asks for.
+    /// Whether the pressed button is the one that the tutorial step asks for.
     pub is_right: bool,
-    /// Why the press has no effect by the rules of the kitchen, and the location that the reason is about; none if it
-    /// has an effect.
+    /// Why the press has no effect by the rules of the kitchen, and the location that the reason is about; `None` if
+    /// the press has an effect.
     pub no_effect: Option<(NoEffectReason, LocationId)>,
 }
 
@@ -23,17 +23,17 @@ pub struct TutorialPress {
 pub struct TutorialState {
     /// Index of the shown tutorial step.
     pub step: usize,
-    /// The state of the tutorial's own kitchen.
+    /// The state of the tutorial's own kitchen: the content of every location.
     pub kitchen: State,
-    /// Number of the step's requested presses that are done.
+    /// Number of the presses requested by the tutorial step that are done.
     pub presses: usize,
-    /// The last press of the step.
+    /// The participant's last press in the shown tutorial step.
     pub last: Option<TutorialPress>,
     /// Number of presses in the tutorial so far.
     pub pressed: u32,
     /// Whether the recipe cards of the step were shown for their set time.
     pub are_cards_hidden: bool,
-    /// The wrong choice in the step's question, counted from 1, until the participant chooses again.
+    /// The participant's wrong choice in the step's question, counted from 1, until the participant chooses again.
     pub wrong: Option<u8>,
     /// Whether each step of the tutorial was done.
     pub done: Vec<bool>,
@@ -68,8 +68,8 @@ impl TutorialState {
         self.step = step;
         self.kitchen = tutorial.state_at(kitchen, step);
         (self.presses, self.last, self.wrong) = (0, None, None);
-        // Recipe cards that were shown for their time are not shown again when the participant goes back: the recipes
-        // have to be remembered.
+        // Recipe cards that were shown for their time are not shown again when the participant goes back in the
+        // tutorial: the recipes have to be remembered.
         self.are_cards_hidden = tutorial.steps.get(step).is_some_and(TutorialStep::is_timed) && self.is_done();
         let needs_nothing = tutorial.steps.get(step).is_some_and(|step| match step.kind {
             TutorialStepKind::Text | TutorialStepKind::Signal => true,
@@ -79,7 +79,7 @@ impl TutorialState {
         self.finish(needs_nothing);
     }
 
-    /// Whether the participant may continue from the shown step.
+    /// Whether the participant may continue from the shown tutorial step.
     pub fn is_done(&self) -> bool {
         self.done.get(self.step) == Some(&true)
     }
@@ -89,8 +89,8 @@ impl TutorialState {
         step.presses.get(self.presses)
     }
 
-    /// Applies a press of the participant. Only the button that the step asks for changes the tutorial's kitchen, so
-    /// that hints remain correct.
+    /// Applies a press of the participant in the tutorial. Only the button that the step asks for changes the
+    /// tutorial's kitchen, so that hints remain correct.
     pub(super) fn press(&mut self, step: &TutorialStep, kitchen: &Kitchen, button: ButtonId) {
         self.pressed += 1;
         let is_right =
@@ -104,7 +104,7 @@ impl TutorialState {
         }
     }
 
-    /// Applies an answer to the step's question.
+    /// Applies the participant's answer to the tutorial step's question.
     pub(super) fn answer(&mut self, step: &TutorialStep, choice: u8) {
         let is_right = step.right == Some(choice);
         self.wrong = (!is_right).then_some(choice);
@@ -114,7 +114,7 @@ impl TutorialState {
         self.finish(is_right);
     }
 
-    /// Hides the recipe cards of the step, because they were shown for their time.
+    /// Hides the recipe cards of the tutorial step, because the cards were shown for their set time.
     pub(super) fn hide_cards(&mut self) {
         self.are_cards_hidden = true;
         self.finish(true);

@@ -1,4 +1,4 @@
-//! Changes of locations at which the participant has not looked since: facts, not estimates.
+//! Changes of locations at which the participant has not looked since the change: facts, not estimates.
 
 use super::session_state::Session;
 use super::timeline_entry::TimelineEvent;
@@ -6,7 +6,7 @@ use crate::base::time::SessionTime;
 use crate::kitchen::{Agent, LocationId};
 
 impl Session {
-    /// Agent that changed a location at this session time, from the timeline.
+    /// Agent whose press changed a location at this session time, from the timeline.
     pub fn changed_by(&self, at: SessionTime) -> Option<Agent> {
         let since = self.timeline.iter().rev().take_while(|entry| entry.time >= at);
         since.filter(|entry| entry.time == at).find_map(|entry| match entry.what {
@@ -15,7 +15,8 @@ impl Session {
         })
     }
 
-    /// Whether a location changed without a press of the human, and the participant has not looked at it since.
+    /// Whether a location changed without a press of the human, and the participant has not looked at the location
+    /// since.
     pub fn is_unseen(&self, location: LocationId) -> bool {
         let at = self.changed_at[location.index()];
         let seen = self.gaze.looked_at[location.index()].is_some_and(|seen| seen >= at);

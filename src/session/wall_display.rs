@@ -1,7 +1,7 @@
-//! The participant's wall display (a page in a browser): its settings in a session file, and its reports. The module
-//! `display` computes its content.
+//! The participant's wall display (a page in a browser): its settings in a session file, and the reports that the page
+//! sends. The module `display` computes the page's content.
 
-// Addresses are plain values here; this module opens no connections.
+// Network addresses are plain values here; this module opens no connections.
 use core::net::{IpAddr, Ipv4Addr};
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ pub struct DisplaySpec {
     pub port: u16,
     /// Language of the display's page: "en", "de", or the path of a file with words, relative to the session file.
     pub language: String,
-    /// Words of the page from that file; in a recording, the words in use.
+    /// Words of the page from the language file; in a recording, the words in use.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub words: BTreeMap<String, String>,
     /// Which pictures on the page have names beside them.
@@ -32,7 +32,7 @@ pub struct DisplaySpec {
     /// communication.
     pub intention: bool,
     /// How the page shows a robot that the participant cannot see otherwise. A session file without this setting means
-    /// a hand; a recording without it was made when the page showed no robot.
+    /// a hand; a recording without this setting was made when the page showed no robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arm: Option<DisplayedArm>,
     /// Whether AprilTags are shown in the corners, by which an eye tracker finds the display.
@@ -40,15 +40,15 @@ pub struct DisplaySpec {
     /// Whether a square on the page flashes at the start of the trial and at signals, to synchronise video recordings.
     pub flash: bool,
     /// Whether the page says why a press has no effect. A session file without this setting means yes; a recording
-    /// without it was made when the page gave no reasons.
+    /// without this setting was made when the page gave no reasons.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reasons: Option<bool>,
     /// Whether the page plays a tone at a press without effect, and another one at a signal.
     pub sound: bool,
-    /// Whether the time that the trial still has is shown.
+    /// Whether the page shows the time that the trial still has.
     pub clock: bool,
-    /// Whether the number of served orders is shown. A session file without it means no; a recording without it was made when it
-    /// was always shown.
+    /// Whether the page shows the number of served orders. A session file without this setting means no; a recording
+    /// without it was made when the number was always shown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub served: Option<bool>,
     /// Where questionnaires are answered: on the display or at the console.
@@ -83,12 +83,12 @@ impl DisplaySpec {
         !self.listen.is_loopback()
     }
 
-    /// Whether the number of served orders is shown.
+    /// Whether the display's page shows the number of served orders.
     pub fn shows_served(&self) -> bool {
         self.served != Some(false)
     }
 
-    /// Language code of the page; a file with words contains its own.
+    /// Language code of the display's page; a file with words contains its own language code.
     pub fn code(&self) -> &str {
         self.words.get("language").unwrap_or(&self.language)
     }
@@ -108,8 +108,8 @@ impl DisplaySpec {
     }
 }
 
-/// Which pictures on the participant's display have names beside them. Contents of places never have one, since telling
-/// salmon from tuna is part of the task.
+/// Which pictures on the participant's display have names beside them. Contents of places never have a name, since
+/// telling salmon from tuna is part of the task.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayedNames {
@@ -125,16 +125,16 @@ pub enum DisplayedNames {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DisplayedArm {
-    /// Not at all: a real robot stands beside the display.
+    /// The page does not show the robot: a real robot stands beside the display.
     None,
-    /// A hand that moves between the places with its content.
+    /// The page shows a hand that moves between the places with its content.
     Hand,
-    /// A hand with an arm, seen from above.
+    /// The page shows a hand with an arm, seen from above.
     Arm,
 }
 
 impl DisplayedArm {
-    /// Name of the setting in files and tables.
+    /// Name of this choice of the shown robot in files and tables.
     pub fn name(self) -> &'static str {
         match self {
             DisplayedArm::None => "none",
@@ -144,13 +144,13 @@ impl DisplayedArm {
     }
 }
 
-/// Where answers are entered, and by whom.
+/// Where answers of the participant are entered, and by whom.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AnswerEntry {
-    /// At the console: the wizard reads the items out and enters the answers.
+    /// Answers are entered at the console: the wizard reads the items out and enters the participant's answers.
     Console,
-    /// On the display: the participant answers there; the wizard can also enter answers.
+    /// Answers are entered on the display by the participant; the wizard can also enter answers.
     Display,
 }
 

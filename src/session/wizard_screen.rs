@@ -1,4 +1,4 @@
-//! Visible content of the wizard's screen. It is recorded at every change, since the wizard's decisions depend on it.
+//! Visible content of the wizard's screen, recorded at every change, since the wizard's decisions depend on it.
 
 use serde::{Deserialize, Serialize};
 

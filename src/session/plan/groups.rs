@@ -8,9 +8,9 @@ use crate::session::study_arm::StudyArm;
 /// A starting group: an order of the study's conditions.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct StartingGroup {
-    /// Name of the group: "AB" if the first condition of the plan comes first.
+    /// Name of the starting group: "AB" if the first condition of the plan comes first.
     pub name: String,
-    /// The study arm of each trial, in order.
+    /// The study arm of each trial of a participant in this group, in order.
     pub conditions: Vec<StudyArm>,
 }
 

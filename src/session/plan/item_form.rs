@@ -11,19 +11,19 @@ pub const SLIDER_END: i64 = 100;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum QuestionnaireItemKind {
-    /// The answer is a point of a rating scale.
+    /// Questionnaire item whose answer is a point of a rating scale.
     Scale,
-    /// The answer is one of the options, or several.
+    /// Questionnaire item whose answer is one of its options, or several.
     Choice,
-    /// The answer is a whole number.
+    /// Questionnaire item whose answer is a whole number.
     Number,
-    /// The answer is a text.
+    /// Questionnaire item whose answer is a text.
     Text,
-    /// The answer is a slider's position from 0 to 100.
+    /// Questionnaire item whose answer is a slider's position from 0 to 100.
     Slider,
 }
 
-/// A rating scale with points from 1 to `points`.
+/// A rating scale of a questionnaire, with points from 1 to `points`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RatingScale {
@@ -41,7 +41,7 @@ pub struct RatingScale {
 pub struct ItemOption {
     /// Identifier of the option in logs and tables, the same in all languages.
     pub id: String,
-    /// Text of the option, as the participant reads it.
+    /// Text of the answer option, as the participant reads it.
     pub text: String,
 }
 
@@ -52,21 +52,21 @@ pub enum AnswerFormat<'a> {
     Scale(&'a RatingScale),
     /// The answer is one of these options, or several.
     Choice {
-        /// The options in their order on the page.
+        /// The answer options in their order on the page.
         options: &'a [ItemOption],
-        /// Whether several options can be chosen.
+        /// Whether the participant can choose several options.
         several: bool,
     },
     /// The answer is a whole number.
     Number {
-        /// The least and the greatest allowed number.
+        /// The least and the greatest number that the answer can be.
         range: [i64; 2],
-        /// The unit of the number; empty if it has none.
+        /// The unit of the answered number; empty if the number has no unit.
         unit: &'a str,
     },
     /// The answer is a text.
     Text {
-        /// Largest length of the text, in characters.
+        /// Largest length of the answered text, in characters.
         length: u32,
     },
     /// The answer is a slider's position from 0 to 100.
@@ -81,7 +81,7 @@ pub enum AnswerFormat<'a> {
 }
 
 impl QuestionnaireItemKind {
-    /// Name of the item's kind in files and tables.
+    /// Name of the kind of questionnaire item in files and tables.
     pub fn name(self) -> &'static str {
         match self {
             QuestionnaireItemKind::Scale => "scale",
@@ -94,7 +94,8 @@ impl QuestionnaireItemKind {
 }
 
 impl<'a> AnswerFormat<'a> {
-    /// The least and the greatest answer of scales and sliders, whose answers can be reversed.
+    /// The least and the greatest answer on a rating scale or slider, needed to reverse an answer; `None` for other
+    /// kinds.
     pub fn ends(&self) -> Option<[i64; 2]> {
         match self {
             AnswerFormat::Scale(scale) => Some([1, i64::from(scale.points)]),
@@ -103,13 +104,13 @@ impl<'a> AnswerFormat<'a> {
         }
     }
 
-    /// Whether the item stays on the page after an answer, because participants are likely to change the answer; the
-    /// next item then follows only on request.
+    /// Whether the questionnaire item stays on the page after an answer, because participants are likely to change the
+    /// answer; the next item then follows only on request.
     pub fn stays(&self) -> bool {
         matches!(self, AnswerFormat::Choice { several: true, .. } | AnswerFormat::Slider { .. })
     }
 
-    /// Whether a value is a valid answer to the item.
+    /// Whether a value is a valid answer to the questionnaire item.
     ///
     /// # Errors
     /// Why the answer is invalid, in words for the wizard.
@@ -144,7 +145,7 @@ impl<'a> AnswerFormat<'a> {
         }
     }
 
-    /// The answer after the participant selects this option, or deselects it.
+    /// The item's answer after the participant selects the option with this index, or deselects it.
     pub fn choose(&self, index: usize, given: Option<&AnswerValue>) -> Option<AnswerValue> {
         let AnswerFormat::Choice { options, several } = self else { return None };
         let chosen = &options.get(index)?.id;
@@ -152,13 +153,13 @@ impl<'a> AnswerFormat<'a> {
             return Some(AnswerValue::Text(chosen.clone()));
         }
         let before = given.map_or(&[][..], AnswerValue::options);
-        // The ids keep the order of the options, whatever the order of choosing.
+        // The chosen ids keep the order of the item's options, whatever the order in which they were chosen.
         let is_chosen = |id: &String| before.contains(id) != (id == chosen);
         let ids = options.iter().map(|option| &option.id).filter(|id| is_chosen(id));
         Some(AnswerValue::Options(ids.cloned().collect()))
     }
 
-    /// The answer in words: options by their texts, numbers with their unit.
+    /// The questionnaire answer in words: options by their texts, numbers with their unit.
     pub fn words(&self, answer: &AnswerValue) -> String {
         match (self, answer) {
             (AnswerFormat::Choice { options, .. }, _) => {

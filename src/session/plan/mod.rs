@@ -1,5 +1,5 @@
-//! Study plans: the series of recordings of each participant, with conditions and dish orders. Everything here is a
-//! function of the plan and its seed, independent of the order in which participants come.
+//! Study plans: the series of recordings of each participant, with conditions and dish orders. Everything in this
+//! module is a function of the plan and its seed, independent of the order in which participants come.
 //!
 //! A recording has at most one trial. The settings of a recording contain its `step` (plan, digest, group, period,
 //! attempt, phases with all texts and items), so that it can be replayed after the plan has changed. Progress follows

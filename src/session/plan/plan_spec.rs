@@ -13,11 +13,11 @@ use crate::session::wall_display::AnswerEntry;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanSpec {
-    /// Name of the plan, which identifies its recordings.
+    /// Name of the study plan, by which recordings of the plan are recognised.
     pub name: String,
     /// The participants of the study.
     pub participants: Participants,
-    /// Study arms that are compared; each participant has one trial in each, in counterbalanced order.
+    /// Study arms that the study compares; each participant has one trial in each arm, in counterbalanced order.
     pub conditions: Vec<StudyArm>,
     /// The primary outcome of the study, and its margin of non-inferiority.
     #[serde(default, skip_serializing_if = "StudyAims::are_default")]
@@ -28,17 +28,18 @@ pub struct PlanSpec {
     /// Consent text, which is shown before anything is recorded.
     #[serde(default = "default_consent")]
     pub consent: String,
-    /// How the participant consents: on the display by holding a button, or by telling the wizard, who confirms it at
-    /// the console.
+    /// How the participant consents: by holding a button on the display, or by telling the wizard, who confirms the
+    /// consent at the console.
     #[serde(default = "on_console", skip_serializing_if = "is_console")]
     pub consent_on: AnswerEntry,
     /// Steps of the wizard's instruction to the participant.
     #[serde(default)]
     pub instruction: Vec<String>,
-    /// The participant's tutorial on the display after the instruction: a file, relative to the session file.
+    /// File of the tutorial that the participant sees on the display after the instruction, relative to the session
+    /// file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tutorial: Option<String>,
-    /// Practice trial before the first trial, if the plan has any.
+    /// Practice trial before the first trial, if the plan has a practice trial.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub familiarisation: Option<FamiliarisationSpec>,
     /// The questionnaires, and after which trials the participant answers them.
@@ -61,13 +62,13 @@ fn is_console(consent_on: &AnswerEntry) -> bool {
     *consent_on == AnswerEntry::Console
 }
 
-/// The participants of a plan: their number, from which codes follow (P01, P02, …), or their codes.
+/// The participants of a plan: their number, from which codes follow (P01, P02, …), or a list of their codes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, expecting = "a number of participants, or a list of their codes")]
 pub enum Participants {
-    /// This number of participants, with the codes P01, P02, …
+    /// The number of participants; their codes are P01, P02, …
     Count(u32),
-    /// The participants with these codes.
+    /// The codes of the participants, in a list.
     Codes(Vec<String>),
 }
 
@@ -95,11 +96,12 @@ pub struct FamiliarisationSpec {
 pub struct QuestionnaireSpec {
     /// The questionnaire's file, relative to the session file.
     pub file: String,
-    /// Numbers of the trials after which the questionnaire is asked, from 1; by default after each.
+    /// Numbers of the trials after which the participant answers the questionnaire, from 1; by default after each
+    /// trial.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<Vec<u32>>,
-    /// Whether the questionnaire is asked once before the first trial; after trials it is then asked only if `after`
-    /// says so.
+    /// Whether the participant answers the questionnaire once before the first trial; after trials it is then asked
+    /// only if `after` says so.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub before: bool,
 }
@@ -120,7 +122,7 @@ impl PlanSpec {
         }
     }
 
-    /// Code of the participant with this index; empty beyond the last.
+    /// Code of the participant with this index in the plan; empty beyond the last participant.
     pub fn code(&self, participant: usize) -> String {
         match &self.participants {
             Participants::Count(count) if participant < *count as usize => numbered(participant as u32 + 1, *count),
@@ -129,10 +131,10 @@ impl PlanSpec {
         }
     }
 
-    /// Checks ranges and consistency of the plan.
+    /// Checks ranges and consistency of the study plan.
     ///
     /// # Errors
-    /// The first invalid setting.
+    /// An error names the first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
         let wrong = |key: &'static str, found: String, remedy: &'static str| Err(SettingError::new(key, found, remedy));
         if !is_code(&self.name) {

@@ -99,8 +99,8 @@ impl Study {
         practice.into_iter().chain(trials).map(|(period, condition)| PlannedTrial { period, condition }).collect()
     }
 
-    /// The settings of a recording with people, with the participant's own parameters of the human model where there are any, and the
-    /// number of its trial.
+    /// The settings of a recording with people, with the participant's own fitted parameters of the human model where
+    /// there are any, and the number of the recording's trial.
     pub fn settings(&self, wanted: WantedRecording) -> (SessionSpec, u64) {
         let slots = self.slots(wanted.participant);
         let slot = slots[wanted.slot];
@@ -130,8 +130,8 @@ impl Study {
         (spec, trial_number(wanted))
     }
 
-    /// The settings of a simulated trial, and the trial's number. There is no instruction and no questionnaire; without
-    /// a scripted wizard, the wizard conditions are unassisted.
+    /// The settings of a simulated trial of the study, and the trial's number. A simulated trial has no instruction and
+    /// no questionnaire; without a scripted wizard, the wizard conditions are unassisted.
     pub fn simulated(&self, participant: usize, period: u32) -> (SessionSpec, u64) {
         let slots = self.slots(participant);
         let slot = slots.iter().position(|slot| slot.period == Some(period)).unwrap_or(0);
@@ -146,7 +146,7 @@ impl Study {
         (spec, trial)
     }
 
-    /// The settings of a recording with only the tutorial; `None` if the study has none.
+    /// The settings of a recording that has only the tutorial; `None` if the study has no tutorial.
     pub fn tutorial_alone(&self, code: &str) -> Option<SessionSpec> {
         let phases = vec![PhaseSpec::Tutorial { tutorial: self.tutorial.clone()? }];
         let mut spec = self.session.clone();
@@ -173,7 +173,7 @@ impl Study {
         if !wanted.instructed && !self.plan.instruction.is_empty() {
             phases.push(PhaseSpec::Instruction { steps: self.plan.instruction.clone() });
         }
-        // The tutorial is shown on the participant's display only, not at the keyboard of the console.
+        // The tutorial is shown on the participant's display only, not to a participant at the keyboard of the console.
         let is_there = !wanted.instructed && self.session.participant.kind == ParticipantKind::Display;
         if let Some(tutorial) = self.tutorial.as_ref().filter(|_| is_there) {
             phases.push(PhaseSpec::Tutorial { tutorial: tutorial.clone() });
@@ -216,9 +216,9 @@ fn set_arm(spec: &mut SessionSpec, arm: StudyArm) {
     }
 }
 
-/// The settings without those that cannot change a trial: addresses, viewers, appearance and texts of the wizard's
-/// console. Who takes part in a recording and which device its gaze comes from are chosen at its start, written to its
-/// header, and not part of the plan.
+/// The session settings without those that cannot change a trial: addresses, viewers, appearance and texts of the
+/// wizard's console. Who takes part in a recording and which device its gaze comes from are not part of the plan
+/// either; both are chosen at the start of a recording and written to its header.
 fn what_can_change_a_trial(session: &SessionSpec) -> SessionSpec {
     let ParticipantSpec { population, .. } = session.participant.clone();
     let TrackerSpec { surface, corners, distance_m, .. } = session.tracker.clone();
@@ -229,7 +229,7 @@ fn what_can_change_a_trial(session: &SessionSpec) -> SessionSpec {
         console: ConsoleSpec { visibility: session.console.visibility, ..ConsoleSpec::default() },
         display: DisplaySpec { listen: display.listen, port: display.port, ..session.display.clone() },
         rerun: RerunSpec::default(),
-        // The parameters are in `human`, and the layout's text is passed beside the settings.
+        // The model's parameters are in `human`, and the layout's text is passed beside the settings.
         human_model: None,
         layout: String::new(),
         ..session.clone()

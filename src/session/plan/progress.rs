@@ -12,7 +12,7 @@ use super::step::StepSpec;
 pub enum RecordingOutcome {
     /// The recording is complete: all its phases are done.
     Complete,
-    /// The recording is unfinished: cut off or left early; it can be continued.
+    /// The recording is unfinished: cut off or left early, so that it can be continued.
     Open,
     /// The recording is finished and excluded from the analysis, but not repeated.
     Excluded {
@@ -29,13 +29,13 @@ pub enum RecordingOutcome {
 /// Facts about one recording of a study plan, over all its parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanRecording {
-    /// Name of the recording's last folder.
+    /// Name of the recording's folder; the last part's, if the recording has several.
     pub recording: String,
     /// The participant's code.
     pub code: String,
-    /// Position of the recording in the plan.
+    /// Position of the recording in the study plan.
     pub step: StepSpec,
-    /// Whether the participant consented.
+    /// Whether the participant consented to being recorded.
     pub consent: bool,
     /// Whether the participant completed the instruction, if there is one.
     pub instructed: bool,
@@ -45,32 +45,32 @@ pub struct PlanRecording {
     pub outcome: RecordingOutcome,
 }
 
-/// The recording that a participant needs next.
+/// The recording that a participant of a study needs next.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "is", rename_all = "snake_case")]
 pub enum NextRecording {
-    /// A new recording begins.
+    /// A new recording begins at a planned trial.
     Begin {
         /// The index of the planned trial in the participant's series.
         slot: usize,
         /// The number of the attempt at this trial, counted from 1.
         attempt: u32,
     },
-    /// An unfinished recording exists: the experimenter continues it, or repeats it as this attempt.
+    /// There is an unfinished recording: the experimenter continues it, or repeats its trial as a new attempt.
     Choose {
         /// Name of the unfinished recording's folder.
         recording: String,
         /// The index of the planned trial in the participant's series.
         slot: usize,
-        /// The number of the attempt if the recording is repeated, counted from 1.
+        /// The number of the new attempt if the trial is repeated, counted from 1.
         attempt: u32,
     },
-    /// No recording: the participant has completed the series.
+    /// No recording is needed: the participant has completed the series.
     Finished,
 }
 
 impl NextRecording {
-    /// Index of the planned trial; `None` when all are done.
+    /// Index of the planned trial that comes next; `None` when all trials are done.
     pub fn slot(&self) -> Option<usize> {
         match self {
             NextRecording::Begin { slot, .. } | NextRecording::Choose { slot, .. } => Some(*slot),
@@ -85,18 +85,18 @@ pub struct PlannedTrialProgress {
     /// The planned trial of the participant's series.
     #[serde(flatten)]
     pub slot: PlannedTrial,
-    /// Whether the trial has a valid recording.
+    /// Whether the planned trial has a valid recording.
     pub is_done: bool,
-    /// The attempts at the trial, in order.
+    /// The attempts at the planned trial, in order.
     pub recordings: Vec<TrialAttempt>,
 }
 
 /// One attempt at a planned trial.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrialAttempt {
-    /// The name of the recording's last folder.
+    /// The name of the attempt's recording folder; the last part's, if the recording has several.
     pub recording: String,
-    /// Number of the attempt, from 1.
+    /// Number of this attempt at the planned trial, from 1.
     pub attempt: u32,
     /// Number of presses of both agents in the attempt's trial.
     pub presses: u32,
@@ -121,17 +121,17 @@ pub struct ParticipantProgress {
     /// Whether the participant completed the instruction, if there is one.
     #[serde(skip)]
     pub instructed: bool,
-    /// The planned trials of the series, in order.
+    /// The planned trials of the participant's series, in order, with their attempts.
     pub steps: Vec<PlannedTrialProgress>,
     /// The recording that the participant needs next.
     pub next: NextRecording,
 }
 
 impl ParticipantProgress {
-    /// Progress of a participant; `made` contains all recordings of the plan in any order.
+    /// Progress of a participant through the plan; `made` contains all recordings of the plan in any order.
     ///
     /// # Errors
-    /// A recording that does not belong to this plan, in words.
+    /// A recording that does not belong to this plan, named in words.
     pub fn from_recordings(
         study: &Study,
         participant: usize,
@@ -154,19 +154,19 @@ impl ParticipantProgress {
         Ok(ParticipantProgress { code, participant, group, consent, instructed, steps, next })
     }
 
-    /// The recording to make for a new attempt at a planned trial.
+    /// Identifies the recording to make for a new attempt at a planned trial.
     pub fn wanted(&self, slot: usize, attempt: u32) -> WantedRecording {
         WantedRecording { participant: self.participant, slot, attempt, instructed: self.instructed }
     }
 
-    /// Makes this planned trial the next one, even if it is done.
+    /// Makes this planned trial the participant's next one, even if the trial is done.
     pub fn redo(&mut self, slot: Option<usize>) {
         if let Some((slot, stand)) = slot.and_then(|slot| Some((slot, self.steps.get(slot)?))) {
             self.next = NextRecording::Begin { slot, attempt: stand.attempts() + 1 };
         }
     }
 
-    /// Number of completed trials of the series.
+    /// Number of completed trials of the participant's series.
     pub fn done(&self) -> usize {
         self.steps.iter().filter(|stand| stand.is_done).count()
     }
@@ -184,14 +184,14 @@ impl PlannedTrialProgress {
             outcome: made.outcome.clone(),
             other_version: made.step.digest != study.digest,
         };
-        // A later attempt replaces earlier ones, since the experimenter asked for it.
+        // A later attempt at a planned trial replaces earlier ones, since the experimenter asked for the repetition.
         let is_done = here
             .last()
             .is_some_and(|made| matches!(made.outcome, RecordingOutcome::Complete | RecordingOutcome::Excluded { .. }));
         PlannedTrialProgress { slot, is_done, recordings: here.iter().map(attempt).collect() }
     }
 
-    /// The number of the last attempt.
+    /// The number of the last attempt at the planned trial.
     fn attempts(&self) -> u32 {
         self.recordings.last().map_or(0, |last| last.attempt)
     }

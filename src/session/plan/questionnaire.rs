@@ -20,16 +20,16 @@ pub struct Questionnaire {
     pub title: String,
     /// Language code of the items: "en".
     pub language: String,
-    /// How the questionnaire's score is computed from its answers, if it has one.
+    /// How the questionnaire's score is computed from the answers; `None` if the questionnaire has no score.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub score: Option<ScoreRule>,
-    /// The rating scale of all items that do not name another one.
+    /// The rating scale of all items that do not name a rating scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<RatingScale>,
-    /// Further rating scales by name.
+    /// Further rating scales of the questionnaire, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub scales: BTreeMap<String, RatingScale>,
-    /// The items, in the order in which they are asked.
+    /// The questionnaire's items, in the order in which they are asked.
     #[serde(rename = "item")]
     pub items: Vec<QuestionnaireItem>,
 }
@@ -39,10 +39,10 @@ pub struct Questionnaire {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ScoreRule {
-    /// Mean of the answers, as in the raw task load index of Hart (2006).
+    /// Score: mean of the answers, as in the raw task load index of Hart (2006).
     Mean,
-    /// System usability scale of Brooke (1996): ten items of five points; 2.5 times the sum of the points above the
-    /// lowest, 0 to 100.
+    /// Score of the system usability scale of Brooke (1996): ten items of five points; 2.5 times the sum of the points
+    /// above the lowest, so from 0 to 100.
     Sus,
 }
 
@@ -54,52 +54,52 @@ pub struct QuestionnaireItem {
     pub id: String,
     /// The statement or question, as the participant reads it.
     pub text: String,
-    /// The kind of answer; a rating scale by default.
+    /// The kind of answer to the questionnaire item; by default a point of a rating scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<QuestionnaireItemKind>,
-    /// Name of the item's rating scale; by default that of all items.
+    /// Name of the item's rating scale; by default the scale of all items.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<String>,
     /// The options of an item that is answered by choice.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub options: Vec<ItemOption>,
-    /// Whether several options can be chosen.
+    /// Whether the participant can choose several options of the item.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub several: bool,
-    /// The least number that can be answered.
+    /// The least number that the participant can answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min: Option<i64>,
-    /// The greatest number that can be answered.
+    /// The greatest number that the participant can answer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max: Option<i64>,
-    /// Unit of the answered number: "years".
+    /// Unit of the number that the participant answers: "years".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
     /// Largest length of a text answer, in characters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length: Option<u32>,
-    /// Label of the slider's position 0.
+    /// Label at the slider's left end, position 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub low: Option<String>,
-    /// Label of the slider's position 100.
+    /// Label at the slider's right end, position 100.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub high: Option<String>,
-    /// Slider positions are multiples of this number.
+    /// Step of the slider: its positions are multiples of this number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<u8>,
-    /// Construct that the item measures; items with the same construct form a scale.
+    /// Construct that the questionnaire item measures; items with the same construct form a scale.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub about: Option<String>,
-    /// Whether the item is reverse coded.
+    /// Whether the item is reverse coded: agreement means a low value of the construct.
     #[serde(default)]
     pub reversed: bool,
-    /// Conditions of a trial after which the item is asked; all by default.
+    /// Conditions of a trial after which the questionnaire item is asked; all conditions by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub conditions: Option<Vec<Condition>>,
 }
 
 impl Questionnaire {
-    /// The questionnaire after a trial in this condition; `None` if it has no items.
+    /// The questionnaire as asked after a trial in this condition; `None` if no item is asked then.
     pub fn after(&self, condition: Condition) -> Option<Questionnaire> {
         let is_asked =
             |item: &&QuestionnaireItem| item.conditions.as_ref().is_none_or(|only| only.contains(&condition));
@@ -107,15 +107,16 @@ impl Questionnaire {
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
     }
 
-    /// The questionnaire before the first trial; `None` if it has no items. Items for certain conditions are left out.
+    /// The questionnaire as asked before the first trial, without items for certain conditions; `None` if no item is
+    /// left.
     pub fn before_trials(&self) -> Option<Questionnaire> {
         let items: Vec<QuestionnaireItem> =
             self.items.iter().filter(|item| item.conditions.is_none()).cloned().collect();
         (!items.is_empty()).then(|| Questionnaire { items, ..self.clone() })
     }
 
-    /// The answer format of the item with this index; `None` if there is no such item, or if it lacks settings that its
-    /// kind needs.
+    /// The answer format of the questionnaire item with this index; `None` if there is no such item, or if the item
+    /// lacks settings that its kind needs.
     pub fn form(&self, index: usize) -> Option<AnswerFormat<'_>> {
         let item = self.items.get(index)?;
         Some(match item.kind.unwrap_or(QuestionnaireItemKind::Scale) {
@@ -135,7 +136,7 @@ impl Questionnaire {
         })
     }
 
-    /// Index of the item with this identifier.
+    /// Index of the questionnaire item with this identifier.
     pub fn position(&self, id: &str) -> Option<usize> {
         self.items.iter().position(|item| item.id == id)
     }

@@ -1,18 +1,18 @@
-//! Checks of a questionnaire file.
+//! Checks of a questionnaire file for valid and consistent settings.
 
 use super::item_form::{AnswerFormat, ItemOption, QuestionnaireItemKind, SLIDER_END};
 use super::questionnaire::{Questionnaire, QuestionnaireItem, ScoreRule};
 use crate::session::ranges;
 use crate::session::setting_checks::{SettingError, is_code};
 
-/// Largest number of options of an item: each is chosen by a digit key.
+/// Largest number of answer options of a questionnaire item: each option is chosen by a digit key.
 const MOST_OPTIONS: usize = 9;
 
 impl Questionnaire {
-    /// Checks ranges and consistency of the questionnaire.
+    /// Checks ranges and consistency of the questionnaire's settings.
     ///
     /// # Errors
-    /// The first invalid setting.
+    /// An error names the first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
         let wrong = |key: &str, found, remedy| Err(SettingError::new(key, found, remedy));
         if !is_code(&self.name) {
@@ -26,7 +26,7 @@ impl Questionnaire {
         self.check_ids()?;
         for (index, item) in self.items.iter().enumerate() {
             self.check_item(item).map_err(|(key, found, remedy)| {
-                // Only items that have this setting in the file count for its index.
+                // Index of the invalid setting among items that have this setting in the file.
                 let nth = self.items[..index].iter().filter(|before| has(before, key)).count();
                 SettingError { nth, ..SettingError::new(format!("item.{key}"), found, remedy) }
             })?;
@@ -47,13 +47,13 @@ impl Questionnaire {
         }
     }
 
-    /// Checks that an item has the settings that its kind needs, and no others.
+    /// Checks that a questionnaire item has the settings that its kind needs, and no others.
     fn check_item(&self, item: &QuestionnaireItem) -> Result<(), WrongItem> {
         let kind = item.kind.unwrap_or(QuestionnaireItemKind::Scale);
         if let Some((key, owner)) = OWNED.into_iter().find(|(key, owner)| *owner != kind && has(item, key)) {
             return Err((key, format!("{key} in an item of the kind \"{}\"", kind.name()), remedy_for(owner)));
         }
-        // The line that the message names if a setting is missing.
+        // Key of the line that the error message names if a setting is missing.
         let line = if item.kind.is_some() { "kind" } else { "id" };
         let found = format!("kind = \"{}\" in the item \"{}\"", kind.name(), item.id);
         match kind {
@@ -113,7 +113,7 @@ impl Questionnaire {
     }
 }
 
-/// Error in an item: the setting, what was found, and what would be right.
+/// Error in a questionnaire item: the setting, what was found, and what would be right.
 type WrongItem = (&'static str, String, &'static str);
 
 fn check_options(item: &QuestionnaireItem, line: &'static str) -> Result<(), WrongItem> {
@@ -134,7 +134,7 @@ fn check_options(item: &QuestionnaireItem, line: &'static str) -> Result<(), Wro
     }
 }
 
-/// The settings that belong to one kind of items, with that kind.
+/// The settings that only one kind of questionnaire item can have, each with that kind.
 const OWNED: [(&str, QuestionnaireItemKind); 10] = [
     ("scale", QuestionnaireItemKind::Scale),
     ("options", QuestionnaireItemKind::Choice),
@@ -158,7 +158,7 @@ fn remedy_for(owner: QuestionnaireItemKind) -> &'static str {
     }
 }
 
-/// Whether the item has this setting in the file.
+/// Whether the questionnaire item has this setting in the file.
 fn has(item: &QuestionnaireItem, key: &str) -> bool {
     match key {
         "kind" => item.kind.is_some(),

@@ -12,9 +12,9 @@ use crate::session::study_arm::StudyArm;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepSpec {
-    /// The name of the study plan.
+    /// The name of the study plan to which the recording belongs.
     pub plan: String,
-    /// Digest of the plan, its settings and questionnaires.
+    /// Digest of the plan, its settings and questionnaires, by which another version of the plan is recognised.
     pub digest: String,
     /// Index of the participant in the plan, from 0.
     pub participant: u32,
@@ -33,22 +33,22 @@ pub struct StepSpec {
     pub aims: StudyAims,
     /// Number of the attempt at this trial, from 1.
     pub attempt: u32,
-    /// Criterion of the practice trial (familiarisation).
+    /// Criterion that the participant has to meet in the practice trial (familiarisation).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub criterion: Option<PracticeCriterion>,
-    /// The phases of the recording, in order.
+    /// The phases of the recording, in order, such as instruction, trial and questionnaire.
     #[serde(rename = "phase")]
     pub phases: Vec<PhaseSpec>,
 }
 
-/// Criterion of the practice trial (familiarisation): least number of served orders, largest share of errors among the
-/// human's presses.
+/// Criterion of the practice trial (familiarisation): a least number of served orders, and a largest share of errors
+/// among the human's presses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PracticeCriterion {
-    /// The least number of served orders.
+    /// The least number of served orders in the practice trial.
     pub orders: u32,
-    /// The largest share of errors among the human's presses, 0 to 1; none: errors do not matter.
+    /// The largest share of errors among the human's presses, 0 to 1; `None`: errors do not matter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error_rate: Option<f64>,
 }
@@ -61,7 +61,7 @@ impl PracticeCriterion {
     }
 }
 
-/// A phase of a recording, with its content.
+/// A phase of a study recording, such as instruction or trial, with its content.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "what", rename_all = "snake_case", deny_unknown_fields)]
 pub enum PhaseSpec {
@@ -81,7 +81,7 @@ pub enum PhaseSpec {
     Trial,
     /// The participant answers a questionnaire.
     Questionnaire {
-        /// The questionnaire, with the items that are asked here.
+        /// The questionnaire, with the items that are asked in this phase.
         questionnaire: Questionnaire,
     },
     /// The participant is debriefed.
@@ -104,7 +104,7 @@ impl PhaseSpec {
         }
     }
 
-    /// The steps of the phase that the wizard ticks off.
+    /// The steps of an instruction or debriefing that the wizard ticks off.
     pub fn steps(&self) -> &[String] {
         match self {
             PhaseSpec::Instruction { steps } | PhaseSpec::Debriefing { steps } => steps,
@@ -114,12 +114,12 @@ impl PhaseSpec {
 }
 
 impl StepSpec {
-    /// Whether the recording has only the participant's tutorial.
+    /// Whether the recording has only the participant's tutorial, without a trial.
     pub fn is_tutorial_alone(&self) -> bool {
         matches!(self.phases[..], [PhaseSpec::Tutorial { .. }])
     }
 
-    /// Position in the participant's series: "trial 1/2", "familiarisation".
+    /// Position of the recording in the participant's series, in words: "trial 1/2", "familiarisation".
     pub fn label(&self) -> String {
         let again = if self.attempt > 1 { format!(", attempt {}", self.attempt) } else { String::new() };
         match self.period {

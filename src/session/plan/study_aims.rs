@@ -29,12 +29,12 @@ impl StudyAims {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PrimaryOutcome {
-    /// All errors of the human.
+    /// Primary outcome: all errors of the human.
     #[default]
     Errors,
-    /// Errors that a false belief caused; for people these are known from two raters' codes.
+    /// Primary outcome: errors that a false belief caused; for people these are known from two raters' codes.
     BeliefRelatedErrors,
-    /// Error sequences (related errors); for people these are known from two raters' codes.
+    /// Primary outcome: error sequences (related errors); for people these are known from two raters' codes.
     Sequences,
 }
 

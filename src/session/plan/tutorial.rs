@@ -1,5 +1,5 @@
-//! Tutorials: pages for the participant on the display before the first practice, one page per step, at the
-//! participant's own pace.
+//! Tutorials: pages for the participant on the display before the first practice, one page per step; the participant
+//! turns the pages.
 
 use serde::{Deserialize, Serialize};
 
@@ -28,56 +28,56 @@ pub struct Tutorial {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TutorialStepKind {
-    /// A text, with places on the display that are framed.
+    /// Step with a text; places on the display that the text is about are framed.
     Text,
-    /// Buttons for the participant to press one after another; each is marked in turn.
+    /// Step in which the participant presses buttons one after another; each button is marked in turn.
     Press,
-    /// The recipe cards of all dishes, for the participant to learn.
+    /// Step with the recipe cards of all dishes, for the participant to learn.
     Recipes,
-    /// A signal, shown as in a trial.
+    /// Step with a signal on the display, shown as in a trial.
     Signal,
-    /// A guided order: as `press`, but with a dish to prepare and hints that fade.
+    /// Step with a guided order: as `press`, but with a dish to prepare and hints that fade.
     Order,
-    /// A question with one right choice.
+    /// Step with a question that has one right choice.
     Question,
 }
 
-/// A step of a tutorial: one page.
+/// A step of a tutorial: one page on the participant's display.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TutorialStep {
-    /// Identifier of the step in the log.
+    /// Identifier of the tutorial step in the log.
     pub id: String,
     /// The kind of the tutorial step.
     pub kind: TutorialStepKind,
     /// Heading of the tutorial page.
     pub title: String,
-    /// Text of the page; for the kind `question`, the question.
+    /// Text of the tutorial page; for the kind `question`, the question.
     pub text: String,
-    /// Names of what the page frames: locations, the human's buttons, or "human" and "robot" for their areas.
+    /// Names of what the tutorial page frames: locations, the human's buttons, or "human" and "robot" for their areas.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub point_at: Vec<String>,
     /// For the kinds `press` and `order`: the human's buttons, in the order in which the participant has to press them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub presses: Vec<String>,
-    /// For the kind `order`, and for a signal that shows a recipe: the ordered dish.
+    /// For the kind `order`, and for a signal that shows a recipe: name of the ordered dish.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub dish: Option<String>,
-    /// For the kind `signal`: the location that is highlighted; without it, the signal shows the recipe of `dish`.
+    /// For the kind `signal`: the highlighted location; without a location, the signal shows the recipe of `dish`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub highlight: Option<String>,
-    /// For the kind `order`: number of presses whose button is marked at once; the others are marked after
-    /// `hint_after_s`.
+    /// For the kind `order`: number of presses whose button is marked at once; the buttons of later presses are marked
+    /// after `hint_after_s`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hints: Option<usize>,
     /// For the kind `order`: time without the right press after which the button is marked, in seconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hint_after_s: Option<f64>,
-    /// For the kind `recipes`: time for which the recipe cards are shown, in seconds; 0: until the participant
-    /// continues.
+    /// For the kind `recipes`: time for which the recipe cards are shown, in seconds; 0: until the participant turns
+    /// the page.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seconds: Option<f64>,
-    /// For the kind `question`: the choices.
+    /// For the kind `question`: the texts of the choices.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<String>,
     /// For the kind `question`: the number of the right choice, counted from 1.
@@ -94,12 +94,13 @@ impl TutorialStep {
         matches!(self.kind, TutorialStepKind::Press | TutorialStepKind::Order)
     }
 
-    /// Whether the recipe cards of this step disappear after a set time.
+    /// Whether this step's recipe cards disappear after a set time.
     pub fn is_timed(&self) -> bool {
         self.kind == TutorialStepKind::Recipes && self.seconds.is_some_and(|seconds| seconds > 0.0)
     }
 
-    /// Time without the right press after which the button of the step's press with this index (from 0) is marked, in
+    /// How long the step waits without the right press before it marks the button of the press with this index (from
+    /// 0), in
     /// seconds.
     pub fn hint_after_s(&self, press: usize) -> f64 {
         match self.kind {
@@ -133,10 +134,10 @@ impl Tutorial {
         state
     }
 
-    /// Checks the tutorial as far as possible without a kitchen.
+    /// Checks the tutorial's settings as far as possible without a kitchen.
     ///
     /// # Errors
-    /// The first invalid setting.
+    /// An error names the first invalid setting.
     pub fn check(&self) -> Result<(), SettingError> {
         if !is_code(&self.name) {
             let remedy = "a short name of letters, digits, - and _, such as \"sushi\"";
@@ -161,11 +162,11 @@ impl Tutorial {
         Ok(())
     }
 
-    /// Checks the names of locations, buttons and dishes, and that every press of the tutorial has an effect when its
-    /// turn comes.
+    /// Checks the names of locations, buttons and dishes in the tutorial, and that every press of the tutorial has an
+    /// effect when its turn comes.
     ///
     /// # Errors
-    /// The first one that does not fit the kitchen.
+    /// The first name or press that does not fit the kitchen.
     pub fn check_kitchen(&self, kitchen: &Kitchen) -> Result<(), SettingError> {
         for (nth, step) in self.steps.iter().enumerate() {
             check_names(kitchen, step).map_err(|error| placed(error, nth, step))?;
@@ -192,7 +193,7 @@ impl Tutorial {
     }
 }
 
-/// The state of the kitchen after the human's press; `None` if it has no effect.
+/// The state of the kitchen after the human's press; `None` if the press has no effect.
 fn pressed(kitchen: &Kitchen, state: State, button: ButtonId) -> Option<State> {
     let press = kitchen.try_press(state, Agent::Human, button);
     press.effective.then_some(press.after)
@@ -203,7 +204,7 @@ fn dish_of(kitchen: &Kitchen, step: &TutorialStep) -> Option<DishId> {
     kitchen.dish_named(step.dish.as_ref()?)
 }
 
-/// Places the error of a step at the step's id, which every step has exactly once.
+/// Places the error of a tutorial step at the step's id in the file, which every step has exactly once.
 fn placed(error: SettingError, nth: usize, step: &TutorialStep) -> SettingError {
     let found = format!("step \"{}\": {}", step.id, error.found);
     SettingError { nth, found, path: "step.id".to_string(), ..error }
@@ -287,7 +288,7 @@ fn check_names(kitchen: &Kitchen, step: &TutorialStep) -> Result<(), SettingErro
 /// An element of the display that a tutorial step can frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TutorialTarget {
-    /// The area of an agent on the display.
+    /// The area of human or robot on the display.
     Area(Agent),
     /// A location on the display.
     Location(LocationId),
@@ -296,7 +297,7 @@ pub enum TutorialTarget {
 }
 
 impl TutorialTarget {
-    /// The element with this name in a tutorial file.
+    /// The element of the display that has this name in a tutorial file.
     pub fn named(kitchen: &Kitchen, name: &str) -> Option<TutorialTarget> {
         match name {
             "human" => Some(TutorialTarget::Area(Agent::Human)),

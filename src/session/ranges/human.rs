@@ -2,16 +2,16 @@
 
 use crate::base::number_range::{ABOVE_0, INSIDE_0_AND_1, NOT_NEGATIVE, NumberRange};
 
-/// Range of sample sizes that earlier versions of the program accepted.
+/// Range of numbers of samples (sample sizes) that earlier versions of the program accepted.
 const TO_65536: [f64; 2] = [1.0, 65_536.0];
-/// Range of the reading radius as an angle: below 45 degrees, since the radius on the display is a tangent of the
-/// angle.
+/// Range of the reading radius (gaze this close to a location reads its content) as an angle: below 45 degrees, since
+/// the radius on the display is a tangent of the angle.
 const BELOW_45: [f64; 2] = [ABOVE_0[0], 44.999_999];
-/// Range of rates of looks, per second.
+/// Range of rates of looks (how often people look at a location), per second.
 const LOOKS: [f64; 2] = [0.0, 100.0];
 const FEW_LOOKS: &str = "eyes look at a few places a second";
 const CHANCE: &str = "it is a probability";
-/// Reason for the bounds of probabilities that must be neither 0 nor 1.
+/// Reason for the bounds of probabilities that must be neither 0 nor 1, shown with an error.
 const UNSURE: &str = "certainty could not be corrected by any observation";
 const PRECISION: &str = "less is no belief, more a certain one";
 const DRAWS: &str = "more take seconds to minutes a press";

@@ -1,7 +1,7 @@
 //! The allowed ranges of all numbers in session files, in files with parameters of the human model, and in
 //! questionnaires. Those of layouts are in [`crate::kitchen::layout_ranges`]; `docs/settings.md` shows both.
-//!
-//! A file with a number outside of its range is refused. For the header of a recording the program only warns, if an
+//! A file with a number outside of its allowed range is refused. For the header of a recording the program only warns,
+//! if an earlier version of the program accepted the number.
 //! earlier version accepted the number.
 
 mod human;
@@ -24,31 +24,31 @@ pub fn of_sessions() -> Vec<NumberRange> {
 /// Allowed ranges of all numbers in questionnaires.
 pub const OF_QUESTIONNAIRES: [NumberRange; 6] = trial::OF_ITEMS;
 
-/// Checks that a session file may have all these numbers.
+/// Checks that all numbers of a session file are in their allowed ranges.
 ///
 /// # Errors
-/// The first number outside of its range.
+/// The first number outside of its allowed range.
 pub fn check_session(spec: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&of_sessions(), &numbers(spec, "")?)
 }
 
-/// Checks that a file may have all these parameters of the human model.
+/// Checks that all parameters of the human model in a file are in their allowed ranges.
 ///
 /// # Errors
-/// The first number outside of its range; its path begins with [`HUMAN`].
+/// The first number outside of its allowed range; its path begins with [`HUMAN`].
 pub fn check_human_model(model: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&human::RANGES, &numbers(model, HUMAN)?)
 }
 
-/// Checks that a questionnaire may have all these numbers.
+/// Checks that all numbers of a questionnaire are in their allowed ranges.
 ///
 /// # Errors
-/// The first number outside of its range.
+/// The first number outside of its allowed range.
 pub fn check_questionnaire(questionnaire: &impl Serialize) -> Result<(), OutOfRange> {
     number_range::check_file(&OF_QUESTIONNAIRES, &numbers(questionnaire, "")?)
 }
 
-/// Checks that the session settings in a recording may have all these numbers.
+/// Checks that all numbers in the settings of a recording were allowed by some version of the program.
 ///
 /// # Errors
 /// The first number that no version of the program accepted.

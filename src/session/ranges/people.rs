@@ -6,13 +6,13 @@ const SECONDS: &str = "s";
 const CHANCE: &str = "it is a probability";
 const LATE: &str = "a wizard who takes longer cannot help";
 
-/// Range of a probability that differs between people: its odds are drawn, so it must be neither 0 nor 1.
+/// Range of a probability that differs between people: its odds are drawn for each person, so 0 and 1 are not allowed.
 const fn chance(path: &'static str) -> NumberRange {
     let reason = "a probability; its odds are drawn, so neither 0 nor 1";
     NumberRange::real(path, [0.000_001, 0.999_999], "", reason).recorded(INSIDE_0_AND_1)
 }
 
-/// Range of a probability that differs between people, or is 0 for everybody.
+/// Range of a probability that either differs between people, or is 0 for everybody.
 const fn rare_chance(path: &'static str) -> NumberRange {
     NumberRange::real(path, [0.0, 0.999_999], "", "a probability; its odds are drawn, so not 1; 0: nobody does")
         .recorded([0.0, INSIDE_0_AND_1[1]])

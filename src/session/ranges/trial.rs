@@ -9,12 +9,12 @@ const BELOW_1: [f64; 2] = [0.0, INSIDE_0_AND_1[1]];
 const SECONDS: &str = "s";
 const CHANCE: &str = "it is a probability";
 const PORT: &str = "ports of TCP and UDP have these numbers";
-/// Reason for the bounds of durations of presses and of intervals between them.
+/// Reason for the bounds of durations of presses and of intervals between presses, shown with an error.
 const PRESS: &str = "less is no movement, more no cooperation";
 /// Longest allowed trial, in seconds: a day.
 const DAY_S: f64 = 86_400.0;
 const LONGEST: &str = "no trial is longer than a day";
-/// Largest number that 32 bits hold, which is practically no limit.
+/// Largest number that 32 bits hold, which is practically no limit for a count.
 const COUNT: f64 = 4_294_967_295.0;
 
 pub(super) const RANGES: [NumberRange; 50] = [

@@ -1,5 +1,5 @@
 //! The assistant of a session: answers a request for advice after every press and every order change, and at the other
-//! moments that the session's settings name.
+//! times that the session's settings name.
 
 use super::follower::SessionFollower;
 use crate::base::time::SessionTime;
@@ -19,7 +19,7 @@ use crate::session::Session;
 pub struct AdviceRequest {
     /// Sequence number of the event after which advice is requested.
     pub seq: u64,
-    /// Session time of that event.
+    /// Session time of the event after which advice is requested.
     pub time: SessionTime,
     presses: u32,
     state: State,
@@ -28,7 +28,7 @@ pub struct AdviceRequest {
     robot: RobotIntent,
     robot_press_s: f64,
     forecast: SignalForecast,
-    /// The signals that can be sent at that time.
+    /// The signals that can be sent at the time of the request.
     signals: Vec<Signal>,
     /// Sequence number of the human's last press, if that press was an error.
     error: Option<u64>,
@@ -56,7 +56,7 @@ impl AdviceRequest {
         AdviceRequest { seq, time, presses, state, belief, changed, robot, robot_press_s, forecast, signals, error }
     }
 
-    /// The request in the form in which a communication concept receives it.
+    /// The request for advice in the form in which a communication concept receives it.
     pub fn moment(&self) -> DecisionPoint<'_> {
         let AdviceRequest {
             seq,
@@ -86,17 +86,17 @@ impl AdviceRequest {
 pub struct Advisor {
     concept: Box<dyn Concept>,
     cost: CostToGo,
-    /// Whether it works ahead between requests in a live session.
+    /// Whether the assistant works ahead between requests for advice in a live session.
     pub works_ahead: bool,
 }
 
 impl Advisor {
-    /// The assistant with the communication concept that the session's settings name.
+    /// The session's assistant, with the communication concept that the session's settings name.
     pub fn new(session: &Session, cost: CostToGo) -> Advisor {
         Advisor::by(session.spec.assistant.concept, session, cost)
     }
 
-    /// The assistant with the given communication concept.
+    /// An assistant for the session with the given communication concept.
     pub fn by(name: ConceptName, session: &Session, cost: CostToGo) -> Advisor {
         let Session { kitchen, spec, .. } = session;
         let concept = concept(name, kitchen.clone(), &spec.human, &spec.assistant, session.seed());
@@ -108,12 +108,13 @@ impl Advisor {
         self.concept.advise(&mut self.cost, &question.moment())
     }
 
-    /// Number of decisions of the cost to go that had to be computed so far, because no cache held them.
+    /// Number of decisions whose cost to go had to be computed so far, because no cache held the decisions.
     pub fn computed_decisions(&self) -> u64 {
         self.cost.counts().decisions_missed
     }
 
-    /// Prepares for the requests that are likely after this one, as long as `proceed` returns true; see [`Concept::work_ahead`].
+    /// Prepares for the requests for advice that are likely after this one, as long as `proceed` returns true; see
+    /// [`Concept::work_ahead`].
     pub fn work_ahead(&mut self, question: &AdviceRequest, proceed: &mut dyn FnMut() -> bool) {
         self.concept.work_ahead(&mut self.cost, &question.moment(), proceed);
     }

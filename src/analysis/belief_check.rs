@@ -1,5 +1,5 @@
-//! Checks the belief estimate before each press: how well it agrees with the participant's recorded beliefs, and how
-//! well it predicts the press.
+//! Checks the belief estimate before each press: how well the estimate agrees with the participant's recorded beliefs,
+//! and how well it predicts the press.
 
 use std::sync::Arc;
 
@@ -29,24 +29,24 @@ const SEED: u64 = 1;
 /// How well the belief estimate agrees with beliefs and presses: the output of `tomcom replay --check-beliefs`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BeliefCheck {
-    /// Number of recordings that were checked.
+    /// Number of recordings whose belief estimates were checked.
     pub recordings: u64,
     /// Number of the human's presses in the trials.
     pub human_actions: u64,
-    /// Source of what participants believed: recorded beliefs, or answers to probes; null if there is neither.
+    /// Source of what participants believed: recorded beliefs, or answers to freeze probes; null if there is neither.
     pub beliefs_from: Option<BeliefSource>,
     /// How well the estimate of the participant's beliefs finds false ones.
     #[serde(flatten)]
     pub detection: FalseBeliefDetection,
     /// Log likelihood of the human's presses under the model, per press, in nats.
     pub log_likelihood: PressLogLikelihood,
-    /// Answers to freeze probes, and how the estimate agrees with them; absent without answers.
+    /// Answers to freeze probes, and how the belief estimate agrees with them; absent without answers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probes: Option<ProbeSummary>,
 }
 
 impl BeliefCheck {
-    /// Checks the estimate against the presses of several trials in one kitchen. Where no beliefs are recorded, the
+    /// Checks the belief estimate against the presses of several trials in one kitchen. Where no beliefs are recorded,
     /// answers to freeze probes in these trials take their place.
     pub fn from_trials(
         kitchen: &Arc<Kitchen>,
@@ -78,19 +78,19 @@ impl BeliefCheck {
     }
 }
 
-/// Collects, for each counted press of the human, the estimate before it and how it was judged, event by event.
+/// Collects, for each counted press of the human, the belief estimate before the press and the press's judgement.
 #[derive(Default)]
 pub struct PressViews {
-    /// Presses of the trial so far, each with the estimate before it.
+    /// Presses of the trial so far, each with the belief estimate before the press.
     pub trial: TrialView,
-    /// Recorded belief of the participant before its next press: probability of the true value, by aspect.
+    /// Recorded belief of the participant before the next press: probability of the true value, for each state aspect.
     held: Option<Vec<f64>>,
     before: Before,
 }
 
 impl PressViews {
     /// Adds an event that has just been applied to the session. A counted press of the human is added with its
-    /// judgement and with the estimate before it.
+    /// judgement and with the belief estimate before the press.
     pub fn add(
         &mut self,
         session: &Session,
@@ -112,11 +112,11 @@ impl PressViews {
     }
 }
 
-/// What the gaze baseline, which needs no filter, knows of a session before the next event.
+/// What is known of a session before the next event by a gaze baseline, which uses no belief filter.
 #[derive(Default)]
 struct Before {
     seen: LastSeenContents,
-    /// For each location, the time of the last change, if it was made by somebody other than the human.
+    /// For each location, the time of its last change, if somebody other than the human made that change.
     others_changed: [Option<SessionTime>; MAX_LOCATIONS],
 }
 
@@ -133,7 +133,7 @@ impl Before {
         }
     }
 
-    /// The next press of the human with its judgement, the estimate and the baseline before it.
+    /// The next press of the human with its judgement, and the estimate and the baseline's knowledge before the press.
     fn press(
         &self,
         kitchen: &Kitchen,
@@ -163,7 +163,7 @@ impl Before {
     }
 }
 
-/// The check of the estimate as text for the terminal.
+/// The result of the belief check as text for the terminal.
 pub fn describe(check: &BeliefCheck) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.3}"));
     let (found, flags, likely) = (&check.detection, &check.detection.flags, &check.log_likelihood);
@@ -178,7 +178,7 @@ pub fn describe(check: &BeliefCheck) -> String {
         };
         format!("\n  thresholds {from}: {locations} for locations, {recipes} for recipes")
     });
-    // A single recording has no spread between recordings.
+    // For a single recording there is no interval, since it has no spread between recordings.
     let interval = likely.gain_interval.filter(|_| check.recordings > 1);
     let interval = interval.map_or(String::new(), |[from, to]| format!(" ({from:.3} to {to:.3})"));
     let informed = match (likely.informed_tau, likely.informed_lapse) {
@@ -221,10 +221,10 @@ pub fn describe(check: &BeliefCheck) -> String {
     text + &legend(check)
 }
 
-/// Least number of recordings for which statistics of single aspects are printed.
+/// Least number of recordings for which the belief check prints statistics of single state aspects.
 const TELLING: u64 = 20;
 
-/// Explanation of the statistics that the check prints, as text.
+/// Explanation of the statistics that the belief check prints, as text.
 fn legend(check: &BeliefCheck) -> String {
     let few = match check.recordings {
         TELLING.. => String::new(),

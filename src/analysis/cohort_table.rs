@@ -1,7 +1,7 @@
 //! The robustness table: how well estimate and assistant do with cohorts of simulated people to whom the assistant's
-//! human model was not fitted. The estimate is judged on unassisted trials; the thresholds of its flags are chosen on
-//! trials with another seed. The assistant is judged by comparing the same trials without signals and with signals that
-//! the assistant sends by itself.
+//! human model was not fitted. The belief estimate is judged on unassisted trials; the thresholds for flagging false
+//! beliefs are chosen on trials with another seed. The assistant is judged by comparing the same trials without signals
+//! and with signals that the assistant sends by itself.
 
 use std::sync::Arc;
 
@@ -24,9 +24,9 @@ const SEED: u64 = 1;
 pub struct CohortTrials {
     /// Unassisted trials with another seed, on which the thresholds for flagging false beliefs are chosen.
     pub chosen_on: Vec<TrialView>,
-    /// The judged trials without signals: their presses, and their summaries.
+    /// The judged trials without signals: the presses of each trial, and the trial's summary.
     pub unassisted: Vec<(TrialView, TrialSummary)>,
-    /// Summaries of the same trials, in the same order, with signals that the assistant sends by itself.
+    /// Summaries of the judged trials, in the same order, repeated with signals that the assistant sends by itself.
     pub assisted: Vec<TrialSummary>,
 }
 
@@ -43,43 +43,43 @@ pub struct CohortRates {
     pub orders_per_minute: f64,
 }
 
-/// Row of the robustness table: one cohort. Values that cannot be computed are null.
+/// Row of the robustness table: results of one cohort. Values that cannot be computed are null.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CohortRow {
-    /// The cohort's name.
+    /// Name of the cohort in the battery file.
     pub cohort: String,
     /// Number of trials on which the estimate and the assistant are judged.
     pub trials: u64,
-    /// How well the estimate finds false beliefs of the participants in the unassisted trials.
+    /// How well the belief estimate finds false beliefs of the participants in the unassisted trials.
     #[serde(flatten)]
     pub detection: FalseBeliefDetection,
     /// Log likelihood of the human's presses in the unassisted trials, under the model and two baselines.
     pub log_likelihood: PressLogLikelihood,
-    /// Rates in the trials without signals.
+    /// Rates of errors, signals and served orders in the trials without signals.
     pub unassisted: CohortRates,
-    /// Rates in the same trials with signals that the assistant sends by itself.
+    /// Rates of errors, signals and served orders in the same trials with signals that the assistant sends by itself.
     pub assisted: CohortRates,
-    /// Share by which the assistant lowers the rate of errors from false beliefs per press of the human; below 0 if it
-    /// raises the rate.
+    /// Share by which the assistant lowers the rate of errors from false beliefs per press of the human; below 0 if the
+    /// assistant raises the rate.
     pub saved: Option<f64>,
-    /// 95 % interval of `saved`, by a bootstrap over pairs of trials; null also where a bootstrap sample has no such
-    /// error.
+    /// 95 % interval of `saved`, by a bootstrap over pairs of trials; null also where a bootstrap sample has no error
+    /// from a false belief.
     pub saved_interval: Option<[f64; 2]>,
 }
 
-/// Robustness of estimate and assistant for each cohort: the output of `tomcom robustness`.
+/// Robustness of estimate and assistant for each cohort of simulated people: the output of `tomcom robustness`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RobustnessTable {
     /// Seed of the judged trials.
     pub seed: u64,
-    /// Seed of the trials on which the flags' thresholds were chosen.
+    /// Seed of the trials on which the thresholds for flagging false beliefs were chosen.
     pub choose_seed: u64,
     /// One row per cohort, in the order of the battery file.
     pub cohorts: Vec<CohortRow>,
 }
 
 impl CohortRow {
-    /// Computes the row of one cohort from its trials.
+    /// Computes the robustness table's row of one cohort from the cohort's trials.
     pub fn from_trials(kitchen: &Arc<Kitchen>, name: &str, trials: &CohortTrials) -> CohortRow {
         let thresholds = chosen_thresholds(&trials.chosen_on, &aspect_groups(kitchen));
         let (views, unassisted): (Vec<TrialView>, Vec<TrialSummary>) = trials.unassisted.iter().cloned().unzip();
@@ -104,8 +104,8 @@ impl CohortRow {
             unassisted: CohortRates::from_trials(&unassisted),
             assisted: CohortRates::from_trials(&trials.assisted),
             saved,
-            // A bootstrap sample without errors leaves nothing to save; a table in which that happens has too few
-            // trials for an interval.
+            // A bootstrap sample without errors has no errors to save; a table in which such a sample occurs has too
+            // few trials for an interval.
             saved_interval: saved
                 .map(|_| interval(&pairs, SEED, saved_share))
                 .filter(|interval| interval.iter().all(|end| end.is_finite())),
@@ -197,7 +197,7 @@ pub fn describe_row(row: &CohortRow, width: usize) -> String {
     )
 }
 
-/// Width, in characters, of a column that fits the longest of these names.
+/// Width, in characters, of a table column that fits the longest of these names.
 pub fn name_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
     names.map(|name| name.chars().count()).max().unwrap_or_default().max("cohort".len()) + 1
 }

@@ -17,12 +17,12 @@ pub struct RecordingComparer {
 }
 
 impl RecordingComparer {
-    /// The comparer of a session before its first event.
+    /// The comparer at the beginning of a session, before the session's first event.
     pub fn new(session: Session, request: &ComparisonRequest) -> RecordingComparer {
         RecordingComparer { follower: ComparisonFollower::new(session, request), wizard: WizardLog::default() }
     }
 
-    /// Applies the next event of the recording.
+    /// Applies the next event of the recording to the session and to the comparison.
     ///
     /// # Errors
     /// The event is not possible in the session's present state.
@@ -37,7 +37,7 @@ impl RecordingComparer {
         &self.follower.follower.session
     }
 
-    /// The result, once the last event was added. `recording`: name of the recording.
+    /// The result of the comparison, once the last event was added. `recording`: name of the recording.
     pub fn finish(mut self, recording: String, standing: ExclusionStatus) -> ComparedRecording {
         self.follower.finish();
         let comparison = self.follower.comparison(true);
@@ -53,11 +53,11 @@ impl RecordingComparer {
 pub struct ComparedRecording {
     /// Path of the recording, as the user gave it.
     pub recording: String,
-    /// The session at its end, with the assistants' recommendations.
+    /// The session at the recording's end, with the assistants' recommendations.
     pub follower: ComparisonFollower,
     /// Whether the trial was aborted or excluded from the analysis.
     pub standing: ExclusionStatus,
-    /// Comparison of the communications of wizard and assistants.
+    /// Comparison of the communications (signals or proposals) of wizard and assistants.
     pub comparison: SenderComparison,
     /// Summary of the wizard's signals; `None` where nobody could send signals.
     pub wizard: Option<WizardSummary>,
@@ -66,7 +66,7 @@ pub struct ComparedRecording {
 }
 
 impl ComparedRecording {
-    /// The kitchen of the recording.
+    /// The kitchen in which the recording was made.
     pub fn kitchen(&self) -> &Kitchen {
         &self.follower.follower.session.kitchen
     }

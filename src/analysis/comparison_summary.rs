@@ -18,15 +18,15 @@ use crate::kitchen::AspectId;
 use crate::measures::matching::{CommunicationEvent, MatchCounts, MatchShares, Similarity, WINDOW};
 use crate::session::wizard_screen::WizardScreenContent;
 
-/// Largest number of differences of each kind that are listed as text.
+/// Largest number of unmatched communications of each kind that are listed as text.
 const LISTED: usize = 20;
 
 /// Agreement of wizard and assistants in recordings: the output of `tomcom compare`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ComparisonSummary {
-    /// Agreement between the signals sent and each assistant, over all recordings that count in the analysis.
+    /// Agreement between the sent signals and each assistant's, over all recordings that count in the analysis.
     pub pairs: Vec<SenderPairSummary>,
-    /// Comparison in each recording.
+    /// Comparison of wizard and assistants in each recording.
     pub recordings: Vec<RecordingComparison>,
     /// Training of the wizard who was named on the command line.
     pub training: Option<WizardTrainingSummary>,
@@ -35,14 +35,14 @@ pub struct ComparisonSummary {
 /// Agreement between two senders' communications over recordings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SenderPairSummary {
-    /// Name of the first lane, "wizard".
+    /// Name of the first compared sender, "wizard".
     pub of: String,
-    /// Name of the second lane: an assistant's concept.
+    /// Name of the second compared sender: an assistant's concept.
     pub with: String,
-    /// Number of the human's presses within which communications can match; the estimate leaves out signals sent within
-    /// this window.
+    /// Number of the human's presses within which two communications can match; the estimate leaves out signals sent
+    /// within this window.
     pub window_actions: u32,
-    /// Similarity of the two lanes' communications: how many of them match.
+    /// Similarity of the two senders' communications: how many of them match.
     #[serde(flatten)]
     pub similarity: Similarity,
 }
@@ -50,20 +50,20 @@ pub struct SenderPairSummary {
 /// Comparison of wizard and assistants in one recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingComparison {
-    /// The recording's folder.
+    /// Path of the recording's folder.
     pub recording: String,
     /// Whether the trial was aborted or excluded from the analysis.
     #[serde(flatten)]
     pub standing: ExclusionStatus,
     /// Number of the human's presses in the trial.
     pub human_actions: u64,
-    /// Communications of the wizard and of each assistant.
+    /// Communications of the wizard and of each assistant in the recording.
     pub lanes: Vec<SenderSummary>,
     /// Summary of the wizard's signals; null where nobody could send signals.
     pub wizard: Option<WizardSummary>,
     /// Statistics of the offers that a wizard could see; null in recordings without offers.
     pub offers: Option<OfferSummary>,
-    /// Communications of one sender that the other did not match.
+    /// Communications of one sender that the other sender did not match.
     pub differences: Vec<UnmatchedCommunicationSummary>,
 }
 
@@ -76,29 +76,29 @@ pub struct SenderSummary {
     pub communications: Vec<CommunicationSummary>,
 }
 
-/// One communication, as printed.
+/// One communication (a signal or a proposal), as `tomcom compare` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CommunicationSummary {
     /// Number of the human's presses before the communication.
     pub press: u32,
     /// Time of the communication on the trial's clock, in seconds.
     pub clock_s: f64,
-    /// What the communication says, in words.
+    /// What the communication tells the participant, in words.
     pub says: String,
 }
 
-/// A communication without a match, with its context.
+/// A communication of one sender without a match by the other, with its context.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnmatchedCommunicationSummary {
     /// Number of the difference, from 1, as the option `--open` takes it.
     pub number: usize,
-    /// The difference in one line of text.
+    /// The unmatched communication in one line of text.
     pub headline: String,
-    /// Name of the lane with the communication.
+    /// Name of the sender of the communication.
     pub by: String,
-    /// Name of the lane without a matching communication.
+    /// Name of the sender without a matching communication.
     pub not_by: String,
-    /// Index of the assistant's lane that is compared, and whether the communication is one that the participant saw.
+    /// Index of the compared assistant, and whether the communication is one that the participant saw.
     #[serde(skip)]
     pair: usize,
     #[serde(skip)]
@@ -106,36 +106,37 @@ pub struct UnmatchedCommunicationSummary {
     /// The communication that has no match.
     #[serde(flatten)]
     pub spoken: CommunicationSummary,
-    /// Context of the communication; null if the assistants had not been asked for advice before.
+    /// Context of the communication; null if the assistants had not been asked for advice before the communication.
     pub knew: Option<ContextSummary>,
 }
 
 /// Context of a communication: beliefs, recommendation and the wizard's screen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContextSummary {
-    /// Estimated belief about every state aspect, without the effect of signals sent within the window.
+    /// Estimated belief about every state aspect, without the effect of signals sent within the window of the
+    /// comparison.
     pub beliefs: Vec<AspectContext>,
-    /// The assistant's recommendation at that time.
+    /// The assistant's recommendation at the time of the communication.
     pub advice: Option<Recommendation>,
-    /// Content of the wizard's screen; null before the screen was first drawn, and without a wizard.
+    /// Content of the wizard's screen then; null before the screen was first drawn, and without a wizard.
     pub screen: Option<WizardScreenContent>,
 }
 
-/// Estimated belief about one state aspect, beside the truth.
+/// Estimated belief about one state aspect, beside the aspect's true value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AspectContext {
     /// Name of the state aspect.
     pub aspect: String,
     /// True value of the aspect.
     pub truth: String,
-    /// The value that the participant most probably believes.
+    /// The value of the aspect that the participant most probably believes.
     pub believes: String,
-    /// Expected probability that the participant gives to the true value.
+    /// Expected probability that the participant gives to the aspect's true value.
     pub p_truth: f64,
 }
 
 impl ComparisonSummary {
-    /// Summarises recordings. If there are several, the agreement leaves out excluded ones.
+    /// Summarises comparisons. If there are several recordings, the agreement leaves out excluded ones.
     pub fn from_recordings(watched: &[ComparedRecording]) -> ComparisonSummary {
         let counting: Vec<&ComparedRecording> =
             watched.iter().filter(|one| watched.len() == 1 || one.standing.counts()).collect();
@@ -166,7 +167,7 @@ impl ComparisonSummary {
         }
     }
 
-    /// The summary without communications of other concepts than these. Differences keep their numbers.
+    /// The summary without communications of other concepts than `concepts`. Differences keep their numbers.
     pub fn only(mut self, concepts: &[ConceptName]) -> ComparisonSummary {
         let hidden = ConceptName::ALL.into_iter().filter(|concept| !concepts.contains(concept));
         let hidden: Vec<&str> = hidden.map(ConceptName::name).collect();
@@ -210,8 +211,8 @@ impl CommunicationSummary {
 }
 
 impl UnmatchedCommunicationSummary {
-    /// Order of importance of a difference, most important lowest: differences with the first assistant come first,
-    /// then those about signals that the participant saw.
+    /// Order of importance of a difference, the most important lowest: differences from the first assistant come first,
+    /// and among them differences about signals that the participant saw.
     fn rank(&self) -> (usize, bool, usize) {
         (self.pair, !self.by_sender, self.number)
     }
@@ -270,7 +271,7 @@ pub fn describe(figures: &ComparisonSummary, request: &ComparisonRequest) -> Str
         text += &one.wizard.as_ref().map_or(String::new(), wizard_log::describe);
         text += &one.offers.as_ref().map_or(String::new(), OfferSummary::describe);
         text += &describe_differences(&one.differences);
-        // The context of the session's own concept is shown, if the session has one.
+        // The printed context is that of the session's own concept, if the session has one.
         if let Some(first) = one.differences.iter().min_by_key(|one| one.rank()) {
             text += &format!(
                 "what each knew: tomcom compare {}{} --open {}\nthe moment itself: tomcom review {} --at {}\n",
@@ -298,7 +299,7 @@ fn flags(request: &ComparisonRequest) -> String {
     flags
 }
 
-/// The differences as text, by sender, the session's own concept first. They are numbered by time.
+/// The unmatched communications as text, by sender, the session's own concept first; they are numbered by time.
 fn describe_differences(differences: &[UnmatchedCommunicationSummary]) -> String {
     let mut groups: Vec<(String, Vec<&UnmatchedCommunicationSummary>)> = Vec::new();
     let mut sorted: Vec<&UnmatchedCommunicationSummary> = differences.iter().collect();

@@ -18,9 +18,9 @@ pub struct ListedError {
     pub press: u64,
     /// Time of the press on the trial's clock, in seconds.
     pub time_s: f64,
-    /// The pressed button in words.
+    /// The button that was pressed in error, in words.
     pub button: String,
-    /// Whether the press changed the kitchen.
+    /// Whether the erroneous press changed the kitchen.
     pub effective: bool,
 }
 
@@ -32,7 +32,7 @@ impl ListedError {
             TimelineEvent::Press { agent: Agent::Human, button, no_effect } => Some((button, no_effect.is_none())),
             _ => None,
         });
-        // Judged presses and the human's presses on the timeline are the same presses in the same order.
+        // The judged presses and the human's presses on the timeline are the same presses in the same order.
         let errors = follower.judged.iter().zip(presses).filter(|(judged, _)| judged.verdict.error);
         let listed =
             |(index, (judged, (button, effective))): (usize, (&crate::measures::JudgedPress, _))| ListedError {
@@ -50,7 +50,7 @@ impl ListedError {
         SessionTime::from_secs_f64(self.time_s).to_string()
     }
 
-    /// The press in words: "take rice", "cooking pot (no effect)".
+    /// The erroneous press in words: "take rice", "cooking pot (no effect)".
     pub fn words(&self) -> String {
         match self.effective {
             true => self.button.clone(),

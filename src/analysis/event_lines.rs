@@ -20,16 +20,16 @@ use crate::session::wall_display::DisplayEvent;
 use crate::session::wizard_screen::WizardScreenContent;
 use crate::session::{Event, TimestampedEvent, TrialPhase};
 
-/// Heading above the lines of events.
+/// Heading above the text lines of events.
 pub const HEADING: &str = " trial time  what happened";
 
-/// The line for an event that was just applied, with the time on the trial's clock; `None` for gaze samples and arm
-/// motion.
+/// The text line for an event that was just applied, with the time on the trial's clock; `None` for gaze samples and
+/// arm motion.
 pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<String> {
     let kitchen = &follower.session.kitchen;
     let words = match &stamped.event {
         Event::Gaze(_) | Event::SignalDrawn { .. } | Event::RobotMoves(_) => return None,
-        // An estimate gets a line only if it contains a probable false belief.
+        // A belief estimate gets a line only if it contains a probable false belief.
         Event::BeliefEstimated(estimate) => estimated(kitchen, estimate)?,
         Event::TrialStarted => "trial started".to_string(),
         Event::TrialPaused => "trial paused".to_string(),
@@ -67,7 +67,8 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::RobotIdles { reason: IdleReason::Skipped } => {
             "robot idles: its only possible press was skipped".to_string()
         }
-        // The arm slows near the hand and speeds up again too often for a line each.
+        // Changes between normal and reduced speed get no line: the arm slows near the hand and speeds up again too
+        // often.
         Event::RobotSafety { mode: SafetyMode::Normal | SafetyMode::Reduced, .. } => return None,
         Event::RobotSafety { mode, force_n, joint } => {
             format!("robot's arm: {}", wording::arm_stopped(*mode, *force_n, *joint))
@@ -82,7 +83,7 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         }
         Event::RobotStopped => "robot stopped by the wizard".to_string(),
         Event::RobotResumed => "robot resumed".to_string(),
-        // A recommendation gets a line only if it advises a signal.
+        // A recommendation gets a text line only if it advises a signal.
         Event::Advised(advice) => advised(kitchen, advice, follower.session.spec.assistant.concept)?,
         Event::OfferOpened(offer) => offered(offer),
         Event::OfferClosed { reason, .. } => format!("offer closes: {}", reason.words()),
@@ -102,7 +103,7 @@ pub fn line(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<St
         Event::ParticipantBelieves(belief) => believes(kitchen, belief),
         Event::SessionEnded => "session over".to_string(),
     };
-    // Notes and names of devices can contain control characters, which would disturb the terminal.
+    // Control characters are removed: notes and names of devices can contain them, and they would disturb the terminal.
     let (words, session) = (printable(&words), &follower.session);
     Some(match session.phase {
         TrialPhase::Ready => format!("{:>11}  {words}", "before"),
@@ -152,8 +153,8 @@ fn believes(kitchen: &Kitchen, belief: &RecordedBelief) -> String {
     let wrong = belief.aspects.iter().filter(|aspect| aspect.p_truth < FALSE_BELOW);
     let told = |aspect: &AspectBelief| format!("{} = {}", said(&aspect.aspect), kitchen.worded(&aspect.believes));
     let wrong: Vec<String> = wrong.map(told).collect();
-    // The cause that a simulated participant recorded for its press is shown unless the press follows from the true
-    // state ("as it is").
+    // The cause that a simulated participant recorded for its press is shown, unless the participant recorded that the
+    // press follows from the true state ("as it is").
     let cause = match belief.cause.as_str() {
         "as it is" => String::new(),
         cause => format!(" ({})", said(&worded_cause(kitchen, cause))),
@@ -164,7 +165,7 @@ fn believes(kitchen: &Kitchen, belief: &RecordedBelief) -> String {
     }
 }
 
-/// A recorded cause of a press in words: "believes cooking_pot: cooked rice".
+/// The cause of a press as a simulated participant recorded it, in words: "believes cooking_pot: cooked rice".
 fn worded_cause(kitchen: &Kitchen, cause: &str) -> String {
     let worded = |part: &str| match part.split_once(": ") {
         Some((about, content)) => format!("{about}: {}", kitchen.worded(content)),

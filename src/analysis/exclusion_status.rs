@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::session::Session;
 
-/// Whether a trial was aborted or excluded; an analysis leaves such trials out.
+/// Whether a trial was aborted or excluded; an analysis leaves out aborted and excluded trials.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ExclusionStatus {
     /// Reason for aborting the trial; null if it was not aborted.
@@ -14,7 +14,7 @@ pub struct ExclusionStatus {
 }
 
 impl ExclusionStatus {
-    /// The status that the wizard set at the console during the session.
+    /// The exclusion status that the wizard set at the console during the session.
     pub fn at_console(session: &Session) -> ExclusionStatus {
         ExclusionStatus { aborted: session.aborted.clone(), excluded: session.excluded.clone() }
     }
@@ -24,7 +24,7 @@ impl ExclusionStatus {
         self.aborted.is_none() && self.excluded.is_none()
     }
 
-    /// The status as text; empty for a trial that counts.
+    /// The exclusion status as text; empty for a trial that counts.
     pub fn describe(&self) -> String {
         let said = |word: &str, reason: &Option<String>| reason.as_ref().map(|reason| format!("{word}: {reason}"));
         let both = [said("aborted", &self.aborted), said("excluded", &self.excluded)];

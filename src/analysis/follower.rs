@@ -1,5 +1,5 @@
 //! A session with everything that is derived from it press by press: errors, their causes, and the belief estimate.
-//! Live sessions and replays use the same code.
+//! Live sessions and replays derive these with the same code.
 
 use crate::base::time::SessionTime;
 use crate::communication::recommendation::aspects_told;
@@ -28,24 +28,24 @@ use crate::session::{AppliedEvent, Event, Session, TimestampedEvent, apply};
 /// A session with its judged presses, false belief episodes and belief estimate.
 #[derive(Clone, Debug)]
 pub struct SessionFollower {
-    /// The session after the last event.
+    /// The session after the last applied event.
     pub session: Session,
-    /// Every press of the human so far, with its judgement.
+    /// Every press of the human so far, with its judgement (error or not, and why).
     pub judged: Vec<JudgedPress>,
     /// False belief episodes, as far as the participant's beliefs are known.
     pub episodes: FalseBeliefTracker,
-    /// The estimator of the human's belief.
+    /// The belief filter, which estimates the human's belief.
     pub filter: BeliefFilter,
-    /// Signals that the assistant is not to repeat yet.
+    /// Rule that says which signals the assistant is not to repeat yet.
     pub repeats: SignalRepeatRule,
-    /// Computing times of updates of the estimate, if they are measured.
+    /// Computing times of updates of the belief estimate; `None` if they are not measured.
     pub timing: Option<InferenceTiming>,
     pub(crate) cost: CostToGo,
     judge: PressJudge,
     attributor: ErrorAttributor,
-    /// The change of the kitchen that the human seems unaware of, judged by gaze.
+    /// State of the judgement by gaze of which changes the human seems unaware.
     awareness: GazeAwareness,
-    /// Session time of the last update of the estimate.
+    /// Session time of the last update of the belief estimate.
     updated_at: Option<SessionTime>,
     /// Recorded belief of the participant before its next press.
     belief: Option<Belief>,
@@ -84,7 +84,7 @@ pub struct PressEstimate {
 }
 
 impl PressEstimate {
-    /// The belief estimate in the form that the log records.
+    /// The belief estimate before the press in the form that the log records.
     pub fn witness(&self, kitchen: &Kitchen) -> RecordedEstimate {
         RecordedEstimate::new(kitchen, self.press, &self.belief, self.state, self.evidence)
     }
@@ -93,7 +93,7 @@ impl PressEstimate {
 /// Computing times of single updates of the belief estimate, in nanoseconds.
 #[derive(Clone, Debug)]
 pub struct InferenceTiming {
-    /// The caller's monotonic clock, in nanoseconds.
+    /// A monotonic clock of the caller, in nanoseconds.
     now_ns: fn() -> u64,
     /// Computing times of updates by a gaze sample, in nanoseconds.
     pub gaze_ns: Vec<u64>,
@@ -102,7 +102,7 @@ pub struct InferenceTiming {
 }
 
 impl InferenceTiming {
-    /// Starts measuring with the caller's monotonic clock, in nanoseconds.
+    /// Starts measuring computing times with the caller's monotonic clock, in nanoseconds.
     pub fn with_clock(now_ns: fn() -> u64) -> InferenceTiming {
         InferenceTiming { now_ns, gaze_ns: Vec::new(), action_ns: Vec::new() }
     }
@@ -138,13 +138,13 @@ impl SessionFollower {
         }
     }
 
-    /// The belief estimate at `now`, which includes the time of unknown gaze since the last event.
+    /// The belief estimate at `now`, updated by the time of unknown gaze since the last event.
     pub fn belief_at(&mut self, now: SessionTime) -> DirichletBelief {
         self.filter.at(now, &mut self.cost)
     }
 
-    /// The estimate from which a request for advice at `now` starts: once the signal on the display has been read, as far as that is to be
-    /// expected. Most requests follow an event that has just updated the estimate.
+    /// The belief estimate from which a request for advice at `now` starts: as expected once the participant has read
+    /// the signal on the display. Most requests follow an event that has just updated the estimate.
     pub fn belief_for_advice(&mut self, now: SessionTime) -> DirichletBelief {
         let belief = match self.updated_at {
             Some(updated) if updated >= now => self.filter.belief().clone(),
@@ -153,16 +153,16 @@ impl SessionFollower {
         self.filter.foreseen(now, belief)
     }
 
-    /// The state aspect of which the human seems unaware since the last gaze sample, if the assistant was not asked
-    /// about that yet.
+    /// The state aspect of which the human seems unaware since the last gaze sample, if the assistant was not asked for
+    /// advice about that aspect yet.
     pub fn unaware(&self) -> Option<AspectId> {
         self.awareness.unaware()
     }
 
-    /// Applies the next event.
+    /// Applies the next event to the session, and updates judgements and belief estimate.
     ///
     /// # Errors
-    /// Those of [`apply()`].
+    /// The errors of [`apply()`].
     pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<AppliedEvent, ApplyError> {
         let applied = apply(&mut self.session, stamped)?;
         match (&stamped.event, applied.change) {
@@ -200,8 +200,8 @@ impl SessionFollower {
         Ok(applied)
     }
 
-    /// Updates which change the human seems unaware of, in sessions that ask the assistant when gaze passes over a
-    /// change.
+    /// Judges by gaze which change the human seems unaware of, in sessions that ask the assistant when gaze passes over
+    /// a change.
     fn watch_gaze(&mut self, event: &Event) {
         let session = &self.session;
         if !session.spec.notes_unawareness() || !session.is_running() {
@@ -250,7 +250,8 @@ impl SessionFollower {
         }
     }
 
-    /// Updates which signals were sent lately. Gaze samples are skipped, since no advice is requested after them.
+    /// Updates which signals were sent lately. Gaze samples are skipped, since no advice is requested after gaze
+    /// samples.
     fn remember(&mut self, stamped: &TimestampedEvent) {
         let (kitchen, state) = (&self.session.kitchen, self.session.state);
         if let Some(SignalOver { location, read }) = self.filter.take_signal_over() {
@@ -265,7 +266,7 @@ impl SessionFollower {
         self.repeats.update(kitchen, state, self.filter.belief());
     }
 
-    /// The observation that the belief filter receives for an event, if any.
+    /// The observation that the belief filter receives for an event; `None` if the event is no evidence.
     pub fn observed(&self, stamped: &TimestampedEvent, change: &KitchenChange) -> Option<ObservedEvidence> {
         match *change {
             KitchenChange::TrialStarted { after, .. } => return Some(ObservedEvidence::Started { state: after }),
@@ -275,14 +276,15 @@ impl SessionFollower {
             }
             KitchenChange::None | KitchenChange::UncountedPress { .. } => {}
         }
-        // During a freeze probe the kitchen is not on the display, and the probe's pause says nothing about the human's
-        // silence.
+        // An event during a freeze probe is no such observation: the kitchen is not on the display, and the probe's
+        // pause says nothing about the human's silence.
         let is_frozen = self.session.is_frozen();
         match &stamped.event {
             Event::TrialPaused | Event::TrialResumed | Event::Gaze(_) if is_frozen => None,
             Event::TrialPaused => Some(ObservedEvidence::Paused),
             Event::TrialResumed => Some(ObservedEvidence::Resumed),
-            // The filter does not use gaze samples that are late, duplicate or out of order; they are recorded only.
+            // The belief filter does not use gaze samples that are late, duplicate or out of order; they are recorded
+            // only.
             Event::Gaze(_) if self.session.gaze.fault.is_some() => None,
             Event::Gaze(sample) => {
                 let taken = sample.taken_ns.map_or(stamped.time, |taken| taken.min(stamped.time));
@@ -328,7 +330,7 @@ impl SessionFollower {
         locations.fold(0, |bits, location| bits | 1 << location.index())
     }
 
-    /// This follower without attribution of errors to causes, which takes too long in a running session.
+    /// This follower without attribution of errors to causes, because attribution takes too long in a running session.
     pub fn without_causes(self) -> SessionFollower {
         SessionFollower { finds_causes: false, ..self }
     }
@@ -338,7 +340,7 @@ impl SessionFollower {
         let kitchen = self.session.kitchen.clone();
         let number = self.session.all_presses();
         let verdict = self.judge.human_pressed(&mut self.cost, stamped.time, press);
-        // The participant's belief is recorded before every press and belongs to this press only.
+        // The participant's belief is recorded before every press and belongs to the next press only.
         let (belief, told) = (self.belief.take(), self.told_cause.take());
         let cause = belief.as_ref().filter(|_| verdict.error).map(|belief| {
             told.unwrap_or_else(|| self.attributor.cause(&kitchen, &mut self.cost, belief, press, number))
@@ -351,7 +353,7 @@ impl SessionFollower {
         self.judged.push(JudgedPress { seq, time, before, verdict, belief_known, cause });
     }
 
-    /// The number of errors so far.
+    /// The number of the human's errors so far.
     pub fn errors(&self) -> usize {
         self.judged.iter().filter(|press| press.verdict.error).count()
     }

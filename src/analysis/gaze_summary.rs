@@ -14,7 +14,7 @@ pub struct GazeSummary {
     pub samples: u64,
     /// Number of recorded gaze samples outside the display or with a confidence below the threshold.
     pub unusable: u64,
-    /// Number of recorded gaze samples that the belief filter does not use, by fault.
+    /// Number of recorded gaze samples that the belief filter does not use, by kind of fault.
     #[serde(flatten)]
     pub faults: GazeFaultCounts,
     /// Gaze input that was not recorded, by kind.
@@ -28,10 +28,10 @@ pub struct GazeSummary {
     pub blinks: u64,
     /// Number of times that the connection to the tracker was lost.
     pub losses: u64,
-    /// Accuracy in the last accepted gaze check, in degrees, after correction if the correction is in use; null without
-    /// a check.
+    /// Gaze accuracy in the last accepted accuracy check, in degrees, after correction if the correction is in use;
+    /// null without a check.
     pub accuracy_deg: Option<f64>,
-    /// Precision of the gaze in that check, in degrees.
+    /// Precision of the gaze in the last accepted accuracy check, in degrees.
     pub precision_deg: Option<f64>,
 }
 

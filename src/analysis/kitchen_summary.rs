@@ -14,21 +14,21 @@ use crate::kitchen::{Agent, ButtonId, ContentId, DishId, Kitchen, LocationKind, 
 pub struct KitchenSummary {
     /// The kitchen's identifier.
     pub name: String,
-    /// Number of combinations of all aspects' values, as a decimal text, since the number is too large for JSON
-    /// readers.
+    /// Number of possible combinations of all state aspects' values, as a decimal text, since the number is too large
+    /// for JSON readers.
     pub states: String,
-    /// The state aspects with the number of their values.
+    /// The state aspects with the number of values that each can have.
     pub aspects: Vec<AspectSummary>,
     /// A shortest plan for each dish.
     pub plans: Vec<ShortestPlanSummary>,
-    /// Tags in the corners of the wall display; null if there is no room for them.
+    /// Tags in the corners of the wall display for eye trackers; null if there is no room for tags.
     pub tags: Option<DisplayTagsSummary>,
 }
 
 /// The tags by which an eye tracker finds the wall display.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DisplayTagsSummary {
-    /// Name of the family of the tags.
+    /// Name of the family of tags to which the tags belong.
     pub family: &'static str,
     /// Length of the edges of the tags' black squares, in metres.
     pub edge_m: f64,
@@ -47,7 +47,7 @@ pub struct DisplayTagSummary {
     /// Position and size (x, y, w, h) of the tag with its white border, in fractions of the display.
     pub area: [f64; 4],
     /// Corners of the tag's black square, which trackers ask for: top left, top right, bottom right, bottom left, in
-    /// fractions of the display. They lie at cells 1 and 9 of the tag's 10 cells.
+    /// fractions of the display. The corners lie at cells 1 and 9 of the tag's 10 cells.
     pub corners: [[f64; 2]; 4],
     /// Rows of the tag's cells, from the top: `#` for black, another character for white.
     pub cells: Vec<String>,
@@ -70,7 +70,7 @@ impl DisplayTagsSummary {
     }
 }
 
-/// Number of values of one state aspect.
+/// A state aspect with the number of its possible values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AspectSummary {
     /// Name of the state aspect.
@@ -86,7 +86,7 @@ pub struct ShortestPlanSummary {
     pub recipe: String,
     /// Length of the plan, as the number of presses of both agents together.
     pub actions: u32,
-    /// The presses of one shortest plan, in order: "human: take rice".
+    /// The presses of the shortest plan, in order: "human: take rice".
     pub presses: Vec<String>,
 }
 
@@ -122,7 +122,7 @@ pub fn plan_lengths(kitchen: &Kitchen, cost: &mut CostToGo) -> Vec<u32> {
 }
 
 /// A shortest plan for a dish: follows best presses from an empty kitchen until the dish is served, and changes the
-/// agent only where it has to.
+/// pressing agent only where it has to.
 fn plan(kitchen: &Kitchen, cost: &mut CostToGo, dish: DishId) -> ShortestPlanSummary {
     let recipes = kitchen.true_recipes();
     let mut state = ordered(kitchen, dish);

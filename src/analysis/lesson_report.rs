@@ -16,7 +16,7 @@ use crate::measures::wizard_performance::{FalseBeliefPeriod, TrainingCriterion, 
 use crate::mind::RecordedBelief;
 use crate::session::Session;
 
-/// Below this number of false beliefs that led to errors, a share of hits is too uncertain: at 10, a share of 60 % is
+/// With fewer false beliefs that led to errors than this, a share of hits is too uncertain: at 10, a share of 60 % is
 /// known to within 30 %.
 const TELLING: u64 = 10;
 
@@ -25,7 +25,7 @@ const TELLING: u64 = 10;
 pub struct WizardTrainingSummary {
     /// The wizard's code.
     pub wizard: String,
-    /// Folder in which the training records were looked for.
+    /// Folder in which the records of the wizard's training were looked for.
     pub folder: String,
     /// Number of recorded training sessions.
     pub times: u64,
@@ -33,7 +33,7 @@ pub struct WizardTrainingSummary {
     pub minutes: f64,
     /// Criterion of the last training session; null if there was none.
     pub criterion: Option<TrainingCriterion>,
-    /// Whether the wizard met the criterion in the last session; null if there was none.
+    /// Whether the wizard met the criterion in the last training session; null if there was none.
     pub met: Option<bool>,
 }
 
@@ -45,14 +45,14 @@ impl WizardTrainingSummary {
             wizard: wizard.to_string(),
             folder: folder.display().to_string(),
             times: records.len() as u64,
-            // The sum of an empty list of floats would be -0.
+            // The fold starts at 0, because the sum of an empty list of floats would be -0.
             minutes: records.iter().fold(0.0, |sum, record| sum + record.minutes),
             criterion: last.map(|record| record.criterion),
             met: last.map(|record| record.met),
         }
     }
 
-    /// The training so far, as text.
+    /// The wizard's training so far, as text.
     pub fn describe(&self) -> String {
         let Some(met) = self.met else {
             return format!("\nno training of {} in {}; see --training\n", self.wizard, self.folder);
@@ -63,7 +63,7 @@ impl WizardTrainingSummary {
     }
 }
 
-/// A false belief episode before any signal about it was judged.
+/// The record of a false belief episode before any signal of the wizard about that false belief was judged.
 pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedFalseBelief {
     JudgedFalseBelief {
         aspect: session.kitchen.aspects[spell.aspect.index()].name.clone(),
@@ -78,7 +78,7 @@ pub fn unheard(session: &Session, spell: &FalseBeliefPeriod) -> JudgedFalseBelie
     }
 }
 
-/// Fills in what the participant believes now, and which signal would correct it.
+/// Fills in the record what the participant believes now, and which signal would correct that belief.
 pub fn hear(belief: &mut JudgedFalseBelief, session: &Session, aspect: AspectId, witness: &RecordedBelief) {
     let kitchen = &session.kitchen;
     let Some(told) = witness.aspects.get(aspect.index()) else { return };
@@ -113,7 +113,7 @@ pub fn right(belief: &JudgedFalseBelief) -> String {
     })
 }
 
-/// The task of the wizard in the training, and which signals count, as lines of text.
+/// The wizard's task in the training, and which signals count, as lines of text.
 pub fn task(criterion: &TrainingCriterion) -> Vec<String> {
     vec![
         "Press . to start.".to_string(),
@@ -146,8 +146,8 @@ pub fn lines(recordings: &[&WatchedRecording], criterion: &TrainingCriterion) ->
     lines
 }
 
-/// The score beside the criterion: "1 of 2 hit (50 %, asked: at least 60 %); 3 of 9 signals wrong (33 %, asked: at most
-/// 40 %)".
+/// The wizard's score beside the criterion: "1 of 2 hit (50 %, asked: at least 60 %); 3 of 9 signals wrong (33 %,
+/// asked: at most 40 %)".
 fn held_against(sum: &WizardMeasures, criterion: &TrainingCriterion) -> String {
     let wrong = sum.wrong_targets.unwrap_or(0) + sum.needless.unwrap_or(0);
     let share = |part: u64, all: u64| match all {
@@ -165,8 +165,8 @@ fn held_against(sum: &WizardMeasures, criterion: &TrainingCriterion) -> String {
     )
 }
 
-/// A false belief as two lines of text: when it was held, what was believed, which signal would have corrected it, and
-/// what was sent meanwhile.
+/// A false belief as two lines of text: when it was held, what was believed, which signal would have corrected the
+/// belief, and what was sent meanwhile.
 fn told(belief: &JudgedFalseBelief, signals: &[JudgedSignal]) -> [String; 2] {
     let end = belief.corrected_ns.map_or("the end".to_string(), |end| end.to_string());
     let errors = count(belief.errors, "error", "errors");
@@ -209,7 +209,7 @@ pub fn describe(record: &WizardTrainingRecord, path: &Path) -> String {
     text
 }
 
-/// Cohen's kappa between a wizard's signals in two passes through the same recording.
+/// Agreement (Cohen's kappa) between a wizard's signals in two passes through the same recording.
 pub fn with_oneself(kitchen: &Kitchen, one: &WatchedRecording, other: &WatchedRecording) -> Option<f64> {
     let said = |signal: &JudgedSignal| {
         let kind = match signal.signal {

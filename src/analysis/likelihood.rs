@@ -1,6 +1,6 @@
 //! Predictive accuracy of the human model: mean log probability per press, compared with two baselines that need no
-//! inference. The informed human knows the true world, with softmax temperature and lapse rate fitted to these presses;
-//! the other baseline presses random buttons.
+//! inference. One baseline (informed human) knows the true world, with softmax temperature and lapse rate fitted to
+//! these presses; the other baseline presses random buttons.
 
 use serde::Serialize;
 
@@ -12,25 +12,25 @@ use crate::measures::belief_detection::{BeliefsBeforePress, TrialView};
 use crate::mind::ChoiceModel;
 use crate::mind::choice_parameters::ChoiceParameters;
 
-/// Tolerance of the baseline's fit (informed human), in nats per press.
+/// Tolerance of the fit of the baseline "informed human", in nats per press.
 const TOLERANCE_NATS: f64 = 1e-6;
-/// Largest number of iterations of the baseline's fit (informed human).
+/// Largest number of iterations of the fit of the baseline "informed human".
 const MOST_ITERATIONS: usize = 200;
 
 /// Mean log probability of the human's presses under the model and two baselines, in nats per press.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PressLogLikelihood {
-    /// Under the human model with the estimated belief before the press; null without an estimate.
+    /// Mean log probability under the human model with the estimated belief before the press; null without an estimate.
     pub model: Option<f64>,
-    /// Under a human who knows the true world (informed human, a baseline), fitted to these presses.
+    /// Mean log probability under the baseline "informed human", who knows the true world, fitted to these presses.
     pub informed: Option<f64>,
-    /// Under a human who presses random buttons, a baseline.
+    /// Mean log probability under the baseline of a human who presses random buttons.
     pub uniform: Option<f64>,
     /// Difference of mean log probability between the human model and the informed human, in nats per press.
     pub gain: Option<f64>,
-    /// 95 % interval of `gain`, by a bootstrap over trials.
+    /// 95 % interval of the difference `gain`, by a bootstrap over trials.
     pub gain_interval: Option<[f64; 2]>,
-    /// Value of the choice model's parameter tau, per press, that fits the informed human best.
+    /// Value of the softmax parameter tau of the choice model, per press, that fits the informed human best.
     pub informed_tau: Option<f64>,
     /// The lapse probability that fits the informed human best.
     pub informed_lapse: Option<f64>,
@@ -78,7 +78,7 @@ impl PressLogLikelihood {
     }
 }
 
-/// Log probability of a press under a human who knows the true world.
+/// Log probability of a press by a human who knows the true world.
 fn log_p(kitchen: &Kitchen, cost: &mut CostToGo, model: &ChoiceModel, press: &BeliefsBeforePress) -> f64 {
     let truth = WeightedWorlds::certain(World::with_true_recipes(kitchen, press.state));
     model.probabilities(cost, &truth).press[press.button.index()].ln()

@@ -1,4 +1,4 @@
-//! Looks at locations: time for which gaze has rested in a location's area since the content there last changed.
+//! Looks at locations: for how long the gaze has rested in a location's area since the content there last changed.
 
 use crate::base::time::SessionTime;
 use crate::kitchen::LocationId;
@@ -8,19 +8,19 @@ use crate::session::Session;
 /// Least duration of a look after which a location counts as seen, in seconds.
 pub const LOOK_S: f64 = 0.1;
 
-/// For each location, the time since which the gaze has been in its area without a change there.
+/// For each location, the time since which the gaze has been in the location's area without a change there.
 #[derive(Clone, Debug, Default)]
 pub struct LocationDwells {
     since: [Option<SessionTime>; MAX_LOCATIONS],
 }
 
 impl LocationDwells {
-    /// Notes a change of a location's content: a look at the earlier content does not count for the new one.
+    /// Notes a change of a location's content: a look at the earlier content does not count for the new content.
     pub fn changed(&mut self, location: LocationId) {
         self.since[location.index()] = None;
     }
 
-    /// Ends all looks, which a pause of the trial interrupts.
+    /// Ends the looks at all locations, because a pause of the trial interrupts looks.
     pub fn interrupted(&mut self) {
         self.since = Default::default();
     }

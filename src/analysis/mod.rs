@@ -1,5 +1,5 @@
 //! Computation over sessions and recordings: judged presses and estimates, fits, comparisons and summaries. Everything
-//! here is a function of events that the caller passes in; files, threads and clocks belong to the caller.
+//! in this module is a function of events that the caller passes in; files, threads and clocks belong to the caller.
 
 pub mod advisor;
 #[cfg(feature = "cli")]

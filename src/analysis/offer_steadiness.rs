@@ -1,9 +1,9 @@
-//! Steadiness of offers: how long they stand, and whether a wizard who reads an offer and then presses `enter` sends
-//! what they read.
+//! Steadiness of offers: for how long offers stand, and whether a wizard who reads an offer and then presses `enter`
+//! sends the signal that was read.
 //!
-//! A scripted hand reads the screen at random moments of the trial's running time and presses `enter` 0.6 to 1.2 s
-//! later. [`offers::meant`] tells which signal the key would send; nothing is sent, so recordings in which nobody could
-//! send signals are measured, too.
+//! A simulated hand reads the screen at random moments of the trial's running time and presses `enter` 0.6 to 1.2 s
+//! later. [`offers::meant`] tells which signal the key would send; nothing is sent, so offers are measured also in
+//! recordings in which nobody could send signals.
 
 use rand::RngExt;
 use serde::Serialize;
@@ -18,62 +18,62 @@ use crate::communication::{Signal, unavailable};
 use crate::measures::median;
 use crate::session::{Session, offers};
 
-/// Mean time between two readings of the scripted hand, in seconds.
+/// Mean time between two readings of the screen by the scripted hand, in seconds.
 const BETWEEN_READINGS_S: f64 = 0.5;
-/// Least and largest time from reading to the key, in seconds.
+/// Least and largest time from the reading of an offer to the press of the key `enter`, in seconds.
 const HAND_S: [f64; 2] = [0.6, 1.2];
 /// An offer reopens if the same signal is offered within this time after its close, in seconds.
 const REOPENS_S: f64 = 5.0;
 
-/// Results of the scripted hand: how often its key meant the offer that it had read.
+/// Results of the scripted hand: how often its key `enter` meant the offer that the hand had read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct ScriptedHandSummary {
-    /// Readings of an offer on the screen that were followed by the key while the trial ran.
+    /// Number of readings of an offer on the screen that were followed by the key while the trial ran.
     pub readings: u64,
-    /// The key meant the offer that the hand had read.
+    /// Number of readings after which the key meant the offer that the hand had read.
     pub as_read: u64,
-    /// The key meant another signal than the offer that the hand had read.
+    /// Number of readings after which the key meant another offer than the one that the hand had read.
     pub something_else: u64,
-    /// The key meant no signal.
+    /// Number of readings after which the key meant no offer.
     pub nothing: u64,
 }
 
 /// Steadiness of offers: the output of `tomcom replay RECORDING... --offers`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OfferSteadinessSummary {
-    /// Number of recordings.
+    /// Number of recordings in which offers were measured.
     pub recordings: u64,
     /// Statistics of offers: number, durations, and how many were used.
     pub offers: OfferSummary,
-    /// Median time for which the assistant's recommendation, before it becomes an offer, stayed the same, in seconds;
-    /// null without recommendations.
+    /// Median time for which the assistant's recommendation stayed the same before it was turned into offers, in
+    /// seconds; null without recommendations.
     pub raw_median_s: Option<f64>,
-    /// How often the scripted hand's key meant the offer that the hand had read.
+    /// How often the scripted hand's key `enter` meant the offer that the hand had read.
     pub hand: ScriptedHandSummary,
-    /// Closed offers, without those that the wizard used and those at the end of a trial.
+    /// Number of closed offers, without those that the wizard used and those that the end of the trial closed.
     pub could_reopen: u64,
     /// Number of closed offers whose signal was offered again within 5 s.
     pub reopened: u64,
-    /// Share of closed offers that reopened; null without such offers.
+    /// Share of closed offers that reopened within 5 s; null without such offers.
     pub reopened_share: Option<f64>,
-    /// Time during which an offer was open, in seconds.
+    /// Time during which any offer was open, in seconds.
     pub open_s: f64,
-    /// Share of the time with an open offer in which the latest recommendation gave its signal a net benefit of 0 or
-    /// below; null without offers.
+    /// Share of the time with an open offer in which the latest recommendation gave the offered signal a net benefit of
+    /// 0 or below; null without offers.
     pub share_at_or_below_0: Option<f64>,
 }
 
 /// An offer that the scripted hand has read.
 #[derive(Clone, Debug)]
 struct Reading {
-    /// Session time at which the hand presses the key.
+    /// Session time at which the scripted hand presses the key `enter`.
     key_at: SessionTime,
-    /// Sequence number of the offer that the hand has read.
+    /// Sequence number of the offer that the scripted hand has read; `None` if no offer was on the screen.
     read: Option<u64>,
 }
 
 /// Measures the steadiness of offers in one recording. [`Self::before`] is called before each event, [`Self::after`]
-/// after it.
+/// after each event.
 #[derive(Clone, Debug)]
 pub struct OfferSteadinessTally {
     random: Stream,
@@ -82,13 +82,14 @@ pub struct OfferSteadinessTally {
     hand: ScriptedHandSummary,
     open_s: f64,
     at_or_below_0_s: f64,
-    /// The signal that the assistant recommends at present, and the time since which it has been the same.
+    /// The signal that the assistant recommends at present, and the time since which the recommended signal is the
+    /// same.
     raw: Option<(Signal, SessionTime)>,
     raw_s: Vec<f64>,
 }
 
 impl OfferSteadinessTally {
-    /// The measurement for a recording; the scripted hand's random stream is seeded by the session's seed and trial.
+    /// A measurement for one recording; the scripted hand's random stream is seeded by the session's seed and trial.
     pub fn new(session: &Session) -> OfferSteadinessTally {
         OfferSteadinessTally {
             random: stream(session.spec.seed, "reading hand", session.trial),
@@ -102,10 +103,10 @@ impl OfferSteadinessTally {
         }
     }
 
-    /// Counts the time from the last event to the next one, which is at `now`.
+    /// Counts the time from the last event to the next event, which is at `now`.
     pub fn before(&mut self, session: &Session, now: SessionTime) {
         if !session.is_running() {
-            // After a pause the scripted hand reads anew.
+            // After a pause the scripted hand forgets what it read, and reads the screen anew.
             (self.next_reading, self.readings) = (None, Vec::new());
             return;
         }
@@ -119,7 +120,7 @@ impl OfferSteadinessTally {
         self.read_until(session, now);
     }
 
-    /// Lets the scripted hand read the screen and press its key as far as that is due before `now`.
+    /// Lets the scripted hand read the screen and press the key `enter` as often as is due before `now`.
     fn read_until(&mut self, session: &Session, now: SessionTime) {
         let mut next = self.next_reading.unwrap_or(session.time);
         while next < now {
@@ -209,7 +210,7 @@ impl OfferSteadinessSums {
         self.offers.extend(offers);
     }
 
-    /// The summary of all added recordings.
+    /// The summary of the offers' steadiness over all added recordings.
     pub fn summary(self) -> OfferSteadinessSummary {
         let OfferSteadinessSums { summary, offers, raw_s, at_or_below_0_s } = self;
         let share = |part: f64, all: f64| (all > 0.0).then(|| part / all);

@@ -11,10 +11,10 @@ use crate::communication::offer::{Offer, OfferCloseReason, OfferKeyUse};
 use crate::measures::median;
 use crate::session::Session;
 
-/// An offer with its times on the trial's clock, in seconds.
+/// An offer to the wizard, with its times on the trial's clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimedOffer {
-    /// The offer of a signal to the wizard.
+    /// The offer as the session holds it.
     pub offer: Offer,
     /// Time at which the offer opened, on the trial's clock in seconds.
     pub opened_s: f64,
@@ -22,7 +22,7 @@ pub struct TimedOffer {
     pub stood_s: Option<f64>,
     /// Why the offer to the wizard closed.
     pub reason: Option<OfferCloseReason>,
-    /// Time at which the wizard sent the offered signal, on the trial's clock.
+    /// Time at which the wizard sent the offered signal, on the trial's clock; `None` if the signal was not sent.
     pub sent: Option<SessionTime>,
     /// Reaction time from the opening of the offer to the key that sent its signal, in seconds.
     pub reaction_s: Option<f64>,
@@ -49,7 +49,7 @@ impl TimedOffer {
         closed.chain(session.offers.unclosed().map(|open| timed(open, None))).collect()
     }
 
-    /// The offers that a wizard could see.
+    /// The offers of a session that a wizard could see.
     pub fn visible(session: &Session) -> Vec<TimedOffer> {
         let all = TimedOffer::all(session).into_iter();
         all.filter(|one| one.offer.advice.visible).collect()
@@ -59,7 +59,7 @@ impl TimedOffer {
 /// Statistics of the time for which offers stood: number, median and shortest, in seconds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct OfferDurations {
-    /// Number of offers.
+    /// Number of offers whose durations are known.
     pub n: u64,
     /// Median duration for which offers stood, in seconds; null without offers.
     pub median_s: Option<f64>,
@@ -73,7 +73,7 @@ impl OfferDurations {
         OfferDurations { n: times.len() as u64, median_s: median(times), shortest_s }
     }
 
-    /// The durations as one line of text; empty without offers.
+    /// The durations of offers as one line of text; empty without offers.
     pub fn describe(&self) -> String {
         let (Some(median_s), Some(shortest_s)) = (self.median_s, self.shortest_s) else { return String::new() };
         format!("offers: {}, {median_s:.1} s in the median, {shortest_s:.1} s at least\n", self.n)
@@ -88,14 +88,14 @@ pub struct OfferSummary {
     pub all: OfferDurations,
     /// Durations of closed offers, by the reason of closing.
     pub by_reason: BTreeMap<OfferCloseReason, OfferDurations>,
-    /// Offers whose signal was sent by the key that accepts the offer.
+    /// Number of offers whose signal was sent by the key that takes the offer (`enter`).
     pub taken: u64,
-    /// Offers whose signal was sent by the signal's own key.
+    /// Number of offers whose signal was sent by the signal's own key.
     pub by_own_key: u64,
-    /// Closed offers whose signal was not sent.
+    /// Number of closed offers whose signal was not sent.
     pub not_taken: u64,
-    /// Median reaction time from the opening of an offer to the key that sent its signal, in seconds; null without such
-    /// offers.
+    /// Median reaction time from the opening of an offer to the key that sent the offered signal, in seconds; null if
+    /// no offered signal was sent.
     pub reaction_s: Option<f64>,
 }
 

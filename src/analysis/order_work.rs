@@ -1,4 +1,5 @@
-//! Effort for the orders of a trial: time from appearance to serving, and presses beyond the least possible number.
+//! Effort for the orders of a trial: time from an order's appearance to its serving, and presses beyond the least
+//! number.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +28,7 @@ pub fn order_times(session: &Session) -> Vec<f64> {
     times
 }
 
-/// Running sum of the regret of both agents' presses, which is the number of presses lost.
+/// Running sum of the regret of both agents' presses, that is, of the presses that were lost.
 #[derive(Clone, Debug)]
 pub struct RegretSum {
     cost: CostToGo,
@@ -35,12 +36,12 @@ pub struct RegretSum {
 }
 
 impl RegretSum {
-    /// The sum before the first press.
+    /// A sum of regret before the first press.
     pub fn new(cost: CostToGo) -> RegretSum {
         RegretSum { cost, lost: 0 }
     }
 
-    /// Adds the regret of the press that caused this change; other changes have no regret.
+    /// Adds the regret of the press that caused this change of the kitchen; other changes have no regret.
     pub fn note(&mut self, kitchen: &Kitchen, change: &KitchenChange) {
         let KitchenChange::Press { press, .. } = change else { return };
         let recipes = kitchen.true_recipes();
@@ -53,7 +54,7 @@ impl RegretSum {
         };
     }
 
-    /// Regret per served order; `None` if no order was served.
+    /// Regret (lost presses) per served order; `None` if no order was served.
     pub fn per_order(&self, served: u64) -> Option<f64> {
         (served > 0).then(|| self.lost as f64 / served as f64)
     }

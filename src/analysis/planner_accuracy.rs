@@ -1,9 +1,9 @@
 //! Accuracy of the planner with its limited budget of rollouts, and its speed compared with the plain reference
 //! planner.
 //!
-//! The planner answers after every press, as in a session. At steps spread evenly over the recordings, it answers once
-//! more with 64 times the rollouts and no early end: the converged answer. The plain reference planner answers at a few
-//! of these steps, at default fidelity.
+//! The planner answers requests for advice after every press, as in a session. At steps spread evenly over the
+//! recordings, the planner answers once more with 64 times the rollouts and no early end: the converged answer. The
+//! plain reference planner answers at a few of these steps, at default fidelity.
 
 use std::sync::Arc;
 
@@ -18,58 +18,58 @@ use crate::kitchen::Kitchen;
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::Session;
 
-/// Factor by which the converged answer has more rollouts than the planner in a session.
+/// Factor by which the converged answer uses more rollouts than the planner in a session.
 const CONVERGED: usize = 64;
 /// Largest number of rollouts that settings allow.
 const MOST_ROLLOUTS: usize = 65_536;
-/// The best option counts as clear if its net benefit leads by more than this, in presses.
+/// The best option counts as clear if its net benefit exceeds the second best by more than this, in presses.
 const LEAD: f64 = 0.2;
-/// Only benefits beyond this, in presses, enter the error of the benefit.
+/// The planner's error is computed only over benefits larger than this, in presses.
 const MATTERS: f64 = 0.3;
 
-/// The output of `tomcom replay --accuracy`. A value is null where no step contributes to it.
+/// Accuracy of the planner: the output of `tomcom replay --accuracy`. A value is null where no step contributes to it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PlannerAccuracySummary {
     /// Number of steps at which the planner was compared with its converged answer.
     pub steps: u64,
-    /// Number of steps at which the best option, silence included, leads by more than 0.2 presses.
+    /// Number of steps at which the best option (a signal or silence) leads by more than 0.2 presses.
     pub clear_steps: u64,
-    /// Share of the clear steps with the same decision by the planner and by its converged answer.
+    /// Share of the clear steps at which the planner and its converged answer make the same decision.
     pub same_decision: Option<f64>,
-    /// Root mean square error of the benefit, in presses, over pairs of a step and a signal whose converged benefit
-    /// exceeds 0.3.
+    /// Root mean square error of the planner's benefit, in presses, over pairs of a step and a signal whose converged
+    /// benefit exceeds 0.3 presses.
     pub benefit_rmse: Option<f64>,
-    /// Number of pairs of a step and a signal that `benefit_rmse` is computed from.
+    /// Number of pairs of a step and a signal from which `benefit_rmse` is computed.
     pub benefit_pairs: u64,
-    /// Computing time of the plain reference planner divided by the planner's time, for the same steps.
+    /// Computing time of the plain reference planner divided by that of the planner, for the same steps.
     pub reference_ratio: Option<f64>,
     /// Number of steps at which the plain reference planner answered.
     pub reference_steps: u64,
-    /// Root mean square difference of the benefit between the plain reference and the converged planner, in presses,
-    /// over the signals of the steps that the reference answered.
+    /// Root mean square difference between the benefits of the plain reference and of the converged planner, in
+    /// presses, over the signals of the steps that the reference answered.
     pub reference_rmse: Option<f64>,
-    /// Part of `reference_rmse` that the reference's own standard errors explain, in presses.
+    /// Part of `reference_rmse` that the reference planner's own standard errors explain, in presses.
     pub reference_error: Option<f64>,
-    /// Number of pairs of a step and a signal that `reference_rmse` is computed from.
+    /// Number of pairs of a step and a signal from which `reference_rmse` is computed.
     pub reference_pairs: u64,
-    /// Share of the reference's steps at which it made the same decision as the converged planner.
+    /// Share of the reference planner's steps at which it made the same decision as the converged planner.
     pub reference_same_decision: Option<f64>,
-    /// Mean computing time of the planner over the reference's steps, in milliseconds.
+    /// Mean computing time of the planner for a step that the reference planner answered, too, in milliseconds.
     pub plan_ms: Option<f64>,
-    /// Mean computing time of the plain reference planner over the same steps, in milliseconds.
+    /// Mean computing time of the plain reference planner for a step, in milliseconds.
     pub reference_ms: Option<f64>,
 }
 
-/// Requests for advice that the assistant gets in a recording, one after each press.
+/// Requests for advice that the assistant gets in a recording, one request after each press.
 #[derive(Debug)]
 pub struct RecordedAdviceRequests {
-    /// The session before its first event.
+    /// The recorded session before its first event.
     pub session: Session,
     /// The requests for advice, one after each press.
     pub questions: Vec<AdviceRequest>,
 }
 
-/// A step of a recording: one request for advice, with the benefits that each planner computed for it.
+/// A step of a recording: one request for advice, with the benefits of signals that each planner computed for it.
 #[derive(Clone, Debug, Default)]
 pub struct ComparedAdviceRequest {
     recording: usize,
@@ -85,17 +85,17 @@ pub struct ComparedAdviceRequest {
 pub struct PlannerComparison {
     kitchen: Arc<Kitchen>,
     asked: Vec<RecordedAdviceRequests>,
-    /// The caller's monotonic clock, in nanoseconds.
+    /// A monotonic clock of the caller, in nanoseconds.
     clock_ns: fn() -> u64,
 }
 
 impl PlannerComparison {
-    /// A comparison on the requests of these recordings; `clock_ns` is a monotonic clock in nanoseconds.
+    /// A comparison on the advice requests of these recordings; `clock_ns` is a monotonic clock in nanoseconds.
     pub fn new(kitchen: Arc<Kitchen>, asked: Vec<RecordedAdviceRequests>, clock_ns: fn() -> u64) -> PlannerComparison {
         PlannerComparison { kitchen, asked, clock_ns }
     }
 
-    /// At most `most` steps, spread evenly over all requests and not answered yet.
+    /// At most `most` steps that no planner has answered yet, spread evenly over all requests for advice.
     pub fn spread(&self, most: usize) -> Vec<ComparedAdviceRequest> {
         let all = self.asked.iter().enumerate().flat_map(|(recording, asked)| {
             let step =
@@ -108,10 +108,10 @@ impl PlannerComparison {
     }
 
     /// Lets the planner answer all steps, and the plain reference planner some of them. `done` is called after each
-    /// answer.
+    /// answer of a planner.
     ///
     /// The planner answers after every press on one thread, as in a session, where its cache helps the next answer. The
-    /// plain reference answers directly after it, so that the machine is equally fast for both.
+    /// plain reference planner answers directly after the planner, so that the machine is equally fast for both.
     pub fn answer(&self, steps: &mut [ComparedAdviceRequest], reference_steps: usize, done: impl Fn()) {
         let every = (reference_steps > 0).then(|| steps.len().div_ceil(reference_steps));
         let mut planner = BenchPlanner::default();
@@ -132,13 +132,13 @@ impl PlannerComparison {
         }
     }
 
-    /// The step with the converged answer added. Steps can be converged in any order, by several planners in parallel.
+    /// The step with the converged answer added. Several planners can converge steps in parallel, in any order.
     pub fn converge(&self, planner: &mut BenchPlanner, step: &ComparedAdviceRequest) -> ComparedAdviceRequest {
         let (advisor, _) = planner.advisor(self, step.recording, CONVERGED);
         ComparedAdviceRequest { converged: benefits(advisor, self.question(step)), ..step.clone() }
     }
 
-    /// The accuracy over steps that were answered and converged.
+    /// The planner's accuracy over steps that were answered and converged.
     pub fn summary(&self, steps: &[ComparedAdviceRequest]) -> PlannerAccuracySummary {
         let price = self.asked.first().map_or(0.0, |asked| asked.session.spec.assistant.cost_of_communication);
         figures(steps, price)
@@ -148,7 +148,7 @@ impl PlannerComparison {
         &self.asked[step.recording].questions[step.question]
     }
 
-    /// Computing time of the plain reference planner for a step, in seconds, and its answer.
+    /// Computing time of the plain reference planner for a step, in seconds, and the reference's answer.
     fn plain(&self, step: &ComparedAdviceRequest) -> (f64, Vec<ReferenceBenefit>) {
         let session = &self.asked[step.recording].session;
         let (human, assistant) = (session.spec.human.clone(), session.spec.assistant.clone());
@@ -169,16 +169,16 @@ fn benefits(advisor: &mut Advisor, question: &AdviceRequest) -> Vec<(Signal, f64
     options.into_iter().map(|option| (option.signal, option.benefit)).collect()
 }
 
-/// A thread's planner for the recording of the step that it answers.
+/// The planner of one thread, made for the recording of the step that it answers.
 #[derive(Debug, Default)]
 pub struct BenchPlanner {
-    /// Index of the recording, its planner, and the number of its requests that the planner has answered.
+    /// Index of the recording, its planner, and the number of the recording's requests that the planner has answered.
     advisor: Option<(usize, Advisor, usize)>,
 }
 
 impl BenchPlanner {
-    /// The planner for a recording's session, with `times` as many rollouts, and the number of requests that it has
-    /// answered.
+    /// The planner for a recording's session, with `times` as many rollouts, and the number of requests that this
+    /// planner has answered.
     fn advisor(&mut self, bench: &PlannerComparison, recording: usize, times: usize) -> (&mut Advisor, &mut usize) {
         let made = || {
             let mut session = bench.asked[recording].session.clone();
@@ -196,8 +196,8 @@ impl BenchPlanner {
     }
 }
 
-/// The best option (`None` for silence) given the benefits and the price of a signal, and its lead over the second
-/// best.
+/// The best option (`None` for silence) given the benefits and the cost of a signal, and how far the best option leads
+/// over the second best, in presses.
 fn decision(benefits: &[(Signal, f64)], price: f64) -> (Option<&Signal>, f64) {
     let mut net: Vec<(Option<&Signal>, f64)> = benefits.iter().map(|(signal, of)| (Some(signal), of - price)).collect();
     net.push((None, 0.0));

@@ -1,5 +1,5 @@
-//! Share of right answers in freeze probes: by state aspect, by what happened at its location, by condition; and the
-//! effect of assistance.
+//! Share of right answers in freeze probes: by state aspect, by what happened at the aspect's location, by condition;
+//! and the effect of assistance.
 
 use serde::Serialize;
 
@@ -11,32 +11,32 @@ use crate::session::study_arm::StudyArm;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProbeAccuracyGrouping {
-    /// Kind of question: orders, recipes, other locations.
+    /// Questions are grouped by their kind: orders, recipes, other locations.
     Kind,
-    /// The state aspect that a question is about.
+    /// Questions are grouped by the state aspect that they are about.
     Aspect,
-    /// Time since the last change of the location.
+    /// Questions are grouped by the time since the last change of the location.
     Age,
-    /// Whether the location changed since the participant last looked at it.
+    /// Questions are grouped by whether the location changed since the participant last looked at it.
     Seen,
-    /// Condition of the trial: who could send signals.
+    /// Questions are grouped by the condition of the trial: who could send signals.
     Condition,
-    /// Whether the belief estimate took part in the choice of the questions.
+    /// Questions are grouped by whether the belief estimate took part in the choice of the questions.
     Choice,
-    /// The participant's confidence in the answer.
+    /// Questions are grouped by the participant's confidence in the answer.
     Confidence,
 }
 
 /// Share of right answers in one group of probe questions.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeAccuracy {
-    /// Property by which questions were grouped.
+    /// Property by which probe questions were grouped.
     pub by: ProbeAccuracyGrouping,
-    /// Name of the group of questions.
+    /// Name of the group of probe questions.
     pub group: String,
     /// Number of questions in the group that were answered in time.
     pub n: u64,
-    /// Number of these answered with "I don't know", which counts as wrong.
+    /// Number of questions answered with "I don't know", which counts as wrong.
     pub unsure: u64,
     /// Share of right answers, weighted by the inverse of the questions' inclusion probability.
     pub accuracy: Option<f64>,
@@ -47,15 +47,15 @@ pub struct ProbeAccuracy {
 /// Effect of assistance on situation awareness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SituationAwarenessEffect {
-    /// Number of participants with answers in assisted and in unassisted trials, who are compared.
+    /// Number of compared participants, who have answers in assisted and in unassisted trials.
     pub participants: u64,
-    /// Mean over these participants of accuracy with assistance minus accuracy without.
+    /// Mean over the compared participants of accuracy with assistance minus accuracy without.
     pub difference: f64,
-    /// 95 % interval of the difference, by bootstrap over participants; null with fewer than five participants.
+    /// 95 % interval of the mean difference, by bootstrap over participants; null with fewer than five participants.
     pub interval: Option<[f64; 2]>,
 }
 
-/// Upper ends, in seconds, and names of the groups by time since the location's last change.
+/// Groups of questions by time since the location's last change: upper end in seconds, and name.
 const AGES: [(f64, &str); 4] = [
     (5.0, "changed less than 5 s ago"),
     (15.0, "changed 5 to 15 s ago"),
@@ -63,7 +63,7 @@ const AGES: [(f64, &str); 4] = [
     (f64::INFINITY, "changed more than 60 s ago"),
 ];
 
-/// The groups to which a question belongs, in the order of the table.
+/// The groups to which a probe question belongs, in the order of the table.
 fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(ProbeAccuracyGrouping, usize, String)> {
     let kind = match question.kind {
         ProbeQuestionKind::Order => 0,
@@ -98,8 +98,8 @@ fn groups(trial: &ProbedTrial, question: &ProbedQuestion) -> Vec<(ProbeAccuracyG
     groups
 }
 
-/// Accuracy in each group of each grouping, over the questions of the main results; `participants` holds the trials of
-/// each participant.
+/// Accuracy in each group of each grouping, over the probe questions of the main results; `participants` holds the
+/// trials of each participant.
 pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAccuracy> {
     let mut all: Vec<(ProbeAccuracyGrouping, usize, String)> = participants
         .iter()
@@ -118,7 +118,7 @@ pub fn accuracies(participants: &[Vec<&ProbedTrial>], seed: u64) -> Vec<ProbeAcc
         .collect()
 }
 
-/// Accuracy over the questions of one group.
+/// Accuracy over the probe questions of one group.
 pub fn accuracy(
     participants: &[Vec<&ProbedTrial>],
     (by, group): (ProbeAccuracyGrouping, &str),
@@ -130,7 +130,7 @@ pub fn accuracy(
         all.filter_map(|one| Some((one.weight(), !one.is_wrong()?))).collect()
     };
     let answers: Vec<Vec<(f64, bool)>> = participants.iter().map(of_one).collect();
-    // The bootstrap needs only each participant's sums of weights: of all answers, and of right ones.
+    // The bootstrap needs only two sums of weights for each participant: of all answers, and of right ones.
     let sums: Vec<[f64; 2]> = answers
         .iter()
         .filter(|of_one| !of_one.is_empty())
@@ -155,8 +155,8 @@ pub fn accuracy(
     }
 }
 
-/// The effect of assistance on accuracy, within participants; `None` if no participant has answers in both assisted and
-/// unassisted trials.
+/// The effect of assistance on the accuracy of answers, within participants; `None` if no participant has answers in
+/// both assisted and unassisted trials.
 pub fn awareness_effect(participants: &[Vec<&ProbedTrial>], seed: u64) -> Option<SituationAwarenessEffect> {
     let share = |trials: &[&ProbedTrial], assisted: bool| {
         let of = trials.iter().filter(|trial| (trial.study_arm != StudyArm::None) == assisted);

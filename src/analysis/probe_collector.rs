@@ -21,7 +21,7 @@ use crate::session::{Event, Session, TimestampedEvent};
 #[derive(Debug, Default)]
 pub struct ProbeCollector {
     seen: LastSeenContents,
-    /// Last recorded belief of a simulated participant, with its time.
+    /// Last recorded belief of a simulated participant, with the time of the record.
     belief: Option<(SessionTime, RecordedBelief)>,
     open: Option<OpenQuestions>,
     questions: Vec<ProbedQuestion>,
@@ -34,12 +34,12 @@ pub struct ProbeCollector {
 #[derive(Debug)]
 struct OpenQuestions {
     drawn: Vec<ProbedQuestion>,
-    /// Time at which each question appeared; `None` for questions not shown yet.
+    /// Session time at which each question appeared; `None` for questions that were not shown yet.
     asked: Vec<Option<SessionTime>>,
 }
 
 impl ProbeCollector {
-    /// Takes note of an event that the follower has just applied.
+    /// Notes an event that the follower has just applied.
     pub fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, follower: &SessionFollower) {
         let session = &follower.session;
         self.seen.note(session, &stamped.event, change);
@@ -96,21 +96,21 @@ impl ProbeCollector {
         }
     }
 
-    /// The question with this number in the open freeze probe, and when it appeared.
+    /// The question with this number in the open freeze probe, and the time at which it appeared.
     fn question(&mut self, number: u32) -> Option<(&mut Option<SessionTime>, &mut ProbedQuestion)> {
         let open = self.open.as_mut()?;
         let index = (number as usize).checked_sub(1)?;
         Some((open.asked.get_mut(index)?, open.drawn.get_mut(index)?))
     }
 
-    /// Ends the open probe and keeps those of its questions that were shown.
+    /// Ends the open freeze probe and keeps the questions that were shown.
     fn close(&mut self) {
         let Some(open) = self.open.take() else { return };
         let shown = open.drawn.into_iter().zip(open.asked).filter(|(_, asked)| asked.is_some());
         self.questions.extend(shown.map(|(question, _)| question));
     }
 
-    /// A question with what was true and estimated when the trial froze.
+    /// A probe question with what was true and what was estimated when the trial froze.
     fn frozen(&self, now: SessionTime, question: &ProbeQuestion, follower: &SessionFollower) -> ProbedQuestion {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
         let (kind, aspect) = subject(kitchen, &question.about);
@@ -132,11 +132,11 @@ impl ProbeCollector {
         }
     }
 
-    /// Truth, estimate and history of a state aspect at the freeze.
+    /// True value, estimated belief and history of a state aspect at the freeze.
     fn aspect(&self, now: SessionTime, aspect: AspectId, follower: &SessionFollower) -> AspectAtFreeze {
         let (session, kitchen) = (&follower.session, &follower.session.kitchen);
         let labels = &kitchen.aspects[aspect.index()].labels;
-        // The estimate at the freeze includes the time since the last event.
+        // The belief estimate at the freeze includes the effect of the time since the last event.
         let estimate =
             follower.probed.as_ref().map_or(follower.filter.belief(), |probed| &probed.belief).aspect(aspect);
         let truth = kitchen.true_value(session.state, aspect);
@@ -148,7 +148,7 @@ impl ProbeCollector {
             AspectKind::Location(location) => Some(location),
             AspectKind::Recipe(_) => None,
         };
-        // Recipes do not change, so the usual value and the value last seen are the true one.
+        // Recipes do not change, so for a recipe the usual value and the value last seen are the true one.
         let of_code =
             |code: u8| label(kitchen, aspect, kitchen.aspects[aspect.index()].index_of(code).unwrap_or(truth));
         let of_location = |code: Option<u8>| code.map_or_else(|| label(kitchen, aspect, truth), of_code);
@@ -166,7 +166,7 @@ impl ProbeCollector {
         }
     }
 
-    /// Fills in the truth of questions about the next press or order, from a press that has just happened.
+    /// Fills in the right answer to questions about the next press or order, from a press that has just happened.
     fn next(&mut self, kitchen: &Kitchen, press: &Press) {
         let button = kitchen.button(press.agent, press.button);
         let served = match button.action {
@@ -184,7 +184,7 @@ impl ProbeCollector {
         }
     }
 
-    /// The probes of the recording, after its last event has been noted.
+    /// The freeze probes of the recording, after the recording's last event has been noted.
     pub fn finish(mut self, session: &Session) -> ProbedTrial {
         self.close();
         let ProbeCollector { begun, dropped, skipped, questions, .. } = self;
@@ -192,7 +192,7 @@ impl ProbeCollector {
     }
 }
 
-/// Kind of a question, and the state aspect that it is about.
+/// Kind of a probe question, and the state aspect that the question is about.
 fn subject(kitchen: &Kitchen, about: &ProbeSubject) -> (ProbeQuestionKind, Option<AspectId>) {
     match about {
         ProbeSubject::Location { location } => {

@@ -1,6 +1,6 @@
-//! Accuracy of the belief estimate measured by answers to freeze probes, for all state aspects at all probes. Each
-//! question is weighted by the inverse of the probability with which it was drawn, so that drawing questions by means
-//! of the estimate does not flatter the estimate.
+//! Accuracy of the belief estimate measured by answers to freeze probes, as an estimate for all state aspects at all
+//! probes. Each question is weighted by the inverse of the probability with which it was drawn, so that using the
+//! estimate to draw questions does not make the estimate look better.
 
 use serde::Serialize;
 
@@ -8,38 +8,38 @@ use super::probe_record::{ProbeQuestionKind, ProbedQuestion, weighted_share};
 use crate::measures::belief_detection::{CALIBRATED, CALIBRATION_BINS, FalseBeliefDetection};
 use crate::measures::detection::{Calibration, weighted_auc};
 
-/// A probe question with its weight, and whether the belief that it asks about is false.
+/// A probe question with its weight, and whether the participant's belief about the asked aspect is false.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightedProbeBelief<'a> {
-    /// The probe question.
+    /// The probe question, with truth, estimate and answer.
     pub question: &'a ProbedQuestion,
-    /// Whether the participant's belief is false.
+    /// Whether the participant's belief about the asked aspect is false.
     pub is_wrong: bool,
-    /// Weight of the question: the inverse of its inclusion probability, or 1.
+    /// Weight of the probe question: the inverse of its inclusion probability, or 1.
     pub weight: f64,
 }
 
 impl<'a> WeightedProbeBelief<'a> {
-    /// A question of the main results, with the belief judged by the participant's answer.
+    /// A probe question of the main results; whether the belief is false is judged by the participant's answer.
     pub fn by_answer(question: &'a ProbedQuestion) -> Option<WeightedProbeBelief<'a>> {
         question.is_counted().then_some(())?;
         Some(WeightedProbeBelief { question, is_wrong: question.is_wrong()?, weight: question.weight() })
     }
 
-    /// This question, with the belief judged by what the simulated participant believed.
+    /// This probe question; whether the belief is false is judged by what the simulated participant believed.
     pub fn by_true_belief(self) -> Option<WeightedProbeBelief<'a>> {
         let believed = self.question.frozen.as_ref()?.believed.as_ref()?;
         Some(WeightedProbeBelief { is_wrong: believed.is_wrong(), ..self })
     }
 
-    /// This question with weight 1.
+    /// This probe question with weight 1 instead of its own weight.
     pub fn unweighted(self) -> WeightedProbeBelief<'a> {
         WeightedProbeBelief { weight: 1.0, ..self }
     }
 }
 
-/// How well the estimate finds false beliefs, over weighted questions. Values are null where all beliefs, or none, are
-/// false.
+/// How well the estimate finds false beliefs, over weighted probe questions. Values are null where all beliefs, or
+/// none, are false.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeDetection {
     /// Weighted share of the beliefs that are false.
@@ -60,7 +60,7 @@ pub struct ProbeDetection {
 }
 
 impl ProbeDetection {
-    /// Fills a detection for which beliefs are unknown with the results from probes.
+    /// Adds the results from probes to the result of a belief check without known beliefs.
     pub fn in_place_of(&self, unknown: FalseBeliefDetection) -> FalseBeliefDetection {
         FalseBeliefDetection {
             auc: self.auc,
@@ -73,7 +73,7 @@ impl ProbeDetection {
         }
     }
 
-    /// Compares the estimate with questions whose beliefs are judged.
+    /// Compares the estimate with probe questions for which it is known whether the belief is false.
     pub fn from_beliefs(beliefs: &[WeightedProbeBelief]) -> ProbeDetection {
         let p_wrong = |one: &WeightedProbeBelief| Some(1.0 - one.question.frozen.as_ref()?.estimate_p_truth);
         let changed = |one: &WeightedProbeBelief| {

@@ -16,49 +16,49 @@ use crate::session::probes::ProbeOrigin;
 const SEED: u64 = 1;
 
 /// Results of the freeze probes of a study. Main results are over scheduled questions about the present state (level 1)
-/// that were answered in time; questions that are left out are counted.
+/// that were answered in time; the questions that the main results leave out are counted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeSummary {
-    /// Source of what participants believed: recorded beliefs or answers.
+    /// Source of what participants believed: recorded beliefs, or answers to freeze probes.
     pub beliefs_from: BeliefSource,
-    /// Number of participants with a question in the main results.
+    /// Number of participants with a probe question in the main results.
     pub participants: u64,
-    /// Numbers of probes and questions, and how many of them the main results include.
+    /// Numbers of probes and questions, and how many questions the main results include.
     pub counts: ProbeCounts,
-    /// Accuracy of the belief estimate, measured by the answers.
+    /// Accuracy of the belief estimate, measured by the answers to freeze probes.
     #[serde(flatten)]
     pub detection: ProbeDetection,
     /// 95 % interval of `detection.auc` by bootstrap over participants; null with fewer than five participants.
     pub auc_interval: Option<[f64; 2]>,
     /// 95 % interval of `detection.ece` by bootstrap over participants; null with fewer than five participants.
     pub ece_interval: Option<[f64; 2]>,
-    /// Area under the ROC curve without weights, which is biased, since the estimate took part in the choice of
-    /// questions.
+    /// Area under the ROC curve without weights of questions, which is biased, since the estimate took part in the
+    /// choice of questions.
     pub auc_unweighted: Option<f64>,
-    /// How well the answers are predicted by the estimate and by baselines.
+    /// How well the answers to freeze probes are predicted by the estimate and by baselines.
     pub log_scores: ProbeLogScores,
     /// Share of right answers over all questions of the main results.
     pub accuracy: ProbeAccuracy,
-    /// Share of right answers by aspect, change of the location and condition.
+    /// Share of right answers in groups of questions: by state aspect, by change of the location, by condition.
     pub accuracies: Vec<ProbeAccuracy>,
     /// Effect of assistance on situation awareness; null if no participant has answers with and without assistance.
     pub assistance: Option<SituationAwarenessEffect>,
     /// Share of right answers to questions about what comes next (level 2 of situation awareness), which are not in the
     /// main results.
     pub level_2: Vec<ProbeAccuracy>,
-    /// For simulated participants, the accuracy of the estimate measured by what they believed, at the same questions;
-    /// null for people.
+    /// For simulated participants, accuracy of the estimate measured by what the participants believed, at the same
+    /// probe questions; null for people.
     pub by_true_beliefs: Option<TrueBeliefComparison>,
 }
 
-/// Numbers of probes and questions.
+/// Numbers of freeze probes and of their questions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ProbeCounts {
     /// Number of freeze probes that began.
     pub probes: u64,
-    /// Probes that did not begin in time and were dropped.
+    /// Number of freeze probes that did not begin in time and were dropped.
     pub dropped: u64,
-    /// Probes of which the wizard skipped the rest.
+    /// Number of freeze probes of which the wizard skipped remaining questions.
     pub skipped: u64,
     /// Number of questions that were shown to participants.
     pub questions: u64,
@@ -75,26 +75,27 @@ pub struct ProbeCounts {
     /// Number of answered questions left out because they ask what comes next.
     pub level_2: u64,
     /// Effective sample size of the main results: the number of questions of equal weight that would be as informative
-    /// (Kish 1965).
+    /// as the weighted questions (Kish 1965).
     pub effective: f64,
 }
 
-/// Comparison of answers with what simulated participants believed, at the questions of the main results.
+/// Comparison of probe answers with what simulated participants believed, at the questions of the main results.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TrueBeliefComparison {
-    /// Number of questions for which the participant's belief is recorded.
+    /// Number of probe questions for which the participant's belief is recorded.
     pub n: u64,
-    /// Share of these questions where answer and belief are both right or both wrong.
+    /// Share of the questions with a recorded belief where answer and belief are both right or both wrong.
     pub agreement: f64,
-    /// Accuracy of the estimate, measured by recorded beliefs.
+    /// Accuracy of the belief estimate, measured by recorded beliefs.
     #[serde(flatten)]
     pub detection: ProbeDetection,
-    /// Accuracy of the estimate at the same questions, measured by answers.
+    /// Accuracy of the belief estimate at the same questions, measured by the participants' answers.
     pub by_answers: ProbeDetection,
 }
 
 impl ProbeSummary {
-    /// Results of the probes of these trials, each with its participant's code; `None` if no question was shown.
+    /// Results of the freeze probes of these trials, each given with its participant's code; `None` if no question was
+    /// shown.
     pub fn from_trials<'a>(trials: impl IntoIterator<Item = (&'a str, &'a ProbedTrial)>) -> Option<ProbeSummary> {
         let participants = by_participant(trials);
         let counts = ProbeCounts::from_trials(participants.iter().flatten().copied());
@@ -134,7 +135,7 @@ impl ProbeSummary {
     }
 }
 
-/// The trials of each participant, with participants in the order of their first trial.
+/// The trials of each participant; the participants are in the order of their first trial.
 fn by_participant<'a>(trials: impl IntoIterator<Item = (&'a str, &'a ProbedTrial)>) -> Vec<Vec<&'a ProbedTrial>> {
     let mut participants: Vec<(&str, Vec<&ProbedTrial>)> = Vec::new();
     for (code, trial) in trials {

@@ -42,11 +42,11 @@ pub fn describe(found: &ProbeSummary) -> String {
     text + &accuracies(found)
 }
 
-/// Text about right answers by group, the effect of assistance, questions about what comes next, and accuracy by
-/// recorded beliefs.
+/// Text about right answers to probes by group, the effect of assistance, questions about what comes next, and accuracy
+/// measured by recorded beliefs.
 fn accuracies(found: &ProbeSummary) -> String {
     let mut text = String::new();
-    // Groups by single aspect and by the way of drawing are in the JSON output only.
+    // Groups by single state aspect and by the way of drawing questions are in the JSON output only.
     let told = [
         ProbeAccuracyGrouping::Kind,
         ProbeAccuracyGrouping::Age,
@@ -91,7 +91,7 @@ fn percent(value: Option<f64>) -> String {
     value.map_or("-".to_string(), |value| format!("{:.1} %", 100.0 * value))
 }
 
-/// An interval in brackets; empty if the interval is not known.
+/// A confidence interval in brackets; empty if the interval is not known.
 fn within(interval: Option<[f64; 2]>, scale: f64, digits: usize) -> String {
     interval.map_or(String::new(), |[from, to]| format!(" ({:.digits$} to {:.digits$})", scale * from, scale * to))
 }

@@ -1,4 +1,4 @@
-//! A question of a freeze probe as the analysis needs it: the truth, the estimate and, in simulations, the belief when
+//! A question of a freeze probe as the analysis needs it: what was true, estimated and (in simulations) believed when
 //! the trial froze; and the answer.
 
 use std::collections::BTreeMap;
@@ -9,23 +9,23 @@ use crate::measures::sequences::FALSE_BELOW;
 use crate::session::probes::ProbeOrigin;
 use crate::session::study_arm::StudyArm;
 
-/// Kind of a probe question, by what it asks about.
+/// Kind of a probe question, by what the question asks about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ProbeQuestionKind {
-    /// The content of an order location.
+    /// The question asks for the content of an order location.
     Order,
-    /// The recipe of a dish.
+    /// The question asks for the recipe of a dish.
     Recipe,
-    /// The content of a location other than an order.
+    /// The question asks for the content of a location other than an order.
     Place,
-    /// Which order will be ready next (level 2 of situation awareness).
+    /// The question asks which order will be ready next (level 2 of situation awareness).
     NextOrder,
-    /// What the robot will press next (level 2 of situation awareness).
+    /// The question asks what the robot will press next (level 2 of situation awareness).
     NextPress,
 }
 
 impl ProbeQuestionKind {
-    /// Name of the kind in tables.
+    /// Name of the kind of probe question in tables.
     pub fn name(self) -> &'static str {
         match self {
             ProbeQuestionKind::Order => "order",
@@ -36,7 +36,7 @@ impl ProbeQuestionKind {
         }
     }
 
-    /// The kind of question in words, in the plural.
+    /// The kind of probe question in words, in the plural.
     pub fn words(self) -> &'static str {
         match self {
             ProbeQuestionKind::Order => "orders",
@@ -47,7 +47,8 @@ impl ProbeQuestionKind {
         }
     }
 
-    /// Whether the question asks what comes next (level 2 of situation awareness and above), not what is the case now.
+    /// Whether the probe question asks what comes next (level 2 of situation awareness and above), not what is the case
+    /// now.
     pub fn is_level_2(self) -> bool {
         matches!(self, ProbeQuestionKind::NextOrder | ProbeQuestionKind::NextPress)
     }
@@ -56,13 +57,13 @@ impl ProbeQuestionKind {
 /// Response of a participant to a probe question.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ProbeResponse {
-    /// The answered value, by its name.
+    /// The participant answered with this value, given by its name.
     Value(String),
-    /// The answer "I don't know".
+    /// The participant answered "I don't know".
     Unsure,
-    /// No answer, because the wizard skipped the rest of the probe.
+    /// The participant gave no answer, because the wizard skipped the rest of the probe.
     Skipped,
-    /// No answer within the time of the probe.
+    /// The participant gave no answer within the time limit of the probe.
     Missing,
 }
 
@@ -79,31 +80,31 @@ pub struct AspectAtFreeze {
     pub estimate_p_truth: f64,
     /// Estimated probability that the participant's belief is false, as in [`crate::measures::belief_detection`].
     pub estimate_p_false: f64,
-    /// Belief of a simulated participant; `None` for people.
+    /// Recorded belief of a simulated participant; `None` for people.
     pub believed: Option<BeliefAtFreeze>,
-    /// Time since the last change of the location, without pauses, in seconds; `None` for recipes, and for locations
-    /// that have not changed in the trial.
+    /// Time since the last change of the asked location, without pauses, in seconds; `None` for recipes, and for
+    /// locations that have not changed in the trial.
     pub changed_s: Option<f64>,
-    /// Whether somebody else changed the location since the participant last looked at it or changed it; `None` for
-    /// recipes.
+    /// Whether somebody else changed the asked location since the participant last looked at it or changed it; `None`
+    /// for recipes.
     pub changed_unseen: Option<bool>,
-    /// Name of the value that the location had for the longest time so far; for a recipe, the true one.
+    /// Name of the value that the asked location had for the longest time so far; for a recipe, the true value.
     pub usual: String,
-    /// Name of the value that the participant last saw at the location, or made there; for a recipe, the true one.
+    /// Name of the value that the participant last saw at the location, or made there; for a recipe, the true value.
     pub last_seen: String,
 }
 
 /// Belief of a simulated participant about a state aspect when the trial froze.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BeliefAtFreeze {
-    /// Name of the value that the participant believed most probable.
+    /// Name of the value that the simulated participant believed most probable.
     pub believes: String,
-    /// Probability that the participant gave to the true value.
+    /// Probability that the simulated participant gave to the true value.
     pub p_truth: f64,
 }
 
 impl BeliefAtFreeze {
-    /// Whether the participant's belief is false.
+    /// Whether the participant's belief is false: the most probable value is not the true one.
     pub fn is_wrong(&self) -> bool {
         self.p_truth < FALSE_BELOW
     }
@@ -118,37 +119,37 @@ pub struct ProbedQuestion {
     pub question: u32,
     /// Time at which the trial froze, on the trial's clock in seconds.
     pub time_s: f64,
-    /// Who started the probe: the schedule or the wizard.
+    /// Whether the schedule or the wizard started the freeze probe.
     pub origin: ProbeOrigin,
-    /// Whether the belief estimate took part in the choice of questions.
+    /// Whether the belief estimate took part in the choice of the probe's questions.
     pub uses_estimate: bool,
     /// Kind of the probe question.
     pub kind: ProbeQuestionKind,
-    /// Name of the state aspect; for questions of level 2, name of the kind.
+    /// Name of the state aspect that the question is about; for questions of level 2, name of the kind of question.
     pub aspect: String,
     /// Probability with which the question was drawn (inclusion probability).
     pub inclusion: f64,
-    /// Name of the right answer; `None` for questions of level 2 if the trial ended before the answer was known.
+    /// Name of the right answer; `None` for questions of level 2 if the trial ended before the right answer was known.
     pub truth: Option<String>,
-    /// The participant's response to the question.
+    /// The participant's response to the probe question.
     pub response: ProbeResponse,
-    /// Confidence of the participant from 1 to 3, if it was asked.
+    /// Confidence of the participant in the answer, from 1 to 3, if it was asked for.
     pub confidence: Option<u8>,
     /// Response time from the question's appearance to the answer, in seconds.
     pub took_s: Option<f64>,
-    /// The state aspect at the freeze; `None` for questions of level 2.
+    /// The asked state aspect at the freeze; `None` for questions of level 2.
     pub frozen: Option<AspectAtFreeze>,
 }
 
 impl ProbedQuestion {
-    /// Weight of the question, the inverse of its inclusion probability, in estimates over all aspects at all probes
-    /// (Horvitz and Thompson 1952).
+    /// Weight of the probe question in estimates over all state aspects at all probes: the inverse of its inclusion
+    /// probability (Horvitz and Thompson 1952).
     pub fn weight(&self) -> f64 {
         1.0 / self.inclusion
     }
 
-    /// Whether the answer is wrong; "I don't know" counts as wrong. `None` without an answer in time, or if the truth
-    /// is unknown.
+    /// Whether the answer to the probe question is wrong; "I don't know" counts as wrong. `None` without an answer in
+    /// time, or if the truth is unknown.
     pub fn is_wrong(&self) -> Option<bool> {
         let truth = self.truth.as_ref()?;
         match &self.response {
@@ -158,13 +159,13 @@ impl ProbedQuestion {
         }
     }
 
-    /// Whether the question is part of the main results: drawn by the schedule, about the present state, and answered
-    /// in time.
+    /// Whether the probe question is part of the main results: drawn by the schedule, about the present state, and
+    /// answered in time.
     pub fn is_counted(&self) -> bool {
         self.origin == ProbeOrigin::Schedule && !self.kind.is_level_2() && self.is_wrong().is_some()
     }
 
-    /// Name of the answered value; `None` for "I don't know" and without an answer.
+    /// Name of the value that the participant answered; `None` for "I don't know" and without an answer.
     pub fn answer(&self) -> Option<&str> {
         match &self.response {
             ProbeResponse::Value(answer) => Some(answer),
@@ -182,9 +183,9 @@ pub struct ProbedTrial {
     pub begun: u64,
     /// Number of probes that did not begin in time and were dropped.
     pub dropped: u64,
-    /// Number of probes of which the wizard skipped the rest.
+    /// Number of freeze probes of which the wizard skipped remaining questions.
     pub skipped: u64,
-    /// The questions that participants were shown, in order.
+    /// The probe questions that the participant was shown, in order.
     pub questions: Vec<ProbedQuestion>,
 }
 
@@ -194,18 +195,18 @@ impl ProbedTrial {
         self.begun + self.dropped > 0
     }
 
-    /// The questions of the main results.
+    /// The probe questions of the trial that belong to the main results.
     pub fn counted(&self) -> impl Iterator<Item = &ProbedQuestion> {
         self.questions.iter().filter(|question| question.is_counted())
     }
 
-    /// Weighted share of wrong answers among the questions of the main results; `None` without any.
+    /// Weighted share of wrong answers among the probe questions of the main results; `None` without such questions.
     pub fn share_wrong(&self) -> Option<f64> {
         weighted_share(self.counted().filter_map(|one| Some((one.weight(), one.is_wrong()?))))
     }
 }
 
-/// Weighted share of elements that are true; each element is a weight and whether it is true. `None` without elements.
+/// Weighted share of elements that are true; an element is a weight, and whether it is true. `None` without elements.
 pub fn weighted_share(of: impl IntoIterator<Item = (f64, bool)>) -> Option<f64> {
     let (mut all, mut part) = (0.0, 0.0);
     for (weight, is_it) in of {

@@ -1,33 +1,35 @@
-//! How well answers to freeze probes are predicted: by the estimate, and by three baselines that use no gaze model, no
-//! memory and no presses: the usual content, the content last seen, and the true content.
+//! How well answers to freeze probes are predicted: by the belief estimate, and by three baselines that use no gaze
+//! model, no memory and no presses. The baselines predict the usual content, the content last seen, and the true
+//! content.
 
 use serde::Serialize;
 
 use super::probe_record::{AspectAtFreeze, ProbeQuestionKind, ProbedQuestion};
 use crate::mind::dirichlet::LEAST_MEAN;
 
-/// Weighted mean log probability of the answered values, in nats, for several predictors; higher is better. "I don't
-/// know" names no value and is left out.
+/// Weighted mean log probability of the answered values, in nats, for several predictors of answers; higher is better.
+/// The answer "I don't know" names no value and is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ProbeLogScores {
-    /// Number of answers that name a value.
+    /// Number of answers to freeze probes that name a value.
     pub n: u64,
-    /// Score of the estimate, which predicts beliefs and expects no wrong answers.
+    /// Score of the belief estimate, which predicts beliefs and expects no mistaken answers.
     pub estimate: Option<f64>,
-    /// Score of the estimate mixed with a share of random answers; the share is fitted to the other participants.
+    /// Score of the belief estimate mixed with a share of random answers; the share is fitted to the other
+    /// participants.
     pub estimate_with_slips: Option<f64>,
-    /// Score of predicting the content that a location had for the longest time so far.
+    /// Score of predicting the content that the location had for the longest time so far.
     pub usual: Option<f64>,
-    /// Score of predicting the content that the participant last saw, which is wrong if it changed since.
+    /// Score of predicting the content that the participant last saw, which is wrong if the content changed since.
     pub last_seen: Option<f64>,
-    /// Score of predicting the true content.
+    /// Score of predicting the true content of the location.
     pub truth: Option<f64>,
 }
 
-/// An answer that names a value, with its predictions.
+/// An answer to a freeze probe that names a value, with what each predictor says about it.
 #[derive(Clone, Copy, Debug)]
 struct NamedAnswer<'a> {
-    /// Index of the participant.
+    /// Index of the participant who answered.
     participant: usize,
     is_recipe: bool,
     weight: f64,
@@ -36,7 +38,7 @@ struct NamedAnswer<'a> {
     frozen: &'a AspectAtFreeze,
 }
 
-/// Candidate values for the share of random answers.
+/// Values that are tried for the share of random answers.
 const SLIPS: [f64; 9] = [0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3];
 
 impl NamedAnswer<'_> {
@@ -50,8 +52,8 @@ impl NamedAnswer<'_> {
 }
 
 impl ProbeLogScores {
-    /// Scores the questions of the main results, each given with the index of its participant. The baselines' rates of
-    /// being right are learnt from the other participants.
+    /// Scores the predictors on the questions of the main results, each given with the index of its participant. How
+    /// often a baseline is right is learnt from the other participants.
     pub fn from_questions(questions: &[(usize, &ProbedQuestion)]) -> ProbeLogScores {
         let named: Vec<NamedAnswer> = questions.iter().filter_map(|&(of, question)| named(of, question)).collect();
         let mean = |log_p: &dyn Fn(&NamedAnswer) -> f64| {
@@ -101,7 +103,7 @@ fn rate<'a>(named: &[NamedAnswer<'a>], without: usize, is_recipe: bool, of: fn(&
     f64::from(right + 1) / f64::from(n + 2)
 }
 
-/// Share of random answers with the highest likelihood for the other participants.
+/// Share of random answers that has the highest likelihood for the other participants.
 fn share_of_slips(named: &[NamedAnswer], without: usize) -> f64 {
     let others = || named.iter().filter(|one| one.participant != without);
     let score = |share: f64| others().map(|one| one.with_slips(share).ln()).sum::<f64>();

@@ -13,9 +13,9 @@ use crate::base::words::count;
 pub struct RecordingSummary {
     /// Number of events in the recording.
     pub events: u64,
-    /// The recording lacks its end event, and no session is writing to it.
+    /// Whether the recording lacks its end event although no session is writing to it.
     pub cut: bool,
-    /// The recording's session still runs, so the summary is of the events so far.
+    /// Whether the recording's session still runs, so that the summary is of the events so far.
     pub running: bool,
     /// Whether the trial was aborted or excluded from the analysis.
     #[serde(flatten)]
@@ -26,28 +26,28 @@ pub struct RecordingSummary {
     pub robot_actions: u64,
     /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Number of the human's presses that were races with the robot and so do not count as errors.
+    /// Number of the human's presses that were races with the robot, which do not count as errors.
     pub races: u64,
     /// Errors that follow from false beliefs.
     #[serde(flatten)]
     pub beliefs: BeliefErrorSummary,
     /// Number of signals that were shown to the participant.
     pub signals: u64,
-    /// The wizard saw the assistants' recommendations beside the signals sent.
+    /// Whether the wizard saw the assistants' recommendations beside the signals that the wizard sent.
     pub unblinded: bool,
-    /// Number of orders served.
+    /// Number of orders that were served in the trial.
     pub orders_served: u64,
     /// Duration of the trial by its own clock, in seconds.
     pub trial_s: f64,
     /// Gaze quality of the recording.
     pub gaze: GazeSummary,
-    /// Faults of the gaze in words.
+    /// Faults of the gaze stream in words; null without faults.
     #[serde(skip)]
     gaze_faults: Option<String>,
 }
 
 impl RecordingSummary {
-    /// The summary of a session that was followed to its end, with `events` events.
+    /// The summary of a recorded session that was followed to its end, with `events` events.
     pub fn from_follower(follower: &SessionFollower, events: u64, standing: ExclusionStatus) -> RecordingSummary {
         let trial = TrialSummary::from_follower(follower);
         RecordingSummary {

@@ -10,20 +10,20 @@ use crate::session::study_arm::StudyArm;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RecordingState {
-    /// The session was closed properly.
+    /// Complete recording: the session was closed properly.
     Whole,
-    /// The recording lacks its end event, and no session is writing to it.
+    /// Cut recording: it lacks its end event, and no session is writing to it.
     Cut,
-    /// The trial was aborted or excluded, and the analysis leaves it out.
+    /// Excluded recording: the trial was aborted or excluded, and the analysis leaves it out.
     Excluded,
-    /// The session still runs.
+    /// Running recording: the session is still writing to it.
     Running,
-    /// The recording cannot be read.
+    /// Unreadable recording: its log cannot be read.
     Unreadable,
 }
 
 impl RecordingState {
-    /// The state of the recording in a word.
+    /// The state of the recording as one word.
     pub fn name(self) -> &'static str {
         match self {
             RecordingState::Whole => "whole",
@@ -44,31 +44,31 @@ pub struct ListedRecording {
     pub code: Option<String>,
     /// Condition of the trial: who could send signals; null if the recording cannot be read.
     pub condition: Option<Condition>,
-    /// Study arm of the trial by what was done in it; null if the recording cannot be read.
+    /// Study arm of the trial as it was carried out; null if the recording cannot be read.
     pub arm: Option<StudyArm>,
     /// Time at which the recording began (UTC, RFC 3339); null for a simulated trial.
     pub date: Option<String>,
     /// Duration of the trial by its own clock, in seconds.
     pub trial_s: Option<f64>,
-    /// The human's presses that were errors; null where errors are not counted.
+    /// Number of the human's presses that were errors; null where errors are not counted.
     pub errors: Option<u64>,
     /// State of the recording: complete, cut, excluded, running or unreadable.
     pub state: RecordingState,
-    /// Reason for the exclusion, or why the recording cannot be read.
+    /// Reason for the trial's exclusion, or why the recording cannot be read.
     pub reason: Option<String>,
 }
 
-/// List of the recordings in a folder.
+/// List of the recordings in a folder, as `tomcom list` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordingList {
-    /// Path of the folder.
+    /// Path of the folder with the recordings.
     pub folder: String,
     /// The recordings, sorted by the participant's code, then by date, then by name.
     pub recordings: Vec<ListedRecording>,
 }
 
 impl RecordingList {
-    /// Column headings of [`ListedRecording::cells`].
+    /// Column headings of the list, in the order of [`ListedRecording::cells`].
     pub const HEADINGS: [&'static str; 7] = ["code", "condition", "date", "length", "errors", "state", "recording"];
 
     /// The list of recordings, sorted by the participant's code, then by date, then by name.
@@ -99,7 +99,7 @@ fn widest(rows: &[[String; 7]], column: usize) -> usize {
 }
 
 impl ListedRecording {
-    /// One cell for each column of [`RecordingList::HEADINGS`]; "-" for unknown values.
+    /// The recording's cell for each column of [`RecordingList::HEADINGS`]; "-" for unknown values.
     pub fn cells(&self) -> [String; 7] {
         let or_dash = |cell: Option<String>| cell.unwrap_or_else(|| "-".to_string());
         let minutes = |seconds: f64| format!("{}:{:02}", seconds as u64 / 60, seconds as u64 % 60);

@@ -1,5 +1,5 @@
-//! What the participant has last seen at each location, and which content was there for how long; follows from gaze,
-//! changes and own presses, without any belief estimate.
+//! What the participant has last seen at each location, and which content was at each location for how long; follows
+//! from gaze, changes and the participant's presses, without any belief estimate.
 
 use super::looks::LocationDwells;
 use crate::base::time::SessionTime;
@@ -13,11 +13,11 @@ use crate::session::{Event, Session};
 struct SeenLocation {
     /// Code of the content that the participant last saw at the location.
     seen: u8,
-    /// Whether somebody else changed the location since then.
+    /// Whether somebody else changed the location since the participant last saw it.
     is_changed_unseen: bool,
     /// Whether the location has changed in the trial.
     has_changed: bool,
-    /// Duration, on the trial's clock, for which each content (by its code) was at the location until the last change.
+    /// Duration, on the trial's clock, for which each content (by its code) was at the location until its last change.
     lay: Vec<(u8, SessionTime)>,
     /// Time of the location's last change, or of the trial's start, on the trial's clock.
     since: SessionTime,
@@ -31,7 +31,7 @@ pub struct LastSeenContents {
 }
 
 impl LastSeenContents {
-    /// Takes note of an event that has just been applied to the session.
+    /// Notes an event that has just been applied to the session.
     pub fn note(&mut self, session: &Session, event: &Event, change: &KitchenChange) {
         if let KitchenChange::TrialStarted { after, .. } = change {
             *self = LastSeenContents::default();

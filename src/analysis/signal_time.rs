@@ -11,7 +11,7 @@ pub struct SignalTimes {
 }
 
 impl SignalTimes {
-    /// Takes note of the next event of a session.
+    /// Notes when the next event of the session makes a signal appear or vanish.
     pub fn note(&mut self, stamped: &TimestampedEvent) {
         match stamped.event {
             Event::SignalShown { .. } => self.changes.push((stamped.time, true)),
@@ -21,7 +21,7 @@ impl SignalTimes {
     }
 
     /// Time with a signal on the display, in seconds of the trial's clock, after the session's last event. At most one
-    /// signal is shown at a time: a new one replaces the last, and the end of the trial removes it.
+    /// signal is shown at a time: a new signal replaces the last one, and the end of the trial removes it.
     pub fn seconds(&self, session: &Session) -> f64 {
         let end = session.trial_clock(session.time);
         let (mut shown, mut seconds): (Option<SessionTime>, f64) = (None, 0.0);

@@ -1,4 +1,4 @@
-//! Row of a table that compares values of a setting, as a parameter sweep prints it.
+//! Row of a table that compares values of a setting, as a parameter sweep (`tomcom sweep`) prints it.
 
 use serde::Serialize;
 
@@ -9,18 +9,18 @@ use super::trial_summary::SimulationSummary;
 pub struct TrialErrors {
     /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Errors that follow from false beliefs; `None` where the participant's beliefs are not known.
+    /// Number of errors that follow from false beliefs; `None` where the participant's beliefs are not known.
     pub related: Option<u64>,
-    /// Presses of the human.
+    /// Number of presses of the human.
     pub human_actions: u64,
 }
 
-/// Row of a parameter sweep: the trials with one combination of values.
+/// Row of a parameter sweep: results of the trials with one combination of setting values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParameterSweepRow {
-    /// Values of the varied settings, by name; empty in the row without signals.
+    /// Values of the varied settings, by the setting's name; empty in the row without signals.
     pub settings: serde_json::Map<String, serde_json::Value>,
-    /// Number of trials with this combination of values.
+    /// Number of simulated trials with this combination of setting values.
     pub trials: u64,
     /// Errors per 100 presses of the human.
     pub errors_per_100: f64,
@@ -28,7 +28,7 @@ pub struct ParameterSweepRow {
     pub signals_per_100: f64,
     /// Reduction of the errors per 100 presses of the human compared with no signals: mean over the same trials.
     pub spared_per_100: Option<f64>,
-    /// Standard error of `spared_per_100`.
+    /// Standard error of the reduction `spared_per_100`.
     pub spared_error: Option<f64>,
     /// Mean number of errors in an error sequence; null without sequences.
     pub mean_sequence_length: Option<f64>,
@@ -40,21 +40,21 @@ pub struct ParameterSweepRow {
     /// Reduction of the errors per 100 presses of the human compared with the first row with signals: mean over the
     /// same trials.
     pub fewer_than_first: Option<f64>,
-    /// Standard error of `fewer_than_first`.
+    /// Standard error of the reduction `fewer_than_first`.
     pub fewer_error: Option<f64>,
     /// Reduction of the errors from false beliefs per 100 presses of the human compared with the first row with
     /// signals: mean over the same trials.
     pub related_fewer_than_first: Option<f64>,
-    /// Standard error of `related_fewer_than_first`.
+    /// Standard error of the reduction `related_fewer_than_first`.
     pub related_fewer_error: Option<f64>,
 }
 
-/// The same trials under two combinations of values, in the same order.
+/// The same trials simulated under two combinations of setting values, in the same order.
 type PairedTrials<'a> = [&'a [TrialErrors]; 2];
 
 impl ParameterSweepRow {
-    /// The row for these settings. `paired`: the same trials without and with signals. `with_first`: the same trials in
-    /// the first row with signals, and in this row.
+    /// The row for these setting values. `paired`: the same trials without and with signals. `with_first`: the same
+    /// trials in the first row with signals, and in this row.
     pub fn new(
         settings: &[(&str, String)],
         figures: &SimulationSummary,
@@ -88,7 +88,8 @@ fn per_100(number: u64, presses: u64) -> f64 {
     100.0 * number as f64 / presses.max(1) as f64
 }
 
-/// Mean reduction per 100 presses of the human from the first to the second of paired trials, and its standard error.
+/// Mean reduction of a number per 100 presses of the human between paired trials (first minus second), and its standard
+/// error.
 fn fewer(paired: Option<PairedTrials>, number: impl Fn(&TrialErrors) -> Option<u64>) -> (Option<f64>, Option<f64>) {
     let rate = |trial: &TrialErrors| number(trial).map(|number| per_100(number, trial.human_actions));
     let Some([before, after]) = paired else { return (None, None) };

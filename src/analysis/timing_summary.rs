@@ -1,9 +1,9 @@
-//! Computing times of inference and planning in a replay; the caller measures them.
+//! Computing times of inference and planning during a replay; the caller measures the times.
 
 use serde::Serialize;
 
-/// The output of `tomcom replay --timing`, in microseconds. Values are null for computations that the recording does
-/// not need.
+/// Computing times: the output of `tomcom replay --timing`, in microseconds. Values are null for computations that the
+/// recording does not need.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimingSummary {
     /// Computing time of the belief filter for a gaze sample.
@@ -12,17 +12,18 @@ pub struct TimingSummary {
     pub action_us: Option<DurationPercentiles>,
     /// Computing time of the planner for one request for advice.
     pub plan_us: Option<DurationPercentiles>,
-    /// Computing time of filter and planner together for one step.
+    /// Computing time of belief filter and planner together for one press.
     pub step_us: Option<DurationPercentiles>,
-    /// Time to plan where the advisor worked ahead between requests, for as long as it had in the session.
+    /// Computing time of the planner where the advisor worked ahead between requests for as long as it had in the
+    /// session.
     pub plan_ahead_us: Option<DurationPercentiles>,
-    /// Time for inference and planning together where the advisor worked ahead.
+    /// Computing time of filter and planner together where the advisor worked ahead.
     pub step_ahead_us: Option<DurationPercentiles>,
-    /// Time spent on working ahead, in seconds.
+    /// Computing time that the advisor spent on working ahead, in seconds.
     pub ahead_s: f64,
     /// Number of decisions of the cost to go that planning had to compute, because no cache held them.
     pub decisions_computed: u64,
-    /// The same where the advisor worked ahead.
+    /// Number of decisions of the cost to go that planning had to compute where the advisor worked ahead.
     pub decisions_computed_ahead: u64,
     /// Duration of the recording in session time, in seconds.
     pub session_s: f64,
@@ -33,7 +34,7 @@ pub struct TimingSummary {
 /// Percentiles of measured computing times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DurationPercentiles {
-    /// Number of computing times measured.
+    /// Number of computing times that were measured.
     pub n: u64,
     /// Median of the computing times.
     pub p50: f64,
@@ -44,8 +45,8 @@ pub struct DurationPercentiles {
 }
 
 impl DurationPercentiles {
-    /// Percentiles, in microseconds, of computing times in nanoseconds; `None` without times. The percentiles are times
-    /// that occurred (nearest rank).
+    /// Percentiles, in microseconds, of computing times in nanoseconds; `None` without times. Each percentile is a
+    /// computing time that occurred (nearest rank).
     pub fn from_nanoseconds(mut times_ns: Vec<u64>) -> Option<DurationPercentiles> {
         times_ns.sort_unstable();
         let (&max, n) = (times_ns.last()?, times_ns.len());

@@ -1,4 +1,4 @@
-//! Record of a wizard's training session, as it is saved to a file.
+//! Record of a wizard's training session, as the program saves it to a file.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,11 +12,11 @@ use crate::measures::wizard_performance::{TrainingCriterion, WizardMeasures};
 pub struct WizardTrainingRecord {
     /// The wizard's code, never a name.
     pub wizard: String,
-    /// Time at which the training began (UTC, RFC 3339).
+    /// Wall clock time at which the training began (UTC, RFC 3339).
     pub at: String,
     /// Duration of the training, in minutes.
     pub minutes: f64,
-    /// Playback speed as a multiple of real time; null in older records, which lack it.
+    /// Playback speed as a multiple of real time; null in older records, which lack the speed.
     #[serde(default)]
     pub speed: Option<f64>,
     /// Criterion for passing the training.
@@ -31,7 +31,8 @@ pub struct WizardTrainingRecord {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WatchedRecording {
-    /// Name of the recording's folder; for one that was simulated for the training, preceded by its length.
+    /// Name of the recording's folder; a recording that was simulated for the training has its length in front of the
+    /// name.
     pub recording: String,
     /// Whether the wizard watched the recording to its end.
     pub complete: bool,
@@ -39,7 +40,7 @@ pub struct WatchedRecording {
     pub presses: u32,
     /// Signals that the wizard sent while watching, with their judgements.
     pub signals: Vec<JudgedSignal>,
-    /// The false beliefs that led to errors, if they began in the part that was watched.
+    /// False beliefs that led to errors, among those that began in the part that was watched.
     #[serde(default)]
     pub beliefs: Vec<JudgedFalseBelief>,
     /// Measures of the wizard's performance: hits and wrong signals.
@@ -55,12 +56,12 @@ pub struct WatchedRecording {
 pub struct JudgedSignal {
     /// Number of the human's presses before the signal.
     pub press: u32,
-    /// Time of the signal on the trial's clock.
+    /// Time of the signal on the trial's clock, in nanoseconds.
     pub clock_ns: SessionTime,
-    /// The signal.
+    /// The signal that the wizard sent.
     pub signal: Signal,
     /// Judgement of the signal: "hit", "again", "harmless", "late", "wrong" or "needless"; empty in older records,
-    /// which lack it.
+    /// which lack the judgement.
     #[serde(default)]
     pub worth: String,
 }
@@ -75,17 +76,17 @@ pub struct JudgedFalseBelief {
     pub began_ns: SessionTime,
     /// Time at which the belief was corrected, on the trial's clock; null if the participant held it until the end.
     pub corrected_ns: Option<SessionTime>,
-    /// Number of errors that are attributed to the false belief.
+    /// Number of errors that followed from the false belief.
     pub errors: u32,
-    /// The value that the participant believed most probable, by the last record of the belief while it was false.
+    /// The value that the participant believed most probable, by the last recorded belief while it was false.
     pub believed: String,
-    /// The true value at that time.
+    /// The true value of the aspect while the belief was false.
     pub truth: String,
-    /// False and true value in words for screens; filled in only while judging, not in records on disk.
+    /// Believed and true value in words for screens; filled in only while signals are judged, not in records on disk.
     #[serde(skip)]
     pub words: String,
     /// The signal that would have corrected the belief; null if no signal can.
     pub signal: Option<Signal>,
-    /// Index among the signals, from 0, of the one that hit the false belief; null if it was missed.
+    /// Index, from 0, of the wizard's signal that hit the false belief; null if no signal hit it.
     pub hit_by: Option<usize>,
 }

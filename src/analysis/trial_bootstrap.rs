@@ -5,15 +5,15 @@ use rand::RngExt;
 
 use crate::base::rng::stream;
 
-/// Number of bootstrap resamples.
+/// Number of bootstrap resamples from which an interval is computed.
 const RESAMPLES: usize = 2000;
-/// Quantiles of the bootstrap distribution that bound the interval.
+/// Quantiles of the bootstrap distribution that bound the 95 % interval.
 const INTERVAL: [f64; 2] = [0.025, 0.975];
 
-/// Least number of units for an interval: resamples of fewer units are nearly all alike.
+/// Least number of units (such as participants) for an interval: resamples of fewer units are nearly all alike.
 const FEWEST: usize = 5;
 
-/// The 95 % interval of a statistic over these trials. The random stream is seeded by `seed`.
+/// The 95 % interval of a statistic over these trials. `seed` seeds the random stream of the bootstrap.
 ///
 /// # Panics
 /// There are no trials.
@@ -29,8 +29,8 @@ pub fn interval<T: Copy>(trials: &[T], seed: u64, statistic: impl Fn(&[T]) -> f6
     INTERVAL.map(|share| resampled[((RESAMPLES - 1) as f64 * share).round() as usize])
 }
 
-/// 95 % interval of a statistic that is undefined for some resamples, which are left out. `None` with fewer than five
-/// units, or if the statistic is undefined for more than half of the resamples.
+/// The 95 % interval of a statistic that is undefined for some resamples, which are left out. `None` with fewer than
+/// five units, or if the statistic is undefined for more than half of the resamples.
 pub fn interval_where_known<T: Copy>(
     units: &[T],
     seed: u64,

@@ -1,4 +1,4 @@
-//! Summaries of trials and simulations that commands print. A number that cannot be computed is null.
+//! Summaries of trials and simulations that commands print. A number that cannot be computed is null in JSON.
 
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ pub struct TrialSummary {
     pub robot_actions: u64,
     /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Number of the human's presses that the robot may have overtaken (races); they do not count as errors.
+    /// Number of the human's presses that the robot may have overtaken (races), which do not count as errors.
     pub races: u64,
     /// Number of signals shown to the participant.
     pub signals: u64,
@@ -33,12 +33,12 @@ pub struct TrialSummary {
     pub served: Vec<(DishId, u32)>,
     /// Duration of the trial on its own clock, in seconds.
     pub seconds: f64,
-    /// For each closed offer, the time for which it stood, in milliseconds.
+    /// For each closed offer, the time for which the offer stood, in milliseconds.
     pub offers_ms: Vec<u32>,
 }
 
 impl TrialSummary {
-    /// Summary of a trial up to the session's last event.
+    /// Summary of the session's trial up to the session's last event.
     pub fn from_follower(follower: &SessionFollower) -> TrialSummary {
         let session = &follower.session;
         let mut before = 0;
@@ -71,11 +71,11 @@ impl TrialSummary {
 pub struct TrialBeliefErrors {
     /// Number of errors that follow from false beliefs.
     pub related: u64,
-    /// Errors that only a pair of false beliefs explains.
+    /// Number of errors that only a pair of false beliefs explains.
     pub related_to_pairs: u64,
-    /// Sequences of errors that follow from the same false belief.
+    /// Error sequences: successive errors that follow from the same false belief.
     pub sequences: Vec<ErrorSequence>,
-    /// Sequences of errors, whichever false beliefs they follow from.
+    /// Error sequences that are formed whichever false beliefs the errors follow from.
     pub any_aspect: Vec<ErrorSequence>,
     /// Number of false belief episodes that caused at least one error.
     pub episodes: u64,
@@ -105,26 +105,26 @@ impl TrialBeliefErrors {
 /// not known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BeliefErrorSummary {
-    /// Errors that are attributed to a false belief.
+    /// Number of errors that are attributed to a false belief.
     pub belief_related_errors: Option<u64>,
-    /// Errors that only a pair of false beliefs explains.
+    /// Number of errors that only a pair of false beliefs explains.
     pub errors_of_two_beliefs: Option<u64>,
-    /// Number of sequences of errors that follow from the same false belief.
+    /// Number of error sequences: successive errors that follow from the same false belief.
     pub sequences: Option<u64>,
-    /// Mean number of errors in a sequence; null also without sequences.
+    /// Mean number of errors in an error sequence; null also without sequences.
     pub mean_sequence_length: Option<f64>,
     /// Mean time from the first error of a sequence to the first correct press after its last error, in seconds.
     pub mean_recovery_s: Option<f64>,
-    /// Number of error sequences, whichever false beliefs they follow from.
+    /// Number of error sequences that are formed whichever false beliefs the errors follow from.
     pub sequences_any_aspect: Option<u64>,
-    /// Mean number of errors in the sequences of `sequences_any_aspect`; null also without sequences.
+    /// Mean number of errors in the sequences of `sequences_any_aspect`; null also without such sequences.
     pub mean_sequence_length_any_aspect: Option<f64>,
     /// Number of false belief episodes that caused at least one error.
     pub false_belief_episodes: Option<u64>,
 }
 
 impl BeliefErrorSummary {
-    /// Sums over several trials.
+    /// Sums over several trials of the errors that follow from false beliefs.
     pub fn from_trials<'a>(trials: impl IntoIterator<Item = &'a TrialSummary>) -> BeliefErrorSummary {
         let mut sums = BeliefSums::default();
         trials.into_iter().for_each(|trial| sums.add(trial.beliefs.as_ref()));
@@ -149,12 +149,12 @@ impl BeliefErrorSummary {
     }
 }
 
-/// Totals of the trials of one study arm.
+/// Totals of presses, errors and signals over the trials of one study arm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StudyArmTotals {
-    /// Study arm of the trials, by what was done in them.
+    /// Study arm of the trials, as they were carried out.
     pub arm: StudyArm,
-    /// Number of trials.
+    /// Number of trials in the study arm.
     pub trials: u64,
     /// Number of presses of the human.
     pub human_actions: u64,
@@ -167,7 +167,7 @@ pub struct StudyArmTotals {
 /// Summary of simulated trials: the output of `tomcom simulate`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SimulationSummary {
-    /// Number of trials.
+    /// Number of simulated trials.
     pub trials: u64,
     /// Number of presses of the human.
     pub human_actions: u64,
@@ -175,15 +175,15 @@ pub struct SimulationSummary {
     pub robot_actions: u64,
     /// Number of the human's presses that were errors.
     pub errors: u64,
-    /// Presses of the human shortly after a change by the robot at the same location (races); they do not count as
-    /// errors.
+    /// Number of the human's presses shortly after a change by the robot at the same location (races), which do not
+    /// count as errors.
     pub races: u64,
     /// Errors that follow from false beliefs.
     #[serde(flatten)]
     pub beliefs: BeliefErrorSummary,
     /// Number of signals shown to the participants.
     pub signals: u64,
-    /// Durations of offers, whether a wizard could see them or not.
+    /// Durations of offers, both of those that a wizard could see and of the others.
     pub offers: OfferDurations,
     /// Number of orders served.
     pub orders_served: u64,
@@ -197,14 +197,14 @@ pub struct SimulationSummary {
     pub wall_s: f64,
     /// Number of excluded recordings, which the summary leaves out.
     pub excluded: u64,
-    /// Number of complete recordings that existed before and were read instead of simulated anew.
+    /// Number of complete recordings that already existed and were read instead of simulated anew.
     pub found: u64,
-    /// New paths of logs that end before the end of their header, as after a power failure; their trials were simulated
-    /// anew.
+    /// New paths of logs that end before the end of their header, as after a power failure; the trials of these logs
+    /// were simulated anew.
     pub moved: Vec<String>,
     /// Totals of presses, errors and signals, by study arm.
     pub arms: Vec<StudyArmTotals>,
-    /// Folders of the recordings.
+    /// Paths of the folders of the recordings.
     pub recordings: Vec<String>,
 }
 
@@ -256,7 +256,7 @@ impl BeliefSums {
     }
 }
 
-/// Running mean of values; `None` without values.
+/// Running mean of values; `None` while there are no values.
 #[derive(Clone, Copy, Debug, Default)]
 struct Mean {
     count: u64,
@@ -274,12 +274,13 @@ impl Mean {
     }
 }
 
-/// Running sums over simulated trials; memory does not grow with their number.
+/// Running sums over simulated trials; memory use does not grow with the number of trials.
 #[derive(Clone, Debug, Default)]
 pub struct SimulationSums {
     figures: SimulationSummary,
     beliefs: BeliefSums,
-    /// Histogram of the presses per served order, and histogram of the least number of presses for its dish.
+    /// Histograms over served orders: of the presses per order, and of the least number of presses for the order's
+    /// dish.
     presses_per_order: BTreeMap<u32, u64>,
     optimal_presses_per_order: BTreeMap<u32, u64>,
     /// Histogram of the times for which offers stood, in milliseconds.
@@ -287,7 +288,7 @@ pub struct SimulationSums {
 }
 
 impl SimulationSums {
-    /// Adds a trial. `plan_lengths`: the least number of presses for each dish from an empty kitchen.
+    /// Adds a simulated trial. `plan_lengths`: the least number of presses for each dish from an empty kitchen.
     pub fn add(&mut self, arm: StudyArm, trial: &TrialSummary, plan_lengths: &[u32]) {
         let sums = &mut self.figures;
         sums.trials += 1;
@@ -315,7 +316,7 @@ impl SimulationSums {
         }
     }
 
-    /// The summary of all added trials.
+    /// The summary of all added simulated trials.
     pub fn figures(&self) -> SimulationSummary {
         SimulationSummary {
             beliefs: self.beliefs.figures(),

@@ -1,11 +1,12 @@
-//! Compares assistants with the signals that were sent: asks each communication concept for advice whenever a session's
-//! assistant is asked, as the engine does, and collects the concept's hypothetical signals.
+//! Compares assistants with the signals that were sent: asks each communication concept for advice whenever the
+//! assistant of a session is asked, as in a running session, and collects the signals that the concept would have sent.
 //!
 //! A concept receives a counterfactual estimate that leaves out every signal sent within the window. Otherwise a wizard
-//! who sends the right signal early would remove the concept's reason to send it, and the signal would count as
-//! unmatched. A concept does not repeat a hypothetical signal within the window, as if the participant had seen it.
-//! After the window it may repeat the signal, because the participant has not seen it and still holds the false belief.
-//! Signals that were sent before the window are subject to a session's rule against repeats.
+//! who sends the right signal early would remove the concept's reason to send that signal, and the wizard's signal
+//! would count as unmatched. A concept does not repeat a hypothetical signal within the window, as if the participant
+//! had seen the signal. After the window the concept may repeat the signal, because the participant has not seen it and
+//! still holds the false belief. Signals that were sent before the window are subject to a session's rule against
+//! repeats.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -38,7 +39,7 @@ use crate::session::{AppliedEvent, Event, Session, SessionSpec, TimestampedEvent
 pub struct ComparisonRequest {
     /// Communication concepts to compare in addition to the session's own.
     pub with: Vec<ConceptName>,
-    /// Number of the human's presses within which communications match; the estimate leaves out signals sent within
+    /// Number of the human's presses within which two communications match; the estimate leaves out signals sent within
     /// this window.
     pub window: u32,
 }
@@ -60,13 +61,13 @@ impl ComparisonRequest {
     }
 }
 
-/// A communication concept, with the hypothetical signals that it has sent so far.
+/// A communication concept, with the hypothetical signals that the concept has sent so far.
 #[derive(Debug)]
 struct Voice {
     name: ConceptName,
     advisor: Advisor,
-    /// The concept's hypothetical signals within the window: number of human presses before each, and the signal's
-    /// location.
+    /// The concept's hypothetical signals within the window: number of human presses before each signal, and the
+    /// signal's location.
     said: Vec<(u32, LocationId)>,
     repeats: SignalRepeatRule,
     /// Sequence number of the error after which the concept last proposed presses.
@@ -74,13 +75,13 @@ struct Voice {
     spoken: Vec<Communication>,
 }
 
-/// A belief filter that leaves out one signal and all later signals.
+/// A belief filter that leaves out one sent signal and all later signals.
 #[derive(Debug)]
 struct CounterfactualFilter {
-    /// Number of human presses before the signal that is left out.
+    /// Number of human presses before the sent signal that the filter leaves out.
     press: u32,
     signal: Signal,
-    /// State of the kitchen when the signal was sent.
+    /// State of the kitchen when the left out signal was sent.
     state: State,
     filter: BeliefFilter,
 }
@@ -88,17 +89,17 @@ struct CounterfactualFilter {
 /// Follows a session event by event, and asks each communication concept for its hypothetical signals.
 #[derive(Debug)]
 pub struct ComparisonFollower {
-    /// The session with its belief estimate.
+    /// The followed session with its belief estimate.
     pub follower: SessionFollower,
     window: u32,
     voices: Vec<Voice>,
     /// One counterfactual filter for each signal within the window, the oldest first.
     counterfactuals: VecDeque<CounterfactualFilter>,
-    /// Signals sent before the window.
+    /// Signals sent before the window, as the session's rule against repeats sees them.
     shown: SignalRepeatRule,
     sent: Vec<Communication>,
-    /// The newest event after which concepts are asked for advice; they are asked once all its immediate consequences
-    /// are applied.
+    /// The newest event after which concepts are asked for advice: sequence number and time. Concepts are asked once
+    /// all immediate consequences of the event are applied.
     to_ask: Option<(u64, SessionTime)>,
     known: Option<Arc<CommunicationContext>>,
     screen: Option<WizardScreenContent>,
@@ -107,7 +108,7 @@ pub struct ComparisonFollower {
 }
 
 impl ComparisonFollower {
-    /// The comparison before the first event of a session.
+    /// The comparison at the beginning of a session, before the first event.
     pub fn new(session: Session, request: &ComparisonRequest) -> ComparisonFollower {
         let cost = CostToGo::new(session.kitchen.clone());
         let voice = |name: ConceptName| Voice {
@@ -138,10 +139,10 @@ impl ComparisonFollower {
         ComparisonFollower { follower: self.follower.without_causes(), ..self }
     }
 
-    /// Applies the next event.
+    /// Applies the next event to the session and to the counterfactual filters.
     ///
     /// # Errors
-    /// Those of [`SessionFollower::apply`].
+    /// The errors of [`SessionFollower::apply`].
     pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
         if self.to_ask.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
             self.ask();
@@ -182,8 +183,8 @@ impl ComparisonFollower {
         self.known.as_ref()
     }
 
-    /// Number of requests for advice and number of signals sent: the comparison of a running trial changes only when
-    /// one of them grows.
+    /// Number of requests for advice and number of sent signals: the comparison of a running trial changes only when
+    /// one of these numbers grows.
     pub fn progress(&self) -> (u64, usize) {
         (self.asked, self.sent.len())
     }
@@ -218,7 +219,7 @@ impl ComparisonFollower {
         let belief = estimate(&self.follower, &self.counterfactuals);
         self.shown.update(&session.kitchen, session.state, belief);
         for voice in &mut self.voices {
-            // A hypothetical signal that was also sent is in the list already.
+            // Whether a signal about this location was really sent within the window, too.
             let is_sent = |location: &LocationId| {
                 let is_it = |one: &CounterfactualFilter| one.signal.location(&session.kitchen) == Some(*location);
                 self.counterfactuals.iter().any(is_it)
@@ -268,15 +269,15 @@ impl ComparisonFollower {
         }
     }
 
-    /// The hypothetical signal that a recommendation leads to; added to the concept's memory of repeats.
+    /// The hypothetical signal to which a recommendation leads; the concept remembers it so as not to repeat it.
     fn says(&mut self, index: usize, advice: &Recommendation) -> Option<CommunicationContent> {
         let session = &self.follower.session;
         let voice = &mut self.voices[index];
         if let Some(signal) = &advice.best {
             voice.repeats.shown(&session.kitchen, session.state, signal);
             let location = signal.location(&session.kitchen);
-            // An older signal about the same location is removed, so that the location stays remembered when the older
-            // one leaves the window.
+            // An older hypothetical signal about the same location is removed, so that the location stays remembered
+            // when the older signal leaves the window.
             voice.said.retain(|(_, earlier)| Some(*earlier) != location);
             voice.said.extend(location.map(|location| (session.presses[Agent::Human.index()], location)));
             return Some(CommunicationContent::Signal(signal.clone()));
@@ -287,7 +288,7 @@ impl ComparisonFollower {
         Some(CommunicationContent::Proposal(proposal.presses.clone()))
     }
 
-    /// The lanes of wizard and assistants so far, compared; `over` says that the session has ended.
+    /// The communications of wizard and assistants so far, compared; `over` says that the session has ended.
     pub fn comparison(&self, over: bool) -> SenderComparison {
         let sender = match self.follower.session.spec.trial.condition {
             Condition::Assistant => "assistant",
@@ -305,7 +306,7 @@ impl ComparisonFollower {
     }
 }
 
-/// The belief estimate without the signals sent within the window.
+/// The belief estimate that leaves out the signals sent within the window.
 fn estimate<'a>(
     follower: &'a SessionFollower,
     counterfactuals: &'a VecDeque<CounterfactualFilter>,

@@ -14,7 +14,7 @@ use crate::session::settings::ParticipantKind;
 use crate::session::wizard_screen::WizardScreenContent;
 use crate::session::{Event, Session, TimestampedEvent};
 
-/// The wizard's signals, each with the content of the wizard's screen.
+/// The wizard's signals, each with what the wizard's screen showed when it was sent.
 #[derive(Clone, Debug, Default)]
 pub struct WizardLog {
     sent: Vec<(u64, SessionTime, WizardSignal)>,
@@ -25,7 +25,7 @@ pub struct WizardLog {
 /// Number of signals sent while the wizard's screen showed a certain amount of information.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SignalsPerScreen {
-    /// Content of the wizard's screen; null before it was first drawn, and without a console.
+    /// Content of the wizard's screen; null before the screen was first drawn, and without a console.
     pub screen: Option<WizardScreenContent>,
     /// Number of signals sent with this content on the screen.
     pub signals: u64,
@@ -34,7 +34,7 @@ pub struct SignalsPerScreen {
 /// Performance of a wizard in one session.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WizardSummary {
-    /// Measures of the wizard's performance.
+    /// Measures of the wizard's performance in the session.
     #[serde(flatten)]
     pub measures: WizardMeasures,
     /// Numbers of signals by the content of the wizard's screen.
@@ -77,8 +77,8 @@ impl WizardLog {
     }
 
     /// The wizard's performance measured by false belief episodes from raters' codes. Raters code errors only, so it is
-    /// unknown whether other beliefs were false; signals about harmless false beliefs, wrong targets and needless
-    /// signals are therefore not told apart.
+    /// unknown whether other beliefs were false. Therefore signals about harmless false beliefs, signals about wrong
+    /// targets and needless signals are not told apart.
     pub fn measures_by_raters(&self, follower: &SessionFollower, episodes: &[FalseBeliefEpisode]) -> WizardMeasures {
         let sent: Vec<WizardSignal> = self.sent.iter().map(|(.., sent)| sent.clone()).collect();
         let periods = periods(follower, episodes.iter());

@@ -23,7 +23,7 @@ const COLUMNS: [BidsColumn; 7] = [
     ),
 ];
 
-/// Rows of a recording's table of beliefs.
+/// Rows of the table of beliefs of one recording in the BIDS export.
 #[derive(Debug, Default)]
 pub(super) struct BeliefRows {
     rows: String,
@@ -63,7 +63,7 @@ impl BeliefRows {
         self.count += 1;
     }
 
-    /// The table of beliefs with its sidecar file; no files if the recording has no beliefs.
+    /// The table of beliefs with its JSON sidecar file; no files if the recording has no beliefs.
     pub(super) fn into_files(self, task: &TaskFacts) -> Vec<BidsFile> {
         if self.count == 0 {
             return Vec::new();

@@ -4,15 +4,15 @@ use serde_json::json;
 
 use super::tsv::{self, BidsColumn, BidsFile, or_nothing};
 
-/// Name of the file that describes the data set.
+/// Name of the file that describes the BIDS data set.
 pub const DESCRIPTION_NAME: &str = "dataset_description.json";
-/// Name of the table of participants.
+/// Name of the file with the table of participants.
 pub const PARTICIPANTS_NAME: &str = "participants.tsv";
-/// Name of the column with the participants' codes.
+/// Name of the column with the participants' codes in the table of participants.
 pub const CODE_COLUMN: &str = "code";
-/// Program that the data set's description names as its generator.
+/// Program that the description of the BIDS data set names as its generator.
 pub const PROGRAM_NAME: &str = "tomcom";
-/// Version of BIDS that the data set follows; eye-tracking exists in BIDS since 1.10.
+/// Version of BIDS that the data set follows; BIDS has eye-tracking data since 1.10.
 const BIDS_VERSION: &str = "1.10.1";
 
 const KINDS: &[(&str, &str)] = &[
@@ -48,14 +48,14 @@ pub struct BidsParticipant {
     pub kind: String,
     /// The participant's starting group, if there is a study plan.
     pub group: Option<String>,
-    /// Number of the participant's recordings.
+    /// Number of the participant's recordings in the data set.
     pub recordings: usize,
-    /// Where consent was given, when, and the digest of its text, as far as a recording says it.
+    /// The participant's consent, as far as a recording says it: where it was given, when, and the digest of its text.
     pub consent: [Option<String>; 3],
 }
 
 /// The files at the root of the data set: its description, the table of participants, a README. `plans`: the names of
-/// the studies.
+/// the studies' plans.
 pub fn dataset_files(plans: &[String], participants: &[BidsParticipant], with_words: bool) -> Vec<BidsFile> {
     let name = if plans.is_empty() { "tomcom recordings".to_string() } else { plans.join(", ") };
     let description = json!({

@@ -15,7 +15,8 @@ use crate::session::tracker::TrackerEvent;
 use crate::session::tutorial::TutorialEvent;
 use crate::session::wall_display::DisplayEvent;
 
-/// The cells of one event's row that follow from the event alone; empty where the event says nothing about a column.
+/// The cells of an event's row in the BIDS table that follow from the event alone; a cell is empty where the event says
+/// nothing about the column.
 #[derive(Debug, Default)]
 pub(super) struct EventCells {
     pub what: String,
@@ -32,12 +33,12 @@ pub(super) struct EventCells {
     pub answer: String,
     pub value: Option<f64>,
     pub reason: String,
-    /// Text that somebody typed.
+    /// Text that somebody typed, such as a note of the wizard.
     pub words: String,
 }
 
 impl EventCells {
-    /// The cells of an event. `is_words`: whether the event is an answer in the participant's own words.
+    /// The cells of an event's row. `is_words`: whether the event is an answer in the participant's own words.
     pub(super) fn from_event(event: &Event, is_words: bool) -> EventCells {
         let mut cells = EventCells::default();
         match event {
@@ -66,7 +67,7 @@ impl EventCells {
         cells
     }
 
-    /// Fills in the state aspect that a question of a freeze probe is about.
+    /// Fills in the state aspect that the question of a freeze probe is about.
     pub(super) fn ask_about(&mut self, about: &ProbeSubject) {
         match about {
             ProbeSubject::Location { location } => self.location = location.clone(),
@@ -75,7 +76,7 @@ impl EventCells {
         }
     }
 
-    /// The cells of the row from the column `location` on, in the order of the columns.
+    /// The cells of the event's row from the column `location` on, in the order of the columns.
     pub(super) fn rest(&self) -> [String; 11] {
         [
             self.location.clone(),
@@ -200,7 +201,7 @@ impl EventCells {
     }
 
     fn take_protocol(&mut self, event: &ProtocolEvent, is_words: bool) {
-        // The name of the event in the log; for the tutorial, the name of its step.
+        // The event's name in the log; for an event of the tutorial, the name of its step.
         self.what = tag(event, "what");
         match event {
             ProtocolEvent::ConsentGiven { on, digest, .. } => {
@@ -319,12 +320,12 @@ impl EventCells {
     }
 }
 
-/// The name under which the log writes a value.
+/// The name under which the log writes a value, for example a button's or an event's.
 pub(super) fn name(value: &impl Serialize) -> String {
     serde_json::to_value(value).ok().and_then(|value| value.as_str().map(str::to_string)).unwrap_or_default()
 }
 
-/// The value of the field that tells the variants of an event's record apart.
+/// The value of the field `key` that tells the variants of an event apart in the log.
 fn tag(event: &impl Serialize, key: &str) -> String {
     let record = serde_json::to_value(event).unwrap_or_default();
     record.get(key).and_then(|value| value.as_str()).unwrap_or_default().to_string()

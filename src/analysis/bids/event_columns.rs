@@ -3,7 +3,7 @@
 use super::event_levels::LEVELS;
 use super::tsv::BidsColumn;
 
-/// Values of the column that names who did something, with their meanings.
+/// Values of the column that says who did something (wizard, participant, robot), with their meanings.
 const AGENTS: &[(&str, &str)] = &[
     ("human", "The participant"),
     ("participant", "The participant, in the tutorial"),
@@ -18,7 +18,7 @@ const SIGNALS: &[(&str, &str)] = &[
     ("propose", "Proposes the next presses of the participant"),
 ];
 
-/// The columns of the table of events, in their order.
+/// The columns of the BIDS table of events, in their order.
 pub(super) const EVENTS: [BidsColumn; 21] = [
     BidsColumn::of_unit("onset", "s", "Session time: since the beginning of the recording, by a monotonic clock"),
     BidsColumn::of_unit(
@@ -71,6 +71,6 @@ pub(super) const EVENTS: [BidsColumn; 21] = [
     BidsColumn::new("reason", "Why, as the log names it"),
 ];
 
-/// Column with text that somebody typed, for exports that include it.
+/// Column with text that somebody typed, for exports that include such text.
 pub(super) const WORDS: BidsColumn =
     BidsColumn::new("words", "Words that somebody typed, or that a device calls itself by");

@@ -1,7 +1,7 @@
 //! Meanings of the values of the column `trial_type` in the BIDS table of events.
 
-/// The kinds of events that have a row in the table, as the log names them, with their meanings. Samples of gaze and
-/// arm have tables of their own.
+/// The kinds of events that have a row in the table of events, as the log names them, with their meanings. Samples of
+/// gaze and arm have tables of their own.
 pub const LEVELS: &[(&str, &str)] = &[
     ("advised", "The assistant computed a recommendation; seen only if an offer follows"),
     (

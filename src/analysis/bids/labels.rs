@@ -1,23 +1,23 @@
-//! Labels of participants, sessions and tasks for BIDS file names: letters and digits only, and no two alike.
+//! Labels of participants, sessions and tasks for BIDS file names: letters and digits only, and no two labels alike.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::session::plan::StepSpec;
 
-/// The letters and digits of a name, which are all that a label may contain.
+/// The letters and digits of a name; a BIDS label may contain nothing else.
 pub fn letters_and_digits(name: &str) -> String {
     let kept: String = name.chars().filter(char::is_ascii_alphanumeric).collect();
     if kept.is_empty() { "x".to_string() } else { kept }
 }
 
-/// BIDS labels by name. Labels that differ only in capitals count as alike, since they would be one folder on some
+/// BIDS labels by name. Labels that differ only in capitals count as alike, since they would be the same folder on some
 /// disks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BidsLabels(BTreeMap<String, String>);
 
 impl BidsLabels {
-    /// The labels of these names: a name of letters and digits is its own label, otherwise its letters and digits are.
-    /// A label that another name has already is followed by `x2`, `x3` and so on.
+    /// The BIDS labels of these names: the label consists of the letters and digits of the name. A label that another
+    /// name has already is followed by `x2`, `x3` and so on.
     pub fn from_names<'a>(names: impl IntoIterator<Item = &'a str>) -> BidsLabels {
         let all: BTreeSet<&str> = names.into_iter().collect();
         let (plain, others): (Vec<&str>, Vec<&str>) =
@@ -35,13 +35,13 @@ impl BidsLabels {
         self.0.get(name).map(String::as_str)
     }
 
-    /// Names that differ from their label, together with the label.
+    /// Names that differ from their BIDS label, together with the label.
     pub fn changed(&self) -> Vec<(String, String)> {
         self.0.iter().filter(|(name, label)| name != label).map(|(name, label)| (name.clone(), label.clone())).collect()
     }
 }
 
-/// The label, with a number behind it if it is taken already; the returned label counts as taken.
+/// A free label: `label`, with a number behind it if that label is taken; the returned label counts as taken.
 pub(super) fn free(label: &str, between: &str, taken: &mut BTreeSet<String>) -> String {
     let tried = |number: usize| match number {
         1 => label.to_string(),
@@ -54,8 +54,8 @@ pub(super) fn free(label: &str, between: &str, taken: &mut BTreeSet<String>) -> 
     tried(number)
 }
 
-/// The label of a recording within its participant: its place in the study plan, or else its number. `taken` are the
-/// labels of the participant's recordings before it.
+/// The session label of a recording of a participant: its place in the study plan, or else its number. `taken` are the
+/// session labels of the participant's earlier recordings.
 pub fn session_label(step: Option<&StepSpec>, taken: &mut BTreeSet<String>) -> String {
     let attempt = |step: &StepSpec| match step.attempt {
         0 | 1 => String::new(),

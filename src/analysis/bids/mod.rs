@@ -2,7 +2,7 @@
 //! gaze becomes an eye-tracking recording, and questionnaires become phenotype tables.
 //!
 //! Column names and required fields are those of BIDS 1.10 and later (behavioral experiments, physiological recordings,
-//! phenotypic data). This module makes the content of the files; the caller writes them.
+//! phenotypic data). This module makes the content of the files; its caller writes the files.
 
 mod belief_rows;
 mod dataset;

@@ -1,5 +1,5 @@
-//! Questionnaires as BIDS phenotype tables: a table for each questionnaire and each time that it was answered, with a
-//! row for each participant.
+//! Questionnaires as BIDS phenotype tables: one table for each questionnaire and each time that it was answered, with
+//! one row for each participant.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,17 +17,17 @@ struct FilledIn {
     participant: String,
     session: String,
     asked: Questionnaire,
-    /// Answers by the name of the item.
+    /// The participant's answers by the name of the questionnaire's item.
     answers: BTreeMap<String, AnswerValue>,
 }
 
-/// All questionnaires that were filled in, in the order of the recordings, for BIDS phenotype tables.
+/// All questionnaires that participants filled in, in the order of the recordings, for BIDS phenotype tables.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct QuestionnairePhenotypes(Vec<FilledIn>);
 
 impl QuestionnairePhenotypes {
-    /// Adds the questionnaire that was just confirmed. `participant`, `session_label`: BIDS labels of the participant
-    /// and the session.
+    /// Adds the questionnaire that the participant has just confirmed. `participant`, `session_label`: BIDS labels of
+    /// the participant and the session.
     pub fn note(&mut self, participant: &str, session_label: &str, session: &Session) {
         let (Some(asked), Some(protocol)) = (session.questionnaire(), &session.protocol) else { return };
         let given =
@@ -40,7 +40,7 @@ impl QuestionnairePhenotypes {
         });
     }
 
-    /// The phenotype tables with their sidecar files. `with_words`: answers in the participants' own words are
+    /// The phenotype tables with their sidecar files. `with_words`: whether answers in the participants' own words are
     /// exported, too.
     pub fn files(&self, with_words: bool) -> Vec<BidsFile> {
         let mut tables: BTreeMap<(&str, usize), Vec<&FilledIn>> = BTreeMap::new();
@@ -59,8 +59,8 @@ impl QuestionnairePhenotypes {
     }
 }
 
-/// One phenotype table with its sidecar file: the answers when participants answered the questionnaire for the `time`th
-/// time.
+/// One phenotype table with its sidecar file: the participants' answers when they answered the questionnaire for the
+/// `time`th time.
 fn table(name: &str, time: usize, filled: &[&FilledIn], with_words: bool) -> [BidsFile; 2] {
     let mut columns: Vec<&str> = Vec::new();
     let mut about = Map::new();
@@ -90,7 +90,7 @@ fn table(name: &str, time: usize, filled: &[&FilledIn], with_words: bool) -> [Bi
     [BidsFile::new(format!("{path}.tsv"), text), BidsFile::json(format!("{path}.json"), &about.into())]
 }
 
-/// The description of a questionnaire's item in a sidecar file.
+/// The description of a questionnaire's item in the sidecar file of a phenotype table.
 fn described(item: &QuestionnaireItem, form: &AnswerFormat) -> Value {
     let mut about = json!({ "Description": item.text });
     match form {
@@ -100,7 +100,7 @@ fn described(item: &QuestionnaireItem, form: &AnswerFormat) -> Value {
                 point if point == scale.points => scale.high.clone(),
                 point => format!("{point} of {}", scale.points),
             };
-            // Every point of the scale is listed, since a value that is not listed would count as invalid.
+            // Every point of the rating scale is listed, since BIDS counts a value that is not listed as invalid.
             let levels: Map<String, Value> =
                 (1..=scale.points).map(|point| (point.to_string(), json!(meaning(point)))).collect();
             about["Levels"] = Value::Object(levels);

@@ -1,4 +1,4 @@
-//! The BIDS tables of one recording.
+//! The BIDS tables of one recording: events, gaze samples, arm samples and beliefs.
 
 use super::belief_rows::BeliefRows;
 use super::event_cells::EventCells;
@@ -26,35 +26,35 @@ pub struct PressOutcome {
     pub error: Option<bool>,
 }
 
-/// Number of rows in each BIDS table of a recording; together as many as the log has events.
+/// Number of rows in each BIDS table of a recording; all rows together are as many as the log has events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct BidsRowCounts {
     /// Number of rows in the table of events.
     pub events: u64,
-    /// Number of rows in the table of gaze samples.
+    /// Number of rows in the BIDS table of gaze samples.
     pub gaze: u64,
     /// Number of rows of fixations and blinks, in the table beside the gaze samples.
     pub eye_events: u64,
     /// Number of rows in the table of the robot arm's motion.
     pub arm: u64,
-    /// Number of rows in the table of beliefs, of which one logged event has one per state aspect.
+    /// Number of rows in the table of beliefs; a logged event of beliefs has one row per state aspect.
     pub beliefs: u64,
-    /// Events that were left out because they contain words that somebody typed.
+    /// Number of events that were left out because they contain words that somebody typed.
     pub words_left_out: u64,
 }
 
-/// A row of the table of events.
+/// A row of the BIDS table of events.
 #[derive(Debug)]
 struct EventRow {
     onset: SessionTime,
     duration: Option<SessionTime>,
-    /// Cells of the columns that follow the duration.
+    /// Cells of the row in the columns that follow the column `duration`.
     rest: String,
-    /// The row belongs into the eye tracker's table of events instead, if the recording has gaze.
+    /// Whether the row belongs into the table of fixations and blinks instead, if the recording has gaze.
     is_of_eyes: bool,
 }
 
-/// The BIDS tables of one recording, which grow event by event.
+/// The BIDS tables of one recording, to which rows are added event by event.
 #[derive(Debug)]
 pub struct RecordingTables {
     with_words: bool,
@@ -68,7 +68,8 @@ pub struct RecordingTables {
 }
 
 impl RecordingTables {
-    /// Tables without rows, before the first event. `with_words`: text that somebody typed is exported, too.
+    /// BIDS tables without rows, before the first event. `with_words`: whether text that somebody typed is exported,
+    /// too.
     pub fn new(session: &Session, with_words: bool) -> RecordingTables {
         let is_pointer = session.spec.participant.gaze == GazeSource::Mouse;
         RecordingTables {
@@ -88,7 +89,7 @@ impl RecordingTables {
         self.ended
     }
 
-    /// Adds an event that was applied to the session. `outcome`: effect and judgement, for presses only.
+    /// Adds an event that was applied to the session. `outcome`: effect and judgement of the event, if it is a press.
     pub fn note(&mut self, stamped: &TimestampedEvent, session: &Session, outcome: Option<PressOutcome>) {
         let mut is_of_eyes = false;
         match &stamped.event {
@@ -135,7 +136,7 @@ impl RecordingTables {
         tsv::line(all)
     }
 
-    /// The files of the recording, after the last event, with the numbers of their rows.
+    /// The files of the recording's tables, after the last event, with the numbers of their rows.
     pub fn into_files(self, session: &Session) -> (Vec<BidsFile>, BidsRowCounts) {
         let task = TaskFacts { name: session.kitchen.name.clone(), title: session.kitchen.title.clone() };
         let has_gaze = self.samples.has_gaze();

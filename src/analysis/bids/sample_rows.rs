@@ -11,7 +11,7 @@ use crate::session::settings::GazeSource;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{Session, TimestampedEvent};
 
-/// Longer intervals between samples count as gaps and are left out of the sampling rate, in seconds.
+/// Intervals between samples that are longer than this count as gaps and are left out of the sampling rate, in seconds.
 const GAP_S: f64 = 0.5;
 
 const GAZE: [BidsColumn; 7] = [
@@ -79,7 +79,7 @@ const ARM: [BidsColumn; 14] = [
     BidsColumn::new("seq", "Number of the sample in the log"),
 ];
 
-/// Rows of gaze samples, of fixations and blinks, and of arm samples.
+/// Rows of the BIDS tables of gaze samples, of fixations and blinks, and of arm samples.
 #[derive(Debug, Default)]
 pub(super) struct SampleRows {
     gaze: Vec<(SessionTime, String)>,
@@ -131,12 +131,13 @@ impl SampleRows {
         !self.gaze.is_empty()
     }
 
-    /// Numbers of gaze samples, of fixations and blinks, and of arm samples.
+    /// Numbers of rows of gaze samples, of fixations and blinks, and of arm samples.
     pub(super) fn counts(&self) -> [u64; 3] {
         [&self.gaze, &self.eye_events, &self.arm].map(|rows| rows.len() as u64)
     }
 
-    /// The tables with their sidecar files. Without gaze samples, fixations and blinks stand in the table of events.
+    /// The tables with their sidecar files. In a recording without gaze, fixations and blinks are in the table of
+    /// events.
     pub(super) fn into_files(mut self, session: &Session, about: &ViewingFacts, task: &TaskFacts) -> Vec<BidsFile> {
         self.gaze.sort_by_key(|(time, _)| *time);
         self.eye_events.sort_by_key(|(time, _)| *time);
@@ -168,19 +169,19 @@ impl SampleRows {
     }
 }
 
-/// What is known of the participant's view of the display, and of the gaze data.
+/// What is known of the participant's view of the display and of the gaze data, for sidecar files.
 #[derive(Clone, Debug)]
 pub(super) struct ViewingFacts {
-    /// Gaze stands for the position of a mouse pointer, not of an eye.
+    /// Whether the gaze is the position of a mouse pointer, not of an eye.
     pub is_pointer: bool,
     /// Size of the display's page in pixels.
     pub resolution: Option<[u32; 2]>,
-    /// Number of checks of the gaze's accuracy.
+    /// Number of gaze accuracy checks.
     pub gaze_checks: u64,
 }
 
 impl ViewingFacts {
-    /// Description of the display for the sidecar file of the table of events.
+    /// Description of the wall display for the sidecar file of the table of events.
     pub(super) fn presentation(&self, session: &Session) -> Value {
         let mut display = json!({
             "ScreenDistance": session.spec.tracker.distance_m,
@@ -204,7 +205,7 @@ impl ViewingFacts {
         }
         tell("PhysioType", json!("eyetrack"));
         tell("RecordedEye", json!("cyclopean"));
-        // BIDS asks for the display's size in pixels, which only a connected display tells.
+        // BIDS asks for the display's size in pixels, which is known only if a display was connected.
         if self.resolution.is_some() {
             tell("SampleCoordinateSystem", json!("gaze-on-screen"));
         } else {
@@ -232,7 +233,7 @@ impl ViewingFacts {
     }
 }
 
-/// Adds sampling rate, first time and columns of a table of samples to its sidecar file.
+/// Adds the sampling rate, the first time and the columns of a table of samples to the table's sidecar file.
 fn add_table(sidecar: &mut Map<String, Value>, rows: &[(SessionTime, String)], columns: &[BidsColumn]) {
     sidecar.insert("SamplingFrequency".to_string(), json!(rate_hz(rows)));
     sidecar.insert("StartTime".to_string(), json!(rows.first().map_or(0.0, |(time, _)| time.as_secs_f64())));
@@ -240,14 +241,14 @@ fn add_table(sidecar: &mut Map<String, Value>, rows: &[(SessionTime, String)], c
     sidecar.extend(tsv::described(columns));
 }
 
-/// Sampling rate in Hz over intervals without gaps; 0 if there is none.
+/// Sampling rate in Hz over intervals without gaps; 0 if there is no such interval.
 fn rate_hz(rows: &[(SessionTime, String)]) -> f64 {
     let gaps = rows.windows(2).map(|pair| pair[1].0.secs_since(pair[0].0)).filter(|gap| *gap < GAP_S);
     let (count, sum) = gaps.fold((0.0, 0.0), |(count, sum), gap| (count + 1.0, sum + gap));
     if sum > 0.0 { (1000.0 * count / sum).round() / 1000.0 } else { 0.0 }
 }
 
-/// A table to be compressed, without a header line as BIDS wants it, and its sidecar file.
+/// A table that the caller compresses, without a header line as BIDS wants it, and the table's sidecar file.
 fn pair(name: &str, sidecar: Map<String, Value>, rows: &[(SessionTime, String)]) -> [BidsFile; 2] {
     let text: String = rows.iter().map(|(_, line)| line.as_str()).collect();
     [BidsFile::new(format!("{name}.tsv.gz"), text), BidsFile::json(format!("{name}.json"), &sidecar.into())]

@@ -57,8 +57,8 @@ const COLUMNS: [BidsColumn; 21] = [
 pub struct BidsSessionRow(String);
 
 impl BidsSessionRow {
-    /// The row of a recording that was read to its end. `label`: BIDS label of its session; `ended`: why the trial
-    /// ended; `is_complete`: the log is complete; `counts`: analyses include the trial.
+    /// The row of a recording that was read to its end. `label`: BIDS label of the recording's session; `ended`: why
+    /// the trial ended; `is_complete`: whether the log is complete; `counts`: whether analyses include the trial.
     pub fn new(
         (label, recording): (&str, &str),
         header: &LogHeader,

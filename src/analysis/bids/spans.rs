@@ -11,7 +11,7 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
 use crate::session::wall_display::DisplayEvent;
 
-/// Something that lasts from one event to another, such as a pause or a signal.
+/// Something that lasts from one event to another in a recording, such as a pause or a signal.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Span {
     Trial,
@@ -34,13 +34,14 @@ enum Span {
     EyesClosed,
 }
 
-/// Spans that have begun and not ended, with the table row and time of the event that began each.
+/// Spans that have begun and not ended, each with the table row and the time of the event that began the span.
 #[derive(Debug, Default)]
 pub(super) struct OpenSpans(BTreeMap<Span, (usize, SessionTime)>);
 
 impl OpenSpans {
-    /// Notes an event that stands in row `row` of the table: returns its duration so far (`None` for a span that goes
-    /// on), and the spans that it ends, each as the row of the event that began it and its duration.
+    /// Notes an event that stands in row `row` of the table: returns the event's duration so far (`None` for a span
+    /// that goes on), and the spans that the event ends, each as the row of the event that began the span and its
+    /// duration.
     pub(super) fn note(
         &mut self,
         row: usize,
@@ -66,7 +67,7 @@ impl OpenSpans {
     }
 }
 
-/// Whether the end of the trial ends this span, too.
+/// Whether a span of this kind ends at the latest with the trial.
 fn is_of_trial(span: &Span) -> bool {
     matches!(
         span,
@@ -83,7 +84,7 @@ fn is_of_trial(span: &Span) -> bool {
     )
 }
 
-/// The span that an event begins.
+/// The span of time that an event begins; `None` for an event without duration.
 fn begun(event: &Event) -> Option<Span> {
     Some(match event {
         Event::TrialStarted => Span::Trial,
@@ -108,8 +109,8 @@ fn begun(event: &Event) -> Option<Span> {
     })
 }
 
-/// The spans that an event ends. (An event that begins a span also ends an earlier one of the same kind; that one is
-/// not listed here.)
+/// The spans of time that an event ends. (An event that begins a span also ends an earlier span of the same kind; such
+/// an earlier span is not listed here.)
 fn ended(event: &Event) -> Vec<Span> {
     match event {
         Event::TrialResumed => vec![Span::Pause],

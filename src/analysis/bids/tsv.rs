@@ -6,16 +6,16 @@ use serde_json::{Map, Value, json};
 
 use crate::base::time::SessionTime;
 
-/// Cell of a BIDS table that has no value.
+/// Text of a cell in a BIDS table that has no value.
 pub(super) const NOTHING: &str = "n/a";
 
 /// A file of a BIDS data set.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BidsFile {
     /// Path of the file below the data set's root, or the end of a recording's file name, as in `events.tsv`. Files
-    /// that end with `.gz` are to be compressed by the caller.
+    /// whose name ends with `.gz` are to be compressed by the caller.
     pub name: String,
-    /// Text of the file, not compressed.
+    /// Text of the file before compression.
     pub text: String,
 }
 
@@ -25,7 +25,7 @@ impl BidsFile {
     }
 
     pub(super) fn json(name: impl Into<String>, value: &Value) -> BidsFile {
-        // JSON of strings and finite numbers can always be written.
+        // Writing JSON cannot fail here, because it contains only strings and finite numbers.
         BidsFile::new(name, format!("{value:#}\n"))
     }
 }
@@ -38,7 +38,7 @@ pub(super) struct TaskFacts {
 }
 
 impl TaskFacts {
-    /// Adds the task's fields to a sidecar file.
+    /// Adds the fields that describe the experimental task to a sidecar file.
     pub(super) fn tell(&self, sidecar: &mut Map<String, Value>) {
         sidecar.insert("TaskName".to_string(), json!(self.name));
         let told = format!("A person and a robot cook together what is ordered, by pressing buttons: {}", self.title);
@@ -51,9 +51,9 @@ impl TaskFacts {
 pub(super) struct BidsColumn {
     pub name: &'static str,
     pub description: &'static str,
-    /// Unit of the column's values; empty for none.
+    /// Unit of the column's values; empty if the values have no unit.
     pub units: &'static str,
-    /// Possible values with their meanings; empty if values are not from a list.
+    /// Possible values of the column with their meanings; empty if the values are not from a list.
     pub levels: &'static [(&'static str, &'static str)],
 }
 
@@ -89,7 +89,7 @@ impl BidsColumn {
     }
 }
 
-/// Columns with their descriptions, as the fields of a sidecar file.
+/// BIDS columns with their descriptions, as the fields of a sidecar file.
 pub(super) fn described(columns: &[BidsColumn]) -> Map<String, Value> {
     columns.iter().map(|column| (column.name.to_string(), column.described())).collect()
 }
@@ -99,13 +99,13 @@ pub(super) fn names(columns: &[BidsColumn]) -> Vec<&'static str> {
     columns.iter().map(|column| column.name).collect()
 }
 
-/// A line of a tab-separated table, with the line end.
+/// A line of a tab-separated table, including the line end.
 pub(super) fn line<'a>(cells: impl IntoIterator<Item = impl Into<Cow<'a, str>>>) -> String {
     let cells: Vec<String> = cells.into_iter().map(|one| cell(&one.into())).collect();
     cells.join("\t") + "\n"
 }
 
-/// Text of one cell: tabs and line ends become spaces, and text that contains quotation marks is quoted.
+/// Text of one table cell: tabs and line ends become spaces, and text that contains quotation marks is quoted.
 fn cell(text: &str) -> String {
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     match plain.trim() {
@@ -120,12 +120,12 @@ pub(super) fn seconds(time: SessionTime) -> String {
     format!("{}.{:09}", time.0 / 1_000_000_000, time.0 % 1_000_000_000)
 }
 
-/// A value as text, or "n/a" for `None`.
+/// A value as text of a BIDS cell, or "n/a" for `None`.
 pub(super) fn or_nothing<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(|| NOTHING.to_string(), |value| value.to_string())
 }
 
-/// Cell of a truth value: 1 for yes, 0 for no.
+/// BIDS cell of a truth value: 1 for yes, 0 for no.
 pub(super) fn yes(is: bool) -> String {
     u8::from(is).to_string()
 }

@@ -1,45 +1,46 @@
 //! Maximises a noisy log likelihood within bounds by a sequence of response surfaces (Box and Wilson 1951). Single
-//! comparisons are unreliable under noise; a surface averages the noise over its points and estimates its size.
+//! comparisons of values are unreliable under noise; a response surface averages the noise over its points and
+//! estimates the size of the noise.
 //!
 //! A variable whose maximum lies at a bound, or whose bound is not significantly worse than the maximum, is held at
-//! that bound. It gets one end of a profile likelihood interval instead of a standard error (Venzon and Moolgavkar
-//! 1988).
+//! that bound. Such a variable gets one end of a profile likelihood interval instead of a standard error (Venzon and
+//! Moolgavkar 1988).
 
 use super::response_surface::{QuadraticSurface, REACH, points, surface};
 
 /// Step size of the first response surface.
 const FIRST_STEP: f64 = 0.4;
-/// Steps are chosen so that one step lowers the log likelihood by this much: least and most in nats, and in standard
-/// deviations of the noise.
+/// Steps of the search are chosen so that one step lowers the log likelihood by this much: least and most in nats, and
+/// in standard deviations of the noise.
 const STEP_NATS: [f64; 2] = [2.0, 12.0];
 const STEP_NOISE: f64 = 0.5;
-/// Bounds of a step, and the largest factor between successive steps.
+/// Least and largest size of a step of the search, and the largest factor between the sizes of successive steps.
 const STEPS: [f64; 2] = [0.02, 1.6];
 const STEP_CHANGE: f64 = 2.5;
 /// Difference of log likelihoods that is significant at 5 %: half the 95 % quantile of chi squared with one degree of
 /// freedom.
 const REJECTED_NATS: f64 = 1.92;
-/// First step of the search for the end of a profile interval; the end is found to within a quarter of it.
+/// First step of the search for the end of a profile interval; the end is found to within a quarter of this step.
 const PROFILE_STEP: f64 = 0.3;
-/// A bound that lowers the log likelihood by more than this (plus the noise), with the other variables at the maximum,
-/// is rejected without optimising the other variables.
+/// A bound is rejected, without optimising the other variables, if it lowers the log likelihood by more than this (plus
+/// the noise) with the other variables at the maximum.
 const HOPELESS_NATS: f64 = 30.0;
-/// Distance to a bound below which a variable is at the bound.
+/// Distance to a bound below which a variable counts as lying at the bound.
 const CLOSE: f64 = 1e-9;
 
-/// The bound at which a variable has its maximum.
+/// The bound (lower or upper) at which a variable has its maximum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoundReached {
-    /// The maximum lies at the lower bound.
+    /// The variable's maximum lies at its lower bound.
     Low,
-    /// The maximum lies at the upper bound.
+    /// The variable's maximum lies at its upper bound.
     High,
 }
 
 /// Estimate of one variable of a likelihood, with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FittedVariable {
-    /// Best value of the variable.
+    /// Value of the variable at which the likelihood is greatest.
     pub at: f64,
     /// Standard error of the variable; `None` at a bound, and where the log likelihood is not concave.
     pub standard_error: Option<f64>,
@@ -54,13 +55,14 @@ pub struct FittedVariable {
 pub struct LikelihoodMaximum {
     /// Estimates of the variables, in the order in which they were passed.
     pub variables: Vec<FittedVariable>,
-    /// Number of evaluations of the log likelihood.
+    /// Number of evaluations of the log likelihood during the search.
     pub evaluations: usize,
-    /// Whether the search converged before the evaluations were used up.
+    /// Whether the search converged before the allowed evaluations were used up.
     pub converged: bool,
 }
 
-/// Maximises a log likelihood within bounds as [`ascend`] does, without errors and intervals, which take most of its evaluations.
+/// Maximises a log likelihood within bounds as [`ascend`] does, but without standard errors and intervals, which take
+/// most of the evaluations of [`ascend`].
 pub fn climb(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> LikelihoodMaximum {
     let mut search = Search::begin(loss, start, bounds, most);
     let free: Vec<usize> = (0..start.len()).collect();
@@ -70,8 +72,8 @@ pub fn climb(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]]
     LikelihoodMaximum { variables, evaluations: search.evaluations, converged }
 }
 
-/// Maximises a log likelihood within bounds; `loss` is its negative in nats. Stops after about `most` evaluations of
-/// `loss`.
+/// Maximises a log likelihood within bounds; `loss` is the negative log likelihood in nats. Stops after about `most`
+/// evaluations of `loss`.
 pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]], most: usize) -> LikelihoodMaximum {
     let mut search = Search::begin(loss, start, bounds, most);
     let count = start.len();
@@ -116,7 +118,7 @@ pub fn ascend(loss: impl FnMut(&[f64]) -> f64, start: &[f64], bounds: &[[f64; 2]
 struct Search<'a, F> {
     loss: F,
     bounds: &'a [[f64; 2]],
-    /// Best point that the search has found so far.
+    /// Point with the least loss that the search has found so far.
     at: Vec<f64>,
     steps: Vec<f64>,
     evaluations: usize,
@@ -130,8 +132,8 @@ impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
         Search { loss, bounds, steps: vec![FIRST_STEP; at.len()], at, evaluations: 0, most }
     }
 
-    /// Maximises over the free variables. Returns the surface around the maximum (`Some(None)` without free variables),
-    /// or `None` if the search did not converge.
+    /// Maximises the likelihood over the free variables. Returns the surface around the maximum (`Some(None)` without
+    /// free variables), or `None` if the search did not converge.
     fn climb(&mut self, free: &[usize]) -> Option<Option<QuadraticSurface>> {
         if free.is_empty() {
             return Some(None);
@@ -142,7 +144,8 @@ impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
             for ((&index, centre), by) in free.iter().zip(&centre).zip(&by) {
                 self.at[index] = (centre + by * self.steps[index]).clamp(self.bounds[index][0], self.bounds[index][1]);
             }
-            // Poorly determined variables move with the noise; further steps gain nothing.
+            // The search stops here: poorly determined variables only move with the noise, and further steps gain
+            // nothing.
             let gain = surface.value - surface.at(&by);
             let is_noise =
                 surface.covariance().is_some() && gain <= REJECTED_NATS + surface.noise * share_of_noise(free.len());
@@ -159,8 +162,8 @@ impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
         }
     }
 
-    /// A surface over the free variables around the best point, inside the bounds, with its centre; `None` if too few
-    /// evaluations are left.
+    /// A response surface over the free variables around the best point, inside the bounds, with the surface's centre;
+    /// `None` if too few evaluations are left.
     fn survey(&mut self, free: &[usize]) -> Option<(Vec<f64>, QuadraticSurface)> {
         if self.evaluations + points(free.len()) > self.most {
             return None;
@@ -197,7 +200,7 @@ impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
         surface.least(&in_steps(0, -REACH), &in_steps(1, REACH))
     }
 
-    /// Step sizes whose effect just exceeds the noise.
+    /// Step sizes of the variables whose effect on the likelihood just exceeds the noise.
     fn wanted_steps(&self, free: &[usize], surface: &QuadraticSurface) -> Vec<f64> {
         let [least, most] = STEP_NATS.map(|nats| nats + STEP_NOISE * surface.noise);
         let wanted = |(place, &index): (usize, &usize)| {
@@ -214,7 +217,7 @@ impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
         free.iter().enumerate().map(wanted).collect()
     }
 
-    /// The bound at which a variable lies, if any.
+    /// The bound at which a variable lies; `None` if the variable lies inside its bounds.
     fn end(&self, index: usize) -> Option<BoundReached> {
         let [low, high] = self.bounds[index];
         match self.at[index] {
@@ -228,7 +231,7 @@ impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
         self.bounds[index][end as usize]
     }
 
-    /// A variable with a bound that is not significantly worse than the maximum.
+    /// A variable with a bound that is not significantly worse than the maximum, and that bound.
     fn open_end(&mut self, free: &[usize], last: &QuadraticSurface) -> Option<(usize, BoundReached)> {
         let best = self.at.clone();
         let value = last.at(&last.least(&vec![-REACH; free.len()], &vec![REACH; free.len()]));
@@ -249,7 +252,7 @@ impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
     }
 
     /// End of the profile interval of a variable at a bound: where the profile log likelihood is significantly below
-    /// that at the bound, beyond the noise.
+    /// the likelihood at the bound, beyond the noise.
     fn limit(&mut self, index: usize, end: BoundReached, held: &[Option<BoundReached>]) -> Option<f64> {
         let others: Vec<usize> = (0..held.len()).filter(|&other| other != index && held[other].is_none()).collect();
         let best = self.at.clone();
@@ -276,8 +279,8 @@ impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
         found
     }
 
-    /// Least loss over the variables `others` near the best point, and the standard deviation of a difference between
-    /// two such minima.
+    /// Least loss over the variables `others` near the best point, and the standard deviation of the difference between
+    /// two such least losses.
     fn profile(&mut self, others: &[usize]) -> Option<(f64, f64)> {
         if others.is_empty() {
             self.evaluations += 1;
@@ -289,7 +292,7 @@ impl<'a, F: FnMut(&[f64]) -> f64> Search<'a, F> {
     }
 }
 
-/// Standard deviation of a difference between the minima of two surfaces, as a multiple of the noise of single values.
+/// Standard deviation of the difference between two surfaces' minima, as a multiple of the noise of single values.
 fn share_of_noise(variables: usize) -> f64 {
     let count = variables as f64;
     let terms = 1.0 + count + count * (count + 1.0) / 2.0;
@@ -303,7 +306,7 @@ mod tests {
     use super::*;
     use crate::base::rng::stream;
 
-    /// Loss with its minimum at a point of 2 variables, which it determines with standard errors of 0.1 and 0.2.
+    /// Test function: a loss of 2 variables whose minimum has standard errors of 0.1 and 0.2.
     fn bowl(at: &[f64]) -> f64 {
         50.0 * (at[0] - 0.7).powi(2) + 12.5 * (at[1] + 1.2).powi(2)
     }
@@ -323,7 +326,7 @@ mod tests {
 
     #[test]
     fn what_has_no_maximum_gets_one_end_of_an_interval() {
-        // The second variable makes no difference above 1.
+        // Test function that the second variable does not change above 1.
         let plateau = |at: &[f64]| 50.0 * (at[0] - 0.7).powi(2) + 40.0 * (1.0 - at[1]).max(0.0).powi(2) - 0.1 * at[1];
         let found = ascend(plateau, &[0.0, 0.0], &[[-5.0, 5.0], [-3.0, 3.0]], 600);
         let [first, second] = &found.variables[..] else { panic!("{found:?}") };

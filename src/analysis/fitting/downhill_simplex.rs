@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 
-/// Coefficients of reflection, expansion, contraction and shrinking, as in the original paper.
+/// Coefficients of reflection, expansion, contraction and shrinking, as in the paper of Nelder and Mead.
 const REFLECT: f64 = 1.0;
 const EXPAND: f64 = 2.0;
 const CONTRACT: f64 = 0.5;
@@ -12,7 +12,7 @@ const SHRINK: f64 = 0.5;
 /// A corner of the simplex: the function's value there, and the point.
 type Corner = (f64, Vec<f64>);
 
-/// The smallest value of a function that a search found, and where.
+/// The smallest value of a function that a search found, and the point where the function has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FunctionMinimum {
     /// The point of the minimum, one value per argument of the function.
@@ -26,8 +26,8 @@ pub struct FunctionMinimum {
 }
 
 /// Looks for the minimum of `function` from `start`, with first steps of these sizes along each variable, until the
-/// values at the corners differ by at most `tolerance`, or the function was evaluated `most` times. Values that are not
-/// finite count as infinitely bad.
+/// values at the simplex's corners differ by at most `tolerance`, or the function was evaluated `most` times. Values
+/// that are not finite count as infinitely bad.
 pub fn minimise(
     mut function: impl FnMut(&[f64]) -> f64,
     start: &[f64],
@@ -88,7 +88,7 @@ fn improve(corners: &mut [Corner], ask: &mut impl FnMut(Vec<f64>) -> Corner) {
     }
 }
 
-/// Centroid of corners of the simplex.
+/// Centroid (mean point) of corners of the simplex.
 fn centre(corners: &[Corner]) -> Vec<f64> {
     let variables = corners[0].1.len();
     (0..variables).map(|index| corners.iter().map(|(_, at)| at[index]).sum::<f64>() / corners.len() as f64).collect()
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn finds_the_bottom_of_a_curved_valley() {
-        // Rosenbrock's function: 0 at (1, 1).
+        // Test function: Rosenbrock's function, whose minimum is 0 at (1, 1).
         let valley = |at: &[f64]| (1.0 - at[0]).powi(2) + 100.0 * (at[1] - at[0] * at[0]).powi(2);
         let found = minimise(valley, &[-1.2, 1.0], &[0.5, 0.5], 1e-12, 1000);
         assert!(found.converged, "{found:?}");

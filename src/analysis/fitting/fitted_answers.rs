@@ -8,13 +8,13 @@ use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
 /// Effect of the answers to freeze probes on a fit of the human model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProbeAnswerFit {
-    /// Number of answers to freeze probes.
+    /// Number of answers to freeze probes that the fit used.
     pub answers: u64,
     /// Log likelihood per answer with the parameters before the fit, in nats.
     pub log_likelihood_before: f64,
     /// Log likelihood per answer with the fitted parameters, in nats.
     pub log_likelihood: f64,
-    /// For each parameter, its fit to presses alone beside the fit to presses and answers.
+    /// For each parameter, its interval when fitted to presses alone, compared with the fit to presses and answers.
     pub shrinkage: Vec<IntervalShrinkage>,
 }
 
@@ -25,15 +25,15 @@ pub struct IntervalShrinkage {
     pub name: &'static str,
     /// Value of the parameter when fitted to presses alone.
     pub value: f64,
-    /// 95 % interval of the parameter when fitted to presses alone, computed as in the fit.
+    /// 95 % interval of the parameter when fitted to presses alone, computed as in the main fit.
     pub interval: Option<[Option<f64>; 2]>,
     /// Width of the interval from presses and answers divided by the width from presses alone, on the scale of the fit;
-    /// below 1 if answers have narrowed the interval. Null where one of the two intervals lacks an end.
+    /// below 1 if answers have narrowed the interval. Null where one of the two intervals has no finite end.
     pub ratio: Option<f64>,
 }
 
 impl ProbeAnswerFit {
-    /// The answers under the parameters before the fit and under the fitted ones.
+    /// Log likelihood of the answers under the parameters before the fit and under the fitted parameters.
     pub fn from_likelihoods(before: TrialLikelihood, after: TrialLikelihood) -> ProbeAnswerFit {
         let answers = before.answers.max(1) as f64;
         ProbeAnswerFit {
@@ -46,8 +46,8 @@ impl ProbeAnswerFit {
 }
 
 impl IntervalShrinkage {
-    /// Compares two intervals of a parameter: from presses alone (with the value of that fit), and from presses and
-    /// answers.
+    /// Compares two intervals of a parameter: from presses alone (with the value from that fit), and from presses and
+    /// answers to freeze probes.
     pub fn between(
         parameter: HumanModelParameter,
         value: f64,

@@ -1,36 +1,40 @@
-//! A person's log likelihood as a quadratic function of the parameters, with the noise of the estimate taken into account.
+//! A person's log likelihood as a quadratic function of the human model's parameters, which takes the noise of the
+//! likelihood's estimate into account.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 use super::response_surface::QuadraticSurface;
 
-/// Ridge of a matrix that is inverted, as a share of its largest element: 1e-12 of it is lost in rounding.
+/// Small number added to the diagonal of a matrix that is inverted, as a share of the matrix's largest element;
+/// rounding loses 1e-12 of that element.
 const RIDGE: f64 = 1e-9;
-/// Standard error of a curvature per step squared, in standard deviations of the noise: of five points on a line at -1, -1/2, 0, 1/2 and 1,
-/// 2 / sqrt(0.875).
+/// Standard error of the surface's curvature per step squared, in standard deviations of the noise: 2 / sqrt(0.875), as
+/// for five points on a line at -1, -1/2, 0, 1/2 and 1.
 const CURVATURE_NOISE: f64 = 2.14;
 
-/// The log likelihood -(x - m)' I (x - m) / 2 + const of one person's presses, with the information I and the maximum m.
+/// The log likelihood of one person's presses as -(x - m)' I (x - m) / 2 + const, with the information matrix I and the
+/// maximum m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaussianLikelihood {
-    /// The information I.
+    /// The information matrix I: curvature of the person's log likelihood.
     pub information: DMatrix<f64>,
-    /// I m, which exists also where nothing tells m.
+    /// The product I m of information and maximum, which exists also where the presses do not determine the maximum m.
     pub weighted: DVector<f64>,
 }
 
 impl GaussianLikelihood {
-    /// The likelihood of somebody who did not press.
+    /// The likelihood of a person without presses: it carries no information about the parameters.
     pub fn flat(parameters: usize) -> GaussianLikelihood {
         GaussianLikelihood { information: DMatrix::zeros(parameters, parameters), weighted: DVector::zeros(parameters) }
     }
 
     /// Approximates a log likelihood by a surface of its negative around a centre, whose variables are in steps.
     ///
-    /// With slope g, curvature H and noise of the slope with covariance S, the maximum m is known with covariance H^-1 + H^-1 S H^-1, so
-    /// that I = H (H + S)^-1 H. Directions in which the surface bends down count by the size of their curvature, as in saddle-free Newton
-    /// methods (Dauphin et al. 2014): the likelihood rises there towards a maximum beyond the surface. What the noise alone would bend is
-    /// taken off first (positive-part shrinkage), so that a likelihood that says nothing gives little information.
+    /// With slope g, curvature H and noise of the slope with covariance S, the covariance of the maximum m is H^-1 +
+    /// H^-1 S H^-1, so that I = H (H + S)^-1 H. Directions in which the surface bends down count by the size of their
+    /// curvature, as in saddle-free Newton methods (Dauphin et al. 2014): there the likelihood rises towards a maximum
+    /// beyond the surface. Curvature that noise alone would cause is subtracted first (positive-part shrinkage), so
+    /// that a likelihood that says nothing gives little information.
     pub fn from_surface(surface: &QuadraticSurface, centre: &[f64], steps: &[f64]) -> GaussianLikelihood {
         let n = centre.len();
         let bent = SymmetricEigen::new(surface.curvature.clone());
@@ -50,7 +54,8 @@ impl GaussianLikelihood {
     }
 }
 
-/// Inverse of a matrix that has one but for rounding; zero otherwise, so that what it weighs counts as unknown.
+/// Inverse of a matrix that is invertible except for rounding; otherwise zero, so that what the matrix weighs counts as
+/// unknown.
 pub(super) fn inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
     let (rows, columns) = matrix.shape();
     matrix.try_inverse().unwrap_or_else(|| DMatrix::zeros(rows, columns))
@@ -100,7 +105,8 @@ mod tests {
             let flat = surface(|_| random.random::<f64>(), &[0.0], &[1.0]).expect("a surface");
             sum += GaussianLikelihood::from_surface(&flat, &[0.0], &[1.0]).information[(0, 0)];
         }
-        // 0.22 in the mean of many; 0.47 if curvatures counted as they come. The noise is known from two residuals only.
+        // The mean information is 0.22 over many surfaces of noise; it would be 0.47 if curvatures counted as they are.
+        // The noise is estimated from two residuals only.
         assert!(sum / 200.0 < 0.3, "{}", sum / 200.0);
     }
 }

@@ -1,13 +1,13 @@
 //! Maximum likelihood fits of the human model to recorded presses.
 //!
-//! The log likelihood is the sum over all presses of ln p(press | estimate before the press), and, if probes are used,
-//! over all answers of ln p(answer | estimate at the freeze). Parameters are transformed to an unbounded scale and
-//! searched within bounds. The filter's random numbers make the log likelihood noisy by some nats, so the search uses a
-//! sequence of quadratic surfaces ([`ascent`]). Standard errors follow from the curvature of the last surface (the
-//! observed information) and from the noise. A parameter whose maximum lies at a bound is not identified; its interval
-//! is one-sided.
+//! The log likelihood is the sum over all presses of ln p(press | estimate before the press), and, if freeze probes are
+//! used, over all answers of ln p(answer | estimate at the freeze). Parameters are transformed to an unbounded scale
+//! and searched within bounds. The belief filter's random numbers make the log likelihood noisy by some nats, so the
+//! search uses a sequence of quadratic surfaces ([`ascent`]). Standard errors follow from the curvature of the last
+//! surface (the observed information) and from the noise. A parameter whose maximum lies at a bound is not identified;
+//! the interval of such a parameter is one-sided.
 //!
-//! [`people_fit`] fits a population whose persons differ ([`people_search`], [`population_estimate`]).
+//! [`people_fit`] fits a population of persons with different parameters ([`people_search`], [`population_estimate`]).
 
 pub mod ascent;
 pub mod downhill_simplex;
@@ -32,14 +32,14 @@ use crate::mind::model::HumanModel;
 /// Half width of a 95 % interval, in standard errors.
 const HALF_WIDTH: f64 = 1.96;
 
-/// Number, human model and homogeneity of the recordings in a fit.
+/// The recordings of a fit: their number, their human model, and whether all have the same model.
 #[derive(Clone, Copy, Debug)]
 pub struct FittedRecordings<'a> {
     /// Number of recordings in the fit.
     pub number: u64,
-    /// Human model in the header of the first recording.
+    /// Human model in the header of the first recording of the fit.
     pub model: &'a HumanModel,
-    /// Whether the header of another recording has different parameters.
+    /// Whether another recording of the fit has different parameters of the human model in its header.
     pub differ: bool,
 }
 
@@ -48,7 +48,8 @@ pub struct FittedRecordings<'a> {
 pub struct FitSettings {
     /// The parameters of the human model to fit.
     pub parameters: Vec<HumanModelParameter>,
-    /// Start of the search, and value of parameters that are not fitted. `None` for the parameters in the recordings.
+    /// Start of the search, which also gives the values of parameters that are not fitted. `None`: the parameters in
+    /// the recordings.
     pub start: Option<HumanModel>,
     /// Largest number of evaluations of the likelihood.
     pub most_tries: usize,
@@ -57,9 +58,9 @@ pub struct FitSettings {
 /// Result of fitting the human model: the output of `tomcom fit`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FitSummary {
-    /// Number of recordings in the fit.
+    /// Number of recordings that the fit used.
     pub recordings: u64,
-    /// Number of presses of the human in these recordings.
+    /// Number of presses of the human in the fitted recordings.
     pub human_actions: u64,
     /// Log likelihood per press with the parameters before the fit, in nats.
     pub log_likelihood_before: f64,
@@ -67,25 +68,26 @@ pub struct FitSummary {
     pub log_likelihood: f64,
     /// Number of parameter sets whose likelihood was evaluated.
     pub tries: u64,
-    /// Largest number of evaluations of the likelihood that was allowed.
+    /// Largest number of evaluations of the likelihood that the fit was allowed.
     pub most_tries: u64,
-    /// Whether the search began with the parameters in the recordings rather than those of a file.
+    /// Whether the search began with the parameters in the recordings rather than with those of a file.
     pub begins_with_recordings: bool,
-    /// Whether the recordings have different parameters, in which case the search began with those of the first.
+    /// Whether the recordings have different parameters, in which case the search began with those of the first
+    /// recording.
     pub recordings_differ: bool,
     /// Whether the search converged within the allowed evaluations.
     pub converged: bool,
-    /// Results for the parameters that were fitted.
+    /// Results for each parameter that was fitted.
     pub parameters: Vec<FittedParameter>,
-    /// The human model with the fitted values.
+    /// The human model with the fitted values of its parameters.
     #[serde(skip)]
     pub model: HumanModel,
-    /// Effect of the answers to freeze probes on the fit, if they were used.
+    /// Effect of the answers to freeze probes on the fit; `None` if the fit did not use answers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub answers: Option<ProbeAnswerFit>,
 }
 
-/// Result of a fit for one parameter.
+/// Result of a fit for one parameter of the human model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedParameter {
     /// The parameter's name in a parameter file: "tau".
@@ -96,7 +98,7 @@ pub struct FittedParameter {
     pub before: f64,
     /// Fitted value of the parameter.
     pub value: f64,
-    /// Whether the interval is finite on both sides within the bounds of the search.
+    /// Whether the parameter's interval is finite on both sides within the bounds of the search.
     pub identified: bool,
     /// Standard error of the parameter; null where the parameter is not identified, where the log likelihood is not
     /// concave (parameters cannot be distinguished), and where the search did not converge.
@@ -132,7 +134,7 @@ impl FittedParameter {
         }
     }
 
-    /// The parameter's interval in words.
+    /// The interval of the fitted parameter in words.
     fn span(&self) -> String {
         match self.interval {
             None => "-".to_string(),
@@ -145,7 +147,7 @@ impl FittedParameter {
 }
 
 /// Fits parameters of the human model. `likelihood` returns the likelihood of all trials under a model; `tried` is
-/// called after each evaluation.
+/// called after each evaluation of the likelihood.
 pub fn fit(
     trials: FittedRecordings<'_>,
     plan: &FitSettings,
@@ -156,7 +158,7 @@ pub fn fit(
     let with = |at: &[f64]| model_at(begin, &plan.parameters, at);
     let loss = |at: &[f64]| {
         let model = with(at);
-        // Invalid models get an infinite loss.
+        // Parameter sets that are no valid human model get an infinite loss.
         let loss = if is_possible(&model) { -likelihood(&model).total() } else { f64::INFINITY };
         tried();
         loss
@@ -167,7 +169,7 @@ pub fn fit(
     let LikelihoodMaximum { mut variables, evaluations, converged } = ascend(loss, &start, &bounds, plan.most_tries);
     let mut model = with(&variables.iter().map(|variable| variable.at).collect::<Vec<f64>>());
     let mut after = likelihood(&model);
-    // A search that did not converge may end at a point worse than its start.
+    // A search that did not converge may end at a point worse than the point where it began.
     if !converged && after.total() < before.total() {
         variables.iter_mut().zip(&start).for_each(|(variable, &start)| variable.at = start);
         (model, after) = (begin.clone(), before);
@@ -219,7 +221,7 @@ pub fn comment(fit: &FitSummary) -> String {
     )
 }
 
-/// The fit as text for the terminal.
+/// The result of the fit as text for the terminal.
 pub fn describe(fit: &FitSummary) -> String {
     let lost = fit.log_likelihood_before - fit.log_likelihood;
     let end = match fit.converged {
@@ -263,7 +265,7 @@ pub fn describe(fit: &FitSummary) -> String {
     text + &untold(fit)
 }
 
-/// Sentences about parameters that are not identified.
+/// Sentences of text about parameters that are not identified.
 fn untold(fit: &FitSummary) -> String {
     let untold: Vec<&str> = fit.parameters.iter().filter(|one| !one.identified).map(|one| one.name).collect();
     if untold.is_empty() {

@@ -1,4 +1,5 @@
-//! `tomcom fit --people`: population and persons beside one set of parameters for all, on all trials and on trials that were left out.
+//! `tomcom fit --people`: fits a population with a parameter set for each person, beside one set of parameters for all
+//! persons, on all trials and on all but trials that were left out.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +14,7 @@ use crate::mind::fitted_people::{FittedPeople, HumanModelFile};
 use crate::mind::fitting::TrialLikelihood;
 use crate::mind::model::HumanModel;
 
-/// The search of one part of the trials: one set of parameters for all, population and persons.
+/// The search on one part of the trials: one set of parameters for all persons, and population with persons.
 struct PartFit {
     pooled: Vec<f64>,
     people: FoundPeople,
@@ -21,9 +22,10 @@ struct PartFit {
     converged: bool,
 }
 
-/// Fits population and persons. `model` is the human model in the recordings, `likelihoods` returns the likelihood of each try.
+/// Fits a population and its persons. `model` is the human model in the recordings, `likelihoods` returns the
+/// likelihood of each tried set of parameters.
 ///
-/// The intervals over persons of [`HeldOut`] are left to the caller.
+/// The caller adds the intervals over persons to [`HeldOut`].
 pub fn fit_people(
     people: &[FittedPerson],
     model: &HumanModel,
@@ -34,7 +36,8 @@ pub fn fit_people(
     let start = point_of(base, &plan.parameters);
     let all = fit_part(people.len(), base, plan, (&start, TrialPart::All), &likelihoods);
     let held_out = people.iter().any(|person| person.recordings > 1).then(|| {
-        // The search begins where that of all trials ended, which saves rounds; where it ends follows from the training alone.
+        // The search on the training trials starts where the search on all trials ended, which saves rounds; its result
+        // depends on the training trials alone.
         let training = fit_part(people.len(), base, plan, (&all.pooled, TrialPart::Training), &likelihoods);
         (judge(people, base, plan, &training, &likelihoods), training)
     });
@@ -65,7 +68,7 @@ pub fn fit_people(
     }
 }
 
-/// Fits one set of parameters for all, then population and persons from there.
+/// Fits one set of parameters for all persons, then population and persons, starting from that set.
 fn fit_part(
     people: usize,
     base: &HumanModel,
@@ -90,7 +93,7 @@ fn fit_part(
     PartFit { pooled: at, converged: pooled.converged && found.converged, people: found, tries }
 }
 
-/// Likelihood of each person's trials at its own point.
+/// Likelihood of each person's trials with that person's parameters.
 fn at_each(
     base: &HumanModel,
     plan: &FitSettings,
@@ -107,7 +110,7 @@ fn sums(each: &[TrialLikelihood]) -> TrialLikelihood {
     each.iter().copied().fold(TrialLikelihood::default(), TrialLikelihood::plus)
 }
 
-/// How likely the presses of the trials are that were left out.
+/// How likely the presses of the trials that were left out of the fit are.
 fn judge(
     people: &[FittedPerson],
     base: &HumanModel,
@@ -135,7 +138,7 @@ fn judge(
     HeldOut { left_out, gain: None, population_gain: None, by_person }
 }
 
-/// The file of parameters: the median person of the population, and every person.
+/// The file of fitted parameters: those of the population's median person, and those of every person.
 fn file(people: &[FittedPerson], base: &HumanModel, plan: &FitSettings, found: &FoundPeople) -> HumanModelFile {
     let values = |at: &Vec<f64>| plan.parameters.iter().zip(at).map(|(one, at)| (*one, one.from_scale(*at))).collect();
     let own: BTreeMap<_, _> =

@@ -1,8 +1,9 @@
-//! Searches the parameters of persons of one population: quadratic surfaces of each person's log likelihood, with the population
-//! estimated anew after each round of surfaces.
+//! Searches the parameters of the persons of one population: fits quadratic surfaces to each person's log likelihood,
+//! and estimates the population anew after each round of surfaces.
 //!
-//! The surfaces are those of the likelihood alone; the population enters afterwards. So a surface stays right when the population
-//! changes, and a person with few presses needs no maximum of its own. A round costs every person the points of one surface.
+//! The surfaces approximate the likelihood alone; the population enters afterwards. So a surface stays right when the
+//! population estimate changes, and a person with few presses needs no maximum of the likelihood. A round costs for
+//! every person the evaluations of one surface.
 
 use super::gaussian_likelihood::GaussianLikelihood;
 use super::parameter_scale::{bounds_of, is_possible, model_at};
@@ -11,70 +12,72 @@ use super::response_surface::{REACH, points_around, surface};
 use crate::mind::fitting::{HumanModelParameter, TrialLikelihood};
 use crate::mind::model::HumanModel;
 
-/// Largest number of rounds.
+/// Largest number of rounds of the search.
 pub const ROUNDS: usize = 8;
-/// Step sizes of the first round.
+/// Step sizes of the surfaces in the first round of the search.
 const FIRST_STEP: f64 = 0.5;
-/// Number of nats by which one step lowers a person's log likelihood, beside the noise of the surface. Steps follow from the person's own presses alone:
-/// with the population, steps would shrink until noise looks like information.
+/// Number of nats by which one step lowers a person's log likelihood, beside the noise of the surface. Step sizes
+/// follow from the person's own presses alone: if the population counted, steps would shrink until noise looks like
+/// information.
 const STEP_NATS: f64 = 3.0;
-/// Bounds of a step, and the largest factor between successive steps.
+/// Least and largest size of a step, and the largest factor between the sizes of successive steps.
 const STEPS: [f64; 2] = [0.2, 1.0];
 const STEP_CHANGE: f64 = 2.5;
-/// A person is settled when its mode is within this many steps of the centre of its surface.
+/// The search for a person has settled when the person's mode is within this many steps of the centre of the surface.
 const NEAR: f64 = 0.5;
 
-/// Which trials of a person are used.
+/// Which trials of a person the search uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TrialPart {
-    /// All.
+    /// All trials of the person.
     All,
-    /// All but the last one; the only one of a person who has one.
+    /// All trials of the person except the last one; a person with a single trial keeps that trial.
     Training,
-    /// The last one of a person who has several.
+    /// The last trial of a person who has several trials.
     HeldOut,
 }
 
-/// A set of parameters to be tried on a person's trials.
+/// A set of parameters whose likelihood is computed on a person's trials.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PersonTry {
-    /// Index of the person.
+    /// Index of the person among all fitted persons.
     pub person: usize,
-    /// Which of its trials are used.
+    /// Which of the person's trials are used.
     pub part: TrialPart,
-    /// The parameters.
+    /// The human model with the parameters to try.
     pub model: HumanModel,
 }
 
-/// What is searched.
+/// What is searched: the parameters, for how many persons, on which trials.
 #[derive(Clone, Copy, Debug)]
 pub struct PeopleSearch<'a> {
-    /// Parameters that are not searched.
+    /// Human model with the values of the parameters that are not searched.
     pub base: &'a HumanModel,
-    /// The parameters in which persons differ.
+    /// The parameters of the human model in which persons differ.
     pub parameters: &'a [HumanModelParameter],
-    /// Number of persons.
+    /// Number of persons whose parameters are searched.
     pub people: usize,
-    /// Which trials are used.
+    /// Which trials of each person the search uses.
     pub part: TrialPart,
 }
 
-/// What a search found.
+/// Result of a search: the estimated population and its persons.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundPeople {
-    /// Population and persons.
+    /// Estimate of the population's distribution and of the persons' parameters.
     pub estimate: PopulationEstimate,
-    /// The population's mean within the bounds of the parameters.
+    /// Mean of the population, moved inside the bounds of the parameters.
     pub mean: Vec<f64>,
-    /// The persons' modes within the bounds of the parameters.
+    /// Most probable parameters (mode) of each person, moved inside the bounds of the parameters.
     pub modes: Vec<Vec<f64>>,
-    /// Number of tried sets of parameters a person.
+    /// Number of parameter sets tried for each person.
     pub tries: u64,
-    /// Whether every person's mode was near the centre of its last surface.
+    /// Whether every person's mode was near the centre of that person's last surface.
     pub converged: bool,
 }
 
-/// Searches from `start`, which is the same for all persons. `likelihoods` returns the likelihood of each try, in their order.
+/// Searches from the point `start`, which is the same for all persons. `likelihoods` returns the likelihood of each
+/// tried parameter set, in the order of the tries.
 pub fn search(
     what: PeopleSearch<'_>,
     start: &[f64],
@@ -106,7 +109,8 @@ pub fn search(
     }
 }
 
-/// Negative log likelihoods of every person at the points of its survey; infinite where there can be nobody.
+/// Negative log likelihoods of every person at the points of the person's survey; infinite where the parameters are
+/// invalid.
 fn likelihoods_at(
     what: PeopleSearch<'_>,
     surveys: &[Survey],
@@ -131,7 +135,7 @@ fn likelihoods_at(
     losses
 }
 
-/// Where a person's next surface lies.
+/// Where the next quadratic surface of a person's log likelihood is fitted: centre and step sizes.
 #[derive(Clone, Debug)]
 struct Survey {
     centre: Vec<f64>,
@@ -146,7 +150,7 @@ impl Survey {
         }
     }
 
-    /// The likelihood by these losses, and their noise.
+    /// The quadratic likelihood that fits these losses, and the standard deviation of their noise.
     fn gaussian(&self, losses: Vec<f64>) -> (GaussianLikelihood, f64) {
         let mut losses = losses.into_iter();
         let next = |_: &[f64]| losses.next().unwrap_or(f64::INFINITY);
@@ -156,7 +160,8 @@ impl Survey {
         }
     }
 
-    /// Whether a mode is near the centre; beside a bound, where the centre cannot lie, it may be as far as the surface reaches.
+    /// Whether a person's mode is near the centre of the survey; beside a bound, where the centre cannot lie, the mode
+    /// may be as far away as the surface reaches.
     fn is_near(&self, mode: &[f64], bounds: &[[f64; 2]]) -> bool {
         self.centre.iter().zip(&self.steps).zip(mode).zip(bounds).all(|(((centre, step), mode), [low, high])| {
             let is_beside = centre - step <= *low || centre + step >= *high;

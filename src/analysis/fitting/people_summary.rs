@@ -1,4 +1,5 @@
-//! What `tomcom fit --people` prints: population, persons with their shrinkage, and trials that were left out.
+//! What `tomcom fit --people` prints: the population, the persons with their shrinkage towards the population, and the
+//! trials that were left out of the fit.
 
 use serde::Serialize;
 
@@ -10,88 +11,89 @@ use crate::mind::fitting::HumanModelParameter;
 /// Half width of a 95 % interval, in standard errors or standard deviations.
 const HALF_WIDTH: f64 = 1.96;
 
-/// A person whose trials are fitted.
+/// A person to whose trials parameters are fitted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FittedPerson {
-    /// Its code, with the seed in front where simulated people of several seeds are fitted.
+    /// Code of the person, with the seed in front where simulated people of several seeds are fitted.
     pub code: String,
-    /// Number of its recordings.
+    /// Number of the person's recordings.
     pub recordings: u64,
 }
 
 /// The output of `tomcom fit --people`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PeopleSummary {
-    /// Number of recordings.
+    /// Number of recordings that the fit used.
     pub recordings: u64,
-    /// Presses of the human.
+    /// Number of presses of the human in the fitted recordings.
     pub human_actions: u64,
-    /// Answers to probes that were used.
+    /// Number of answers to freeze probes that the fit used.
     pub answers: u64,
-    /// Log likelihood per press with one set of parameters for all, in nats.
+    /// Log likelihood per press with one set of parameters for all persons, in nats.
     pub log_likelihood_pooled: f64,
-    /// Log likelihood per press with each person's own parameters, in nats, on the presses that they were fitted to.
+    /// Log likelihood per press with each person's own parameters, in nats, on the presses to which they were fitted.
     pub log_likelihood: f64,
-    /// Number of parameter sets tried on all trials, those of the trials without the last ones included.
+    /// Number of parameter sets tried on all trials, including those tried without each person's last trial.
     pub tries: u64,
-    /// Whether all searches came to their end.
+    /// Whether all searches converged.
     pub converged: bool,
-    /// One set of parameters for all.
+    /// Parameters of the fit with one set of parameters for all persons.
     pub pooled: Vec<PooledParameter>,
-    /// The population.
+    /// Distribution of each parameter in the population.
     pub population: Vec<PopulationParameter>,
-    /// The persons.
+    /// The fitted parameters of each person.
     pub people: Vec<PersonSummary>,
-    /// The last trials of persons with several, under parameters that were fitted without them; null if nobody has several.
+    /// Results on the last trials of persons with several trials, under parameters that were fitted without these
+    /// trials; null if nobody has several trials.
     pub held_out: Option<HeldOut>,
-    /// The file of parameters, with the median person of the population, and every person.
+    /// The file of fitted parameters, with the population's median person, and every person.
     #[serde(skip)]
     pub file: HumanModelFile,
 }
 
-/// A parameter that is the same for all.
+/// A parameter of the fit in which one set of parameters holds for all persons.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PooledParameter {
     /// The parameter's name in a parameter file.
     pub name: &'static str,
-    /// The value that was found.
+    /// Fitted value of the parameter, the same for all persons.
     pub value: f64,
 }
 
 impl PooledParameter {
-    /// A parameter with its value on the scale of the fit.
+    /// A pooled parameter with its value at the point `at` on the scale of the fit.
     pub fn new(parameter: HumanModelParameter, at: f64) -> PooledParameter {
         PooledParameter { name: parameter.name(), value: parameter.from_scale(at) }
     }
 }
 
-/// A parameter in the population.
+/// Distribution of a parameter in the population of persons.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PopulationParameter {
     /// The parameter's name in a parameter file.
     pub name: &'static str,
-    /// Its unit.
+    /// Unit of the parameter; empty if it has none.
     pub unit: &'static str,
-    /// Value of the median person, which is the mean on the scale of the fit.
+    /// Value of the parameter for the median person, which is the population's mean on the scale of the fit.
     pub value: f64,
-    /// The 95 % interval of this value.
+    /// The 95 % interval of the median person's value.
     pub interval: [f64; 2],
-    /// Values between which 95 % of the population lie.
+    /// The two values of the parameter between which 95 % of the population lie.
     pub persons_between: [f64; 2],
-    /// Mean on the scale of the fit.
+    /// Mean of the population on the scale of the fit.
     pub scale_mean: f64,
-    /// Standard error of this mean.
+    /// Standard error of the population's mean on the scale of the fit.
     pub scale_mean_error: f64,
-    /// Standard deviation between persons on the scale of the fit.
+    /// Standard deviation of the parameter between persons, on the scale of the fit.
     pub scale_sd: f64,
-    /// The 95 % interval of this standard deviation; an end beyond 0.01 to 5 is null.
+    /// The 95 % interval of the standard deviation between persons; an end beyond 0.01 to 5 is null.
     pub scale_sd_interval: [Option<f64>; 2],
-    /// Mean over persons of their shrinkage.
+    /// Mean over persons of the shrinkage of the parameter (0: a person's presses decide; 1: the population does).
     pub shrinkage: f64,
 }
 
 impl PopulationParameter {
-    /// All parameters of a population.
+    /// The distributions of all parameters in a population.
     pub fn all(parameters: &[HumanModelParameter], population: &PopulationEstimate) -> Vec<PopulationParameter> {
         let one = |(index, parameter): (usize, &HumanModelParameter)| {
             let (mean, error) = (population.mean[index], population.mean_error[index]);
@@ -114,37 +116,38 @@ impl PopulationParameter {
     }
 }
 
-/// A person's parameters.
+/// The fitted parameters of one person.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PersonSummary {
-    /// Its code.
+    /// Code of the person.
     pub code: String,
-    /// Number of its recordings.
+    /// Number of the person's recordings.
     pub recordings: u64,
-    /// Its presses.
+    /// Number of the person's presses.
     pub human_actions: u64,
-    /// Its parameters.
+    /// The person's fitted parameters.
     pub parameters: Vec<PersonParameter>,
 }
 
-/// A parameter of a person.
+/// A fitted parameter of one person.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PersonParameter {
     /// The parameter's name in a parameter file.
     pub name: &'static str,
     /// The mode of the parameter's posterior, from the person's own presses and from the population.
     pub value: f64,
-    /// The 95 % interval by Laplace's approximation around the mode, within the bounds of the search.
+    /// The 95 % interval of the person's value by Laplace's approximation around the mode, within the bounds of the
+    /// search.
     pub interval: [f64; 2],
-    /// Standard deviation on the scale of the fit.
+    /// Standard deviation of the posterior of the person's parameter, on the scale of the fit.
     pub scale_sd: f64,
-    /// Variance given the population, divided by the variance of the population. 1: nothing but the population is known; 0: the
-    /// population makes no difference.
+    /// Variance of the person's parameter given the population, divided by the variance of the population. 1: nothing
+    /// but the population is known; 0: the population makes no difference.
     pub shrinkage: f64,
 }
 
 impl PersonSummary {
-    /// Summary of a person with this number of presses.
+    /// Summary of a person with this number of presses, from the posterior of the person's parameters.
     pub fn from_posterior(
         person: &FittedPerson,
         human_actions: u64,
@@ -166,51 +169,53 @@ impl PersonSummary {
     }
 }
 
-/// Value at a point on the scale of the fit, within the bounds of the search.
+/// Value of the parameter at a point on the scale of the fit, moved inside the bounds of the search.
 fn value_inside(parameter: HumanModelParameter, at: f64) -> f64 {
     let [low, high] = parameter.bounds().map(|end| parameter.to_scale(end));
     parameter.from_scale(at.clamp(low, high))
 }
 
-/// The values 1.96 standard deviations below and above a point.
+/// The parameter's values 1.96 standard deviations below and above a point on the scale of the fit.
 fn around(parameter: HumanModelParameter, at: f64, sd: f64) -> [f64; 2] {
     [-HALF_WIDTH, HALF_WIDTH].map(|width| value_inside(parameter, at + width * sd))
 }
 
-/// How likely the presses of trials are that were left out of a fit: means over persons of log likelihoods per press, in nats.
+/// How likely the presses of trials that were left out of a fit are: means over persons of log likelihoods per press,
+/// in nats.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HeldOut {
-    /// Codes of persons with one trial only: it is used for the population, and not judged.
+    /// Codes of persons with only one trial, which is used to fit the population, and not to judge the fit.
     pub left_out: Vec<String>,
-    /// Gain of the persons' own parameters over one set for all; null with fewer than two persons.
+    /// Gain in log likelihood of the persons' own parameters over one set for all; null with fewer than two persons.
     pub gain: Option<HeldOutGain>,
-    /// The same over the median person of the population, with which the others' trials are the same.
+    /// Gain of the persons' own parameters over the population's median person; both use the other persons' trials
+    /// alike.
     pub population_gain: Option<HeldOutGain>,
-    /// Each person.
+    /// Log likelihoods of each person's trial that was left out.
     pub by_person: Vec<HeldOutPerson>,
 }
 
-/// A paired difference over persons, in nats per press.
+/// Difference of log likelihoods between two fits, paired by person, in nats per press.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HeldOutGain {
-    /// Mean over persons.
+    /// Mean of the difference over persons, in nats per press.
     pub mean: f64,
-    /// The 95 % interval of the mean by Student's t.
+    /// The 95 % interval of the mean difference by Student's t.
     pub interval: [f64; 2],
 }
 
-/// Log likelihoods per press of a trial that was left out.
+/// Log likelihoods per press, in nats, of a person's trial that was left out of the fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HeldOutPerson {
-    /// The person's code.
+    /// Code of the person whose trial was left out.
     pub code: String,
-    /// Presses of the trial.
+    /// Number of the human's presses in the trial.
     pub human_actions: u64,
-    /// With one set of parameters for all.
+    /// Log likelihood per press with one set of parameters for all persons.
     pub pooled: f64,
-    /// With the median person of the population.
+    /// Log likelihood per press with the parameters of the population's median person.
     pub population: f64,
-    /// With the person's own parameters.
+    /// Log likelihood per press with the person's own parameters.
     pub own: f64,
 }
 
@@ -247,7 +252,7 @@ impl HeldOut {
     }
 }
 
-/// Comment at the top of a file with population and persons; it begins as those of all fitted files do.
+/// Comment at the top of a file with fitted population and persons; its beginning is the same in all fitted files.
 pub fn people_comment(fitted: &str, found: &PeopleSummary) -> String {
     format!(
         "{fitted} {} of {} with {} of the human.\nThe tables hold the median person, [people.CODE] a person's own parameters. \
@@ -259,7 +264,7 @@ pub fn people_comment(fitted: &str, found: &PeopleSummary) -> String {
     )
 }
 
-/// Population, persons and held out trials as text.
+/// Fitted population, persons and trials that were left out, as text.
 pub fn describe_people(found: &PeopleSummary) -> String {
     let mut text = format!(
         "{}, {}, {} of the human{}; {}\nlog likelihood per press: one set of parameters for all {:.4}, each person's own {:.4} (on \
@@ -316,7 +321,7 @@ pub fn describe_people(found: &PeopleSummary) -> String {
     }
 }
 
-/// A value with about three digits.
+/// A number as text with about three digits.
 fn figure(value: f64) -> String {
     match value {
         value if value >= 100.0 => format!("{value:.0}"),

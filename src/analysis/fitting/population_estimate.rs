@@ -1,56 +1,59 @@
-//! Empirical Bayes for persons of one population: parameters are normal in the population, with a mean and a standard deviation
-//! for each; a person's log likelihood is a quadratic function of them ([`GaussianLikelihood`]).
+//! Empirical Bayes for the persons of one population: each parameter is normally distributed in the population, with a
+//! mean and a standard deviation; a person's log likelihood is a quadratic function of the parameters
+//! ([`GaussianLikelihood`]).
 //!
-//! This is a linear mixed model with known errors. Standard deviations are estimated by restricted maximum likelihood with the EM
-//! algorithm (Laird and Ware 1982), which takes into account that the mean is estimated, too; persons by their posterior.
+//! This is a linear mixed model with known errors. Standard deviations are estimated by restricted maximum likelihood
+//! with the EM algorithm (Laird and Ware 1982), which takes into account that the mean is estimated, too; persons are
+//! estimated by the posterior of their parameters.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::gaussian_likelihood::{GaussianLikelihood, inverse};
 
-/// Standard deviation in the population that the search begins with, and the least and the largest one, on the scale of the fit.
+/// Standard deviation between persons at the start of the estimation, and its least and largest value, on the scale of
+/// the fit.
 const FIRST_SD: f64 = 0.5;
 const SDS: [f64; 2] = [0.01, 5.0];
-/// Standard deviation of the weak prior of the mean around the point where the search began. A parameter that nobody's presses tell stays
-/// there.
+/// Standard deviation of the weak prior of the population's mean around the point where the search began. A parameter
+/// that nobody's presses determine stays at that point.
 const PRIOR_SD: f64 = 10.0;
-/// Largest number of EM iterations, and the relative change of every standard deviation that ends them.
+/// Largest number of EM iterations, and the relative change of every standard deviation below which the iterations end.
 const ITERATIONS: usize = 2000;
 const SETTLED: f64 = 1e-6;
 /// Half the 95 % quantile of chi squared with one degree of freedom.
 const REJECTED_NATS: f64 = 1.92;
-/// Number of bisections for the end of an interval.
+/// Number of bisections by which the end of an interval is found.
 const BISECTIONS: usize = 40;
 
-/// Population and persons.
+/// Estimate of a population's distribution and of its persons' parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PopulationEstimate {
-    /// Mean of each parameter, on the scale of the fit.
+    /// Mean of each parameter over the population, on the scale of the fit.
     pub mean: Vec<f64>,
-    /// Standard errors of the means.
+    /// Standard error of each parameter's population mean, on the scale of the fit.
     pub mean_error: Vec<f64>,
     /// Standard deviation of each parameter between persons, on the scale of the fit.
     pub sd: Vec<f64>,
-    /// The 95 % interval of each standard deviation by the restricted likelihood, with the others as they are. `None`: no end within
-    /// 0.01 to 5.
+    /// The 95 % interval of each standard deviation between persons by the restricted likelihood, with the other
+    /// standard deviations as estimated. `None`: no end within 0.01 to 5.
     pub sd_interval: Vec<[Option<f64>; 2]>,
-    /// The persons, in the order of their likelihoods.
+    /// Posteriors of the persons' parameters, in the order in which the likelihoods were passed.
     pub people: Vec<PersonPosterior>,
 }
 
 /// A person's parameters on the scale of the fit: a normal distribution around the mode (Laplace's approximation).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PersonPosterior {
-    /// The mode.
+    /// Most probable value (mode) of each parameter of the person.
     pub mode: Vec<f64>,
-    /// Standard deviations, with the uncertainty of the population's mean.
+    /// Standard deviation of each parameter of the person, including the uncertainty of the population's mean.
     pub sd: Vec<f64>,
-    /// Shrinkage of each parameter: variance given the population divided by the population's variance. 1: nothing is known but the
-    /// population; 0: the population makes no difference.
+    /// Shrinkage of each parameter: variance given the population divided by the population's variance. 1: nothing is
+    /// known of the person but the population; 0: the population makes no difference.
     pub shrinkage: Vec<f64>,
 }
 
-/// Estimates the population and its persons. `anchor` is the point where the search began.
+/// Estimates the population and its persons. `anchor` is the point where the search of parameters began.
 pub fn estimate(people: &[GaussianLikelihood], anchor: &[f64]) -> PopulationEstimate {
     let mut sd = vec![FIRST_SD; anchor.len()];
     for _ in 0..ITERATIONS {
@@ -73,15 +76,15 @@ pub fn estimate(people: &[GaussianLikelihood], anchor: &[f64]) -> PopulationEsti
     }
 }
 
-/// What follows from given standard deviations of the population.
+/// Means, persons' modes and likelihood that follow from given standard deviations of the population.
 struct Moments {
-    /// Inverse variances of the population, on the diagonal.
+    /// Inverse variances of the parameters in the population, on the diagonal of a matrix.
     precision: DMatrix<f64>,
     mean: DVector<f64>,
     mean_covariance: DMatrix<f64>,
-    /// Modes of the persons, and covariances given the mean of the population.
+    /// For each person, the mode of the parameters and their covariance given the population's mean.
     people: Vec<(DVector<f64>, DMatrix<f64>)>,
-    /// Restricted log likelihood, but for a constant.
+    /// Restricted log likelihood of the standard deviations, except for a constant.
     log_likelihood: f64,
 }
 
@@ -113,7 +116,8 @@ impl Moments {
         Moments { precision, mean, mean_covariance, people, log_likelihood }
     }
 
-    /// Standard deviations that follow from the persons' distances from the mean and their uncertainty: the M step.
+    /// New standard deviations between persons from the persons' distances to the mean and their uncertainty: the M
+    /// step of the EM algorithm.
     fn spread(&self) -> Vec<f64> {
         let n = self.mean.len();
         let mut variances = DVector::zeros(n);
@@ -139,7 +143,7 @@ impl Moments {
     }
 }
 
-/// The interval of one standard deviation.
+/// The 95 % interval of the standard deviation of one parameter between persons.
 fn sd_interval(people: &[GaussianLikelihood], sd: &[f64], anchor: &[f64], index: usize) -> [Option<f64>; 2] {
     let at = |log: f64| {
         let mut moved = sd.to_vec();
@@ -169,11 +173,11 @@ mod tests {
     use crate::base::rng::{Stream, stream};
 
     fn normal(random: &mut Stream) -> f64 {
-        // Sum of twelve uniform numbers (Irwin and Hall): mean 6, variance 1.
+        // A standard normal number as the sum of twelve uniform numbers (Irwin and Hall): mean 6, variance 1, minus 6.
         (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0
     }
 
-    /// Persons with sd 0.6 around 1, each known with an error.
+    /// Test data: persons with standard deviation 0.6 around 1, each known with an error.
     fn people(count: usize, error: f64, random: &mut Stream) -> (Vec<f64>, Vec<GaussianLikelihood>) {
         let truths: Vec<f64> = (0..count).map(|_| 1.0 + 0.6 * normal(random)).collect();
         let information = error.powi(-2);

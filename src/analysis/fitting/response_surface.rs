@@ -1,13 +1,13 @@
 //! Quadratic response surfaces: least squares fits to the values of a noisy function over a central composite design
-//! (Box and Wilson 1951), with their minimum and curvature.
+//! (Box and Wilson 1951), with the surfaces' minimum and curvature.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Distance from the centre up to which a quadratic surface is trusted, in steps.
 pub const REACH: f64 = 1.5;
-/// Number of coordinate descent sweeps to the minimum.
+/// Number of sweeps of coordinate descent by which the surface's minimum is found.
 const SWEEPS: usize = 60;
-/// A matrix counts as singular if its smallest pivot is at most this share of its largest.
+/// A matrix counts as singular if its smallest pivot is at most this share of its largest pivot.
 const SINGULAR: f64 = 1e-12;
 
 /// A quadratic surface that approximates a noisy function; variables are in steps from its centre.
@@ -19,9 +19,9 @@ pub struct QuadraticSurface {
     pub slope: DVector<f64>,
     /// Second derivatives of the surface.
     pub curvature: DMatrix<f64>,
-    /// Standard deviation of the residuals.
+    /// Standard deviation of the residuals between function values and surface.
     pub noise: f64,
-    /// Covariance of the first derivatives that follows from the residuals.
+    /// Covariance of the surface's first derivatives that follows from the residuals.
     pub slope_covariance: DMatrix<f64>,
 }
 
@@ -30,14 +30,14 @@ pub fn points(variables: usize) -> usize {
     design(variables).len()
 }
 
-/// The points at which [`surface`] evaluates its function, in that order.
+/// The points at which [`surface`] evaluates its function, in the order of evaluation.
 pub fn points_around(centre: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let at = |by: Vec<f64>| by.iter().zip(centre).zip(steps).map(|((by, centre), step)| centre + by * step).collect();
     design(centre.len()).into_iter().map(at).collect()
 }
 
-/// Fits a surface around `centre`, with steps of the given sizes along each variable and each pair of variables. Values
-/// that are not finite are ignored; `None` if too few remain.
+/// Fits a quadratic surface around `centre`, with steps of the given sizes along each variable and each pair of
+/// variables. Values that are not finite are ignored; `None` if too few remain.
 pub fn surface(mut function: impl FnMut(&[f64]) -> f64, centre: &[f64], steps: &[f64]) -> Option<QuadraticSurface> {
     let n = centre.len();
     let (mut rows, mut values) = (Vec::new(), Vec::new());
@@ -77,14 +77,14 @@ fn inverse(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
 }
 
 impl QuadraticSurface {
-    /// Value of the surface at a distance `by` from its centre, in steps.
+    /// Value of the surface at a distance `by` from the surface's centre, in steps.
     pub fn at(&self, by: &[f64]) -> f64 {
         let by = DVector::from_column_slice(by);
         self.value + self.slope.dot(&by) + by.dot(&(&self.curvature * &by)) / 2.0
     }
 
-    /// Minimum of the surface within bounds, in steps from its centre: the best result of coordinate descents from the
-    /// centre and from the ends of each axis.
+    /// Minimum of the surface within bounds, in steps from the surface's centre: the best result of coordinate descents
+    /// from the centre and from the ends of each axis.
     pub fn least(&self, low: &[f64], high: &[f64]) -> Vec<f64> {
         let n = self.slope.len();
         let mut starts = vec![vec![0.0; n]];
@@ -117,8 +117,8 @@ impl QuadraticSurface {
         by
     }
 
-    /// Covariance of the position of the minimum: the inverse of the curvature (the observed information, if values are
-    /// negative log likelihoods) plus the part due to noise. `None` if the surface is not convex.
+    /// Covariance of the position of the surface's minimum: the inverse of the curvature (the observed information, if
+    /// values are negative log likelihoods) plus the part due to noise. `None` if the surface is not convex.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let inverse = inverse(self.curvature.clone())?;
         Some(&inverse * &self.slope_covariance * &inverse + &inverse)
@@ -136,7 +136,7 @@ fn design(n: usize) -> Vec<Vec<f64>> {
     for index in 0..n {
         points.extend([-1.0, -0.5, 0.5, 1.0].map(|step| at(&[(index, step)])));
         for other in 0..index {
-            // Only half of the corners are used; they alternate between the two diagonals.
+            // Only half of the corners of each pair of variables are points; they alternate between the two diagonals.
             let turned = if (index + other) % 2 == 0 { 1.0 } else { -1.0 };
             points.extend([-1.0, 1.0].map(|step| at(&[(index, step), (other, turned * step)])));
         }
@@ -148,7 +148,7 @@ fn pairs(n: usize) -> Vec<(usize, usize)> {
     (0..n).flat_map(|one| (0..=one).map(move |other| (one, other))).collect()
 }
 
-/// Terms of the quadratic model at a point: 1, every variable, every product of two variables.
+/// Terms of the quadratic model at a point: 1, every variable, and every product of two variables.
 fn terms(by: &[f64]) -> Vec<f64> {
     let products = pairs(by.len()).into_iter().map(|(one, other)| by[one] * by[other]);
     std::iter::once(1.0).chain(by.iter().copied()).chain(products).collect()
@@ -171,7 +171,7 @@ mod tests {
         for (index, expected) in [1.0, -2.0].into_iter().enumerate() {
             assert!((centre[index] + least[index] * steps[index] - expected).abs() < 1e-9, "{least:?}");
         }
-        // Second derivatives: 4, 3, and 1 across.
+        // The test function has the second derivatives 4, 3, and 1 across.
         let expected = [[3.0 / 11.0, -1.0 / 11.0], [-1.0 / 11.0, 4.0 / 11.0]];
         let covariance = found.covariance().expect("a covariance");
         for (row, expected) in expected.iter().enumerate() {

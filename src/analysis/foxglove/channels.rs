@@ -4,22 +4,22 @@ use serde_json::Value;
 
 use super::schemas;
 
-/// Channel of messages in an MCAP file.
+/// Channel of messages in an MCAP file (a recording format of robotics tools).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum McapChannel {
-    /// Joint angles of the arm.
+    /// Channel of the joint angles of the robot's arm.
     Joints,
-    /// Poses of the arm's links and of the participant's hand.
+    /// Channel of the poses of the arm's links and of the participant's hand.
     Frames,
-    /// Force on the arm, distance of the participant's hand, and what the arm does.
+    /// Channel of the force on the arm, the distance of the participant's hand, and what the arm does.
     Arm,
-    /// Events of the recording in words.
+    /// Channel of the recording's events in words.
     Log,
-    /// Events as in the log, without gaze and arm samples.
+    /// Channel of the events as in the log, without gaze and arm samples.
     Events,
-    /// Gaze samples.
+    /// Channel of the gaze samples.
     Gaze,
-    /// Beliefs of simulated participants, and the assistant's estimates.
+    /// Channel of the beliefs of simulated participants, and of the assistant's estimates.
     Beliefs,
 }
 
@@ -35,7 +35,7 @@ impl McapChannel {
         McapChannel::Beliefs,
     ];
 
-    /// Name of the channel, called its topic.
+    /// Name (topic) of the channel in an MCAP file.
     pub fn topic(self) -> &'static str {
         match self {
             McapChannel::Joints => "/robot/joints",

@@ -1,4 +1,4 @@
-//! Messages that an event of the log becomes in an export to MCAP files.
+//! Messages for MCAP files into which the events of a log are converted.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::session::event::Event;
 
 /// Name of the coordinate frame of the arm's base.
 const BASE: &str = "base_link";
-/// Severity in Foxglove's type `Log`.
+/// Severity "information" in Foxglove's message type `Log`.
 const INFO: u8 = 2;
 const WARNING: u8 = 3;
 
@@ -26,13 +26,13 @@ pub struct McapMessage {
     pub channel: McapChannel,
     /// Session time at which the event was recorded.
     pub logged: SessionTime,
-    /// Session time at which the event happened; for gaze, the time at which the sample was taken.
+    /// Session time of what the message reports; for gaze, the time at which the sample was taken.
     pub published: SessionTime,
     /// Content of the message, as JSON.
     pub content: Value,
 }
 
-/// Converts the events of a session into messages.
+/// Converts the events of a session into messages of an MCAP file.
 #[derive(Debug)]
 pub struct McapMessageConverter {
     arm: SerialArm,
@@ -45,7 +45,7 @@ impl Default for McapMessageConverter {
 }
 
 impl McapMessageConverter {
-    /// The messages of an event that was just applied.
+    /// The messages for an event that was just applied.
     pub fn messages(&self, stamped: &TimestampedEvent, follower: &SessionFollower) -> Vec<McapMessage> {
         let now = stamped.time;
         let message = |channel, content| McapMessage { channel, logged: now, published: now, content };
@@ -73,7 +73,7 @@ impl McapMessageConverter {
         }
     }
 
-    /// The messages of an arm sample: joint angles, coordinate frames, and what the arm does.
+    /// The messages for an arm sample: joint angles, coordinate frames, and what the arm does.
     fn moves(&self, now: SessionTime, sample: &ArmSample) -> [(McapChannel, Value); 3] {
         let joint = |(name, angle): (&&str, &f64)| json!({ "name": name, "position": angle });
         let joints: Vec<Value> = JOINT_NAMES.iter().zip(&sample.joints).map(joint).collect();
@@ -110,7 +110,7 @@ fn time(time: SessionTime) -> Value {
     json!({ "sec": time.0 / 1_000_000_000, "nsec": time.0 % 1_000_000_000 })
 }
 
-/// The message with an event as in the log.
+/// The message that contains an event as in the log.
 fn event(stamped: &TimestampedEvent) -> Value {
     let mut fields = match serde_json::to_value(&stamped.event) {
         Ok(Value::Object(fields)) => fields,
@@ -120,7 +120,7 @@ fn event(stamped: &TimestampedEvent) -> Value {
     json!({ "timestamp": time(stamped.time), "seq": stamped.seq, "kind": stamped.event.kind(), "event": fields })
 }
 
-/// The message about beliefs, for the two kinds of events that record beliefs.
+/// The message about beliefs; `None` unless the event is one of the two kinds that record beliefs.
 fn beliefs(stamped: &TimestampedEvent) -> Option<Value> {
     let values = |values: &BTreeMap<String, f64>| -> Vec<Value> {
         values.iter().map(|(value, p)| json!({ "value": value, "p": p })).collect()
@@ -153,7 +153,7 @@ fn beliefs(stamped: &TimestampedEvent) -> Option<Value> {
     Some(content)
 }
 
-/// The message that says in words what happened.
+/// The message that says in words what the event is; `None` for events without words.
 fn words(stamped: &TimestampedEvent, follower: &SessionFollower) -> Option<Value> {
     let line = event_lines::line(stamped, follower)?;
     let is_error = || follower.judged.last().is_some_and(|press| press.seq == stamped.seq && press.verdict.error);

@@ -1,9 +1,9 @@
-//! JSON Schemas of the messages. Joints, frames and log are Foxglove's types of these names, with the fields that are
-//! used.
+//! JSON Schemas of the messages. The messages for joints, frames and log are Foxglove's types of these names, with the
+//! fields that are used.
 
 use serde_json::{Value, json};
 
-/// A time, as Foxglove writes it in JSON.
+/// JSON Schema of a time, as Foxglove writes times in JSON.
 fn time(description: &str) -> Value {
     json!({
         "type": "object",
@@ -28,7 +28,7 @@ fn whole(description: &str) -> Value {
     json!({ "type": "integer", "description": description })
 }
 
-/// Schema of an object; its fields are required unless `optional` names them.
+/// JSON Schema of an object; its fields are required unless `optional` names them.
 fn object(description: &str, properties: Value, optional: &[&str]) -> Value {
     let fields = properties.as_object().into_iter().flatten().map(|(name, _)| name.as_str());
     let required: Vec<&str> = fields.filter(|name| !optional.contains(name)).collect();

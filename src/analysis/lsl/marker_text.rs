@@ -1,4 +1,4 @@
-//! An event as text for the Lab Streaming Layer: a short code, or the event's JSON.
+//! Text of an event for the Lab Streaming Layer: a short code, or the event's JSON.
 
 use serde_json::{Map, Value, json};
 
@@ -8,24 +8,24 @@ use crate::session::probes::ProbeEvent;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::tracker::TrackerEvent;
 
-/// Names of the fields whose values are parts of an event's code, in this order.
+/// Names of the log's fields whose values become parts of an event's code, in this order.
 const PARTS: [&str; 14] = [
     "what", "did", "phase", "agent", "by", "button", "location", "order", "dish", "signal", "best", "mode", "item",
     "reason",
 ];
-/// Name of the field that lists the fields that were left out to protect privacy.
+/// Name of the JSON field that lists the fields that were left out to protect privacy.
 const LEFT_OUT: &str = "left_out";
 
-/// Code of an event: its kind and what it is about, with slashes between: `press/human/take rice`. Tools such as MNE
-/// select events by parts of such codes.
+/// Short code of an event: its kind and what it is about, with slashes between: `press/human/take rice`. Tools such as
+/// MNE select events by parts of such codes.
 pub fn code(stamped: &TimestampedEvent) -> String {
     let fields = fields(&stamped.event);
     let parts = PARTS.iter().filter_map(|part| part_text(fields.get(*part)?));
     std::iter::once(stamped.event.kind().to_string()).chain(parts).collect::<Vec<_>>().join("/")
 }
 
-/// The event as in the log, without text that people typed or answered and without names of devices; `left_out` lists
-/// the missing fields.
+/// The event as in the log, without text that people typed or answered and without names of devices; its field
+/// `left_out` lists the missing fields.
 pub fn event_text(stamped: &TimestampedEvent) -> String {
     let mut text = json!({ "seq": stamped.seq, "t_ns": stamped.time });
     if let Value::Object(text) = &mut text {
@@ -48,7 +48,7 @@ fn fields(event: &Event) -> Map<String, Value> {
     fields
 }
 
-/// A value as part of an event's code: a word, several words, or name and content of a variant
+/// A value of a field as part of an event's code: a word, several words, or name and content of a variant
 /// (`highlight/cooking_pot`); `None` for any other value.
 fn part_text(value: &Value) -> Option<String> {
     match value {
@@ -62,8 +62,8 @@ fn part_text(value: &Value) -> Option<String> {
     }
 }
 
-/// Fields that can identify a person, their computer or its folders; they are left out, since everybody in the network
-/// can read a stream.
+/// Fields of an event that can identify a person, a computer or its folders; they are left out, since everybody in the
+/// network can read an LSL stream.
 fn private_fields(event: &Event) -> &'static [&'static str] {
     match event {
         Event::Marker { .. } => &["note"],

@@ -8,35 +8,35 @@ use crate::robot::moment::JOINT_NAMES;
 use crate::session::SessionSpec;
 use crate::session::settings::LslOutlet;
 
-/// Beginning of the names and source identifiers of all streams of this program.
+/// Beginning of the names and source identifiers of all LSL streams of this program.
 pub const SOURCE: &str = "tomcom";
 
 /// Description of a stream of the Lab Streaming Layer (LSL).
 #[derive(Clone, Debug, PartialEq)]
 pub struct StreamDescription {
-    /// Which of the program's streams this is.
+    /// Which of the program's LSL streams is described.
     pub outlet: LslOutlet,
     /// Name of the stream, with the participant's code: `tomcom-markers-P07`.
     pub name: String,
-    /// Content type of the stream, in LSL's terms.
+    /// Content type of the stream, as LSL names it.
     pub content: &'static str,
     /// Source identifier, by which a recorder finds the stream again after an interruption; contains the name of the
     /// study, if there is one.
     pub source: String,
-    /// Channels of the stream.
+    /// Channels of the LSL stream.
     pub channels: Vec<StreamChannel>,
-    /// Whether the stream's samples are texts; otherwise they are numbers.
+    /// Whether the stream's samples are texts; otherwise the samples are numbers.
     pub is_text: bool,
-    /// Metadata of the stream apart from the channels.
+    /// Metadata of the LSL stream, apart from its channels.
     pub about: Vec<MetadataNode>,
 }
 
 /// A channel of an LSL stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StreamChannel {
-    /// Name of the channel.
+    /// Name of the channel, as recorders show it.
     pub label: String,
-    /// Unit of the channel's values; empty for texts.
+    /// Unit of the channel's values; empty for channels of text.
     pub unit: &'static str,
 }
 
@@ -45,9 +45,9 @@ pub struct StreamChannel {
 pub struct MetadataNode {
     /// Name of the metadata element.
     pub name: &'static str,
-    /// Text of the element; empty if the element contains others.
+    /// Text of the metadata element; empty if the element contains other elements.
     pub text: String,
-    /// Elements inside this element.
+    /// Metadata elements inside this element.
     pub inside: Vec<MetadataNode>,
 }
 
@@ -62,7 +62,7 @@ impl MetadataNode {
 }
 
 impl StreamDescription {
-    /// All metadata of the stream: channels in the form of LSL's conventions, then the rest.
+    /// All metadata of the LSL stream: channels in the form of LSL's conventions, then the rest.
     pub fn metadata(&self) -> Vec<MetadataNode> {
         let channel = |channel: &StreamChannel| {
             let text = |name, text: &str| MetadataNode::text(name, text);
@@ -74,7 +74,7 @@ impl StreamDescription {
     }
 }
 
-/// The streams that a session sends, in the order of the session file. They are the same for all trials of a
+/// The LSL streams that a session sends, in the order of the session file. The streams are the same for all trials of a
 /// participant.
 pub fn describe(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<StreamDescription> {
     let outlets = spec.lsl.iter().flat_map(|lsl| &lsl.outlets);
@@ -131,12 +131,13 @@ fn signal_labels(spec: &SessionSpec, kitchen: &Kitchen) -> Vec<String> {
     session_signals(spec, kitchen).into_iter().map(label).collect()
 }
 
-/// Unit of the net benefit of a signal; for the concept ToM, which computes deviations of beliefs only, another one.
+/// Unit of the channels with the net benefit of signals: presses, except for the concept ToM, which computes deviations
+/// of beliefs only.
 fn net_benefit_unit(spec: &SessionSpec) -> &'static str {
     if spec.assistant.concept == ConceptName::Tom { "probability" } else { "presses" }
 }
 
-/// Metadata that all streams have: program, participant, study, and layout of the kitchen.
+/// Metadata that all LSL streams have: program, participant, study, and layout of the kitchen.
 fn about(code: &str, study: Option<&str>, kitchen: &Kitchen) -> Vec<MetadataNode> {
     let text = |name, value: &str| MetadataNode::text(name, value);
     let mut about = vec![

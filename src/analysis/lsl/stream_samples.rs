@@ -1,4 +1,4 @@
-//! Samples of a session's LSL streams.
+//! Samples of a session's LSL streams, one kind for each stream.
 
 use serde_json::json;
 
@@ -14,26 +14,26 @@ use crate::session::event::Event;
 use crate::session::settings::LslOutlet;
 use crate::session::{Session, TimelineEvent, TimestampedEvent};
 
-/// Least time between two belief samples if only gaze has changed the beliefs, in seconds.
+/// Least time between two samples of the beliefs stream if only gaze has changed the beliefs, in seconds.
 const BELIEF_STEP_S: f64 = 0.1;
 
 /// A sample of an LSL stream.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StreamSample {
-    /// The stream to which the sample belongs.
+    /// The LSL stream to which the sample belongs.
     pub outlet: LslOutlet,
-    /// Session time of what the sample reports.
+    /// Session time of the event or state that the sample reports.
     pub time: SessionTime,
-    /// Values of the sample, one for each channel.
+    /// Values of the sample, one for each channel of the stream.
     pub values: LslSampleValues,
 }
 
 /// The values of an LSL sample, one for each channel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LslSampleValues {
-    /// Values in a stream of numbers; NaN stands for a missing value.
+    /// Values of a sample in a stream of numbers; NaN stands for a missing value.
     Numbers(Vec<f64>),
-    /// Values in a stream of texts.
+    /// Values of a sample in a stream of texts.
     Texts(Vec<String>),
 }
 
@@ -43,14 +43,14 @@ pub struct LslSampleConverter {
     outlets: Vec<LslOutlet>,
     /// Name of the recording to which the samples belong.
     recording: String,
-    /// The signals, in the order of their channels.
+    /// The signals with a channel for their net benefit, in the order of the channels.
     signals: Vec<Signal>,
-    /// The last sample of beliefs, with its time.
+    /// The last sample of the beliefs stream, with its session time.
     believed: Option<(SessionTime, Vec<f32>)>,
 }
 
 impl LslSampleConverter {
-    /// A converter for the streams that the session sends; `recording` is the name of the recording.
+    /// A converter for the LSL streams that the session sends; `recording` is the name of the recording.
     pub fn new(session: &Session, recording: &str) -> LslSampleConverter {
         let outlets = session.spec.lsl.as_ref().map_or(Vec::new(), |lsl| lsl.outlets.clone());
         LslSampleConverter {
@@ -61,9 +61,9 @@ impl LslSampleConverter {
         }
     }
 
-    /// Samples that name the recording to which the following events belong; they stand for no event. They are sent at
-    /// the beginning of a recording and again at the beginning of its trial, since a recorder may have been started in
-    /// between.
+    /// Samples that name the recording to which the following samples belong; they stand for no event. The samples are
+    /// sent at the beginning of a recording and again at the beginning of its trial, since a recorder may have been
+    /// started in between.
     pub fn opening(&self, session: &Session, time: SessionTime) -> Vec<StreamSample> {
         let (spec, recording) = (&session.spec, &self.recording);
         let told = json!({
@@ -78,8 +78,8 @@ impl LslSampleConverter {
         all.into_iter().filter(|sample| self.outlets.contains(&sample.outlet)).collect()
     }
 
-    /// Samples of events that were just applied to this session. `judged`: every press of the human so far; `belief`:
-    /// the estimate after the last event.
+    /// Samples for events that were just applied to this session. `judged`: every press of the human so far; `belief`:
+    /// the belief estimate after the last event.
     pub fn samples(
         &mut self,
         events: &[TimestampedEvent],
@@ -131,13 +131,14 @@ impl LslSampleConverter {
         samples
     }
 
-    /// Net benefit of each signal, by channel; NaN for signals that cannot be sent now.
+    /// Net benefit of each signal, in the order of the stream's channels; NaN for signals that cannot be sent now.
     fn net_benefits(&self, advice: &Recommendation) -> Vec<f64> {
         let option = |signal: &Signal| advice.options.iter().find(|option| option.signal == *signal);
         self.signals.iter().map(|signal| option(signal).map_or(f64::NAN, |option| option.net)).collect()
     }
 
-    /// A sample of the beliefs, if they have changed; if only gaze changed them, at most one per [`BELIEF_STEP_S`].
+    /// A sample of the beliefs, if the beliefs have changed; while only gaze changes them, at most one sample per
+    /// [`BELIEF_STEP_S`].
     fn belief_sample(&mut self, belief: &BeliefSnapshot, by_gaze: bool) -> Option<StreamSample> {
         let is_due = |(at, _): &(SessionTime, Vec<f32>)| !by_gaze || belief.time.secs_since(*at) >= BELIEF_STEP_S;
         let held: Vec<f32> = belief.held.iter().map(|held| held.p_truth).collect();
@@ -150,8 +151,8 @@ impl LslSampleConverter {
     }
 }
 
-/// Texts of a press: agent, button, whether the press had an effect, and whether it was an error ("yes", "no", or empty
-/// if it is not judged).
+/// Texts of a sample about a press: agent, button, whether the press had an effect, and whether it was an error ("yes",
+/// "no", or empty for a press that is not judged).
 fn press_texts(
     agent: Agent,
     button: &str,

@@ -16,11 +16,11 @@ use crate::edge::file_error::FileResult;
 pub struct PlannerAccuracySample {
     /// Number of steps answered by the converged planner.
     pub steps: usize,
-    /// Number of steps answered by the plain reference planner, a subset of them.
+    /// Number of steps answered by the plain reference planner, a subset of `steps`.
     pub reference_steps: usize,
 }
 
-/// Compares the planner's answers with more precise ones. `done` is called after each step of each planner.
+/// Compares the planner's answers with more precise ones. `done` is called after each step that a planner has answered.
 ///
 /// # Errors
 /// A recording cannot be read or replayed, or the recordings are of different kitchens.
@@ -44,7 +44,7 @@ pub fn measure(
     Ok(bench.summary(&steps))
 }
 
-/// The requests for advice after the presses of a recording.
+/// The requests for advice that the assistant gets after the presses of a recording.
 fn ask(replay: &mut RecordingReplay) -> FileResult<RecordedAdviceRequests> {
     let session = replay.log().session();
     let mut questions = Vec::new();

@@ -9,14 +9,14 @@ use crate::analysis::advisor::{AdviceRequest, Advisor};
 use crate::communication::recommendation::Recommendation;
 
 impl Advisor {
-    /// Starts the assistant's thread, which ends when the returned desk is dropped.
+    /// Starts the assistant's thread, which ends when the returned connection is dropped.
     pub fn on_thread(mut self) -> LiveAdvisor {
         let (ask, questions) = channel::<AdviceRequest>();
         let (answer, answers) = unbounded_channel();
         thread::spawn(move || {
             let mut next = questions.recv().ok();
             while let Some(question) = next {
-                // The newest request replaces earlier ones that have not been answered.
+                // The newest request for advice replaces earlier ones that have not been answered.
                 let newest = questions.try_iter().last().unwrap_or(question);
                 if answer.send(self.answer(&newest)).is_err() {
                     return;
@@ -27,7 +27,8 @@ impl Advisor {
         LiveAdvisor { ask, answers }
     }
 
-    /// Waits for the next request, and works ahead meanwhile if the session's settings say so; `None` once nobody asks any more.
+    /// Waits for the next request for advice, and works ahead meanwhile if the session's settings say so; `None` once
+    /// nobody can send requests any more.
     fn until_asked(&mut self, last: &AdviceRequest, questions: &Receiver<AdviceRequest>) -> Option<AdviceRequest> {
         let mut next = Err(TryRecvError::Empty);
         if self.works_ahead {
@@ -55,14 +56,14 @@ pub struct LiveAdvisor {
 }
 
 impl LiveAdvisor {
-    /// Sends a request for advice, which replaces an earlier one that has not been answered.
+    /// Sends a request for advice to the assistant, which replaces an earlier request that has not been answered.
     pub fn ask(&self, question: AdviceRequest) {
         // If the assistant's thread has ended, the session continues without recommendations.
         let _ = self.ask.send(question);
     }
 }
 
-/// Waits for the assistant's next recommendation; forever if the session has no assistant.
+/// Waits for the assistant's next recommendation; waits forever if the session has no assistant.
 pub async fn next_advice(advisor: &mut Option<LiveAdvisor>) -> Option<Recommendation> {
     match advisor {
         Some(desk) => desk.answers.recv().await,

@@ -26,13 +26,13 @@ use crate::session::{LogHeader, apply};
 /// Summary of an export as a BIDS data set: recordings, changed codes, and tables.
 #[derive(Clone, Debug, Serialize)]
 pub struct BidsSummary {
-    /// Folder of the data set.
+    /// Folder of the BIDS data set.
     pub folder: PathBuf,
-    /// Participants' codes that are not valid BIDS labels, with the labels that they got.
+    /// Participants' codes that are no valid BIDS labels, each with the label that replaces the code.
     pub changed_codes: Vec<(String, String)>,
-    /// Exported recordings with their places in the data set.
+    /// The exported recordings with their places in the data set.
     pub recordings: Vec<BidsRecording>,
-    /// Number of tables of questionnaires.
+    /// Number of exported tables with answers to questionnaires.
     pub questionnaires: usize,
     /// Whether text that somebody typed was exported.
     pub words: bool,
@@ -45,7 +45,7 @@ pub struct BidsRecording {
     pub recording: PathBuf,
     /// Common beginning of the paths of the recording's files in the data set.
     pub place: String,
-    /// Numbers of rows in the recording's tables.
+    /// Numbers of rows in the recording's BIDS tables.
     pub rows: BidsRowCounts,
 }
 
@@ -57,11 +57,11 @@ struct Planned {
     session: String,
 }
 
-/// Kitchen of the last recording with its cost to go, since the next recording often has the same kitchen.
+/// Kitchen of the last recording with its cost to go, kept because the next recording often has the same kitchen.
 type KnownCost = Option<(Arc<Kitchen>, CostToGo)>;
 
-/// Exports these recordings into a new folder. `with_words`: text that wizards and participants typed is exported, too.
-/// `done` is called after each recording.
+/// Exports these recordings into a new folder. `with_words`: whether text that wizards and participants typed is
+/// exported, too. `done` is called after each recording.
 ///
 /// # Errors
 /// A recording cannot be read or is still being written, or the data set cannot be written.
@@ -104,7 +104,7 @@ pub fn export(recordings: &[PathBuf], folder: &Path, with_words: bool, done: imp
     })
 }
 
-/// Header of a recording; refuses one that is still being written.
+/// Reads the header of a recording; refuses a recording that is still being written.
 fn header(recording: &Path) -> FileResult<LogHeader> {
     let log = LogReader::open(recording)?;
     if log.ending() == LogEnding::Running {
@@ -115,7 +115,7 @@ fn header(recording: &Path) -> FileResult<LogHeader> {
 }
 
 /// The recordings, each once, without parts that another recording continues: a later part is read together with all
-/// earlier ones.
+/// its earlier parts.
 fn without_parts(named: Vec<(PathBuf, LogHeader)>) -> Vec<(PathBuf, LogHeader)> {
     let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
     let before = |(path, header): &(PathBuf, LogHeader)| {
@@ -143,7 +143,7 @@ fn places(mut all: Vec<(PathBuf, LogHeader)>, labels: &BidsLabels) -> Vec<Planne
     all.into_iter().map(place).collect()
 }
 
-/// Reads a recording: its files, its row of the table of sessions with the kitchen's name, and the numbers of rows.
+/// Reads a recording: its files, its row of the table of sessions (with the kitchen's name), and its numbers of rows.
 fn read(
     one: &Planned,
     with_words: bool,
@@ -200,7 +200,7 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
         match rows.iter_mut().find(|row| row.label == one.label) {
             Some(row) => {
                 row.recordings += 1;
-                // Recordings are in the order of their times: the first consent counts.
+                // Recordings are in the order of their times, so the first consent counts.
                 if let Some(consent) = consent.filter(|_| row.consent == [None, None, None]) {
                     row.consent = consent;
                 }
@@ -223,7 +223,7 @@ fn participants(planned: &[Planned]) -> FileResult<Vec<BidsParticipant>> {
     Ok(rows)
 }
 
-/// The export as text for the terminal.
+/// Summary of the BIDS export as text for the terminal.
 pub fn describe(summary: &BidsSummary) -> String {
     let rows = |of: fn(&BidsRowCounts) -> u64| summary.recordings.iter().map(|one| of(&one.rows)).sum::<u64>();
     let line = |one: &BidsRecording| format!("  {} from {}\n", one.place, one.recording.display());

@@ -15,8 +15,9 @@ use crate::measures::belief_detection::{EstimateBeforePress, TrialView, aspect_g
 use crate::measures::flags::chosen_thresholds;
 use crate::session::settings::ParticipantKind;
 
-/// Checks the pooled recordings of one kitchen. The thresholds for flagging false beliefs are chosen on the recordings
-/// `choose_on`, which are not checked, or by cross-fitting if there are none. `done` is called after each recording.
+/// Checks the belief estimates of recordings in one kitchen. The thresholds for flagging false beliefs are chosen on
+/// the recordings `choose_on`, which are not checked, or by cross-fitting if there are none. `done` is called after
+/// each recording.
 ///
 /// # Errors
 /// A recording cannot be read or replayed; the recordings are of different kitchens; a recording is both checked and in
@@ -40,21 +41,21 @@ pub fn check(recordings: &[PathBuf], choose_on: &[PathBuf], done: impl Fn() + Sy
 /// Code of a participant, with the freeze probes of one of their trials.
 pub type ProbedParticipant = (String, ProbedTrial);
 
-/// Trials of one kitchen whose estimates are checked.
+/// Trials of one kitchen whose belief estimates are checked.
 #[derive(Clone, Debug)]
 pub struct BeliefCheckTrials {
     /// The kitchen that all trials share.
     pub kitchen: Arc<Kitchen>,
-    /// Trials in the order of the recordings.
+    /// The trials' presses with estimates, in the order of the recordings.
     pub trials: Vec<TrialView>,
-    /// Freeze probes of each trial, with the participant; `None` for trials without probes.
+    /// Freeze probes of each trial, with the participant's code; `None` for trials without probes.
     pub probes: Vec<Option<ProbedParticipant>>,
 }
 
 /// Replays recordings on all processors and collects their presses. `done` is called after each recording.
 ///
 /// # Errors
-/// The same as of [`check`].
+/// The same errors as those of [`check`].
 pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<BeliefCheckTrials> {
     each_once(recordings)?;
     let results = parallel::each(recordings, |recording| view(recording), done);
@@ -68,7 +69,7 @@ pub fn views(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Belie
     Ok(BeliefCheckTrials { kitchen: one_kitchen.kitchen()?, trials, probes })
 }
 
-/// The presses and freeze probes of one recording.
+/// The presses with estimates, and the freeze probes, of one recording.
 fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView, Option<ProbedParticipant>)> {
     let mut replay = RecordingReplay::open(recording)?;
     let mut probes = ProbeCollector::default();
@@ -83,7 +84,7 @@ fn view(recording: &Path) -> FileResult<(Arc<Kitchen>, TrialView, Option<ProbedP
     }
     let session = replay.session();
     let spec = &session.spec;
-    // Simulated participants have the same codes for every seed, so the seed is added.
+    // Simulated participants have the same codes for every seed, so the seed is added to the code.
     let participant = match spec.participant.kind {
         ParticipantKind::Simulated => format!("seed{}-{}", spec.seed, spec.participant.code),
         _ => spec.participant.code.clone(),

@@ -10,11 +10,11 @@ use crate::measures::cause_codes::{ErrorCauseCode, RaterCodes};
 use crate::measures::consensus::RaterConsensus;
 use crate::session::settings::is_code;
 
-/// Advice in error messages on how the table names a rater.
+/// Advice in error messages on how a row of the table names its rater.
 const RATER: &str =
     "a code of 1 to 32 letters, digits, - and _, never a name; or two of them such as R1+R2, for their consensus";
 
-/// Author of a row's code: one rater, or two with a consensus.
+/// Author of a row of the table of codes: one rater, or two raters with a consensus.
 enum RowAuthor {
     Rater(String),
     Pair([String; 2]),
@@ -32,7 +32,7 @@ impl RowAuthor {
     }
 }
 
-/// Imports the rows of a file into the recordings, in addition to existing codes. Nothing is written if a row is
+/// Imports the rows of a file into the recordings, in addition to existing codes. No row is imported if one of them is
 /// invalid.
 ///
 /// # Errors
@@ -62,7 +62,7 @@ pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, Run
                 one.codes.entry(rater.clone()).or_default().0.insert(row.press, row.code.clone());
                 changed[index].push(rater);
             }
-            // Consensus codes are added last, since the raters' own codes can stand in later rows of the table.
+            // Consensus codes are added last, since the codes of single raters can stand in later rows of the table.
             RowAuthor::Pair(raters) => settled.push((index, raters, row)),
         }
     }
@@ -87,7 +87,7 @@ pub fn import(recordings: &mut [CodedRecording], file: &Path) -> Result<u64, Run
 }
 
 impl CodedRecording {
-    /// Adds a consensus code of two raters. If that is not possible, returns what was found and what would be right.
+    /// Adds a consensus code of two raters; returns what was found and what would be right if that is not possible.
     fn settle(&mut self, raters: &[String; 2], press: u64, code: &ErrorCauseCode) -> Result<(), (String, String)> {
         let new = RaterConsensus::new(&raters[0], &raters[1]);
         let own = new.raters.clone().map(|rater| self.codes.get(&rater).cloned().unwrap_or_default());

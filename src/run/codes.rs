@@ -20,15 +20,15 @@ use crate::session::settings::ParticipantKind;
 pub struct CodedRecording {
     /// Folder of the recording.
     pub folder: PathBuf,
-    /// The errors that can be coded, and the false beliefs that can be named as causes.
+    /// The errors of the recording that can be coded, and the false beliefs that can be named as causes.
     pub codable: CodableErrors,
     /// Errors of the recording, with times and presses.
     pub errors: Vec<ListedError>,
-    /// Codes of the errors, by the rater's identifier.
+    /// Raters' codes of the recording's errors, by the rater's identifier.
     pub codes: BTreeMap<String, RaterCodes>,
-    /// Consensus of two raters about the codes.
+    /// Consensus of two raters about their codes of the recording's errors.
     pub consensus: Option<RaterConsensus>,
-    /// True causes of the errors, for a simulated participant.
+    /// True causes of the errors, if the participant was simulated.
     pub known: Option<RaterCodes>,
 }
 
@@ -64,7 +64,7 @@ impl CodedRecording {
         resolved.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// The consensus codes that still hold, since the raters have not changed their codes.
+    /// The consensus codes that still hold because the raters have not changed their own codes.
     pub fn current(&self, consensus: &RaterConsensus) -> RaterCodes {
         let none = RaterCodes::default();
         consensus.current(consensus.raters.each_ref().map(|rater| self.codes.get(rater).unwrap_or(&none)))
@@ -86,7 +86,7 @@ impl CodedRecording {
         Some(ConsensusSummary { of, with, agreed, settled, open: errors - settled, stale: stale.collect() })
     }
 
-    /// The errors that two raters coded differently.
+    /// The errors to which two raters gave different codes.
     fn disagreements(&self, of: (&String, &RaterCodes), with: (&String, &RaterCodes)) -> Vec<RaterDisagreement> {
         let differ = unsettled(&self.codable.errors, [of.1, with.1]);
         let is_pairs =
@@ -122,13 +122,13 @@ impl CodedRecording {
 /// Raters' codes, agreement and disagreements: the output of `tomcom codes`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RaterCodesSummary {
-    /// Recordings, with the number of errors that each rater has coded.
+    /// The coded recordings, with the number of errors that each rater has coded.
     pub recordings: Vec<CodedRecordingSummary>,
-    /// Agreement of each pair of raters with common errors. A consensus does not count as a rater.
+    /// Agreement of each pair of raters who coded common errors. A consensus does not count as a rater.
     pub agreements: Vec<RaterPairSummary>,
     /// Agreement of each rater with the true causes of simulated participants.
     pub known: Vec<RaterPairSummary>,
-    /// The errors that two raters coded differently, for each pair of raters.
+    /// The errors to which two raters gave different codes, for each pair of raters.
     pub disagreements: Vec<RaterDisagreement>,
 }
 
@@ -139,7 +139,7 @@ pub struct CodedRecordingSummary {
     pub recording: String,
     /// Number of errors of the human in the recording.
     pub errors: u64,
-    /// Number of errors coded by each rater.
+    /// Number of errors coded by each rater, by the rater's identifier.
     pub coded: BTreeMap<String, u64>,
     /// Consensus of two raters; null without one.
     pub consensus: Option<ConsensusSummary>,
@@ -148,17 +148,17 @@ pub struct CodedRecordingSummary {
 /// Consensus of two raters about a recording's errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConsensusSummary {
-    /// Identifier of the first rater.
+    /// Identifier of the first rater of the consensus.
     pub of: String,
-    /// Identifier of the second rater.
+    /// Identifier of the second rater of the consensus.
     pub with: String,
-    /// Number of errors that both raters code alike.
+    /// Number of errors to which both raters gave the same code.
     pub agreed: u64,
-    /// Number of errors with a consensus code that holds, including those coded alike.
+    /// Number of errors with a valid consensus code, including errors that both raters coded alike.
     pub settled: u64,
     /// Number of errors without a consensus code.
     pub open: u64,
-    /// Raters' codes that changed after the raters had settled them.
+    /// Codes that a rater changed after the raters had settled the error.
     pub stale: Vec<ChangedRaterCode>,
 }
 
@@ -178,47 +178,47 @@ pub struct ChangedRaterCode {
 pub struct RaterDisagreement {
     /// The name of the recording's folder.
     pub recording: String,
-    /// The error that is coded differently.
+    /// The error to which the raters gave different codes.
     #[serde(flatten)]
     pub error: ListedError,
-    /// Identifier of the first rater.
+    /// Identifier of the first of the two raters.
     pub of: String,
-    /// Identifier of the second rater.
+    /// Identifier of the second of the two raters.
     pub with: String,
-    /// Cause according to the first rater.
+    /// Cause of the error according to the first rater.
     pub of_cause: String,
-    /// State aspect that was believed wrong according to the first rater; null for other causes.
+    /// State aspect that the participant believed wrong according to the first rater; null for other causes.
     pub of_aspect: Option<String>,
-    /// Cause according to the second rater.
+    /// Cause of the error according to the second rater.
     pub with_cause: String,
-    /// State aspect that was believed wrong according to the second rater; null for other causes.
+    /// State aspect that the participant believed wrong according to the second rater; null for other causes.
     pub with_aspect: Option<String>,
-    /// Cause in the consensus code; null without one, or if a rater changed a code since.
+    /// Cause of the error in the consensus code; null without consensus, or if a rater changed a code since.
     pub settled_cause: Option<String>,
-    /// State aspect that was believed wrong by the consensus code; null for other causes.
+    /// State aspect that the participant believed wrong by the consensus code; null for other causes.
     pub settled_aspect: Option<String>,
-    /// Codes of both raters in words.
+    /// Codes that the two raters gave to the error, in words.
     #[serde(skip)]
     pub words: [String; 2],
-    /// Consensus code in words.
+    /// Consensus code of the error in words.
     #[serde(skip)]
     pub settled_words: Option<String>,
 }
 
-/// Agreement between two raters, or between a rater and the simulation.
+/// Agreement between two raters, or between a rater and the true causes of a simulation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RaterPairSummary {
-    /// Identifier of the first rater.
+    /// Identifier of the first rater of the pair.
     pub of: String,
-    /// Identifier of the second rater, or "simulation" for the true causes of a simulated participant.
+    /// Identifier of the second rater of the pair, or "simulation" for the true causes of a simulated participant.
     pub with: String,
-    /// Agreement of the two, over all recordings together.
+    /// Agreement of the two raters, over all recordings together.
     #[serde(flatten)]
     pub agreement: RaterAgreement,
 }
 
 impl RaterCodesSummary {
-    /// Summary of coded recordings.
+    /// Summary of raters' codes, agreement and disagreements in these recordings.
     pub fn from_recordings(recordings: &[CodedRecording]) -> RaterCodesSummary {
         let mut pairs: BTreeMap<(String, String), (AgreementTable, Vec<RaterDisagreement>)> = BTreeMap::new();
         let mut known: BTreeMap<String, AgreementTable> = BTreeMap::new();
@@ -296,7 +296,7 @@ fn describe_consensus(found: &ConsensusSummary) -> String {
     text
 }
 
-/// The disagreements as a table, followed by how to settle them.
+/// The errors that raters coded differently as a table, followed by how to settle them.
 fn describe_disagreements(all: &[RaterDisagreement]) -> String {
     let Some(first) = all.first() else { return String::new() };
     let recordings = all.iter().map(|one| one.recording.chars().count()).max().unwrap_or(0).max(9);

@@ -9,7 +9,7 @@ use crate::edge::log::{RecordingWriteError, consensus_file, rater_codes};
 use crate::measures::cause_codes::{CodableErrors, RaterCodes};
 use crate::measures::consensus::{RaterConsensus, unsettled};
 
-/// The session of one rater, with the codes that the rater gave earlier.
+/// The coding session of one rater, with the codes that the rater gave earlier.
 ///
 /// # Errors
 /// A file with codes is damaged.
@@ -25,8 +25,8 @@ pub(super) fn of_rater(film: &SeekableReplay, rater: &str) -> Result<RaterSessio
     Ok(session)
 }
 
-/// The session of two raters who settle the errors that they coded differently. Codes on which they agree are taken
-/// over.
+/// The session of two raters who settle the errors that they coded differently. Codes on which the raters agree become
+/// consensus codes.
 ///
 /// # Errors
 /// A rater has coded nothing, other raters have settled this recording, a file is damaged, or the folder cannot be
@@ -60,7 +60,7 @@ pub(super) fn of_pair(film: &SeekableReplay, raters: [&str; 2]) -> Result<RaterS
         ListedError::all(follower).into_iter().filter(|error| open.contains(&error.press)).collect();
     let current = consensus.current(own.each_ref()).0.into_iter();
     let codes = RaterCodes(current.filter(|(press, _)| open.contains(press)).collect());
-    // Errors that the raters can still change are in the session's codes; the consensus holds the others.
+    // The session's codes have the errors that the raters can still change; the consensus has the others.
     consensus.settled.retain(|press, _| !codes.0.contains_key(press));
     let session = RaterSession::new(CodingRaters::Pair { consensus, own }, errors, codes);
     save(film, &session)?;

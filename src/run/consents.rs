@@ -1,4 +1,4 @@
-//! Reads the consents that recordings begin with, also those of practice, which are not analysed as trials.
+//! Reads the consents with which recordings begin, including practice recordings, which are not analysed as trials.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::session::Event;
 use crate::session::protocol::ProtocolEvent;
 use crate::study::recorded_consent::RecordedConsent;
 
-/// The consent that the recording begins with; none if it begins without. Of several parts that is the first one's.
+/// The consent with which the recording begins (in its first part); `None` if it does not begin with a consent.
 ///
 /// # Errors
 /// The recording cannot be read.
@@ -23,7 +23,7 @@ pub(super) fn read(recording: &Path) -> FileResult<Option<RecordedConsent>> {
                 let participant = log.header.session.participant.code.clone();
                 return Ok(Some(RecordedConsent { participant, on, started: log.header.started.clone(), digest }));
             }
-            // It is given before the first phase, or not at all.
+            // Consent is given before the first phase of the recording, or not at all.
             Event::Protocol(ProtocolEvent::PhaseStarted { .. }) | Event::TrialStarted => return Ok(None),
             _ => {}
         }

@@ -1,5 +1,5 @@
 //! The operator's desk: terminal, eye tracker, the participant's display, and termination signals. The desk is opened
-//! once for all recordings of a series.
+//! once for all recordings of a participant's series.
 
 use std::io;
 use std::net::SocketAddr;
@@ -29,9 +29,9 @@ use crate::session::SessionSpec;
 use crate::session::accuracy_check::AcceptedGazeCheck;
 use crate::session::settings::{ConsoleSpec, GazeSource};
 
-/// Largest number of tracker messages that are processed together; more would delay keys.
+/// Largest number of tracker messages that are processed together; more would delay the wizard's keys.
 const PACKET: usize = 32;
-/// Longest wait for Pupil Capture to finish its last request.
+/// Longest wait for the program Pupil Capture to finish its last request.
 const SETTLE: Duration = Duration::from_secs(2);
 
 #[cfg(feature = "display")]
@@ -46,10 +46,10 @@ use lsl_desk::LslDesk;
 use wall::WallDisplay;
 pub(super) use wall::{PageInput, is_consent};
 
-/// Terminal and devices that the recordings of a series share.
+/// Terminal and devices that all recordings of a series share.
 pub(super) struct OperatorDesk {
     pub screen: TerminalScreen,
-    /// Colour theme of questions before a recording.
+    /// Colour theme of the questions that the console asks before a recording.
     pub theme: Theme,
     pub seat: OperatorInput,
     pub tracker: GazeTracker,
@@ -67,28 +67,28 @@ pub(super) struct OperatorInput {
 #[derive(Default)]
 pub(super) struct GazeTracker {
     news: Option<Receiver<TrackerMessage>>,
-    /// Channel for requests to Pupil Capture.
+    /// Channel for requests to the program Pupil Capture.
     orders: Option<Sender<CaptureRequest>>,
-    /// End of the thread that reads a Lab Streaming Layer stream; it is waited for once `news` is dropped.
+    /// End of the thread that reads gaze from the Lab Streaming Layer; the desk waits for it once `news` is dropped.
     _inlet: Option<InletThreadEnd>,
     file: Option<Arc<GazeFile>>,
-    /// Pairing codes for gaze senders at other computers, if they have to pair.
+    /// Pairing codes for gaze senders at other computers; `None` if senders need no pairing.
     pairing: Option<GazePairing>,
-    /// Latest connection state of the tracker, for recordings that begin later.
+    /// Latest connection state of the tracker, which recordings that begin later are told.
     link: Option<TrackerMessage>,
     sees_display: Option<TrackerMessage>,
     other_surfaces: Option<TrackerMessage>,
-    /// Last gaze accuracy check that was accepted.
+    /// Last gaze accuracy check that the wizard accepted.
     calibrated: Option<AcceptedGazeCheck>,
 }
 
 impl GazeTracker {
-    /// Keeps the accepted gaze check for the next recording.
+    /// Keeps the accepted gaze accuracy check for the next recording.
     pub fn keep(&mut self, calibrated: Option<AcceptedGazeCheck>) {
         self.calibrated = calibrated;
     }
 
-    /// The gaze check that was accepted in the previous recording.
+    /// The gaze accuracy check that was accepted in the previous recording.
     pub fn calibrated(&self) -> Option<&AcceptedGazeCheck> {
         self.calibrated.as_ref()
     }
@@ -122,8 +122,8 @@ impl OperatorDesk {
 }
 
 impl OperatorInput {
-    /// Waits for the next input of the wizard; `None` if the program has to end, because of a signal or because the
-    /// terminal was closed.
+    /// Waits for the wizard's next input; `None` if the program has to end, because of a termination signal or because
+    /// the terminal was closed.
     pub async fn next(&mut self) -> Option<ConsoleMessage> {
         tokio::select! {
             biased;
@@ -166,7 +166,7 @@ impl GazeTracker {
             }
             GazeSource::Lsl => {
                 let stream = spec.lsl.as_ref().and_then(|lsl| lsl.gaze.clone());
-                // The settings were checked, so both library and stream exist.
+                // The settings were checked, so both the LSL library and the stream's settings exist.
                 let Some((library, stream)) = desk.library().zip(stream) else { return Ok(GazeTracker::default()) };
                 let followed = lsl::follow(library, stream, kitchen.display_m);
                 let (news, inlet) = followed.map_err(|_| LslError::NoThread)?;
@@ -176,12 +176,12 @@ impl GazeTracker {
         }
     }
 
-    /// Waits for the next tracker messages (samples arrive in packets); forever if there is no tracker.
+    /// Waits for the next tracker messages (samples arrive in packets); waits forever if there is no tracker.
     pub async fn next(&mut self) -> Option<Vec<TrackerMessage>> {
         let Some(news) = &mut self.news else { return std::future::pending().await };
         let mut packet = Vec::new();
         // All pending messages are received in one call, so that none is lost if another branch of the event loop is
-        // selected.
+        // selected meanwhile.
         news.recv_many(&mut packet, PACKET).await;
         packet.iter().for_each(|news| self.know(news));
         (!packet.is_empty()).then_some(packet)
@@ -199,28 +199,28 @@ impl GazeTracker {
         }
     }
 
-    /// Messages that describe the tracker's present state, for a recording that begins now.
+    /// Messages with the tracker's present state, for a recording that begins now.
     pub fn known(&self) -> impl Iterator<Item = TrackerMessage> {
         let known = self.link.iter().chain(&self.sees_display).chain(&self.other_surfaces);
         known.cloned().collect::<Vec<_>>().into_iter()
     }
 
-    /// Pairing codes for gaze senders at other computers, if they have to pair.
+    /// Pairing codes for gaze senders at other computers; `None` if senders need no pairing.
     pub fn pairing(&self) -> Option<GazePairing> {
         self.pairing.clone()
     }
 
-    /// The file from which gaze is replayed, if any.
+    /// The file from which gaze is replayed; `None` if gaze comes from another source.
     pub fn file(&self) -> Option<Arc<GazeFile>> {
         self.file.clone()
     }
 
-    /// Channel for requests to Pupil Capture, if that is the tracker.
+    /// Channel for requests to the program Pupil Capture; `None` if it is not the tracker.
     pub fn orders(&self) -> Option<Sender<CaptureRequest>> {
         self.orders.clone()
     }
 
-    /// Waits briefly until Pupil Capture has finished its requests.
+    /// Waits briefly until the program Pupil Capture has finished its requests.
     pub async fn settle(&self) {
         let Some(orders) = self.orders.as_ref().filter(|_| matches!(self.link, Some(TrackerMessage::Connected(_))))
         else {
@@ -228,7 +228,7 @@ impl GazeTracker {
         };
         let (sender, done) = oneshot::channel();
         if orders.try_send(CaptureRequest::Report(sender)).is_ok() {
-            // Pupil Capture may have been closed, so the wait is limited.
+            // The wait is limited, since Pupil Capture may have been closed.
             let _ = timeout(SETTLE, done).await;
         }
     }

@@ -1,14 +1,14 @@
 //! The engine runs a session: it raises the session's own events when they are due, accepts events from outside, and
 //! returns every event once, stamped and in order, for the log.
 //!
-//! At equal times the order is timers, robot, simulated participant, scripted wizard, probes; immediate consequences
-//! are applied before anything else. `headless` jumps from one due time to the next, `live` sleeps until then, and
-//! verification uses the recorded times.
+//! At equal times the order of sources is timers, robot, simulated participant, scripted wizard, probes; immediate
+//! consequences of an event are applied before anything else. The module `headless` jumps from one due time to the
+//! next, `live` sleeps until then, and verification uses the recorded times.
 //!
-//! A pause stops clock, robot, orders and participant; pending events are postponed by the length of the pause. Presses
-//! during a pause are recorded and do not count. The signals of a scripted wizard and of the assistant are internal
-//! events, so a verification repeats them; those of a person are external. A recommendation is an external event
-//! (`advised`): computed at once in headless runs, by a thread in live ones.
+//! A pause stops clock, robot, orders and participant; pending events are postponed by its length. Presses during a
+//! pause are recorded and do not count. The signals of a scripted wizard and of the assistant are internal events, so a
+//! verification repeats them; those of a person are external. A recommendation is an external event (`advised`): it is
+//! computed at once in headless runs, by a thread in live ones.
 //!
 //! The engine has no clock: the caller passes the time, so that live sessions, simulations and verifications use the
 //! same code.
@@ -71,17 +71,17 @@ pub struct SessionEngine {
     questions: Vec<AdviceRequest>,
 }
 
-/// Result of an event from outside: the events that it led to, or why it was refused.
+/// Result of an event from outside: the events to which it led, or why the event was refused.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use = "the events belong into the log, also when the input was refused"]
 pub struct InputResult {
-    /// Events up to the one from outside, and its immediate consequences, in order.
+    /// Events up to the event from outside, and the consequences of that event, in order.
     pub events: Vec<TimestampedEvent>,
     /// Why the event from outside was refused, in words for the wizard.
     pub refused: Option<String>,
 }
 
-/// Source of the next internal event; at equal times, the first variant goes first.
+/// Source of the engine's next internal event; of sources due at once, the earlier variant goes first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Source {
     Timer,
@@ -92,12 +92,12 @@ enum Source {
 }
 
 impl SessionEngine {
-    /// A session before its first event. `cost` may be shared with other engines of the same kitchen: its cache never
-    /// changes its results.
+    /// An engine for a session before its first event. Other engines of the same kitchen may have used `cost`: its
+    /// cache never changes its results.
     ///
     /// # Panics
-    /// The settings ask for an arm with simulated physics, and this build has none; `SessionSpec::require_built` checks
-    /// that.
+    /// The settings ask for an arm with simulated physics, and this build has none, which `SessionSpec::require_built`
+    /// checks.
     pub fn new(kitchen: Arc<Kitchen>, spec: SessionSpec, trial: u64, cost: CostToGo) -> SessionEngine {
         let orders = OrderList::new(kitchen.dishes.len(), &spec, trial);
         let robot = trial_robot(&kitchen, &spec, trial);
@@ -124,17 +124,17 @@ impl SessionEngine {
         }
     }
 
-    /// The advisor of this session; its recommendations return as [`Event::Advised`].
+    /// The assistant of this session; its recommendations come back as [`Event::Advised`].
     pub fn advisor(&self) -> Advisor {
         Advisor::new(self.session(), self.follower.cost.clone())
     }
 
-    /// Requests for advice since the last call, the oldest first.
+    /// Requests for advice since the last call of this function, the oldest first.
     pub fn take_questions(&mut self) -> Vec<AdviceRequest> {
         std::mem::take(&mut self.questions)
     }
 
-    /// This engine without attribution of errors to causes, which takes too long in a running session.
+    /// This engine without attribution of errors to causes, because attribution takes too long in a running session.
     pub fn without_causes(self) -> SessionEngine {
         SessionEngine { follower: self.follower.without_causes(), ..self }
     }
@@ -175,8 +175,8 @@ impl SessionEngine {
         std::mem::take(&mut self.out)
     }
 
-    /// Applies an event from outside (wizard, participant, tracker) at `time`, after all internal events due before. A
-    /// time before the last event is replaced by that of the last event.
+    /// Applies an event from outside (wizard, participant, tracker) at `time`, after all internal events that are due
+    /// before. If `time` is earlier than the last event, the time of the last event is used.
     pub fn input(&mut self, time: SessionTime, event: Event) -> InputResult {
         while self.next_due().is_some_and(|due| due <= time) {
             self.fire_next();
@@ -199,10 +199,10 @@ impl SessionEngine {
         SessionEngine { wizard: None, ..self }
     }
 
-    /// The engine for a recording's header, without features that the recording's format lacks.
+    /// The engine for the session of a recording's header, without features that the recording's format lacks.
     ///
     /// # Panics
-    /// As [`Self::new`].
+    /// The panics of [`Self::new`].
     pub fn for_header(kitchen: Arc<Kitchen>, header: &LogHeader, cost: CostToGo) -> SessionEngine {
         let engine = SessionEngine::new(kitchen, header.session.clone(), header.trial, cost);
         if header.has_offers() { engine } else { engine.without_offers() }
@@ -214,7 +214,7 @@ impl SessionEngine {
         self
     }
 
-    /// The follower of the session, after its end.
+    /// The follower of the engine's session, after the end of the session.
     pub fn into_follower(self) -> SessionFollower {
         self.follower
     }
@@ -229,7 +229,7 @@ impl SessionEngine {
         let participant = self.participant.as_ref().and_then(SimulatedParticipant::next_due);
         let sources = [
             (self.timers.next_due(), Source::Timer),
-            // An arm that was held can have been due earlier; its event gets no earlier time than the last event.
+            // A held arm can have been due earlier; its event still gets no earlier time than the last event.
             (self.robot.next_due().map(|due| due.max(self.session().time)), Source::Robot),
             (participant, Source::Participant),
             (self.wizard.as_ref().and_then(ScriptedWizard::next_due), Source::Wizard),
@@ -265,7 +265,7 @@ impl SessionEngine {
                     self.record_own(now, Event::Gaze(sample));
                 }
             }
-            // The simulated gaze is not used if an external tracker delivers gaze.
+            // The simulated participant's gaze is not used if an external tracker delivers gaze.
             Some(ParticipantAction::Gaze(_)) | None => {}
             Some(ParticipantAction::Press { button, belief }) => {
                 let button = self.session().kitchen.button(Agent::Human, button).name.clone();
@@ -366,8 +366,8 @@ impl SessionEngine {
                 self.acted_on(advice)
             }
             Event::Probe(ProbeEvent::Ended { .. }) => {
-                // A recommendation that came while the task stood still was refused. The same request leads to the same
-                // recommendation.
+                // A recommendation that came while the task stood still was refused. The same request for advice leads
+                // to the same recommendation.
                 self.questions.extend(self.asked.clone());
                 None
             }

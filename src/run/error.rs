@@ -30,7 +30,7 @@ impl From<FileError> for RunError {
     }
 }
 
-/// There is no terminal, it was closed, or the operating system lacks something that the console needs.
+/// Error of the terminal: there is none, it was closed, or the operating system lacks something that the console needs.
 #[derive(Debug, thiserror::Error)]
 #[error("the console cannot be opened: {0}")]
 pub struct TerminalError(pub io::Error);
@@ -38,11 +38,11 @@ pub struct TerminalError(pub io::Error);
 /// Error of a live session: a device, a file or the recording fails.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum LiveError {
-    /// The console cannot be opened.
+    /// The wizard's console cannot be opened.
     #[error(transparent)]
     #[diagnostic(help("run it in a terminal, not through a pipe"))]
     Terminal(#[from] TerminalError),
-    /// A key of the console cannot be bound.
+    /// A key binding of the console is invalid.
     #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy))]
     Keys(#[from] KeyError),
@@ -54,27 +54,27 @@ pub enum LiveError {
     #[error("nothing can listen at {at} for gaze: {reason}")]
     #[diagnostic(help("another gaze_port in the session file, or as gaze_listen an address of this computer"))]
     Gaze {
-        /// Address and port that cannot be opened.
+        /// Address and port for gaze that cannot be opened.
         at: SocketAddr,
-        /// Why the operating system could not open the port.
+        /// Why the operating system could not open the port for gaze.
         reason: io::Error,
     },
     /// The Lab Streaming Layer cannot be used.
     #[error(transparent)]
     #[diagnostic(help("{}", .0.remedy()))]
     Lsl(#[from] LslError),
-    /// The participant's display cannot be served.
+    /// The server of the participant's display cannot be opened.
     #[error("nothing can listen on {address}, port {port}, for the participant's display: {reason}")]
     #[diagnostic(help("another port in the session file (port under [display]), or an address of this computer"))]
     Display {
-        /// Address of the display's server.
+        /// Network address of the display's server.
         address: IpAddr,
-        /// Port of the display's server.
+        /// Network port of the display's server.
         port: u16,
-        /// Why the operating system could not open the address.
+        /// Why the operating system could not open the server's address.
         reason: io::Error,
     },
-    /// The tags do not fit on the display, so that the eye tracker could not find it.
+    /// The display tags do not fit on the display, so that the eye tracker could not find the display.
     #[error("the eye tracker has no surface to look for: found {}", .0.found)]
     #[diagnostic(help("{}; or a surface of your own, with its corners in [tracker]", .0.remedy))]
     Tags(TagError),
@@ -100,7 +100,7 @@ impl From<FileError> for LiveError {
     }
 }
 
-/// Error of showing a recording at the console.
+/// Error while a recording is shown at the console.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ReviewError {
     /// The console cannot be opened.
@@ -121,10 +121,10 @@ pub enum ReviewError {
     Training {
         /// Path of the training record.
         path: PathBuf,
-        /// Why the operating system could not write the file.
+        /// Why the operating system could not write the training record.
         reason: io::Error,
     },
-    /// A key of the recording's key file cannot be bound.
+    /// A key binding in the recording's key file is invalid.
     #[error("the header of the recording: {0}")]
     #[diagnostic(help("{}", .0.remedy))]
     Keys(#[from] KeyError),

@@ -1,7 +1,7 @@
 //! The event loop of every console: live session, review, training, and the questions before a recording.
 //!
-//! The loop waits for the next event, passes it to the shell as a [`LoopEvent`], and draws. A shell is one kind of
-//! console: it tells its deadlines, handles events, and provides the view.
+//! The loop waits for the next event, passes the event to the shell as a [`LoopEvent`], and draws. A shell is one kind
+//! of console: it says when it has to act next (deadlines), handles events, and provides what is drawn.
 
 use std::time::Duration;
 
@@ -18,62 +18,62 @@ use crate::edge::gaze_input::TrackerMessage;
 use crate::edge::terminal::TerminalScreen;
 use crate::session::Session;
 
-/// Least time between frames of the console (30 frames per second).
+/// Least time between two frames of the console (30 frames per second).
 pub(super) const FRAME: Duration = Duration::from_millis(33);
-/// Sampling period of the mouse pointer when it stands for gaze (60 Hz).
+/// Sampling period of the mouse pointer when its position stands for gaze (60 Hz).
 const POINTER: Duration = Duration::from_nanos(16_666_667);
-/// Period of [`LoopEvent::FileTick`], the reading and flushing of files.
+/// Period of [`LoopEvent::FileTick`], at which files are read and flushed.
 const FILES: Duration = Duration::from_millis(50);
-/// Period of [`LoopEvent::WatchTick`], the check of recording and devices.
+/// Period of [`LoopEvent::WatchTick`], at which recording and devices are checked.
 const WATCH: Duration = Duration::from_millis(250);
 
-/// An event of the console's event loop. If several are pending, they are handled in the order of the variants.
+/// An event of the console's event loop. Of several pending events, the one whose variant comes first is handled first.
 pub(super) enum LoopEvent {
     /// The program has to end: a termination signal arrived, or the terminal was closed.
     EndRequest,
-    /// An input from the terminal: key, mouse, size, focus.
+    /// An input from the terminal: key, mouse, new size or focus.
     Terminal(ConsoleMessage),
     /// An internal event of the session is due.
     EngineDue,
-    /// A step of a check of gaze accuracy is due.
+    /// A step of a gaze accuracy check is due.
     TargetDue,
     /// An input from the participant's page.
     Page(PageInput),
-    /// A recommendation of the assistant.
+    /// A recommendation of the assistant has arrived.
     Advice(Box<Recommendation>),
     /// The mouse pointer is due to be sampled as gaze.
     PointerTick,
-    /// Growing files are due to be flushed or read.
+    /// Files that other programs or this one extend are due to be read or flushed.
     FileTick,
     /// The state of recording and devices is due to be checked.
     WatchTick,
     /// A frame is due to be drawn.
     FrameDue,
-    /// The next sample of a gaze file is due.
+    /// The next sample of a replayed gaze file is due.
     FileGazeDue,
     /// Messages of the eye tracker, in order of arrival. This variant is last, so that a tracker that sends too much
     /// delays only itself.
     Gaze(Vec<TrackerMessage>),
 }
 
-/// Deadlines of a console's shell; `None` for no deadline.
+/// Times at which a console's shell has to act next; `None` for no deadline.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ShellDeadlines {
     pub engine: Option<Instant>,
     pub target: Option<Instant>,
     pub file_gaze: Option<Instant>,
-    /// Longest time from the last frame to the next.
+    /// Longest time from the last drawn frame to the next.
     pub frame_after: Duration,
 }
 
 impl Default for ShellDeadlines {
-    /// No deadlines except for frames, which come at the highest rate.
+    /// No deadlines except for frames, which are drawn at the highest rate.
     fn default() -> ShellDeadlines {
         ShellDeadlines { engine: None, target: None, file_gaze: None, frame_after: FRAME }
     }
 }
 
-/// Content that a console's shell shows.
+/// Content that a console's shell wants to be shown.
 pub(super) enum ShellView<'a> {
     Console(&'a Session, &'a ConsoleModel),
     /// A question to the wizard before a recording.
@@ -84,26 +84,26 @@ pub(super) enum ShellView<'a> {
 
 /// One kind of console in the event loop: live session, review, training, question, or list of recordings.
 pub(super) trait ConsoleShell {
-    /// Result when the shell is left.
+    /// Result of the shell when the wizard leaves it.
     type Outcome;
     type Error: From<TerminalError>;
 
-    /// Deadlines of the shell; called before each wait.
+    /// Deadlines of the shell; the event loop calls this before each wait.
     fn deadlines(&mut self) -> ShellDeadlines {
         ShellDeadlines::default()
     }
 
-    /// Whether the mouse pointer serves as gaze.
+    /// Whether the position of the mouse pointer serves as gaze.
     fn samples_pointer(&self) -> bool {
         false
     }
 
-    /// Waits for the assistant's next recommendation; forever without an advisor.
+    /// Waits for the assistant's next recommendation; waits forever without an assistant.
     async fn advice(&mut self) -> Option<Recommendation> {
         std::future::pending().await
     }
 
-    /// Handles an event of the loop; returns the shell's result if the shell is left.
+    /// Handles an event of the loop; returns the shell's result if the event leaves the shell.
     fn take(&mut self, event: LoopEvent) -> Result<Option<Self::Outcome>, Self::Error>;
 
     /// Advances the shell to the present time before a frame; returns whether a frame is needed.
@@ -114,14 +114,15 @@ pub(super) trait ConsoleShell {
     /// Prepares the frame that is drawn next.
     fn prepare(&mut self) {}
 
-    /// The content to be shown.
+    /// The content that the shell wants to be shown.
     fn view(&self) -> ShellView<'_>;
 
-    /// Notes that a frame was passed to the terminal.
+    /// Notes that a frame was passed to the terminal for drawing.
     fn drawn(&mut self) {}
 }
 
-/// Runs a shell in the event loop until it is left; `None` if the program has to end or the terminal was closed.
+/// Runs a shell in the event loop until the wizard leaves it; `None` if the program has to end or the terminal was
+/// closed.
 pub(super) async fn run<S: ConsoleShell>(
     shell: &mut S,
     desk: &mut OperatorDesk,
@@ -164,7 +165,7 @@ impl LoopTicks {
     }
 }
 
-/// Waits for the next event of the loop.
+/// Waits for the next event of the console's event loop.
 async fn next_event<S: ConsoleShell>(shell: &mut S, desk: &mut OperatorDesk, ticks: &mut LoopTicks) -> LoopEvent {
     let (due, with_pointer) = (shell.deadlines(), shell.samples_pointer());
     let frame = ticks.frame.map_or_else(Instant::now, |last| last + due.frame_after);

@@ -24,14 +24,14 @@ use crate::session::settings::ParticipantKind;
 pub struct FitTrials {
     /// The kitchen that all trials share.
     pub kitchen: Arc<Kitchen>,
-    /// Human model in the header of the first recording.
+    /// Human model in the header of the first recording of the fit.
     pub model: HumanModel,
-    /// Whether another recording has a different human model.
+    /// Whether another recording of the fit has a different human model.
     pub differ: bool,
-    /// Observations of each trial, to which the model is fitted.
+    /// Observations of the belief filter in each trial, to which the human model is fitted.
     pub observations: Vec<FitObservations>,
-    /// Code of each trial's participant, with the seed in front where simulated participants have several, and the trial's number, which
-    /// grows from trial to trial of a participant in a plan.
+    /// For each trial, the participant's code (with the seed in front where simulated participants have several seeds)
+    /// and the trial's number, which grows from trial to trial of a participant in a plan.
     pub people: Vec<(String, u64)>,
 }
 
@@ -65,7 +65,7 @@ impl FitTrials {
         Ok(FitTrials { kitchen, model: models.into_iter().next().unwrap_or_default(), differ, observations, people })
     }
 
-    /// These trials without answers to freeze probes.
+    /// The trials of this fit without answers to freeze probes.
     fn without_answers(&self) -> FitTrials {
         let mut trials = self.clone();
         trials.observations.iter_mut().for_each(|one| one.answers.clear());
@@ -73,8 +73,8 @@ impl FitTrials {
     }
 }
 
-/// Names of the participants of trials, of their kinds, codes, seeds and numbers. Simulated participants of another seed are other
-/// people.
+/// Names of the participants of trials, from their kinds, codes, seeds and numbers. Simulated participants of another
+/// seed are other people.
 fn names(trials: &[(ParticipantKind, String, u64, u64)]) -> Vec<(String, u64)> {
     let is_simulated = |kind: ParticipantKind| kind == ParticipantKind::Simulated;
     let mut seeds = trials.iter().filter(|(kind, ..)| is_simulated(*kind)).map(|(_, _, seed, _)| seed);
@@ -87,7 +87,7 @@ fn names(trials: &[(ParticipantKind, String, u64, u64)]) -> Vec<(String, u64)> {
     trials.iter().map(name).collect()
 }
 
-/// Observations and probe answers of a recording, without answers about what comes next.
+/// Observations and probe answers of a recorded trial, without answers about what comes next.
 fn read_trial(replay: &mut RecordingReplay) -> FileResult<FitObservations> {
     let mut trial = FitObservations { seed: replay.session().seed(), ..FitObservations::default() };
     let mut questions: Vec<ProbeQuestion> = Vec::new();
@@ -116,8 +116,8 @@ fn read_trial(replay: &mut RecordingReplay) -> FileResult<FitObservations> {
     Ok(trial)
 }
 
-/// Fits the parameters of a plan to trials. `tried` is called after each evaluation. If there are answers to freeze
-/// probes, the fit is repeated without them, to tell what the answers add.
+/// Fits the parameters that `plan` names to trials. `tried` is called after each evaluation. If there are answers to
+/// freeze probes, the fit is repeated without answers, to tell what the answers add.
 pub fn fit(trials: &FitTrials, plan: &FitSettings, tried: impl Fn()) -> FitSummary {
     let mut found = fit_once(trials, plan, &tried);
     if let Some(answers) = &mut found.answers {
@@ -133,11 +133,12 @@ pub fn fit(trials: &FitTrials, plan: &FitSettings, tried: impl Fn()) -> FitSumma
 
 fn fit_once(trials: &FitTrials, plan: &FitSettings, tried: impl Fn()) -> FitSummary {
     let kitchen = &trials.kitchen;
-    // Each thread keeps its cache of costs to go between evaluations.
+    // Each thread keeps its cache of costs to go between evaluations of the likelihood.
     let pool = WorkerPool::new(|| CostToGo::new(kitchen.clone()));
     let of_all = |model: &HumanModel| {
         let of_trial = |cost: &mut CostToGo, trial: &FitObservations| likelihood(kitchen, model, trial, cost);
-        // Likelihoods are added in the order of the trials, so that the sum does not depend on the number of threads.
+        // Trials' likelihoods are added in the order of the trials, so that the sum does not depend on the number of
+        // threads.
         let found = pool.each(&trials.observations, of_trial, || {});
         found.into_iter().fold(TrialLikelihood::default(), TrialLikelihood::plus)
     };

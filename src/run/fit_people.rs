@@ -1,5 +1,5 @@
-//! `tomcom fit RECORDING... --people`: whose recordings these are, and the likelihoods of persons' trials on all processors for
-//! [`crate::analysis::fitting::people_fit`].
+//! `tomcom fit RECORDING... --people`: assigns recordings to persons, and computes the likelihoods of persons' trials
+//! on all processors for [`crate::analysis::fitting::people_fit`].
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,16 +17,16 @@ use crate::mind::fitting::{FitObservations, TrialLikelihood, likelihood};
 use crate::mind::model::HumanModel;
 use crate::study::statistics::mean_interval;
 
-/// Level of the intervals.
+/// Confidence level of the intervals over persons.
 const LEVEL: f64 = 0.95;
 
-/// Least number of persons of a population.
+/// Least number of persons to whom a population can be fitted.
 const LEAST_PEOPLE: usize = 2;
 
-/// Checks that there are several persons.
+/// Checks that the recordings are of several persons.
 ///
 /// # Errors
-/// The recordings are of one person.
+/// All recordings are of one person.
 pub fn require_people(recordings: &[PathBuf], trials: &FitTrials) -> FileResult<()> {
     let people = by_person(trials);
     if people.len() >= LEAST_PEOPLE {
@@ -45,7 +45,7 @@ pub fn most_replays(trials: &FitTrials, plan: &FitSettings) -> u64 {
     2 * ((plan.most_tries + rounds) * trials.observations.len()) as u64
 }
 
-/// Fits population and persons to trials. `tried` is called after each trial of each try.
+/// Fits a population and its persons to trials. `tried` is called after each trial of each tried parameter set.
 pub fn fit(trials: &FitTrials, plan: &FitSettings, tried: impl Fn() + Sync) -> PeopleSummary {
     let kitchen = &trials.kitchen;
     let by_person = by_person(trials);
@@ -65,7 +65,7 @@ pub fn fit(trials: &FitTrials, plan: &FitSettings, tried: impl Fn() + Sync) -> P
             likelihood(kitchen, model, trial, cost)
         };
         let found = pool.each(&items, of_trial, &tried);
-        // Summed in the order of the trials, so the sums do not depend on the number of threads.
+        // Likelihoods are summed in the order of the trials, so the sums do not depend on the number of threads.
         let mut sums = vec![TrialLikelihood::default(); tries.len()];
         items.iter().zip(found).for_each(|((index, _), found)| sums[*index] = sums[*index].plus(found));
         sums
@@ -78,7 +78,8 @@ pub fn fit(trials: &FitTrials, plan: &FitSettings, tried: impl Fn() + Sync) -> P
     summary
 }
 
-/// The trials of each person by its code, in the order of their numbers; trials without a plan keep the order in which they are named.
+/// The trials of each person, by the person's code, in the order of the trials' numbers; trials without a plan keep the
+/// order in which they are named.
 pub fn by_person(trials: &FitTrials) -> BTreeMap<&str, Vec<&FitObservations>> {
     let mut numbered: Vec<_> = trials.people.iter().zip(&trials.observations).collect();
     numbered.sort_by_key(|((_, number), _)| *number);
@@ -89,7 +90,7 @@ pub fn by_person(trials: &FitTrials) -> BTreeMap<&str, Vec<&FitObservations>> {
     found
 }
 
-/// A part of a person's trials.
+/// The part of a person's trials that the search uses.
 fn of_part<'a, 'b>(own: &'b [&'a FitObservations], part: TrialPart) -> &'b [&'a FitObservations] {
     let before_last = own.len().saturating_sub(1);
     match part {

@@ -39,7 +39,7 @@ pub fn run<E>(engine: &mut SessionEngine, mut record: impl FnMut(&TimestampedEve
     }
     engine.input(SessionTime::ZERO, Event::TrialStarted).events.iter().try_for_each(&mut record)?;
     let mut attendant = SimulatedAttendant::default();
-    // Until the trial ends, a next event is always pending: the end of the trial's time.
+    // Until the trial ends, a next event is always pending, since the end of the trial's time is one.
     while engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
         for question in engine.take_questions() {
             if let Some(advisor) = &mut advisor {

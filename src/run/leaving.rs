@@ -12,24 +12,24 @@ use crate::base::words::count;
 pub enum LeavingReason {
     /// The wizard ended the program.
     Quit,
-    /// The wizard went on to the next recording of the series.
+    /// The wizard went on to the next recording of the participant's series.
     Next,
     /// The wizard repeats the trial in a new recording.
     Redo,
 }
 
-/// Result of a live session: recording, summary, and how it was left.
+/// Result of a live session: its recording, its summary, and how the wizard left it.
 #[derive(Clone, Debug)]
 pub struct LiveOutcome {
     /// Folder of the recording.
     pub folder: PathBuf,
     /// How the wizard left the recording.
     pub leaving: LeavingReason,
-    /// Summary of the trial.
+    /// Summary of the session's trial.
     pub figures: TrialSummary,
     /// Whether the trial was aborted or excluded from the analysis.
     pub standing: ExclusionStatus,
-    /// Start of the repeated trial, if the wizard asked for one.
+    /// What the repetition of the trial starts from, if the wizard asked for one.
     pub again: Option<SessionStart>,
 }
 

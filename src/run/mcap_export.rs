@@ -19,13 +19,13 @@ use crate::session::study_arm::StudyArm;
 /// Summary of a recording's export as MCAP.
 #[derive(Clone, Debug, Serialize)]
 pub struct McapSummary {
-    /// Path of the MCAP file.
+    /// Path of the recording's MCAP file.
     pub file: PathBuf,
-    /// Number of messages in each channel.
+    /// Number of messages in each channel of the MCAP file.
     pub messages: BTreeMap<&'static str, u32>,
 }
 
-/// Exports a recording into its folder.
+/// Exports a recording as an MCAP file in the recording's folder.
 ///
 /// # Errors
 /// The recording cannot be read or is still being written, the path is not a recording's folder, or the file cannot be
@@ -62,8 +62,8 @@ pub fn export(recording: &Path) -> FileResult<McapSummary> {
     Ok(McapSummary { file, messages })
 }
 
-/// Metadata of the recording in the MCAP file. `arm`: study arm by what was done. Times in the file are session times;
-/// `started` is the wall clock time of session time 0.
+/// Metadata of the recording in the MCAP file. `arm`: study arm as it was carried out. Times in the file are session
+/// times; `started` is the wall clock time of session time 0.
 fn about(folder: &Path, header: &LogHeader, arm: StudyArm) -> BTreeMap<String, String> {
     let spec = &header.session;
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -83,7 +83,7 @@ fn about(folder: &Path, header: &LogHeader, arm: StudyArm) -> BTreeMap<String, S
     about
 }
 
-/// The exports as text for the terminal.
+/// Summaries of MCAP exports as text for the terminal.
 pub fn describe(summaries: &[McapSummary]) -> String {
     let line = |one: &McapSummary| {
         let messages = one.messages.iter().filter(|(_, messages)| **messages > 0);

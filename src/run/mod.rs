@@ -1,4 +1,4 @@
-//! Shells that run sessions: they combine session, robot, participant, files and clock. No other room does so.
+//! Shells that run sessions: they combine session, robot, participant, files and clock, which no other module combines.
 
 #[cfg(feature = "cli")]
 pub mod accuracy;

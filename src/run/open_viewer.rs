@@ -24,12 +24,12 @@ use crate::scene::entity_content::slug;
 use crate::scene::{DerivedData, SessionScene};
 use crate::session::TimestampedEvent;
 
-/// First ports that are tried for the stream's server and for the web viewer.
+/// First network ports that are tried for the stream's server and for the web viewer.
 const SERVER_PORT: u16 = 9878;
 const WEB_PORT: u16 = 9090;
 /// Period of polling a stream file that another program is writing.
 const LOOK: Duration = Duration::from_millis(50);
-/// Largest number of characters of recordings' names in the name of a temporary stream file.
+/// Largest number of characters that recordings' names take in the name of a temporary stream file.
 const NAMED: usize = 50;
 /// Ending of the name of a stream file while it is being written.
 const BEGUN: &str = ".new";
@@ -50,7 +50,7 @@ pub enum RerunViewerError {
         /// Why the operating system could not write the file.
         reason: io::Error,
     },
-    /// The viewer cannot be served on this machine.
+    /// The web viewer cannot be served on this computer.
     #[error("the viewer cannot be served on this machine: {0}")]
     #[diagnostic(help(
         "a free port from {WEB_PORT} and from {SERVER_PORT} on, up to {PORTS} further: end another tomcom review, or see who \
@@ -64,13 +64,13 @@ pub enum RerunViewerError {
         /// Folder of the recording.
         folder: PathBuf,
     },
-    /// The viewer cannot be started.
+    /// The viewer's program cannot be started.
     #[error("{}: the viewer cannot be started: {reason}", path.display())]
     #[diagnostic(help("--web serves one for a browser"))]
     Viewer {
         /// Path of the viewer's program.
         path: PathBuf,
-        /// Why the operating system could not start the program.
+        /// Why the operating system could not start the viewer's program.
         reason: io::Error,
     },
 }
@@ -81,27 +81,27 @@ impl From<FileError> for RerunViewerError {
     }
 }
 
-/// Request of `tomcom review`: recordings, and how to show them.
+/// Request of `tomcom review`: which recordings to show in Rerun, and how.
 #[derive(Clone, Debug)]
 pub struct RerunReviewRequest {
-    /// Folders of the recordings.
+    /// Folders of the recordings to show.
     pub recordings: Vec<PathBuf>,
-    /// Only write the stream file: beside the log, or to this path.
+    /// Whether to write the stream file only, and to which path: beside the log by default.
     pub save: Option<Option<PathBuf>>,
-    /// Serve the web viewer even if a native viewer is installed.
+    /// Whether to serve the web viewer even if a native viewer is installed.
     pub web: bool,
-    /// Time on the trial's clock at which the viewer opens.
+    /// Time on the trial's clock that the viewer shows first.
     pub at: Option<SessionTime>,
 }
 
-/// A stream file, and whether it had to be rebuilt.
+/// A file with the Rerun stream of recordings, and whether the file had to be rebuilt.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RerunStreamFile {
     /// Path of the stream file.
     pub path: PathBuf,
     /// Whether the file was just rebuilt from the log.
     pub made: bool,
-    /// Why an existing file was not used.
+    /// Why an existing stream file was not used.
     pub because: Option<&'static str>,
 }
 
@@ -110,11 +110,11 @@ pub struct RerunStreamFile {
 pub struct OngoingRecording {
     /// Folder of the recording.
     pub recording: PathBuf,
-    /// Address at which live viewers connect, if there is one.
+    /// Network address at which viewers of the running session connect; `None` if it has no stream.
     pub viewers: Option<String>,
 }
 
-/// The recordings among these whose sessions are still running; the review shows them up to the present.
+/// Those of the recordings whose sessions are still running; the review shows them up to the present.
 ///
 /// # Errors
 /// A recording cannot be read.
@@ -128,24 +128,24 @@ pub fn running(recordings: &[PathBuf]) -> FileResult<Vec<OngoingRecording>> {
     Ok(running)
 }
 
-/// Result of a review.
+/// Result of showing recordings in Rerun.
 pub enum RerunReviewOutcome {
-    /// The stream file was written.
+    /// The stream file was written, as requested, and no viewer was opened.
     Saved(RerunStreamFile),
-    /// A viewer was opened on the stream file.
+    /// A native viewer was opened on the stream file.
     Opened(RerunStreamFile),
-    /// The viewer is served for a browser until this value is dropped.
+    /// The web viewer is served to a browser until this value is dropped.
     Served {
-        /// Address to open in a browser.
+        /// Address of the web viewer, to be opened in a browser.
         url: String,
-        /// Why no native viewer was opened.
+        /// Why the web viewer is served instead of opening a native viewer.
         because: &'static str,
-        /// Server of viewer and stream, which end when it is dropped.
+        /// Servers of web viewer and stream, which end when they are dropped.
         _serving: Box<(RerunWriter, WebViewer)>,
     },
 }
 
-/// Opens recordings in the viewer; several are shown side by side, aligned by the clocks of their trials.
+/// Opens recordings in the Rerun viewer; several recordings are shown side by side, aligned by their trials' clocks.
 ///
 /// # Errors
 /// A recording cannot be read, a file cannot be written, or the viewer cannot be opened.
@@ -183,11 +183,11 @@ pub fn until_asked_to_end() -> io::Result<()> {
     runtime.block_on(asked_to_end())
 }
 
-/// The stream file of a recording beside its log: rebuilt from the log unless it is up to date. If another program is
-/// writing the file, this waits for it.
+/// The stream file of a recording beside its log: rebuilt from the log unless it is up to date. Waits if another
+/// program is writing the file.
 ///
 /// # Errors
-/// The recording cannot be read, or the file not be written.
+/// The recording cannot be read, or its stream file not be written.
 pub fn save(recording: &Path) -> Result<PathBuf, RerunViewerError> {
     loop {
         match saved(&[recording.to_path_buf()], StreamPlace::BesideLog) {
@@ -197,17 +197,18 @@ pub fn save(recording: &Path) -> Result<PathBuf, RerunViewerError> {
     }
 }
 
-/// Where a stream file may be written.
+/// Where a stream file of recordings may be written.
 #[derive(Clone, Copy)]
 enum StreamPlace<'a> {
     File(&'a Path),
-    /// Only beside the log, for a single recording that no program is writing.
+    /// The stream file may be written only beside the log, for a single recording that no program is writing.
     BesideLog,
-    /// Beside the log or, if that is not possible, in the system's folder for temporary files.
+    /// The stream file may be written beside the log or, if that is not possible, in the system's folder for temporary
+    /// files.
     Anywhere,
 }
 
-/// Streams recordings to a server, and serves the viewer for browsers.
+/// Streams recordings to a server, and serves the web viewer for browsers.
 fn serve(
     recordings: &[PathBuf],
     at: Option<SessionTime>,
@@ -222,8 +223,8 @@ fn serve(
     Ok(RerunReviewOutcome::Served { url, because, _serving: Box::new((writer, viewer)) })
 }
 
-/// The first free pair of ports for stream and web viewer; the web viewer is served at once. Ports are taken in pairs,
-/// because Rerun's server does not report that another program took its port in the meantime.
+/// The first free pair of network ports for stream and web viewer; the web viewer is served at once. Ports are taken in
+/// pairs, because Rerun's server does not report that another program took its port in the meantime.
 fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
     let mut failed = io::Error::from(io::ErrorKind::AddrInUse);
     for nth in 0..=PORTS {
@@ -236,7 +237,7 @@ fn ports() -> io::Result<(SocketAddr, SocketAddr, WebViewer)> {
     Err(failed)
 }
 
-/// The stream file of these recordings: the existing one if it is up to date, else one rebuilt from the logs.
+/// The stream file of these recordings: the existing file if it is up to date, else a file rebuilt from the logs.
 fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, RerunViewerError> {
     let (mut locked, mut because, mut logs) = (None, None, None);
     let path = match (place, recordings) {
@@ -273,8 +274,8 @@ fn saved(recordings: &[PathBuf], place: StreamPlace) -> Result<RerunStreamFile, 
     }
 }
 
-/// Builds the stream file of these recordings. An existing file is replaced only when the new one is complete, so a
-/// damaged log loses nothing.
+/// Builds the stream file of these recordings. An existing stream file is replaced only when the new one is complete,
+/// so a damaged log does not destroy it.
 fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunViewerError> {
     let mut begun = path.as_os_str().to_os_string();
     begun.push(BEGUN);
@@ -292,7 +293,7 @@ fn put(recordings: &[PathBuf], path: &Path) -> Result<io::Result<()>, RerunViewe
     match written {
         Ok(Ok(_)) => Ok(fs::rename(&begun, path)),
         failed => {
-            // If removing the temporary file fails, the leftover does no harm.
+            // A temporary file that cannot be removed does no harm.
             let _ = fs::remove_file(&begun);
             failed.map(|written| written.map(|_| ()))
         }
@@ -316,8 +317,8 @@ fn name(recording: &Path) -> String {
     folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Prepares recordings for one stream: a single recording at the root, several below their names with participant and
-/// arm.
+/// Prepares recordings for one stream: a single recording at the root of the scene, several below their names with
+/// participant and arm.
 fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
     let one = |(nth, recording): (usize, &PathBuf)| {
         let playing = Playing::open(recording)?;
@@ -332,8 +333,8 @@ fn playing(recordings: &[PathBuf]) -> FileResult<Vec<Playing>> {
     recordings.iter().enumerate().map(one).collect()
 }
 
-/// Writes recordings to stream outputs one after another; the outer error is about the recordings, the inner one about
-/// the outputs.
+/// Writes recordings to the outputs of a stream one after another; the outer error is about the recordings, the inner
+/// error about the outputs.
 fn write(
     playing: Vec<Playing>,
     recordings: &[PathBuf],
@@ -368,7 +369,7 @@ impl Playing {
         Ok(Playing { replay, scene, lane: StreamLane::default() })
     }
 
-    /// Text that tells recordings of the same name apart: when the recording began.
+    /// Text that tells recordings of the same name apart: the time at which the recording began.
     fn began(&self) -> String {
         let header = &self.replay.log().header;
         header.started.clone().unwrap_or_else(|| format!("seed {} trial {}", header.session.seed, header.trial))
@@ -382,7 +383,7 @@ impl Playing {
         loop {
             let next = self.replay.step()?;
             if let Some((stamped, belief)) = held.take() {
-                // The estimate is shown once all events of the same time have been applied.
+                // The belief estimate is shown once all events of the same time have been applied.
                 let is_last = next.as_ref().is_none_or(|next| next.stamped.time > stamped.time);
                 let judged = &self.replay.follower.judged;
                 let derived = DerivedData { judged, belief: belief.as_ref().filter(|_| is_last) };

@@ -1,4 +1,4 @@
-//! Options of `tomcom operate`: what to run, and overrides of session settings.
+//! Options of `tomcom operate`: what to run, and settings that replace those of the session file.
 
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
@@ -16,20 +16,20 @@ use crate::session::settings::{ArmKind, Condition, GazeSource, ParticipantKind, 
 /// What a live session starts from: a new session, a repeated trial, or a recording to continue.
 #[derive(Clone, Debug)]
 pub enum SessionStart {
-    /// Repetition of a trial in a new recording below `out`.
+    /// Repetition of a trial in a new recording in the folder `out`.
     Again {
-        /// Header of the new recording.
+        /// Header of the repetition's recording.
         header: Box<LogHeader>,
-        /// Kitchen that the header describes.
+        /// Kitchen that the repetition's header describes.
         kitchen: Arc<Kitchen>,
         /// Folder in which the recording's folder is created.
         out: PathBuf,
     },
     /// A new session with these settings, recorded in `out`; `trial` distinguishes sessions with the same seed.
     New {
-        /// Settings with the files that they name.
+        /// Settings of the session with the files that they name.
         files: Box<SessionFiles>,
-        /// Index of the trial among those with the same seed.
+        /// Index of the trial among trials with the same seed.
         trial: u64,
         /// Folder in which the recording's folder is created.
         out: PathBuf,
@@ -38,10 +38,10 @@ pub enum SessionStart {
     Continued(PathBuf),
 }
 
-/// Remaining recordings of a participant in a study plan.
+/// The recordings that a participant in a study plan still has to make.
 #[derive(Clone, Debug)]
 pub struct RemainingTrials {
-    /// Settings with the study plan.
+    /// Session settings that contain the study plan.
     pub files: SessionFiles,
     /// Index of the participant in the plan.
     pub participant: usize,
@@ -51,39 +51,39 @@ pub struct RemainingTrials {
     pub compare: Option<ComparisonRequest>,
 }
 
-/// Session settings that the command line overrides; `None` keeps the session file's value.
+/// Session settings given on the command line; `None` keeps the session file's value.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SettingOverrides {
-    /// Kind of participant: a person or a simulation.
+    /// Kind of participant: a person (and by which input) or a simulation.
     pub participant: Option<ParticipantKind>,
-    /// Kind of the robot's arm.
+    /// Kind of the robot's arm: timed or with simulated physics.
     pub arm: Option<ArmKind>,
-    /// Source of gaze samples.
+    /// Source of the participant's gaze samples.
     pub gaze: Option<GazeSource>,
-    /// Address of the server of the participant's display.
+    /// Network address of the server of the participant's display.
     pub listen: Option<IpAddr>,
-    /// File from which gaze is replayed.
+    /// Path of the file from which gaze is replayed.
     pub gaze_file: Option<PathBuf>,
-    /// Time in the gaze file at which the trial starts, in seconds.
+    /// Time in the gaze file at which the trial starts, in seconds after the first sample.
     pub gaze_start_s: Option<f64>,
-    /// Condition: who may send signals.
+    /// Condition of the trial: who may send signals.
     pub condition: Option<Condition>,
     /// The assistant's communication concept.
     pub concept: Option<ConceptName>,
     /// Seed of all random numbers.
     pub seed: Option<u64>,
-    /// The participant's pseudonymous code.
+    /// The participant's pseudonymous code, such as P01.
     pub code: Option<String>,
     /// Address at which Rerun viewers connect, as "ADDRESS:PORT".
     pub rerun_listen: Option<String>,
 }
 
 impl SettingOverrides {
-    /// Applies the overrides. If a person replaces the simulated participant and no gaze source is given, the mouse
-    /// pointer serves as gaze.
+    /// Applies the settings of the command line. If a person replaces the simulated participant and no gaze source is
+    /// given, the mouse pointer serves as gaze.
     ///
     /// # Errors
-    /// Settings exclude each other.
+    /// The settings exclude each other.
     pub fn apply(self, files: &mut SessionFiles) -> Result<(), SettingError> {
         let spec = &mut files.spec;
         let decided = [("--condition", self.condition.is_some()), ("--seed", self.seed.is_some())];
@@ -124,7 +124,7 @@ impl SettingOverrides {
 /// Index of the participant with this code in a plan.
 ///
 /// # Errors
-/// The code is missing or not in the plan.
+/// No code was given, or the code is not in the plan.
 pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize, SettingError> {
     let remedy = "--code with one of the codes that tomcom plan SESSION lists";
     let wrong = |found: String| SettingError::new("code", found, remedy);
@@ -133,10 +133,10 @@ pub fn participant_of_plan(plan: &PlanSpec, code: Option<&str>) -> Result<usize,
     place.ok_or_else(|| wrong(format!("--code {code}, who is not in the plan \"{}\"", plan.name)))
 }
 
-/// Reads the given session file, else `sessions/default.toml` if it exists, else the built-in default session.
+/// Reads the given session file, or else `sessions/default.toml` if it exists, or else the built-in default session.
 ///
 /// # Errors
-/// Errors of [`files::read_session`].
+/// The errors of [`files::read_session`].
 pub fn session_or_default(path: Option<&Path>) -> FileResult<SessionFiles> {
     let default = Path::new("sessions/default.toml");
     match path {

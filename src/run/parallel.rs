@@ -19,7 +19,7 @@ pub fn each_with<T: Sync, R: Send, W: Send>(
     WorkerPool::new(own).each(items, work, done)
 }
 
-/// A pool of worker states (such as caches) that are kept between calls. Worker states change computing time, never
+/// A pool of worker states (such as caches) that are kept between calls. A worker state changes computing time, never
 /// results.
 pub struct WorkerPool<W, F: Fn() -> W> {
     own: F,
@@ -28,7 +28,7 @@ pub struct WorkerPool<W, F: Fn() -> W> {
 }
 
 impl<W: Send, F: Fn() -> W + Sync> WorkerPool<W, F> {
-    /// A pool whose worker states are created by `own`, at most once per thread.
+    /// A pool whose worker states are created by calling `own`, at most once per thread.
     pub fn new(own: F) -> WorkerPool<W, F> {
         WorkerPool { own, idle: Mutex::new(Vec::new()) }
     }
@@ -48,7 +48,7 @@ impl<W: Send, F: Fn() -> W + Sync> WorkerPool<W, F> {
             done();
             result
         };
-        // Items take long and differ in duration, so they are distributed one by one.
+        // Items take long and differ in duration, so items are distributed to threads one by one.
         items.par_iter().with_max_len(1).map(one).collect()
     }
 

@@ -16,16 +16,16 @@ use crate::console::view::theme::Theme;
 use crate::edge::terminal::TerminalScreen;
 use crate::session::settings::ConsoleSpec;
 
-/// Period of redrawing the list, in case the terminal's size changed.
+/// Period of redrawing the list of recordings, in case the terminal's size changed.
 const REDRAW: Duration = Duration::from_millis(100);
 
-/// Asks the person which recording of the folder to use; `None` if the person chooses none.
+/// Asks the person which recording of the folder to use; `None` if the person chooses no recording.
 ///
 /// # Errors
 /// The folder cannot be read or has no recordings, or there is no terminal.
 pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
     let (list, paths) = recording_list::list(folder, RecordingListDetail::Quick, |_| (), || ())?;
-    // The column of errors is left out, since errors are not counted here.
+    // The list has no column of errors here, since counting errors takes long.
     let without_errors = |cells: [String; 7]| {
         let [code, condition, date, length, _, state, recording] = cells;
         vec![code, condition, date, length, state, recording]
@@ -50,12 +50,12 @@ pub fn pick(folder: &Path) -> Result<Option<PathBuf>, ReviewError> {
 struct OpenPicker {
     picker: RecordingPicker,
     theme: Theme,
-    /// Whether the screen has to be redrawn.
+    /// Whether the list of recordings has to be redrawn.
     dirty: bool,
 }
 
 impl OpenPicker {
-    /// Handles a mouse click on the list.
+    /// Handles a mouse click on the list of recordings.
     fn click(&mut self, cell: (u16, u16)) -> Option<RecordingReply> {
         let size = TerminalScreen::size().ok()?;
         let targets = recording_targets(&self.picker, self.theme, size);

@@ -21,18 +21,18 @@ pub struct StudyPlanSummary {
     pub plan: String,
     /// Checksum of the plan and its settings.
     pub digest: String,
-    /// Seed of counterbalancing and trials.
+    /// Seed of counterbalancing, and of the trials' random numbers.
     pub seed: u64,
     /// Number of participants in the plan.
     pub planned: usize,
-    /// Number of participants who have completed all recordings.
+    /// Number of participants who have completed all their recordings.
     pub finished: usize,
     /// Progress of each participant.
     pub participants: Vec<ParticipantProgress>,
 }
 
 impl StudyPlanSummary {
-    /// Progress of a study, from the recordings in `out`.
+    /// Progress of a study, computed from the recordings in the folder `out`.
     ///
     /// # Errors
     /// A recording cannot be read or does not belong to the plan.
@@ -57,7 +57,7 @@ impl StudyPlanSummary {
     }
 }
 
-/// Result of freezing a study plan: the output of `tomcom plan SESSION --freeze FILE`.
+/// Result of freezing (preregistering) a study plan: the output of `tomcom plan SESSION --freeze FILE`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrozenPlanSummary {
     /// Name of the study plan.
@@ -71,7 +71,7 @@ pub struct FrozenPlanSummary {
 }
 
 impl FrozenPlanSummary {
-    /// What was frozen, as text for the terminal.
+    /// What the frozen plan contains, as text for the terminal.
     pub fn describe(&self) -> String {
         let (file, before) = (self.file.display(), count(self.recordings_before, "recording", "recordings"));
         let warning = match self.recordings_before {
@@ -85,10 +85,11 @@ impl FrozenPlanSummary {
     }
 }
 
-/// Freezes a plan: writes it with definitions and analysis to a new file. `progress`: progress of the study so far.
+/// Freezes a study plan: writes it with definitions and analysis to a new file. `progress`: the study's progress so
+/// far.
 ///
 /// # Errors
-/// The file exists already, or cannot be written.
+/// The file of the frozen plan exists already, or cannot be written.
 pub fn freeze(
     study: &Study,
     kitchen: &KitchenFiles,
@@ -130,7 +131,7 @@ pub fn describe(figures: &StudyPlanSummary) -> String {
     head + &figures.participants.iter().map(one).collect::<String>()
 }
 
-/// Remarks on a participant's recordings: invalid ones, and those made with another version of the plan.
+/// Remarks on a participant's recordings: invalid recordings, and recordings made with another version of the plan.
 fn attempts(progress: &ParticipantProgress) -> String {
     let mut lines = String::new();
     for (slot, stand) in progress.steps.iter().enumerate() {

@@ -1,5 +1,5 @@
 //! Simulates the participants of a pool in memory ([`crate::study::simulation_pool`]): every trial of the plan, and its
-//! unassisted twin. The commands `tomcom power` and `tomcom arms` use it.
+//! unassisted twin (the same trial without signals). The commands `tomcom power` and `tomcom arms` use the pool.
 
 use std::convert::Infallible;
 use std::path::Path;
@@ -22,22 +22,22 @@ use crate::session::study_arm::StudyArm;
 use crate::session::{SessionSpec, TimestampedEvent};
 use crate::study::simulation_pool::{POOL_FORMAT, PoolHeader, PoolTrial, PoolTrialCounts, SimulationPool};
 
-/// Request to simulate a pool of participants.
+/// Request to simulate a pool of participants, from which studies are drawn.
 #[derive(Clone, Debug)]
 pub struct PoolRequest {
-    /// Settings with the study plan and the files that they name.
+    /// Settings that contain the study plan, with the files that they name.
     pub files: SessionFiles,
     /// Number of participants in the whole pool, instead of the plan's number.
     pub participants: u32,
-    /// Shard of the pool that is simulated.
+    /// Shard (part) of the pool that is simulated here.
     pub shard: SimulationShard,
-    /// Whether trials are simulated in the arms of the plan.
+    /// Whether trials are simulated in the study arms that the plan gives to them.
     pub arms: bool,
-    /// Whether unassisted twins of the trials are simulated.
+    /// Whether unassisted twins (the same trials without signals) are simulated.
     pub unassisted: bool,
 }
 
-/// A trial of a pool that is to be simulated.
+/// A trial of a pool that has to be simulated.
 #[derive(Clone, Copy, Debug)]
 struct PoolItem {
     participant: u32,
@@ -45,19 +45,19 @@ struct PoolItem {
     is_twin: bool,
 }
 
-/// A pool request, with the study that the plan becomes for the pool's participants.
+/// A request to simulate a pool, with the plan's study made for the pool's participants.
 struct PoolStudy<'a> {
     request: &'a PoolRequest,
-    /// The study plan with the pool's participants.
+    /// The study with the pool's participants instead of the plan's.
     study: Study,
     header: PoolHeader,
 }
 
 impl PoolRequest {
-    /// First line of the pool's file.
+    /// Header of the pool: the first line of its file.
     ///
     /// # Errors
-    /// The session has no plan.
+    /// The session file has no study plan.
     pub fn header(&self, path: &Path) -> FileResult<PoolHeader> {
         Ok(self.study(path)?.header)
     }
@@ -85,7 +85,7 @@ impl PoolRequest {
         Ok(PoolStudy { request: self, study, header })
     }
 
-    /// Checks that the plan can be simulated; `path` is the plan's file.
+    /// Checks that the plan's trials can be simulated; `path` is the plan's file.
     ///
     /// # Errors
     /// The plan has fewer than two conditions, or a condition in which only a person could send signals.
@@ -107,14 +107,14 @@ impl PoolRequest {
         Ok(())
     }
 
-    /// Number of trials to simulate.
+    /// Number of trials that have to be simulated for the pool.
     pub fn trials(&self, path: &Path) -> FileResult<u64> {
         Ok(self.study(path)?.items().len() as u64)
     }
 }
 
 impl PoolStudy<'_> {
-    /// The trials of the shard, ordered by participant and period; a twin follows its trial.
+    /// The trials of the shard, ordered by participant and period; an unassisted twin follows its trial.
     fn items(&self) -> Vec<PoolItem> {
         let SimulationShard { number, of } = self.request.shard;
         let own = (0..self.request.participants).filter(|&one| u64::from(one) % of == number - 1);
@@ -123,7 +123,7 @@ impl PoolStudy<'_> {
             (1..=periods).flat_map(move |period| [false, true].map(|is_twin| PoolItem { participant, period, is_twin }))
         });
         let is_asked = |item: &PoolItem| match (self.planned(*item), item.is_twin) {
-            // A trial that is unassisted anyway needs no twin.
+            // A trial that is unassisted anyway needs no unassisted twin.
             (StudyArm::None, is_twin) => !is_twin,
             (_, true) => self.request.unassisted,
             (_, false) => self.request.arms,
@@ -131,12 +131,12 @@ impl PoolStudy<'_> {
         items.filter(is_asked).collect()
     }
 
-    /// Study arm that the plan gives to a trial.
+    /// Study arm that the plan gives to a trial of the pool.
     fn planned(&self, item: PoolItem) -> StudyArm {
         self.study.group(item.participant as usize).conditions[item.period as usize - 1]
     }
 
-    /// Settings of a trial, its study arm by what will be done, and its number.
+    /// Settings of a trial of the pool, its study arm as it will be carried out, and the trial's number.
     fn settings(&self, item: PoolItem) -> (SessionSpec, StudyArm, u64) {
         let (mut spec, trial) = self.study.simulated(item.participant as usize, item.period);
         if item.is_twin {
@@ -147,13 +147,13 @@ impl PoolStudy<'_> {
             false => spec.step.as_ref().and_then(|step| step.arm).unwrap_or_default(),
         };
         if done != StudyArm::WizardWithAdvice {
-            // Recommendations that nobody sees would only cost computing time.
+            // Advice that nobody sees is not computed, since it would only cost computing time.
             spec.assistant.shadow = ShadowMode::Off;
         }
         (spec, done, trial)
     }
 
-    /// Simulates a trial. Returns the cost to go for the next one.
+    /// Simulates a trial of the pool; returns also the cost to go, whose cache the next trial uses.
     fn simulate(&self, kitchen: &Arc<Kitchen>, item: PoolItem, cost: CostToGo) -> (PoolTrial, CostToGo) {
         let (spec, arm, trial) = self.settings(item);
         let mut engine = SessionEngine::new(kitchen.clone(), spec, trial, cost);
@@ -165,7 +165,7 @@ impl PoolStudy<'_> {
         headless::run(&mut engine, keep).unwrap_or_else(|never| match never {});
         let follower = engine.into_follower();
         let summary = TrialSummary::from_follower(&follower);
-        // Simulated participants record their beliefs before every press, so beliefs are known.
+        // Simulated participants record their beliefs before every press, so false beliefs are known.
         let beliefs = summary.beliefs.unwrap_or_default();
         let counts = PoolTrialCounts {
             human_presses: summary.human_actions,
@@ -185,11 +185,11 @@ impl PoolStudy<'_> {
     }
 }
 
-/// Simulates the participants of a shard on all processors. `path` is the file of the plan; `done` is called after each
-/// trial.
+/// Simulates the participants of the pool's shard on all processors. `path` is the file of the plan; `done` is called
+/// after each trial.
 ///
 /// # Errors
-/// The same as of [`PoolRequest::check`], or a trial ends without a press of the human.
+/// The errors of [`PoolRequest::check`], or a trial ends without a press of the human.
 pub fn simulate(request: &PoolRequest, path: &Path, done: impl Fn() + Sync) -> FileResult<SimulationPool> {
     request.check(path)?;
     let pool = request.study(path)?;

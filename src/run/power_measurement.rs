@@ -1,5 +1,5 @@
-//! Command `tomcom power`: draws studies from a pool on all processors, and counts in how many their tests find an
-//! effect. The same pool gives the same result on any number of processors.
+//! Command `tomcom power`: draws studies from a pool of simulated participants on all processors, and counts in how
+//! many studies the tests find an effect. The same pool gives the same result on any number of processors.
 
 use std::ops::Range;
 use std::path::Path;
@@ -17,22 +17,22 @@ const BLOCK: u64 = 25;
 /// Request of a power analysis: study sizes, number of drawn studies, and effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerRequest {
-    /// Numbers of participants, in ascending order.
+    /// Numbers of participants of the drawn studies, in ascending order.
     pub sizes: Vec<usize>,
     /// Number of studies that are drawn for each number of participants.
     pub studies: u64,
-    /// Effect in the drawn studies.
+    /// Effect that the drawn studies have.
     pub effect: DrawnEffect,
 }
 
 /// Source from which the studies of a block are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Drawn {
-    /// The pool, with the requested effect.
+    /// Studies are drawn from the pool, with the requested effect.
     Pool,
-    /// The bootstrap resample of the pool with this number, from 1.
+    /// Studies are drawn from the bootstrap resample of the pool with this number, from 1.
     Resampled(u64),
-    /// The pool, with the ratio of rates at this index.
+    /// Studies are drawn from the pool, with the ratio of rates at this index.
     Ratio(usize),
 }
 
@@ -44,13 +44,13 @@ struct Block {
     numbers: Range<u64>,
 }
 
-/// Number of blocks of studies; `done` of [`measure`] is called once for each.
+/// Number of blocks of studies; [`measure`] calls `done` once for each block.
 pub fn blocks(request: &PowerRequest, pool: &SimulationPool) -> u64 {
     all_blocks(request, pool).len() as u64
 }
 
-/// All blocks of studies. The least detectable effect is searched for only if the pool has unassisted twins, in which
-/// an effect can be simulated.
+/// All blocks of studies. The least detectable effect is searched for only if the pool has unassisted twins, since only
+/// then an effect of any size can be simulated.
 fn all_blocks(request: &PowerRequest, pool: &SimulationPool) -> Vec<Block> {
     let split =
         |studies: u64| (0..studies.div_ceil(BLOCK)).map(move |block| block * BLOCK..((block + 1) * BLOCK).min(studies));
@@ -67,10 +67,10 @@ fn all_blocks(request: &PowerRequest, pool: &SimulationPool) -> Vec<Block> {
     blocks
 }
 
-/// Draws the studies and computes the power. `path`: the pool's file, for messages; `done` is called after each block.
+/// Draws the studies and computes the power. `path`: file of the pool, for messages; `done` is called after each block.
 ///
 /// # Errors
-/// The pool has too few participants in an order of the conditions, or lacks the trials that the effect needs.
+/// The pool has too few participants for an order of the conditions, or lacks the trials that the effect needs.
 pub fn measure(
     request: &PowerRequest,
     pool: &SimulationPool,
@@ -121,7 +121,7 @@ pub fn measure(
     Ok(PowerSummary::new(header, request.effect, &sizes))
 }
 
-/// Counts of rejections in the studies of a block.
+/// In how many studies of a block each test rejects its null hypothesis.
 fn counts(
     source: &StudySampler,
     tests: &[PowerTest],

@@ -1,4 +1,5 @@
-//! Lists the recordings of a folder. Figures of closed recordings are kept for the next list ([`crate::edge::list_cache`]).
+//! Lists the recordings of a folder. Numbers about closed recordings are kept for the next list
+//! ([`crate::edge::list_cache`]).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,9 +19,9 @@ use crate::session::apply;
 /// Which information a list of recordings contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordingListDetail {
-    /// Everything but the number of errors, which takes longest to compute.
+    /// The list has everything but the number of errors, which takes longest to compute.
     Quick,
-    /// Everything, including the number of errors.
+    /// The list has everything, including the number of errors.
     WithErrors,
 }
 
@@ -54,7 +55,7 @@ fn name(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
-/// Figures of a recording that are new to the cache, with the log's digest.
+/// Numbers about a recording that the cache does not have yet, with the digest of the recording's log.
 type NewFigures = Option<(String, KeptFigures)>;
 
 fn read_or_tell(
@@ -92,7 +93,7 @@ fn read_or_tell(
     }
 }
 
-/// The row of a closed recording whose figures are known.
+/// The list's row of a closed recording whose numbers are in the cache.
 fn from_figures(
     path: &Path,
     depth: RecordingListDetail,
@@ -114,7 +115,8 @@ fn from_figures(
     })
 }
 
-/// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen. Returns, too, what was said at the console.
+/// Applies all events of a recording; `cost` is kept for the next recording of the same kitchen. Returns also whether
+/// the trial was aborted or excluded at the console.
 fn read(
     path: &Path,
     depth: RecordingListDetail,

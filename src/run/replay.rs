@@ -12,11 +12,12 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Kitchen, KitchenChange};
 use crate::session::{Event, Session, TimestampedEvent};
 
-/// A recording with the session at the present position of the replay.
+/// A recording that is being replayed, with the session at the replay's present position.
 #[derive(Debug)]
 pub struct RecordingReplay {
     log: LogReader,
-    /// The session up to the present position, with what follows from its events: judged presses and the estimate.
+    /// The session up to the replay's present position, with what follows from its events: judged presses and the
+    /// estimate.
     pub follower: SessionFollower,
 }
 
@@ -25,28 +26,28 @@ pub struct RecordingReplay {
 pub struct ReplayedEvent {
     /// The event with its sequence number and time.
     pub stamped: TimestampedEvent,
-    /// Change of the kitchen by the event.
+    /// Change of the kitchen that the event caused.
     pub change: KitchenChange,
 }
 
 impl RecordingReplay {
-    /// Opens a recording, before its first event.
+    /// Opens a recording for replay, before its first event.
     ///
     /// # Errors
-    /// Errors of [`LogReader::open`].
+    /// The errors of [`LogReader::open`].
     pub fn open(recording: &Path) -> FileResult<RecordingReplay> {
         let log = LogReader::open(recording)?;
         let cost = CostToGo::new(log.kitchen.clone());
         Ok(RecordingReplay::over(log, cost))
     }
 
-    /// A replay of a log; `cost` must be for the log's kitchen and can come from another replay.
+    /// A replay of a log. The cost to go `cost` must be of the log's kitchen, and can come from another replay.
     pub fn over(log: LogReader, cost: CostToGo) -> RecordingReplay {
         let follower = SessionFollower::new(log.session(), cost);
         RecordingReplay { log, follower }
     }
 
-    /// This replay without attribution of errors to causes.
+    /// This replay without attribution of errors to causes, which takes long.
     pub fn without_causes(self) -> RecordingReplay {
         RecordingReplay { follower: self.follower.without_causes(), ..self }
     }
@@ -67,7 +68,7 @@ impl RecordingReplay {
     /// Applies all remaining events.
     ///
     /// # Errors
-    /// Errors of [`RecordingReplay::step`].
+    /// The errors of [`RecordingReplay::step`].
     pub fn run(&mut self) -> FileResult<()> {
         while self.step()?.is_some() {}
         Ok(())
@@ -76,15 +77,15 @@ impl RecordingReplay {
     /// Replays up to the next request for advice after a press; `None` at the present end of the log.
     ///
     /// # Errors
-    /// Errors of [`RecordingReplay::step`].
+    /// The errors of [`RecordingReplay::step`].
     pub fn next_question(&mut self) -> FileResult<Option<AdviceRequest>> {
         let mut pressed = None;
         while let Some(ReplayedEvent { stamped, change }) = self.step()? {
             if change.press().is_some() {
                 pressed = Some(stamped.seq);
             }
-            // At the next gaze sample, the robot has chosen its next press, so that the request includes the robot's
-            // intent.
+            // The request is made at the next gaze sample: by then the robot has chosen its next press, so that the
+            // request includes the robot's intent.
             if let (Event::Gaze(_), Some(seq)) = (stamped.event, pressed) {
                 return Ok(Some(AdviceRequest::from_follower(&mut self.follower, seq, stamped.time)));
             }
@@ -106,12 +107,12 @@ impl RecordingReplay {
 /// Checks that no recording is given twice.
 ///
 /// # Errors
-/// A recording is given twice, possibly by different paths.
+/// A recording is given twice, perhaps by different paths.
 pub fn each_once(recordings: &[PathBuf]) -> FileResult<()> {
     let mut known = BTreeSet::new();
     for recording in recordings {
         let log = if recording.is_dir() { recording.join(LOG_NAME) } else { recording.clone() };
-        // A recording that does not exist is reported later, when it is opened.
+        // A recording that does not exist is reported later, when the program opens it.
         if !known.insert(log.canonicalize().unwrap_or(log)) {
             let remedy = "each recording once".to_string();
             return Err(FileError::from_finding(recording, "the same recording twice".to_string(), remedy));
@@ -127,10 +128,10 @@ pub struct SameKitchenCheck {
 }
 
 impl SameKitchenCheck {
-    /// Adds the kitchen of a recording.
+    /// Adds the kitchen of a further recording to the check.
     ///
     /// # Errors
-    /// The kitchen differs from that of the first recording.
+    /// The recording's kitchen differs from that of the first recording.
     pub fn admit(&mut self, recording: &Path, kitchen: &Arc<Kitchen>) -> FileResult<()> {
         let (path, first) = self.first.get_or_insert_with(|| (recording.to_path_buf(), kitchen.clone()));
         if first.aspects == kitchen.aspects && first.buttons == kitchen.buttons {
@@ -141,10 +142,10 @@ impl SameKitchenCheck {
         Err(FileError::from_finding(recording, found, remedy))
     }
 
-    /// The kitchen of all recordings.
+    /// The kitchen that all recordings share.
     ///
     /// # Errors
-    /// There was no recording.
+    /// No recording was added to the check.
     pub fn kitchen(self) -> FileResult<Arc<Kitchen>> {
         let none = || {
             let remedy = "at least one recording".to_string();

@@ -1,5 +1,5 @@
-//! Continues a recording that was cut off: the session is run again up to the cut, and continues in a new part beside
-//! the recording.
+//! Continues a recording that was cut off: the session is run again up to the cut, and continues in a new part of the
+//! recording, in a folder beside it.
 
 use std::path::{Path, PathBuf};
 
@@ -18,11 +18,11 @@ pub enum ResumeError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] Box<FileError>),
-    /// The new part cannot be written.
+    /// The new part of the recording cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
-    /// The session of this recording ended properly.
+    /// The recording is complete: its session ended properly.
     #[error("{}: this session was brought to its end: there is nothing to continue", .0.display())]
     #[diagnostic(help("a recording that was cut; a new session: tomcom operate"))]
     Ended(PathBuf),
@@ -30,13 +30,13 @@ pub enum ResumeError {
     #[error("{}: this recording is simulated", .0.display())]
     #[diagnostic(help("simulate it again with the same seed: tomcom simulate"))]
     Simulated(PathBuf),
-    /// Running the session again gives another event than the recorded one.
+    /// Running the session again gives another event than the recording has.
     #[error("{}: event {seq} does not come out the same again, so nobody knows how the session stood", log.display())]
     #[diagnostic(help("the tomcom that wrote it; tomcom replay RECORDING --verify shows the difference"))]
     Differs {
-        /// Path of the log.
+        /// Path of the recording's log.
         log: PathBuf,
-        /// Sequence number of the differing event.
+        /// Sequence number of the event that differs.
         seq: u64,
     },
 }
@@ -56,21 +56,21 @@ pub struct ResumedSession {
     pub first: Vec<TimestampedEvent>,
     /// Header of the new part.
     pub header: LogHeader,
-    /// Session time at which the session continues.
+    /// Session time at which the continued session goes on.
     pub time: SessionTime,
-    /// Folder of the previous part.
+    /// Folder of the previous part of the recording.
     pub folder: PathBuf,
     /// Lock that keeps other programs from the previous part.
     pub lock: RecordingLock,
 }
 
-/// Runs a cut recording again to its end. A running trial, or a freeze probe in it, is paused at the cut until the
-/// participant is back.
+/// Runs the session of a cut recording again up to the cut. A running trial, or a freeze probe in it, is paused at the
+/// cut until the participant is back.
 ///
 /// # Errors
-/// The recording cannot be read, is being written, was not cut off, or does not verify.
+/// The recording cannot be read, is being written, was not cut off, or cannot be verified.
 pub fn resume(recording: &Path) -> Result<ResumedSession, ResumeError> {
-    // The path is made absolute, since the new part is created beside this one and refers to it by name.
+    // The path is made absolute, since the new part is created beside the recording and refers to it by name.
     let there = recording.canonicalize();
     let there = there.map_err(|reason| FileError::unreadable(recording, reason, "the folder of a cut recording"))?;
     let folder = if there.is_dir() { there } else { there.parent().unwrap_or(Path::new("/")).to_path_buf() };

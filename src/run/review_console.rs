@@ -1,4 +1,4 @@
-//! The review console for a recording or for a session that is still running: pause, step, seek, speed.
+//! The console that shows a recording, or a session that is still running: pause, step, seek, speed.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -22,26 +22,26 @@ use crate::edge::terminal::TerminalScreen;
 use crate::history::landmark::ReplayLandmark;
 use crate::session::Event;
 
-/// Largest time per frame for applying events at full speed.
+/// Longest time per frame that is spent on applying events at full speed.
 const WORK: Duration = Duration::from_millis(20);
-/// Time for reading the rest of a recording, of the 50 ms between two ticks of files.
+/// Time spent on reading the rest of a recording, of the 50 ms between two ticks for files.
 const READING: Duration = Duration::from_millis(35);
-/// Length of a seek step, 10 s.
+/// Length of one step of seeking in a recording, 10 s.
 const SEEK: SessionTime = SessionTime(10_000_000_000);
 
-/// Opens the console over a recording; with `follow`, at the growing end of a running session; optionally with a
+/// Opens the console that shows a recording; with `follow`, at the growing end of a running session; optionally with a
 /// comparison of wizard and assistants.
 ///
 /// # Errors
 /// The recording cannot be read, or there is no terminal.
 pub fn review(recording: &Path, follow: bool, compare: Option<&ComparisonRequest>) -> Result<(), ReviewError> {
-    // The console begins at once, and the rest is read beside it; a running session is shown at its end.
+    // The console begins at once and reads the rest of the recording meanwhile; a running session is shown at its end.
     let film = if follow { SeekableReplay::open(recording) } else { SeekableReplay::begin(recording) }?;
     at_desk(film, recording, follow, compare, None)
 }
 
-/// Opens the console over a recording for a rater, who codes its errors without seeing estimates, signals or condition;
-/// codes are saved beside the log after every key.
+/// Opens a recording at the console for a rater, who codes the errors without seeing estimates, signals or condition;
+/// the rater's codes are saved beside the log after every key.
 ///
 /// # Errors
 /// The recording or its codes cannot be read, another program codes as this rater, or there is no terminal.
@@ -52,8 +52,8 @@ pub fn rate(recording: &Path, rater: &str) -> Result<(), ReviewError> {
     at_desk(film, recording, false, None, Some(coding))
 }
 
-/// Opens the console over a recording for two raters, who settle together what they coded differently; their consensus
-/// is saved beside the log after every key.
+/// Opens a recording at the console for two raters, who settle together what they coded differently; the raters'
+/// consensus is saved beside the log after every key.
 ///
 /// # Errors
 /// The recording or its codes cannot be read, one of the raters has no codes, other raters settled the recording
@@ -89,7 +89,7 @@ struct Review {
     /// Session time that is shown, and the instant at which that time was reached.
     now: SessionTime,
     at: Instant,
-    /// Instant at which the newest event of a recording in progress was read.
+    /// Instant at which the newest event of a running session's recording was read.
     read_at: Instant,
     grows: bool,
     dirty: bool,
@@ -144,7 +144,7 @@ impl Review {
         Ok(review)
     }
 
-    /// Handles a message from the terminal; returns whether the review is left.
+    /// Handles a message from the terminal; returns whether the wizard leaves the review.
     fn take_message(&mut self, message: ConsoleMessage) -> Result<bool, ReviewError> {
         self.dirty = true;
         self.tick();
@@ -184,7 +184,7 @@ impl Review {
         }
     }
 
-    /// Goes to the first error without a code, and shows a message about it.
+    /// Goes to the first error that has no code yet, and shows a message about that error.
     fn begin_coding(&mut self) {
         let Some(coding) = &self.model.coding else { return };
         let said = coding_desk::greeting(coding);
@@ -195,7 +195,7 @@ impl Review {
         self.model.say(NoticeLevel::Done, said);
     }
 
-    /// Advances the screen's clock, which also runs while the replay is paused.
+    /// Advances the clock of the screen, which also runs while the replay is paused.
     fn tick(&mut self) {
         self.model.clock = SessionTime(self.opened.elapsed().as_nanos() as u64);
     }
@@ -252,7 +252,7 @@ impl Review {
         self.playback(|playback| playback.playing = false);
     }
 
-    /// Moves to the next or previous landmark of this kind, if there is one.
+    /// Moves the replay to the next or previous landmark of this kind, if there is one.
     fn look_for(&mut self, what: ReplayLandmark, forward: bool) {
         match self.film.landmark(what, forward) {
             Some(position) => self.stand_at(position),
@@ -286,7 +286,7 @@ impl Review {
         }
     }
 
-    /// Reads on in a recording that is not yet read to its end, as long as `goes_on` says so.
+    /// Reads on in a recording that is not yet read to its end, as long as `goes_on` returns true.
     fn read_rest(&mut self, goes_on: impl Fn() -> bool) -> Result<(), ReviewError> {
         if self.film.is_read() {
             return Ok(());
@@ -302,7 +302,7 @@ impl Review {
         Ok(())
     }
 
-    /// Reads new events of a recording that is still being written.
+    /// Reads new events of a recording that a running session is still writing.
     fn look(&mut self) -> Result<(), ReviewError> {
         let (_, known) = self.film.length();
         if self.film.read()? {
@@ -315,13 +315,13 @@ impl Review {
         Ok(())
     }
 
-    /// Advances the replay by the time that has passed.
+    /// Advances the replay by the time that has passed since the last frame.
     fn play(&mut self) {
         let passed = self.at.elapsed();
         self.at = Instant::now();
         let (length, events) = self.film.length();
         if self.is(|playback| playback.follows) {
-            // In a session that is still running, the shown clock goes on between events.
+            // For a session that is still running, the shown clock goes on between events.
             let ahead = if self.grows { self.read_at.elapsed().as_nanos() as u64 } else { 0 };
             self.now = self.now.max(length + SessionTime(ahead));
         } else if self.is(|playback| playback.playing) {

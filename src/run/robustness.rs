@@ -22,18 +22,19 @@ use crate::session::{Event, Session, TimestampedEvent, apply};
 /// Request of `tomcom robustness`.
 #[derive(Clone, Debug)]
 pub struct RobustnessRequest {
-    /// The battery file with the session file that it names.
+    /// The battery file (cohorts of simulated people), with the session file that it names.
     pub battery: BatteryFiles,
-    /// Number of judged trials of each cohort, and of trials on which the flags' thresholds are chosen.
+    /// For each cohort, number of judged trials, and number of trials on which thresholds for flagging false beliefs
+    /// are chosen.
     pub trials: u64,
-    /// Seed of the judged trials.
+    /// Seed of the trials on which estimate and assistant are judged.
     pub seed: u64,
-    /// Seed of the trials on which the flags' thresholds are chosen.
+    /// Seed of the trials on which the thresholds for flagging false beliefs are chosen.
     pub choose_seed: u64,
 }
 
 impl RobustnessRequest {
-    /// Total number of simulated trials.
+    /// Total number of trials that have to be simulated.
     pub fn all_trials(&self) -> u64 {
         PARTS.len() as u64 * self.trials * self.battery.cohorts.len() as u64
     }
@@ -42,18 +43,18 @@ impl RobustnessRequest {
 /// Purpose for which a cohort's trial is simulated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum CohortPart {
-    /// Without signals, to choose the thresholds for flagging false beliefs.
+    /// The trial has no signals, and serves to choose the thresholds for flagging false beliefs.
     ChosenOn,
-    /// Without signals, to judge the estimate.
+    /// The trial has no signals, and serves to judge the belief estimate.
     Unassisted,
-    /// With signals that the assistant sends by itself.
+    /// The trial has signals that the assistant sends by itself, and serves to judge the assistant.
     Assisted,
 }
 
 const PARTS: [CohortPart; 3] = [CohortPart::Assisted, CohortPart::Unassisted, CohortPart::ChosenOn];
 
-/// Simulates all cohorts on all processors and judges them. `done` is called after each trial, `finished` after each
-/// cohort.
+/// Simulates all cohorts on all processors, and judges estimate and assistant. `done` is called after each trial,
+/// `finished` after each cohort.
 pub fn measure(
     request: &RobustnessRequest,
     done: impl Fn() + Sync,
@@ -88,7 +89,7 @@ pub fn measure(
     RobustnessTable { seed: request.seed, choose_seed: request.choose_seed, cohorts }
 }
 
-/// Settings of a cohort's trials for this purpose.
+/// Settings of a cohort's trials that are simulated for this purpose.
 fn settings(request: &RobustnessRequest, cohort: &CohortSpec, part: CohortPart) -> SessionSpec {
     let (condition, seed) = match part {
         CohortPart::ChosenOn => (Condition::None, request.choose_seed),
@@ -98,7 +99,7 @@ fn settings(request: &RobustnessRequest, cohort: &CohortSpec, part: CohortPart) 
     SessionSpec { seed, ..cohort.settings(&request.battery.session.spec, condition) }
 }
 
-/// Simulates a trial. Returns its human presses, its summary, and the cost to go, which the next trial reuses.
+/// Simulates a trial. Returns its human presses, its summary, and the cost to go, whose cache the next trial reuses.
 fn simulate(
     kitchen: &Arc<Kitchen>,
     spec: SessionSpec,
@@ -121,8 +122,8 @@ fn simulate(
             _ => None,
         })
         .collect();
-    // The session is run through once more to collect presses and baseline; the estimate comes from the recorded
-    // events.
+    // The session is run through once more to collect presses and the gaze baseline; the estimate comes from the
+    // recorded events.
     let (mut session, mut views) = (Session::new(kitchen.clone(), spec, trial), PressViews::default());
     let mut judged = follower.judged.iter().peekable();
     for stamped in &events {

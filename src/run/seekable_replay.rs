@@ -1,5 +1,6 @@
-//! A seekable replay: the recording is read once with all presses judged; the shown session applies the same events. Snapshots, kept while
-//! reading, make every move cheap: at most `KEEP_EVERY` events are applied. A console can begin before the recording is read to its end.
+//! A seekable replay: the recording is read once with all presses judged; the shown session applies the same events.
+//! Snapshots of the session, kept while reading, make every move cheap: at most `KEEP_EVERY` events are applied. The
+//! console can begin before the recording is read to its end.
 
 use std::path::Path;
 
@@ -16,10 +17,11 @@ use crate::session::{Event, Session, TimestampedEvent, apply};
 /// Number of events between two snapshots of the session.
 const KEEP_EVERY: usize = 4096;
 
-/// Event without effect that replaces hidden events in a blinded replay, so that sequence numbers stay.
+/// Event without effect that replaces hidden events in a replay for raters, so that sequence numbers stay.
 const HIDDEN: Event = Event::ClockJumped { by_ms: 0 };
 
-/// Whether an event is hidden from raters: it reveals the condition (a signal, an offer, a recommendation), or what the wizard thought.
+/// Whether an event is hidden from raters: it reveals the trial's condition (a signal, an offer, a recommendation), or
+/// what the wizard thought.
 fn is_hidden(event: &Event) -> bool {
     matches!(
         event,
@@ -34,36 +36,36 @@ fn is_hidden(event: &Event) -> bool {
     )
 }
 
-/// Whether a step of the replay stops at this event.
+/// Whether the replay stops at this event when it is moved step by step.
 fn is_step(event: &Event) -> bool {
     !event.is_sample() && *event != HIDDEN
 }
 
-/// A recording that is shown at any position.
+/// A recording that can be shown at any position.
 #[derive(Debug)]
 pub struct SeekableReplay {
     pub(super) replay: RecordingReplay,
     pub(super) events: Vec<TimestampedEvent>,
-    /// Session times of the errors.
+    /// Session times of the human's errors.
     pub errors: Vec<SessionTime>,
     judged: usize,
-    /// History of the belief estimate.
+    /// History of the belief estimate over the recording.
     pub beliefs: BeliefHistory,
-    /// Session after the first `position` events.
+    /// The shown session, after the first `position` events.
     pub session: Session,
     /// Number of events that have been applied to the shown session.
     pub position: usize,
     /// Snapshots of the session before the first event and after every `KEEP_EVERY` events.
     kept: Vec<Session>,
-    /// Time of the log's last event and number of its events, until all of them are read.
+    /// Time of the log's last event and number of the log's events; `None` once all events are read.
     unread_end: Option<(SessionTime, usize)>,
 }
 
 impl SeekableReplay {
-    /// Reads a recording to its end and moves to its beginning.
+    /// Reads a recording to its end and moves the replay to the recording's beginning.
     ///
     /// # Errors
-    /// Errors of [`RecordingReplay::step`].
+    /// The errors of [`RecordingReplay::step`].
     pub fn open(recording: &Path) -> FileResult<SeekableReplay> {
         let mut film = SeekableReplay::begin(recording)?;
         film.read()?;
@@ -73,7 +75,7 @@ impl SeekableReplay {
     /// Opens a recording without reading its events.
     ///
     /// # Errors
-    /// Errors of [`RecordingReplay::open`].
+    /// The errors of [`RecordingReplay::open`].
     pub fn begin(recording: &Path) -> FileResult<SeekableReplay> {
         let replay = RecordingReplay::open(recording)?;
         let last = replay.log().last_event()?;
@@ -93,10 +95,10 @@ impl SeekableReplay {
         })
     }
 
-    /// Hides the estimate and all signals for raters, who must not know whether the participant was assisted. This must
-    /// be called before the replay is moved.
+    /// Hides the estimate and all signals for raters, who must not know whether the participant was assisted. This
+    /// function must be called before the replay is moved.
     pub fn blinded(mut self) -> SeekableReplay {
-        // The others hold what is hidden.
+        // Later snapshots contain what is hidden, so only the first one is kept.
         self.kept.truncate(1);
         for session in self.kept.iter_mut().chain([&mut self.session]) {
             session.spec.console.visibility = WizardVisibility::State;
@@ -110,15 +112,15 @@ impl SeekableReplay {
     /// Reads events that were appended to the log; returns whether there were any.
     ///
     /// # Errors
-    /// Errors of [`RecordingReplay::step`].
+    /// The errors of [`RecordingReplay::step`].
     pub fn read(&mut self) -> FileResult<bool> {
         self.read_while(|| true)
     }
 
-    /// Reads appended events, as long as `goes_on` says so; returns whether there were any.
+    /// Reads appended events, as long as `goes_on` returns true; returns whether there were any.
     ///
     /// # Errors
-    /// Errors of [`RecordingReplay::step`].
+    /// The errors of [`RecordingReplay::step`].
     pub fn read_while(&mut self, goes_on: impl Fn() -> bool) -> FileResult<bool> {
         let before = self.events.len();
         while goes_on() {
@@ -147,12 +149,12 @@ impl SeekableReplay {
         Ok(self.events.len() > before)
     }
 
-    /// Whether all events were read that the recording has for now.
+    /// Whether all events that the recording has for now were read.
     pub fn is_read(&self) -> bool {
         self.unread_end.is_none()
     }
 
-    /// Whether the recording has no end event, as far as it was read.
+    /// Whether the recording has no end event, as far as the recording was read.
     pub fn is_cut(&self) -> bool {
         self.is_read() && self.replay.log().is_cut()
     }
@@ -160,22 +162,22 @@ impl SeekableReplay {
     /// Whether the trial was aborted or excluded from the analysis.
     ///
     /// # Errors
-    /// Errors of [`exclusion_status`].
+    /// The errors of [`exclusion_status`].
     pub fn standing(&self) -> FileResult<ExclusionStatus> {
         exclusion_status(self.replay.session(), self.replay.log())
     }
 
-    /// The time of the last event, and the number of events, those that are not read yet among them.
+    /// Time of the recording's last event, and number of its events, including events that are not read yet.
     pub fn length(&self) -> (SessionTime, usize) {
         self.unread_end.unwrap_or_else(|| (self.read_to(), self.events.len()))
     }
 
-    /// The time of the last event that was read.
+    /// Session time of the last event that was read.
     pub fn read_to(&self) -> SessionTime {
         self.events.last().map_or(SessionTime::ZERO, |stamped| stamped.time)
     }
 
-    /// Applies and returns the next event.
+    /// Applies the next event to the shown session, and returns the event.
     pub fn forward(&mut self) -> Option<&TimestampedEvent> {
         let stamped = self.events.get(self.position)?;
         apply(&mut self.session, stamped).expect("it was applied when it was read");
@@ -186,7 +188,7 @@ impl SeekableReplay {
         Some(stamped)
     }
 
-    /// Moves to the position after the first `position` events, which must have been read.
+    /// Moves the shown session to the position after the first `position` events, which must have been read.
     pub fn wind(&mut self, position: usize) {
         let index = (position / KEEP_EVERY).min(self.kept.len() - 1);
         if position < self.position || index * KEEP_EVERY > self.position {
@@ -196,25 +198,25 @@ impl SeekableReplay {
         while self.position < position && self.forward().is_some() {}
     }
 
-    /// Number of the recording's events up to and including a time.
+    /// Number of the recording's events up to and including those at a time.
     pub fn until(&self, time: SessionTime) -> usize {
         self.events.partition_point(|stamped| stamped.time <= time)
     }
 
-    /// Position after the next event that is neither a gaze or arm sample nor hidden.
+    /// Position after the next event that is neither a gaze or arm sample nor hidden from raters.
     pub fn next_step(&self) -> usize {
         let rest = self.events[self.position..].iter();
         self.position + rest.take_while(|stamped| !is_step(&stamped.event)).count() + 1
     }
 
-    /// Position after the previous event that is neither a gaze or arm sample nor hidden.
+    /// Position after the previous event that is neither a gaze or arm sample nor hidden from raters.
     pub fn last_step(&self) -> usize {
         let steps = |end: usize| self.events[..end].iter().rposition(|stamped| is_step(&stamped.event));
         let last = steps(self.position).unwrap_or(0);
         steps(last).map_or(0, |index| index + 1)
     }
 
-    /// Position after all events at the time of the next or previous landmark.
+    /// Position after all events at the time of the next or previous landmark of this kind.
     pub fn landmark(&self, what: ReplayLandmark, forward: bool) -> Option<usize> {
         let now = self.time();
         let is_it = |event: &Event| match what {

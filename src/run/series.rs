@@ -1,5 +1,5 @@
-//! The series of a participant's recordings: each recording has at most one trial, and the wizard records one after
-//! another without leaving the console.
+//! The series of a participant's recordings: each recording has at most one trial, and the wizard makes one recording
+//! after another without leaving the console.
 
 use super::desk::OperatorDesk;
 use super::error::{LiveError, TerminalError};
@@ -15,25 +15,25 @@ use crate::edge::recordings;
 use crate::session::plan::{NextRecording, ParticipantProgress, Study};
 use crate::session::wall_display::AnswerEntry;
 
-/// Result of a session, or of a participant's series of sessions.
+/// Result of one session, or of a participant's series of sessions.
 #[derive(Clone, Debug)]
 pub struct SeriesOutcome {
-    /// Result of each session, in order.
+    /// Result of each session of the series, in order.
     pub done: Vec<LiveOutcome>,
-    /// Progress of the participant, as text.
+    /// Progress of the participant through the study plan, as text.
     pub remark: Option<String>,
 }
 
-/// Runs one session at the console until the wizard leaves it, and repeats its trial if the wizard asks for that. With
-/// `compare`, the comparison of wizard and assistants is shown, which unblinds the wizard; continued recordings have no
-/// comparison.
+/// Runs one session at the console until the wizard leaves it, and repeats the session's trial if the wizard asks for
+/// that. With `compare`, the console shows the comparison of wizard and assistants, which unblinds the wizard;
+/// continued recordings have no comparison.
 ///
 /// # Errors
 /// There is no terminal, the session cannot be recorded, or the gaze input cannot be opened.
 pub fn operate(beginning: SessionStart, compare: Option<ComparisonRequest>) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async {
-        // The start is checked before the terminal is taken over and a recording is created, so that a session that
-        // cannot start leaves nothing behind.
+        // The session's start is checked before the terminal is taken over and a recording is created, so that a
+        // session that cannot start leaves nothing behind.
         let mut begun = PreparedSession::new(beginning)?.comparing(compare.clone());
         let mut desk = OperatorDesk::take(begun.spec(), begun.kitchen()).await?;
         let mut done = Vec::new();
@@ -52,12 +52,12 @@ pub fn operate(beginning: SessionStart, compare: Option<ComparisonRequest>) -> R
 /// Runs the remaining recordings of a participant in a study plan, one after another, until the wizard quits.
 ///
 /// # Errors
-/// Those of [`operate`]; recordings cannot be read or do not fit the plan.
+/// The errors of [`operate`]; or recordings cannot be read or do not fit the plan.
 pub fn operate_series(series: RemainingTrials) -> Result<SeriesOutcome, LiveError> {
     in_runtime(async { Planned::new(series)?.run().await })
 }
 
-/// Runs a future in a tokio runtime, which signals and sockets need.
+/// Runs a future in a tokio runtime, which termination signals and sockets need.
 fn in_runtime(work: impl Future<Output = Result<SeriesOutcome, LiveError>>) -> Result<SeriesOutcome, LiveError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(TerminalError)?;
     runtime.block_on(work)
@@ -73,11 +73,12 @@ pub fn describe(sitting: &SeriesOutcome) -> String {
 /// The wizard's choice before a recording.
 enum Choice {
     Begin(Box<PreparedSession>),
-    /// The wizard quits the program; with a remark to print.
+    /// The wizard quits the program; a remark is printed, if there is one.
     Leave(Option<String>),
 }
 
-/// The series of one participant in a study plan. The next step is determined from the existing recordings each time.
+/// The series of one participant in a study plan. The next recording is determined from the existing recordings each
+/// time.
 struct Planned {
     series: RemainingTrials,
     study: Study,
@@ -122,7 +123,7 @@ impl Planned {
         Ok(SeriesOutcome { done, remark: Some(stands(&progress)) })
     }
 
-    /// Prepares the next recording, after asking the wizard the questions that come before it.
+    /// Prepares the next recording of the series, after asking the wizard the questions that come before it.
     async fn choose(&self, progress: &ParticipantProgress, desk: &mut OperatorDesk) -> Result<Choice, LiveError> {
         let (slot, attempt, open) = match &progress.next {
             NextRecording::Begin { slot, attempt } => (*slot, *attempt, None),
@@ -163,7 +164,7 @@ impl Planned {
     }
 }
 
-/// The question to the wizard whether an unfinished recording is continued or repeated.
+/// The question to the wizard whether an unfinished recording is continued or its trial repeated.
 fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartQuestion {
     let name = slot_name(progress, slot);
     let attempt = progress.steps.get(slot).and_then(|stand| stand.recordings.last());
@@ -178,7 +179,7 @@ fn which(progress: &ParticipantProgress, recording: &str, slot: usize) -> StartQ
     }
 }
 
-/// The question for the participant's consent, without which nothing is recorded. If the display asks for it, the
+/// The question for the participant's consent, without which nothing is recorded. If the display asks for consent, the
 /// wizard can still confirm it at the console.
 fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_display: bool) -> StartQuestion {
     let mut text = vec![study.plan.consent.clone()];
@@ -197,7 +198,7 @@ fn consent(study: &Study, progress: &ParticipantProgress, label: &str, on_displa
     }
 }
 
-/// Name of a step of the plan: "familiarisation", "trial 1".
+/// Name of a planned trial: "familiarisation", "trial 1".
 pub(super) fn slot_name(progress: &ParticipantProgress, slot: usize) -> String {
     match progress.steps.get(slot).and_then(|stand| stand.slot.period) {
         Some(period) => format!("trial {period}"),
@@ -205,7 +206,7 @@ pub(super) fn slot_name(progress: &ParticipantProgress, slot: usize) -> String {
     }
 }
 
-/// Progress of a participant, in one line.
+/// Progress of a participant through the study plan, in one line.
 pub(super) fn stands(progress: &ParticipantProgress) -> String {
     let (code, done, all) = (&progress.code, progress.done(), progress.steps.len());
     match &progress.next {

@@ -11,7 +11,7 @@ use crate::base::words::count;
 use crate::edge::file_error::{FileError, FileResult};
 use crate::edge::log::{LogReader, at_line};
 
-/// Matching windows that `--sweep` tries, in presses of the human.
+/// Matching windows that the option `--sweep` tries, in presses of the human.
 pub const SWEEP: std::ops::RangeInclusive<u32> = 0..=10;
 
 /// Compares wizard and assistants in recordings, on all processors. `done` is called after each recording.
@@ -39,10 +39,10 @@ fn follow(recording: &Path, request: &ComparisonRequest) -> FileResult<ComparedR
     Ok(comparer.finish(recording.display().to_string(), standing))
 }
 
-/// Context of the difference with this number, as text.
+/// Context of the unmatched communication with this number, as text.
 ///
 /// # Errors
-/// There is no difference with this number, or there are several recordings.
+/// There is no unmatched communication with this number, or there are several recordings.
 pub fn open(watched: &[ComparedRecording], number: usize) -> FileResult<String> {
     let [one] = watched else {
         let found = format!("--open {number} with {} recordings", watched.len());

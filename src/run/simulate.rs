@@ -1,8 +1,9 @@
-//! Command `tomcom simulate`: whole trials in virtual time. A trial does not depend on the number of trials.
+//! Command `tomcom simulate`: simulates whole trials in virtual time. A trial's result does not depend on the number of
+//! trials.
 //!
 //! Trials are simulated on all processors in blocks and summed up in their order, so that results do not depend on
-//! timing, and memory does not grow. A complete recording with the same header is read instead of simulated. A shard
-//! takes every n-th trial.
+//! timing, and memory use does not grow. A trial whose complete recording with the same header exists is read instead
+//! of simulated. A shard takes every n-th trial.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -30,31 +31,31 @@ use crate::session::{LogHeader, TimestampedEvent};
 /// Request of `tomcom simulate`.
 #[derive(Clone, Debug)]
 pub struct SimulationRequest {
-    /// Settings with the files that they name.
+    /// Settings of the session, with the files that they name.
     pub files: SessionFiles,
-    /// Total number of trials, over all shards.
+    /// Total number of trials, over all shards of the simulation.
     pub trials: u64,
-    /// Shard of the trials that is simulated.
+    /// Shard (part) of the trials that is simulated here.
     pub shard: SimulationShard,
-    /// Folder of the recordings.
+    /// Folder in which the recordings are made.
     pub out: PathBuf,
 }
 
 impl SimulationRequest {
-    /// Indices of the shard's trials, in order.
+    /// Indices of the trials of this shard, in order.
     pub fn own_trials(&self) -> impl Iterator<Item = u64> + Clone {
         let SimulationShard { number, of } = self.shard;
         (number - 1..self.trials).step_by(of as usize)
     }
 }
 
-/// A shard of the trials, so that several computers can share a simulation: number `number` (from 1) of `of` disjoint
-/// parts.
+/// A shard of a simulation's trials, so that several computers can share the simulation: number `number` (from 1) of
+/// `of` disjoint parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SimulationShard {
     /// Number of this shard, from 1.
     pub number: u64,
-    /// Number of shards.
+    /// Number of shards into which the simulation is divided.
     pub of: u64,
 }
 
@@ -75,7 +76,7 @@ impl FromStr for SimulationShard {
     }
 }
 
-/// Largest number of shards.
+/// Largest number of shards of a simulation.
 const MAX_SHARDS: u64 = 100_000;
 /// Period of polling a trial that another program is simulating.
 const LOOK: Duration = Duration::from_millis(50);
@@ -83,11 +84,11 @@ const LOOK: Duration = Duration::from_millis(50);
 const BLOCK: usize = 256;
 
 /// Settings of a simulated trial without a study plan. Without a scripted wizard, the wizard condition becomes
-/// unassisted. Every trial has its own participant with its own code.
+/// unassisted. Every trial has a participant of its own with a code of its own.
 pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     let mut spec = spec.clone();
     if spec.unattended(spec.trial.condition) != spec.trial.condition {
-        // Without a wizard, the assistant has nobody to advise.
+        // Without a wizard, nobody would see the assistant's advice, so it is not computed.
         (spec.trial.condition, spec.assistant.shadow) = (Condition::None, ShadowMode::Off);
     }
     spec.participant.code = format!("S{:03}", trial + 1);
@@ -95,8 +96,8 @@ pub fn settings_of_trial(spec: &SessionSpec, trial: u64) -> SessionSpec {
     spec
 }
 
-/// Simulates the trials on all processors. Complete recordings that exist already are read instead. `done` is called
-/// after each trial.
+/// Simulates the trials on all processors. Trials whose complete recordings exist already are read instead. `done` is
+/// called after each trial.
 ///
 /// # Errors
 /// A recording cannot be written, its folder holds another recording, or an exclusion file is damaged.
@@ -127,21 +128,21 @@ pub fn simulate(simulation: &SimulationRequest, done: impl Fn() + Sync) -> Resul
 pub struct SimulatedTrial {
     /// Folder of the recording.
     pub folder: PathBuf,
-    /// Study arm of the trial, by what was done in it.
+    /// Study arm of the simulated trial, as it was carried out.
     pub arm: StudyArm,
-    /// Summary of the trial.
+    /// Summary of the simulated trial.
     pub figures: TrialSummary,
-    /// Whether the recording existed before, or another program made it in the meantime.
+    /// Whether the trial's recording existed before, or another program made it in the meantime.
     pub found: bool,
-    /// New path of a log that ended before the end of its header.
+    /// New path of a log that ended before the end of its header and was moved out of the way.
     pub moved: Option<PathBuf>,
 }
 
-/// Simulates the trials on all processors and passes them to `take` one by one, in order. Trials that another program
-/// is simulating in this folder are waited for after all others.
+/// Simulates the trials on all processors and passes the trials to `take` one by one, in order. Trials that another
+/// program is simulating in this folder are waited for after all others.
 ///
 /// # Errors
-/// Errors of [`simulate`], and the first error of `take`.
+/// The errors of [`simulate`], and the first error of `take`.
 pub fn each_trial(
     simulation: &SimulationRequest,
     done: impl Fn() + Sync,
@@ -197,7 +198,7 @@ fn wait_for_any(simulation: &SimulationRequest, trials: &[u64]) {
 /// Simulates a recording for wizard training: an unassisted trial of `seconds` in the default kitchen.
 ///
 /// # Errors
-/// Errors of [`simulate`].
+/// The errors of [`simulate`].
 pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>, RunError> {
     let mut files = options::session_or_default(None).map_err(Box::new)?;
     (files.spec.plan, files.spec.seed) = (None, seed);
@@ -207,7 +208,7 @@ pub fn for_training(seed: u64, seconds: f64, out: &Path) -> Result<Vec<PathBuf>,
     files.spec.check().map_err(|error| {
         Box::new(FileError::from_finding(Path::new("--seconds"), error.found, error.remedy.to_string()))
     })?;
-    // The length is part of the path, since recordings of different length would have the same name.
+    // The recording's length is part of the path, since recordings of different length would have the same name.
     let out = out.join(format!("{seconds}s"));
     let figures = simulate(&SimulationRequest { files, trials: 1, shard: SimulationShard::WHOLE, out }, || ())?;
     Ok(figures.recordings.iter().map(PathBuf::from).collect())
@@ -220,8 +221,8 @@ fn folder_of_trial(out: &Path, spec: &SessionSpec) -> PathBuf {
     out.join(format!("seed{}-{}{period}", spec.seed, spec.participant.code))
 }
 
-/// Header of a trial's recording. With a study plan, trials are ordered by participant; without one, each trial has its
-/// own participant.
+/// Header of a simulated trial's recording. With a study plan, trials are ordered by participant; without a plan, each
+/// trial has a participant of its own.
 fn header_of_trial(simulation: &SimulationRequest, trial: u64) -> LogHeader {
     let files = &simulation.files.kitchen;
     let (spec, trial) = match simulation.files.study() {
@@ -238,8 +239,8 @@ fn folder_of(simulation: &SimulationRequest, trial: u64) -> PathBuf {
     folder_of_trial(&simulation.out, &header_of_trial(simulation, trial).session)
 }
 
-/// Simulates a trial, or reads its complete recording. `own`: cost to go of this thread's last trial; `unused`: a new
-/// one.
+/// Simulates a trial, or reads its complete recording. `own`: cost to go of this thread's last trial, whose cache is
+/// reused; `unused`: a new cost to go.
 fn simulate_trial(
     simulation: &SimulationRequest,
     kitchen: &Arc<Kitchen>,
@@ -317,7 +318,7 @@ pub fn describe(figures: &SimulationSummary) -> String {
     )
 }
 
-/// One line of text for each log that was moved, since it ends before the end of its header.
+/// One line of text for each log that was moved out of the way, since it ends before the end of its header.
 pub(super) fn describe_moved(moved: &[String]) -> String {
     let line = |log: &String| {
         format!("a log that ended before the end of its header was moved to {log}; its trial was simulated again\n")

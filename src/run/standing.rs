@@ -1,5 +1,5 @@
-//! Whether analyses count a recording: it can be aborted or excluded at the console, or excluded later from the command
-//! line.
+//! Whether analyses count a recording: its trial can be aborted or excluded at the console, or excluded later from the
+//! command line.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::session::{Event, Session};
 /// Reason for which the trial of a recording was aborted; `None` if it was not.
 ///
 /// # Errors
-/// Errors of reading a log.
+/// The errors of reading a log.
 pub fn aborted(recording: &Path) -> FileResult<Option<String>> {
     let mut log = LogReader::open(recording)?;
     while let Some(line) = log.next_line()? {
@@ -31,7 +31,8 @@ pub fn exclusion_status(session: &Session, log: &LogReader) -> FileResult<Exclus
     with_ruling(ExclusionStatus::at_console(session), log.folder())
 }
 
-/// The same for the recording in this folder, from what was said at the console.
+/// Whether the recording in this folder was aborted or excluded, given the status that the console recorded. A later
+/// decision in a file beside the log overrides that status.
 ///
 /// # Errors
 /// The file beside the log is damaged.

@@ -23,8 +23,8 @@ pub fn measure(recordings: &[PathBuf], done: impl Fn() + Sync) -> FileResult<Off
     Ok(sums.summary())
 }
 
-/// Measures the steadiness of offers in one recording. Since offers depend on the session's state only, no estimate is
-/// computed.
+/// Measures the steadiness of offers in one recording. Since offers depend on the session's state only, no belief
+/// estimate is computed.
 fn tally(recording: &Path) -> FileResult<(OfferSteadinessTally, Session)> {
     let mut log = LogReader::open(recording)?;
     let mut session = log.session();

@@ -1,6 +1,6 @@
 //! Command `tomcom simulate --sweep`: sensitivity of results to settings (parameter sweep). The same trials are
 //! simulated for every value of a setting and without signals, with the same participants, orders and random streams,
-//! so that differences are paired.
+//! so that differences are paired by trial.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -23,30 +23,30 @@ use crate::mind::fitting::HumanModelParameter;
 use crate::session::SessionSpec;
 use crate::session::settings::{Condition, GazeSource};
 
-/// Name of the table's file in the folder of the recordings; shards have names of their own.
+/// Name of the results table's file in the folder of the recordings; shards have file names of their own.
 pub const TABLE_NAME: &str = "sweep.csv";
 const PART_NAME: &str = "sweep-part";
-/// Largest number of combinations of values.
+/// Largest number of combinations of setting values in a sweep.
 const MAX_CELLS: usize = 1000;
 
-/// A setting whose values can be swept.
+/// A setting whose values can be swept (varied between simulations).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Knob {
-    /// Cost of communication, in presses.
+    /// The swept setting is the cost of communication, in presses.
     Cost,
-    /// Threshold of the concept ToM.
+    /// The swept setting is the threshold of the concept ToM.
     Threshold,
-    /// Horizon of the planner's rollouts, and their number.
+    /// The swept setting is the horizon of the planner's rollouts, or their number.
     Horizon,
     Rollouts,
-    /// Rationality tau and reading radius of the human model.
+    /// The swept setting is the rationality tau or the reading radius of the human model.
     Tau,
     Radius,
-    /// Whether the assistant uses gaze to estimate beliefs.
+    /// The swept setting is whether the assistant uses gaze to estimate beliefs.
     Gaze,
-    /// When the assistant is asked for advice, besides after presses and changes of the task.
+    /// The swept setting is when the assistant is asked for advice, besides after presses and changes of the task.
     Asks,
-    /// Whether waiting without a press counts as evidence about the human's belief.
+    /// The swept setting is whether waiting without a press counts as evidence about the human's belief.
     Waiting,
 }
 
@@ -63,7 +63,7 @@ const KNOBS: [(&str, Knob); 9] = [
     ("waiting", Knob::Waiting),
 ];
 
-/// Choices for when the assistant is asked: name, whether also in unusual silence, and whether also by gaze.
+/// Values of the setting `asks`: name, whether the assistant is asked in unusual silence, whether it is asked by gaze.
 const MOMENTS: [(&str, [bool; 2]); 4] =
     [("presses", [false, false]), ("silence", [true, false]), ("gaze", [false, true]), ("silence+gaze", [true, true])];
 
@@ -72,7 +72,7 @@ const MOMENTS: [(&str, [bool; 2]); 4] =
 pub struct ParameterSweepAxis {
     name: &'static str,
     knob: Knob,
-    /// Values as the user typed them; each is valid for the setting.
+    /// Values of the swept setting as the user typed them; each is valid for the setting.
     values: Vec<String>,
 }
 
@@ -110,7 +110,7 @@ impl FromStr for ParameterSweepAxis {
     }
 }
 
-/// Gives everybody this parameter of the human model, also those who have one of their own.
+/// Gives everybody this parameter of the human model, also persons who have a fitted value of their own.
 fn set_for_all(spec: &mut SessionSpec, parameter: HumanModelParameter, value: f64) {
     parameter.set(&mut spec.human, value);
     if let Some(people) = &mut spec.people {
@@ -119,7 +119,7 @@ fn set_for_all(spec: &mut SessionSpec, parameter: HumanModelParameter, value: f6
 }
 
 impl ParameterSweepAxis {
-    /// Applies a value to the settings; the value was validated when it was parsed.
+    /// Applies a value of the swept setting to the settings; the value was validated when it was parsed.
     fn set(&self, spec: &mut SessionSpec, value: &str) {
         let number = value.parse().unwrap_or_default();
         let whole = value.parse().unwrap_or_default();
@@ -145,17 +145,17 @@ impl ParameterSweepAxis {
     }
 }
 
-/// One combination of values: settings by name, with values as typed.
+/// One combination of values: the swept settings by name, with values as typed.
 type Cell = Vec<(&'static str, String)>;
 
 /// Table of results for every combination of values of the swept settings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ParameterSweepSummary {
-    /// Rows of the table; the first is without signals.
+    /// Rows of the results table; the first row is without signals.
     pub rows: Vec<ParameterSweepRow>,
-    /// Path of the table's file.
+    /// Path of the results table's file.
     pub table: PathBuf,
-    /// New paths of logs that ended before the end of their header; their trials were simulated again.
+    /// New paths of logs that ended before the end of their header; the trials of these logs were simulated again.
     pub moved: Vec<String>,
 }
 
@@ -165,11 +165,11 @@ pub fn trials(simulation: &SimulationRequest, axes: &[ParameterSweepAxis]) -> u6
     (cells as u64 + 1) * simulation.own_trials().count() as u64
 }
 
-/// Simulates the trials for every combination of the values, each in a folder of its own, and writes the table beside
-/// them. `done` is called after each trial.
+/// Simulates the trials for every combination of the values, each combination in a folder of its own, and writes the
+/// results table beside the folders. `done` is called after each trial.
 ///
 /// # Errors
-/// Errors of simulations, too many combinations, or an invalid value.
+/// The errors of simulations, too many combinations, or an invalid value.
 pub fn sweep(
     simulation: &SimulationRequest,
     axes: &[ParameterSweepAxis],
@@ -203,7 +203,7 @@ pub fn sweep(
     Ok(ParameterSweepSummary { rows, table, moved })
 }
 
-/// File name of the table. Each shard has its own; the whole table is made from all recordings.
+/// File name of the results table. Each shard has its own table; the whole table is made from all recordings.
 fn table_name(shard: SimulationShard) -> String {
     match shard {
         SimulationShard::WHOLE => TABLE_NAME.to_string(),
@@ -211,7 +211,7 @@ fn table_name(shard: SimulationShard) -> String {
     }
 }
 
-/// All combinations of the values; the values of the last setting vary fastest.
+/// All combinations of the swept settings' values; the values of the last setting vary fastest.
 fn grid(axes: &[ParameterSweepAxis]) -> Result<Vec<Cell>, RunError> {
     let wrong = |found: String, remedy: String| {
         Err(Box::new(FileError::from_finding(Path::new("--sweep"), found, remedy)).into())
@@ -236,7 +236,7 @@ fn grid(axes: &[ParameterSweepAxis]) -> Result<Vec<Cell>, RunError> {
     Ok(cells)
 }
 
-/// Refuses settings of a concept that the session does not use.
+/// Refuses swept settings of a concept that the session does not use.
 fn check_axes(spec: &SessionSpec, axes: &[ParameterSweepAxis]) -> Result<(), RunError> {
     let decides = match spec.trial.condition {
         Condition::Assistant => Some(spec.assistant.concept),
@@ -271,18 +271,18 @@ fn spec_of(spec: &SessionSpec, axes: &[ParameterSweepAxis], cell: &Cell) -> Resu
     }
 }
 
-/// Folder name of a combination: "cost-1.5_gaze-off".
+/// Folder name of a combination of values: "cost-1.5_gaze-off".
 fn folder_of(cell: &Cell) -> String {
     cell.iter().map(|(name, value)| format!("{name}-{value}")).collect::<Vec<_>>().join("_")
 }
 
-/// Simulates and summarises the trials with one combination of values.
+/// Simulates and summarises the trials with one combination of setting values.
 fn of_cell(
     simulation: &SimulationRequest,
     done: &(impl Fn() + Sync),
 ) -> Result<(Vec<TrialErrors>, SimulationSummary), RunError> {
     let mut simulation = simulation.clone();
-    // Computing recommendations for trials without signals would only take time.
+    // Recommendations for trials without signals are not computed, since they would only take time.
     simulation.files.spec.assistant.shadow = ShadowMode::Off;
     let kitchen = Arc::new(simulation.files.kitchen.kitchen.clone());
     let plan_lengths = plan_lengths(&kitchen, &mut CostToGo::new(kitchen.clone()));
@@ -298,10 +298,10 @@ fn of_cell(
     Ok((trials, SimulationSummary { moved, ..sums.figures() }))
 }
 
-/// A numeric column of the table: its name, and its value in a row.
+/// A numeric column of the results table: its name, and how its value follows from a row.
 type SweepColumn = (&'static str, fn(&ParameterSweepRow) -> Option<f64>);
 
-/// The numeric columns; unknown values become empty cells.
+/// The numeric columns of the results table; unknown values become empty cells.
 const NUMBERS: [SweepColumn; 11] = [
     ("errors_per_100", |row| Some(row.errors_per_100)),
     ("signals_per_100", |row| Some(row.signals_per_100)),

@@ -1,4 +1,4 @@
-//! Command `tomcom replay RECORDING --timing`: computing times of inference and planning, for each event.
+//! Command `tomcom replay RECORDING --timing`: measures computing times of inference and planning, for each event.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -18,11 +18,11 @@ pub(super) fn monotonic_ns() -> u64 {
     BEGAN.elapsed().as_nanos() as u64
 }
 
-/// An advisor whose answers are timed.
+/// An assistant whose computing times for answers are measured.
 struct TimedAdvisor {
     advisor: Advisor,
     answer_ns: Vec<u64>,
-    /// Number of decisions that answers had to compute, because no cache held them.
+    /// Number of decisions whose cost to go the answers had to compute, because no cache held them.
     decisions_in_answers: u64,
 }
 
@@ -31,7 +31,7 @@ impl TimedAdvisor {
         TimedAdvisor { advisor, answer_ns: Vec::new(), decisions_in_answers: 0 }
     }
 
-    /// Answers a request; returns the computing time in nanoseconds.
+    /// Answers a request for advice; returns the computing time in nanoseconds.
     fn answer(&mut self, question: &AdviceRequest) -> u64 {
         let before = self.advisor.computed_decisions();
         let began = Instant::now();
@@ -42,7 +42,8 @@ impl TimedAdvisor {
         took_ns
     }
 
-    /// Works ahead after a request for at most the time until the next one; returns the computing time in nanoseconds.
+    /// Works ahead after a request for advice for at most the time until the next request; returns the computing time
+    /// in nanoseconds.
     fn work_ahead(&mut self, last: &AdviceRequest, until: SessionTime) -> u64 {
         let free = Duration::from_secs_f64(until.secs_since(last.time).max(0.0));
         let began = Instant::now();
@@ -54,7 +55,7 @@ impl TimedAdvisor {
 /// Replays a recording and measures computing times.
 ///
 /// # Errors
-/// Errors of [`RecordingReplay::run`].
+/// The errors of [`RecordingReplay::run`].
 pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
     let mut replay = RecordingReplay::open(recording)?;
     replay.follower.timing = Some(InferenceTiming::with_clock(monotonic_ns));
@@ -65,7 +66,7 @@ pub fn measure(recording: &Path) -> FileResult<TimingSummary> {
     let (mut step_ns, mut step_ahead_ns, mut ahead_ns) = (Vec::new(), Vec::new(), 0);
     let mut last: Option<AdviceRequest> = None;
     while let Some(question) = replay.next_question()? {
-        // As long as it had in the session.
+        // The advisor works ahead for as long as it had in the session until this request.
         if let Some(last) = last {
             ahead_ns += ahead.work_ahead(&last, question.time);
         }

@@ -23,11 +23,11 @@ use crate::session::settings::{Condition, WizardVisibility};
 /// Request of `tomcom train`.
 #[derive(Clone, Debug)]
 pub struct TrainingRequest {
-    /// Recordings of simulated participants without signals.
+    /// Recordings of simulated participants without signals, which the wizard watches.
     pub recordings: Vec<PathBuf>,
     /// The wizard's pseudonymous code.
     pub wizard: String,
-    /// Folder for the training record.
+    /// Folder in which the training record is saved.
     pub out: PathBuf,
     /// Criterion for passing the training.
     pub criterion: TrainingCriterion,
@@ -57,7 +57,7 @@ pub fn train(lesson: &TrainingRequest) -> Result<(WizardTrainingRecord, PathBuf)
     Ok((record, path))
 }
 
-/// Opens a recording, together with its periods of false belief.
+/// Opens a recording for training, together with its periods of false belief.
 fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)> {
     let mut film = SeekableReplay::open(recording)?;
     let unfit = |found: &str| {
@@ -69,13 +69,13 @@ fn open(recording: &Path) -> FileResult<(SeekableReplay, Vec<FalseBeliefPeriod>)
     }
     let spells =
         spells(&film.replay.follower).ok_or_else(|| unfit("a trial of which nobody knows what was believed"))?;
-    // The recording is shown as a wizard session with the information that the paper's wizard had.
+    // The recording is shown as a wizard session, with the amount of information that the paper's wizard had.
     film.session.spec.trial.condition = Condition::Wizard;
     film.session.spec.console.visibility = WizardVisibility::State;
     Ok((film, spells))
 }
 
-/// Plays one recording after another until all are finished or the wizard quits.
+/// Plays one recording after another until all recordings are finished or the wizard quits.
 async fn watch(
     lesson: &TrainingRequest,
     films: Vec<(SeekableReplay, Vec<FalseBeliefPeriod>)>,

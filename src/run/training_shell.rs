@@ -1,5 +1,5 @@
-//! The training console: a wizard sends signals while a recording is played, and each signal is compared with the known
-//! false beliefs and gets immediate feedback.
+//! The training console: a wizard sends signals while a recording is played; the program compares each signal with the
+//! known false beliefs and gives immediate feedback.
 
 use std::time::Instant;
 
@@ -34,7 +34,7 @@ pub(super) struct TrainingShell {
     film: SeekableReplay,
     name: String,
     spells: Vec<FalseBeliefPeriod>,
-    /// Periods of false belief in the recording that led to errors.
+    /// Periods of false belief in the recording that led to errors, with the judgement of the wizard's signals.
     beliefs: Vec<JudgedFalseBelief>,
     criterion: TrainingCriterion,
     model: ConsoleModel,
@@ -42,7 +42,7 @@ pub(super) struct TrainingShell {
     signals: Vec<JudgedSignal>,
     /// Whether the final score of the recording has been shown.
     concluded: bool,
-    /// For each period of false belief, whether the wizard was told that it was missed.
+    /// For each period of false belief, whether the wizard was told that no signal corrected it.
     told_missed: Vec<bool>,
     now: SessionTime,
     opened: Instant,
@@ -50,10 +50,10 @@ pub(super) struct TrainingShell {
 }
 
 impl TrainingShell {
-    /// The console before its first frame; `speed` is an index into [`SPEEDS`].
+    /// The training console before its first frame; `speed` is an index into [`SPEEDS`].
     ///
     /// # Errors
-    /// The recording's keys are not valid for its kitchen any more, or the terminal was closed.
+    /// Key bindings of the recording are not valid for its kitchen any more, or the terminal was closed.
     pub fn new(
         film: SeekableReplay,
         spells: Vec<FalseBeliefPeriod>,
@@ -86,7 +86,7 @@ impl TrainingShell {
             opened: now,
             at: now,
         };
-        // At position 1 the trial has started; it is paused until the wizard begins.
+        // At position 1 the trial has started; the replay is paused until the wizard begins.
         shell.film.wind(1);
         Ok(shell)
     }
@@ -95,7 +95,7 @@ impl TrainingShell {
         self.film.position == self.film.length().1
     }
 
-    /// Whether the recording is finished and the wizard has closed its score.
+    /// Whether the recording is finished and the wizard has closed the final score.
     fn is_done(&self) -> bool {
         self.concluded && self.model.dialog.is_none()
     }
@@ -110,7 +110,7 @@ impl TrainingShell {
         }
     }
 
-    /// Handles a message from the terminal; returns how the wizard leaves the recording, if at all.
+    /// Handles a message from the terminal; returns how the wizard leaves the recording, if the message leaves it.
     fn take_message(&mut self, message: ConsoleMessage) -> Option<LeavingReason> {
         self.tick();
         self.model.now = self.now;
@@ -154,7 +154,7 @@ impl TrainingShell {
         let _ = apply(&mut self.film.session, &shown);
     }
 
-    /// Judges a signal of the wizard and gives feedback.
+    /// Judges a signal of the wizard and gives feedback on the signal.
     fn signal(&mut self, shown: Event) {
         let Event::SignalShown { signal, .. } = &shown else { return };
         if !self.model.playback.as_ref().is_some_and(|playback| playback.playing) {
@@ -185,7 +185,7 @@ impl TrainingShell {
         self.tell(level, format!("{words}: {text}"));
     }
 
-    /// The false beliefs at a time of the trial's clock, as text.
+    /// The false beliefs that the participant has at a time of the trial's clock, as text.
     fn wrong_now(&self, clock: SessionTime) -> String {
         let kitchen = &self.film.session.kitchen;
         let open = self.spells.iter().filter(|spell| spell.holds(clock));
@@ -197,7 +197,7 @@ impl TrainingShell {
         self.model.clock = SessionTime(self.opened.elapsed().as_nanos() as u64);
     }
 
-    /// Advances the replay by the time that has passed, and reports false beliefs that were missed.
+    /// Advances the replay by the time that has passed, and reports false beliefs that no signal corrected.
     fn play(&mut self) {
         let passed_s = self.at.elapsed().as_secs_f64();
         self.at = Instant::now();

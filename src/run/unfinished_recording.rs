@@ -15,13 +15,13 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::session::protocol::ProtocolEvent;
 use crate::session::{LogHeader, SessionSpec, TimestampedEvent};
 
-/// A session that is ready to be run and recorded.
+/// A session that is prepared to be run and recorded.
 pub(super) struct PreparedSession {
     pub engine: SessionEngine,
     pub header: LogHeader,
-    /// First events of the recording.
+    /// First events of the new recording, which exist before the session runs.
     pub first: Vec<TimestampedEvent>,
-    /// The consent that the participant has just given, if it was asked for.
+    /// The participant's consent, if it was asked for just before the session.
     pub consent: Option<ProtocolEvent>,
     /// Session time at which the session begins.
     pub time: SessionTime,
@@ -30,7 +30,7 @@ pub(super) struct PreparedSession {
     pub place: RecordingPlace,
 }
 
-/// Where the recording's folder is created.
+/// In which folder the recording's folder is created.
 pub(super) enum RecordingPlace {
     In(PathBuf),
     /// Beside the previous part of the recording, which stays locked.
@@ -41,7 +41,7 @@ impl PreparedSession {
     /// Prepares a session; nothing is recorded yet.
     ///
     /// # Errors
-    /// The recording cannot be continued.
+    /// The recording that shall be continued cannot be continued.
     pub fn new(beginning: SessionStart) -> Result<PreparedSession, LiveError> {
         match beginning {
             SessionStart::New { files, trial, out } => {
@@ -85,22 +85,22 @@ impl PreparedSession {
         }
     }
 
-    /// Adds the consent that the participant has just given.
+    /// Adds to the prepared session the consent that the participant has just given.
     pub fn with_consent(self, consent: Option<ProtocolEvent>) -> PreparedSession {
         PreparedSession { consent, ..self }
     }
 
-    /// Adds a comparison of wizard and assistants.
+    /// Adds to the prepared session a comparison of wizard and assistants.
     pub fn comparing(self, compare: Option<ComparisonRequest>) -> PreparedSession {
         PreparedSession { compare, ..self }
     }
 
-    /// The kitchen of the session.
+    /// The kitchen of the prepared session.
     pub fn kitchen(&self) -> &Kitchen {
         &self.engine.session().kitchen
     }
 
-    /// Settings of the session.
+    /// Settings of the prepared session.
     pub fn spec(&self) -> &SessionSpec {
         &self.engine.session().spec
     }

@@ -1,5 +1,6 @@
-//! Verification of a recording: the session is run again from its header and external events only, and every line must
-//! equal the recorded line byte for byte. Applying the recorded events one by one must lead to the same state.
+//! Verification of a recording: the session is run again from the recording's header and external events only, and
+//! every line of the new log must equal the recorded line byte for byte. Applying the recorded events one by one must
+//! lead to the same state.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -25,15 +26,15 @@ pub struct Verification {
     pub verified: bool,
     /// Number of recorded events.
     pub events: u64,
-    /// Whether the recording was cut off; it is verified up to the cut.
+    /// Whether the recording was cut off; a cut recording is verified up to the cut.
     pub cut: bool,
     /// Whether the recording's session is still running.
     pub running: bool,
     /// Version of the program since which simulated participants decide differently than in this recording; null if
-    /// they do not.
+    /// they decide as in the recording.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub people_changed: Option<&'static str>,
-    /// First difference between the recording and running it again; null without one.
+    /// First difference between the recorded events and those of running the session again; null without a difference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub difference: Option<VerificationDifference>,
 }
@@ -41,19 +42,19 @@ pub struct Verification {
 /// First difference between a recording and running its session again.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VerificationDifference {
-    /// Sequence number of the recorded event.
+    /// Sequence number of the recorded event that differs.
     pub seq: u64,
-    /// Path of the log; with several parts, of the part's log.
+    /// Path of the log that contains the event; with several parts, the log of the part.
     pub log: PathBuf,
-    /// Line number in the log, from 1.
+    /// Number of the event's line in the log, from 1.
     pub line: usize,
     /// The recorded event, as a line of the log.
     pub recorded: String,
-    /// Line from running the session again; null if it gives none.
+    /// The event's line from running the session again; null if running it again gives no such event.
     pub again: Option<String>,
 }
 
-/// Runs the session of a recording again and compares the events.
+/// Runs the session of a recording again and compares the new events with the recorded ones.
 ///
 /// # Errors
 /// The recording cannot be read, or its events cannot be applied.
@@ -73,7 +74,7 @@ pub(super) struct RepeatedRecording {
     pub again: RepeatedSession,
     /// The session after applying the recorded events.
     replayed: SessionFollower,
-    /// First difference between recording and re-run, if any.
+    /// First difference between the recorded events and those of the re-run; `None` without a difference.
     pub difference: Option<VerificationDifference>,
 }
 
@@ -107,15 +108,15 @@ impl RepeatedRecording {
 pub(super) struct RepeatedSession {
     pub engine: SessionEngine,
     /// Events of the re-run that have not been compared yet; at the end of a cut recording, the events that the
-    /// recording lacks.
+    /// recording lacks because of the cut.
     pub produced: VecDeque<TimestampedEvent>,
-    /// The assistant, which computes recommendations anew, if the session has one.
+    /// The assistant, which computes recommendations anew; `None` if the session asks no assistant.
     advisor: Option<Advisor>,
     questions: VecDeque<AdviceRequest>,
 }
 
 impl RepeatedSession {
-    /// Runs the session up to the recorded line and compares the two.
+    /// Runs the session up to the recorded line and compares that line with the new one.
     fn difference_at(&mut self, line: &LogLine, log: &Path) -> Option<VerificationDifference> {
         let recorded = &line.stamped;
         if self.produced.is_empty() {
@@ -143,18 +144,18 @@ impl RepeatedSession {
         })
     }
 
-    /// An external event for the re-run; a recommendation is computed again, for the request after the same event.
+    /// An external event for the re-run; a recommendation is computed anew for the request after the same event.
     fn computed_again(&mut self, event: &Event) -> Event {
         let (Event::Advised(advice), Some(advisor)) = (event, &mut self.advisor) else { return event.clone() };
         self.questions.retain(|question| question.seq >= advice.for_seq);
         match self.questions.front().filter(|question| question.seq == advice.for_seq) {
             Some(question) => Event::Advised(advisor.answer(question)),
-            // Without a matching request, a silent recommendation is expected.
+            // Without a matching request for advice, a recommendation of no signal is expected.
             None => Event::Advised(Recommendation::silent(advice.for_seq, advice.for_ns)),
         }
     }
 
-    /// Whether the re-run ends with the same session state and estimate as the replay, without events left over.
+    /// Whether the re-run ends with the same session state and belief estimate as the replay, without events left over.
     fn ends_like(&self, replayed: &SessionFollower) -> bool {
         self.produced.is_empty()
             && *self.engine.session() == replayed.session

@@ -8,15 +8,15 @@ use crate::history::comparison::SenderComparison;
 use crate::session::{Event, TimestampedEvent};
 
 impl ComparisonFollower {
-    /// Starts the comparison's thread, which ends when the returned desk is dropped.
+    /// Starts the comparison's thread, which ends when the returned connection is dropped.
     pub fn on_thread(mut self) -> LiveComparison {
         let (tell, events) = channel::<TimestampedEvent>();
         let (show, views) = channel();
         thread::spawn(move || {
             while let Ok(stamped) = events.recv() {
                 let before = self.progress();
-                // The session has accepted this event. If the comparison's copy of the session refuses it, the
-                // comparison ends.
+                // The session itself has accepted this event. If the comparison's copy of the session refuses the
+                // event, the comparison ends.
                 if self.apply(&stamped).is_err() {
                     return;
                 }
@@ -39,19 +39,19 @@ pub struct LiveComparison {
 }
 
 impl LiveComparison {
-    /// Passes an event of the session to the comparison.
+    /// Passes an event of the session to the thread that compares wizard and assistants.
     pub fn tell(&self, stamped: &TimestampedEvent) {
         // If the comparison's thread has ended, the session continues without a comparison.
         let _ = self.tell.send(stamped.clone());
     }
 
-    /// The final comparison, after all events that were passed.
+    /// The final comparison, after all events that were passed to its thread.
     pub fn last(self) -> Option<SenderComparison> {
         drop(self.tell);
         self.views.into_iter().last()
     }
 
-    /// The latest comparison, if there is a new one since the last call.
+    /// The latest comparison of wizard and assistants, if there is a new one since the last call.
     pub fn newest(&self) -> Option<SenderComparison> {
         self.views.try_iter().last()
     }

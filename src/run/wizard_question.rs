@@ -13,7 +13,7 @@ use crate::session::wall_display::AnswerEntry;
 /// Period of redrawing a question on the screen.
 const REDRAW: Duration = Duration::from_millis(100);
 
-/// Asks a question; returns the index of the answer, or `None` to quit the program.
+/// Asks the wizard a question; returns the index of the chosen answer, or `None` if the wizard quits the program.
 ///
 /// # Errors
 /// The terminal was closed.
@@ -21,8 +21,8 @@ pub(super) async fn ask(desk: &mut OperatorDesk, question: &StartQuestion) -> Re
     Ok(ask_consent(desk, question, false).await?.map(|(index, _)| index))
 }
 
-/// Asks a question that, with `on_display`, the participant's page can answer, too, by choosing the first answer.
-/// Returns the answer and where it was given.
+/// Asks the wizard a question that, with `on_display`, the participant's page can answer, too, by choosing the first
+/// answer. Returns the answer and where the answer was given.
 ///
 /// # Errors
 /// The terminal was closed.
@@ -45,7 +45,7 @@ struct OpenQuestion<'a> {
     /// Whether the participant's page can answer the question.
     on_display: bool,
     theme: Theme,
-    /// Whether the screen has to be redrawn.
+    /// Whether the screen with the question has to be redrawn.
     dirty: bool,
 }
 
@@ -58,7 +58,7 @@ impl ConsoleShell for OpenQuestion<'_> {
     }
 
     /// Handles an event. Gaze and other page inputs are discarded during a question; otherwise they would be processed
-    /// later as if they were new.
+    /// later as if they were new inputs.
     fn take(&mut self, event: LoopEvent) -> Result<Option<(StartQuestionReply, AnswerEntry)>, LiveError> {
         let message = match event {
             LoopEvent::Page(input) if self.on_display && is_consent(&input) => {

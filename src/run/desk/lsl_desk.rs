@@ -6,7 +6,7 @@ use crate::analysis::lsl::describe;
 use crate::edge::lsl::{self, LslError, LslLibrary, LslStreams};
 use crate::session::{Session, SessionSpec};
 
-/// The LSL library, if the session uses it, and the streams that are sent. A participant's streams stay open from one
+/// The LSL library, if the session uses LSL, and the streams that are sent. A participant's streams stay open from one
 /// recording to the next, so that a recorder can continue.
 #[derive(Default)]
 pub(in crate::run) struct LslDesk {
@@ -15,31 +15,31 @@ pub(in crate::run) struct LslDesk {
 }
 
 impl LslDesk {
-    /// Loads the library, if the session uses it.
+    /// Loads the LSL library, if the session uses LSL.
     ///
     /// # Errors
-    /// There is no such library, or it is too old.
+    /// The LSL library is missing, or too old.
     pub fn open(spec: &SessionSpec) -> Result<LslDesk, LslError> {
         let library = spec.uses_lsl().then(|| lsl::load(spec.lsl.as_ref())).transpose()?;
         Ok(LslDesk { library, streams: None })
     }
 
-    /// The LSL library, if the session uses it.
+    /// The LSL library; `None` if the session does not use LSL.
     pub fn library(&self) -> Option<LslLibrary> {
         self.library
     }
 
-    /// The LSL streams of this session; `None` if it sends none.
+    /// The LSL streams that this session sends; `None` if it sends none.
     ///
     /// # Errors
-    /// The library cannot open the streams.
+    /// The LSL library cannot open the streams.
     pub fn streams(&mut self, session: &Session) -> Result<Option<Rc<LslStreams>>, LslError> {
         let wanted = describe(&session.spec, &session.kitchen);
         let Some(library) = self.library.filter(|_| !wanted.is_empty()) else { return Ok(None) };
         if let Some(streams) = self.streams.as_ref().filter(|streams| streams.descriptions == wanted) {
             return Ok(Some(streams.clone()));
         }
-        // Streams of the previous participant end before new ones are opened.
+        // The previous participant's LSL streams end before new ones are opened.
         self.streams = None;
         self.streams = Some(Rc::new(LslStreams::offer(library, wanted)?));
         Ok(self.streams.clone())

@@ -13,10 +13,10 @@ use crate::session::{Session, SessionSpec};
 pub(in crate::run) struct WallDisplay(Option<DisplayServer>);
 
 impl WallDisplay {
-    /// Starts the server of the display, if the session has one.
+    /// Starts the server of the participant's display, if the session has a display.
     ///
     /// # Errors
-    /// The address cannot be opened.
+    /// The network address of the display's server cannot be opened.
     pub async fn open(spec: &SessionSpec) -> Result<WallDisplay, LiveError> {
         if spec.participant.kind != ParticipantKind::Display {
             return Ok(WallDisplay(None));
@@ -26,12 +26,12 @@ impl WallDisplay {
         opened.map(|display| WallDisplay(Some(display))).map_err(|reason| LiveError::Display { address, port, reason })
     }
 
-    /// The participant's display, if the session has one.
+    /// The server of the participant's display; `None` if the session has no display.
     pub fn display(&self) -> Option<&DisplayServer> {
         self.0.as_ref()
     }
 
-    /// Lets the participant's page ask for consent to this text; returns whether a page is connected.
+    /// Lets the participant's page ask for consent to `text`; returns whether a page is connected.
     pub fn ask_consent(&self, session: &Session, text: &str) -> bool {
         let screen = self.0.as_ref().map(DisplayServer::screen);
         if let Some(screen) = &screen {
@@ -41,7 +41,7 @@ impl WallDisplay {
         screen.is_some()
     }
 
-    /// Waits for the next input of the participant's page; forever if there is none.
+    /// Waits for the next input of the participant's page; waits forever if there is no page.
     pub async fn next(&mut self) -> Option<PageInput> {
         match &mut self.0 {
             Some(display) => display.next().await,
@@ -50,7 +50,7 @@ impl WallDisplay {
     }
 }
 
-/// Whether an input of the page is the participant's consent.
+/// Whether an input of the participant's page is the participant's consent.
 pub(in crate::run) fn is_consent(input: &PageInput) -> bool {
     *input == PageInput::Reply(ParticipantResponse::Consent)
 }

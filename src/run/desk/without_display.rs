@@ -3,7 +3,7 @@
 use crate::run::error::LiveError;
 use crate::session::{Session, SessionSpec};
 
-/// Input of a participant's page, which never occurs in this build: the type has no value.
+/// Input of a participant's page, which never occurs in this build; so the type has no values.
 pub(in crate::run) enum PageInput {}
 
 /// Stand-in for the participant's display, which this build lacks.
@@ -11,7 +11,7 @@ pub(in crate::run) enum PageInput {}
 pub(in crate::run) struct WallDisplay {}
 
 impl WallDisplay {
-    /// Opens no display; sessions that need one were refused before.
+    /// Opens no display; sessions that need a display were refused before.
     ///
     /// # Errors
     /// None.
@@ -19,18 +19,18 @@ impl WallDisplay {
         Ok(WallDisplay {})
     }
 
-    /// Does nothing, since this build has no page that could ask.
+    /// Does nothing, since this build has no page that could ask for consent.
     pub fn ask_consent(&self, _: &Session, _: &str) -> bool {
         false
     }
 
-    /// Never returns, since this build has no page.
+    /// Never returns, since this build has no participant's page.
     pub async fn next(&mut self) -> Option<PageInput> {
         std::future::pending().await
     }
 }
 
-/// Never called, since this build has no page.
+/// Never called, since this build has no participant's page.
 pub(in crate::run) fn is_consent(_: &PageInput) -> bool {
     false
 }

@@ -21,18 +21,18 @@ use crate::session::settings::ParticipantKind;
 use crate::session::tracker::GazeGapSpec;
 use crate::wizard::ScriptedWizard;
 
-/// The simulated participant of a trial. In a study plan, the same participant has several trials and improves with
-/// practice.
+/// The simulated participant of a trial. In a study plan, one simulated participant has several trials and improves
+/// with practice.
 pub(super) fn simulated_participant(kitchen: Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> SimulatedParticipant {
     let person = spec.step.as_ref().map_or(trial, |step| u64::from(step.participant));
     let trials = spec.step.as_ref().and_then(|step| step.period).map_or(0, |period| period.saturating_sub(1));
-    // The human makes about half of the presses, so that the practice of earlier trials can be estimated.
+    // Presses of earlier trials are practice; about half of a trial's presses are the human's.
     let presses = f64::from(trials) * f64::from(spec.trial.presses) / 2.0;
     let population = spec.participant.population.clone().unwrap_or_default();
     SimulatedParticipant::new(kitchen, &population, spec.seed, person, trial, Experience { trials, presses })
 }
 
-/// The scripted wizard of a trial, if it has one; it reads offers where the session shows them.
+/// The scripted wizard of a trial, if it has one; the script reads offers where the session shows offers.
 pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial: u64) -> Option<ScriptedWizard> {
     let (own_hand, seed) = (spec.signals.own_hand, spec.seed);
     let script = spec
@@ -41,13 +41,13 @@ pub(super) fn scripted_wizard(kitchen: &Arc<Kitchen>, spec: &SessionSpec, trial:
     Some(if spec.script_reads_offers() { script.reading_offers(seed, trial) } else { script })
 }
 
-/// Gaps in the data of the simulated eye tracker in a trial.
+/// Schedule of the gaps in the data of the simulated eye tracker in a trial.
 pub(super) fn gaze_gaps(spec: &SessionSpec, trial: u64) -> Option<GazeDropoutSchedule> {
     let GazeGapSpec { every_s, shortest_s, longest_s } = *spec.tracker.gaps.as_ref()?;
     Some(GazeDropoutSchedule::new(every_s, [shortest_s, longest_s], stream(spec.seed, "tracker's gaps", trial)))
 }
 
-/// The robot of a trial.
+/// The robot of a trial, with the kind of arm that the settings name.
 ///
 /// # Panics
 /// The settings ask for an arm with simulated physics, and this build has none.

@@ -1,5 +1,5 @@
-//! Events that follow immediately from others: evaluation of a familiarisation's criterion, gaze accuracy, the
-//! assistant's signal, the end of a proposal.
+//! Events that follow immediately from other events: whether a practice trial (familiarisation) met its criterion, the
+//! measured gaze accuracy, the assistant's signal, the end of a proposal.
 
 use super::SessionEngine;
 use crate::base::time::SessionTime;
@@ -13,7 +13,7 @@ use crate::session::protocol::ProtocolEvent;
 use crate::session::{Event, TrialPhase};
 
 impl SessionEngine {
-    /// Evaluates at the end of a familiarisation whether its criterion is met.
+    /// Records at the end of a practice trial (familiarisation) whether its criterion is met.
     pub(super) fn check_criterion(&mut self, now: SessionTime) {
         let session = self.session();
         let Some((step, protocol)) = session.step() else { return };
@@ -27,14 +27,14 @@ impl SessionEngine {
         self.record_own(now, Event::Protocol(ProtocolEvent::CriterionChecked { met, orders, presses, errors }));
     }
 
-    /// Removes a proposal of presses from the display once it is out of date.
+    /// Removes proposed presses from the participant's display once they are out of date.
     pub(super) fn end_outdated_proposal(&mut self, now: SessionTime) {
         if self.session().is_running() && proposals::is_outdated(self.session()) {
             self.record_own(now, Event::SignalEnded { reason: SignalEndReason::Outdated });
         }
     }
 
-    /// Measures the gaze accuracy after the last target of a check.
+    /// Measures the gaze accuracy after the last target of a gaze accuracy check.
     pub(super) fn measure_calibration(&mut self, now: SessionTime) {
         let session = self.session();
         let event = session.calibration.as_ref().and_then(|check| check.to_measure(&session.viewing()));
@@ -43,7 +43,7 @@ impl SessionEngine {
         }
     }
 
-    /// Records which change the human seems unaware of, judged by gaze.
+    /// Records of which aspect the human seems unaware, judged by gaze.
     pub(super) fn note_unawareness(&mut self, now: SessionTime) {
         let unaware = self.follower.unaware().filter(|_| self.session().is_running());
         if let Some(aspect) = unaware {
@@ -52,8 +52,8 @@ impl SessionEngine {
         }
     }
 
-    /// The signal that the assistant sends because of its recommendation, if it may act. An error gets one proposal, as
-    /// long as the error is the human's last press.
+    /// The signal that the assistant sends because of its recommendation, if the assistant may act. An error gets one
+    /// proposal, as long as the error is the human's last press.
     pub(super) fn acted_on(&self, advice: &Recommendation) -> Option<Event> {
         let is_last = |error: u64| self.judged().last().is_some_and(|press| press.seq == error);
         let proposal =

@@ -12,7 +12,7 @@ use crate::session::offers;
 use crate::session::{Event, TimestampedEvent};
 
 impl SessionEngine {
-    /// Tells the simulated participant the part of an applied event that they can notice.
+    /// Tells the simulated participant the part of an applied event that a participant can notice.
     pub(super) fn tell_participant(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let Some(participant) = &mut self.participant else { return };
         let session = &self.follower.session;
@@ -35,10 +35,10 @@ impl SessionEngine {
         }
     }
 
-    /// Records that the offer to the wizard opens or closes, as due.
+    /// Records the event by which an offer to the wizard opens or closes, if one is due.
     pub(super) fn review_offer(&mut self, now: SessionTime) {
         while let Some(mut event) = offers::due(self.session(), now) {
-            // A recommendation states a reason for its first option only; if two orders are of the same dish, the offer
+            // A recommendation states a reason for its first option only; if two orders want the same dish, the offer
             // may be about the other order.
             if let Event::OfferOpened(advice) = &mut event
                 && let (None, OfferedCommunication::Signal(signal)) = (&advice.reason, &advice.what)
@@ -50,8 +50,8 @@ impl SessionEngine {
         }
     }
 
-    /// Tells a scripted wizard the part of an applied event that it sees: kitchen, presses, gaze, and offers if they
-    /// are shown.
+    /// Tells a scripted wizard the part of an applied event that a wizard sees: kitchen, presses, gaze, and offers if
+    /// they are shown.
     pub(super) fn tell_wizard(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) {
         let Some(wizard) = &mut self.wizard else { return };
         let session = &self.follower.session;

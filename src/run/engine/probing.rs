@@ -1,4 +1,4 @@
-//! Freeze probes in a running session: begins them when they are due, draws their questions, and lets a simulated
+//! Freeze probes in a running session: begins probes when they are due, draws their questions, and lets a simulated
 //! participant answer.
 
 use super::SessionEngine;
@@ -26,7 +26,7 @@ impl SessionEngine {
         Some(open.when(open.asked_at, SessionTime::from_secs_f64(after_s)).max(session.time))
     }
 
-    /// Records the events of a freeze probe that are due. An answer at the last possible time counts.
+    /// Records the events of a freeze probe that are due. An answer at the last possible time still counts.
     pub(super) fn review_probe(&mut self, now: SessionTime) {
         loop {
             let rule = upcoming(self.session()).filter(|(due, _)| *due <= now);
@@ -54,7 +54,7 @@ impl SessionEngine {
         self.record_own(now, Event::Probe(ProbeEvent::Begun { probe, origin, uses_estimate, questions }));
     }
 
-    /// For each state aspect, whether the estimate says that the belief about it is false now.
+    /// For each state aspect, whether the estimate says that the participant's belief about it is false now.
     fn believed_wrong(&mut self, now: SessionTime) -> Vec<bool> {
         let belief = self.follower.belief_at(now);
         let session = self.session();
@@ -73,7 +73,7 @@ impl SessionEngine {
             (_, Some(aspect)) => participant.answer(session.state, aspect, &asked.choices, (probe, question)),
             (ProbeSubject::NextOrder, _) => participant.next_order().map(|order| kitchen.location(order).name.clone()),
             // Simulated participants do not answer questions about the robot's next press, since they do not predict
-            // the robot.
+            // the robot's presses.
             _ => None,
         };
         let asks_confidence = of_trial(&session.spec).is_some_and(|spec| spec.confidence);

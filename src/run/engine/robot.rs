@@ -1,4 +1,4 @@
-//! The robot in a running session: turns its activities into events, and tells it about events that concern it.
+//! The robot in a running session: turns the robot's activities into events, and tells it about events that concern it.
 
 use super::SessionEngine;
 use crate::arm::worker::RobotTaskExecutor;
@@ -9,7 +9,7 @@ use crate::robot::RobotActivity;
 use crate::session::{Event, TimestampedEvent};
 
 impl SessionEngine {
-    /// The session's robot, for experiments with its arm.
+    /// The session's robot, for experiments with the robot's arm.
     pub fn robot(&mut self) -> &mut RobotTaskExecutor {
         &mut self.robot
     }
@@ -37,8 +37,8 @@ impl SessionEngine {
         self.record_own(now, event);
     }
 
-    /// Tells the robot about an applied event (an intervention of the wizard, or a press of the human); returns its
-    /// reactions.
+    /// Tells the robot about an applied event (an intervention of the wizard, or a press of the human); returns the
+    /// robot's reactions.
     pub(super) fn tell_robot(&mut self, stamped: &TimestampedEvent, change: &KitchenChange) -> Vec<RobotActivity> {
         let kitchen = self.session().kitchen.clone();
         let now = stamped.time;
@@ -70,7 +70,7 @@ impl SessionEngine {
         deed.into_iter().collect()
     }
 
-    /// Starts the hand motion of a simulated participant in time for its next press.
+    /// Starts the hand motion of a simulated participant in time for the participant's next press.
     pub(super) fn let_hand_follow(&mut self, now: SessionTime) {
         if let Some((button, at)) = self.participant.as_ref().and_then(SimulatedParticipant::next_press) {
             let button_m = self.session().kitchen.button(Agent::Human, button).at_m;

@@ -15,9 +15,9 @@ const PAUSED: &str = "trial paused";
 /// Sends requests to Pupil Capture for one recording.
 #[derive(Debug, Default)]
 pub(super) struct CaptureOrders {
-    /// Channel to Pupil Capture, if that is the tracker.
+    /// Channel to the program Pupil Capture; `None` if it is not the tracker.
     orders: Option<Sender<CaptureRequest>>,
-    /// Name of the recording, as Pupil Capture gets it.
+    /// Name of the recording, under which Pupil Capture records, too.
     name: String,
     /// Whether the trial has begun and not ended.
     is_on: bool,
@@ -29,8 +29,8 @@ pub(super) struct CaptureOrders {
 }
 
 impl CaptureOrders {
-    /// Prepares Pupil Capture for a recording with this name; the trial of a continued recording is recorded from now
-    /// on.
+    /// Prepares Pupil Capture for a recording with this name; in a continued recording, Pupil Capture records the trial
+    /// from now on.
     pub fn begin(tracker: &GazeTracker, name: String, session: &Session, now: Instant) -> CaptureOrders {
         let mut capture = CaptureOrders { orders: tracker.orders(), name, ..CaptureOrders::default() };
         capture.probe = session.probes.open.as_ref().map(|open| open.number);
@@ -120,7 +120,7 @@ impl CaptureOrders {
         self.order(CaptureRequest::Annotate { label, at, state });
     }
 
-    /// Sends a request if Pupil Capture is connected; a lost connection is shown in the console's line about devices.
+    /// Sends a request to Pupil Capture if it is connected; the console's line about devices shows a lost connection.
     fn order(&self, order: CaptureRequest) {
         if let Some(orders) = &self.orders {
             let _ = orders.try_send(order);

@@ -21,7 +21,7 @@ use crate::session::{Event, Session};
 /// The participant's display during one recording.
 pub(super) struct ParticipantDisplay {
     screen: DisplayHandle,
-    /// Content that the display shows at present.
+    /// Content that the participant's display shows at present.
     shown: Option<DisplayUpdate>,
     /// The robot's hand, if the display shows it, with the pose that was sent last.
     hand: Option<RobotHand>,
@@ -29,7 +29,7 @@ pub(super) struct ParticipantDisplay {
 }
 
 impl ParticipantDisplay {
-    /// The display of the operator's desk, if there is one, with its state for the wizard.
+    /// The participant's display of the operator's desk, if there is one, with the display's state for the wizard.
     pub fn at(desk: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
         let health = |display: &DisplayServer| ParticipantDisplayHealth {
             url: display.url(),
@@ -43,13 +43,13 @@ impl ParticipantDisplay {
         )
     }
 
-    /// Sends the constant part of the page for this session.
+    /// Sends the part of the participant's page that stays the same during this session.
     pub fn build(&mut self, session: &Session) {
         self.screen.build(&scene(session));
         (self.hand, self.told) = (RobotHand::new(session), None);
     }
 
-    /// Tells the page where the robot's hand is now, if the hand moved.
+    /// Tells the page where the robot's hand is now, if the hand has moved.
     pub fn move_robot(&mut self, session: &Session, now: SessionTime) {
         let pose = self.hand.as_mut().map(|hand| hand.at(session, now));
         if let Some(pose) = pose.filter(|_| pose != self.told) {
@@ -58,7 +58,7 @@ impl ParticipantDisplay {
         }
     }
 
-    /// Sends the content to the display if it changed.
+    /// Sends the content of the participant's page to the display if the content changed.
     pub fn show(&mut self, session: &Session, now: SessionTime) {
         let seen = sight(session);
         if self.shown.as_ref() != Some(&seen) {
@@ -78,7 +78,7 @@ impl ParticipantDisplay {
     }
 }
 
-/// An input of the page, converted to an event of the session and a notice to the wizard.
+/// What an input of the participant's page leads to: an event of the session, or a notice to the wizard.
 #[derive(Debug, Default)]
 pub(super) struct PageEvent {
     pub event: Option<Event>,
@@ -134,14 +134,14 @@ fn answered(reply: ParticipantResponse, session: &Session) -> Option<Event> {
     }
 }
 
-/// A press of the participant. Its event is stamped at reception, since time in the log never decreases; the time at
-/// which the button went down is recorded in addition.
+/// A press of the participant. The press's event has the time of reception, since time in the log never decreases; the
+/// time at which the button went down is recorded in addition.
 fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> PageEvent {
     if session.kitchen.button_named(Agent::Human, &button).is_none() {
         let text = "the display told a button that the kitchen does not have".to_string();
         return PageEvent { event: None, notice: Some((NoticeLevel::Refused, text)) };
     }
-    // A press that reaches the program after the probe began is ignored.
+    // A press that reaches the program after the freeze probe began is ignored.
     if session.probes.open.is_some() {
         return PageEvent::default();
     }
@@ -156,7 +156,7 @@ fn press(button: String, at: Instant, session: &Session, now: SessionTime) -> Pa
 fn turn(session: &Session, step: &str, forward: bool) -> Option<Event> {
     let (tutorial, state) = session.tutorial()?;
     let by = TutorialReader::Participant;
-    // A page that was turned twice at the same time is turned once.
+    // A page that participant and wizard turned at the same time is turned only once.
     let from = tutorial.position(step).filter(|&from| from == state.step)?;
     let to = if forward { from + 1 } else { from.checked_sub(1)? };
     practise(
@@ -169,7 +169,7 @@ fn turn(session: &Session, step: &str, forward: bool) -> Option<Event> {
 }
 
 /// Converts an input of the tutorial's page to an event. Impossible inputs are ignored without a notice to the wizard:
-/// they came late, or were presses in a step without presses.
+/// they came late, or were presses in a tutorial step without presses.
 fn practise(session: &Session, event: TutorialEvent) -> Option<Event> {
     let event = Event::Protocol(ProtocolEvent::Tutorial(event));
     admit(session, &event).is_ok().then_some(event)
@@ -200,7 +200,7 @@ fn answer(event: ProtocolEvent, session: &Session) -> Option<Event> {
     (session.spec.display.questionnaire == AnswerEntry::Display).then_some(Event::Protocol(event))
 }
 
-/// Session time of an instant shortly before the present one.
+/// Session time of an instant shortly before `now`.
 fn session_time(at: Instant, now: SessionTime) -> SessionTime {
     let age_ns = Instant::now().saturating_duration_since(at).as_nanos() as u64;
     SessionTime(now.0.saturating_sub(age_ns))

@@ -13,7 +13,7 @@ use crate::run::desk::GazeTracker;
 use crate::session::tracker::TrackerEvent;
 use crate::session::{Event, Session, TrialPhase};
 
-/// No events, for a tracker message that is none.
+/// The result for a tracker message that leads to no event.
 const NONE: [Option<Event>; 2] = [None, None];
 
 /// Gaze input of one recording.
@@ -22,9 +22,9 @@ pub(super) struct GazeInput {
     clock: DeviceClock,
     limit: RateLimit,
     dropped: DroppedInputCounts,
-    /// Whether the wizard was told of a wrong time stamp.
+    /// Whether the wizard was already told of a wrong time stamp of gaze.
     has_complained: bool,
-    /// Gaze replayed from a file, with the index of the next sample.
+    /// The file from which gaze is replayed, with the index of the next sample.
     file: Option<Arc<GazeFile>>,
     next: usize,
 }
@@ -40,14 +40,14 @@ impl GazeInput {
         GazeInput { dropped, file: Some(file), next, ..GazeInput::default() }
     }
 
-    /// Message to the wizard about the first sample with a wrong time stamp.
+    /// Message to the wizard about the first gaze sample with a wrong time stamp.
     pub fn complaint(&mut self, news: &TrackerMessage) -> Option<String> {
         let TrackerMessage::WrongTime(t) = news else { return None };
         let is_first = !std::mem::replace(&mut self.has_complained, true);
         is_first.then(|| format!("gaze is refused: t = {t} is no time in seconds, nor in ms, us or ns since 1970"))
     }
 
-    /// The events for a tracker message; empty for messages that are only counted.
+    /// The session's events for a tracker message; empty for messages that are only counted.
     pub fn events(&mut self, news: TrackerMessage, now: SessionTime) -> [Option<Event>; 2] {
         let tracker = match news {
             TrackerMessage::Sample(sample, at) => return self.sample(sample, at, now),
@@ -63,7 +63,7 @@ impl GazeInput {
                 self.dropped.overrun += count;
                 return NONE;
             }
-            // Senders that are not trackers are counted at the console only, not in the log.
+            // Messages of senders that are not trackers are counted at the console only, not in the log.
             TrackerMessage::Rejected(_) | TrackerMessage::Refused { .. } => return NONE,
             TrackerMessage::Began => {
                 self.clock = DeviceClock::default();
@@ -92,7 +92,8 @@ impl GazeInput {
         [Some(Event::Tracker(tracker)), None]
     }
 
-    /// The event of a gaze sample, preceded by an event that the tracker's clock was set, if the sample shows that.
+    /// The event of a gaze sample, after an event that the tracker's clock was set, if the sample's time stamp shows
+    /// that.
     fn sample(&mut self, sample: GazeSample, at: Option<Instant>, now: SessionTime) -> [Option<Event>; 2] {
         if !self.limit.admits(now) {
             self.dropped.too_frequent += 1;
@@ -118,7 +119,7 @@ impl GazeInput {
         is_news.then_some(Event::Tracker(TrackerEvent::Dropped(self.dropped)))
     }
 
-    /// Time of the next sample of replayed gaze; `None` while the trial is not running.
+    /// Session time of the next sample of replayed gaze; `None` while the trial is not running.
     pub fn file_due(&self, session: &Session) -> Option<SessionTime> {
         let (at_s, _) = self.file.as_ref()?.samples.get(self.next)?;
         session.is_running().then(|| session_time_in_file(session, *at_s))
@@ -142,7 +143,7 @@ fn session_time(taken: TrackerTime, now: SessionTime) -> SessionTime {
     taken.at.map_or(now, |at| ago(now, at))
 }
 
-/// Session time of an earlier instant.
+/// Session time of the earlier instant `at`.
 fn ago(now: SessionTime, at: Instant) -> SessionTime {
     now - SessionTime(at.elapsed().as_nanos().min(u128::from(u64::MAX)) as u64)
 }

@@ -13,7 +13,7 @@ use crate::session::tracker::{TrackerEvent, TrackerRecording};
 use crate::session::{Event, TrialPhase};
 
 impl Live {
-    /// Handles a message from the terminal; returns how the wizard leaves the recording, if at all.
+    /// Handles a message from the terminal; returns how the wizard leaves the recording, if the message leaves it.
     pub(super) fn take_message(&mut self, message: ConsoleMessage) -> Option<LeavingReason> {
         self.tick();
         self.dirty |= !matches!(message, ConsoleMessage::Pointer(..));
@@ -31,8 +31,8 @@ impl Live {
         None
     }
 
-    /// Passes an event to the engine and records the result. Refusals are shown to the wizard, except for gaze samples
-    /// and late recommendations.
+    /// Passes an event to the engine and records the result. The wizard sees why an event was refused, except for gaze
+    /// samples and late recommendations.
     pub(super) fn input(&mut self, event: Event) {
         let is_silent = matches!(event, Event::Gaze(_) | Event::Advised(_));
         let outcome = self.engine.input(self.clock.now(), event);
@@ -42,16 +42,16 @@ impl Live {
         }
     }
 
-    /// Lets the engine raise due events.
+    /// Lets the engine raise due events, and records them.
     pub(super) fn fire(&mut self) {
         let events = self.engine.fire();
-        // Most control cycles of the arm lead to no event.
+        // Most control cycles of the robot's arm lead to no event.
         if !events.is_empty() {
             self.record(&events);
         }
     }
 
-    /// Handles an input of the page that acts for the participant.
+    /// Handles an input of the participant's page.
     pub(super) fn hear(&mut self, input: PageInput) {
         if self.engine.session().phase == TrialPhase::Closed {
             return;
@@ -65,7 +65,7 @@ impl Live {
         }
     }
 
-    /// Handles a message of the eye tracker.
+    /// Handles a message of the eye tracker in the live session.
     pub(super) fn take_gaze(&mut self, news: TrackerMessage) {
         if let TrackerMessage::Rejected(count) = news {
             self.model.count_rejected(count);
@@ -90,14 +90,14 @@ impl Live {
         }
     }
 
-    /// Handles the next sample of replayed gaze.
+    /// Handles the next sample of gaze that is replayed from a file.
     pub(super) fn take_file_gaze(&mut self) {
         if let Some(event) = self.gaze.next_of_file(self.engine.session()) {
             self.input(event);
         }
     }
 
-    /// Records the mouse pointer as a gaze sample, once the pointer has been moved.
+    /// Records the position of the mouse pointer as a gaze sample, once the pointer has been moved.
     pub(super) fn sample_pointer(&mut self) {
         if let Some([x, y]) = self.model.pointer {
             self.input(Event::Gaze(GazeSample::new(x, y, 1.0)));
@@ -105,7 +105,7 @@ impl Live {
     }
 }
 
-/// Whether the wizard gets a notice about what the tracker did, wherever the wizard looks.
+/// Whether a tracker event is shown to the wizard as a notice, in whichever view the wizard is.
 fn is_warning(event: &TrackerEvent) -> bool {
     match event {
         TrackerEvent::ClockSet { .. } | TrackerEvent::OtherSurfaces { .. } => true,

@@ -41,21 +41,21 @@ const RESTING: Duration = Duration::from_millis(250);
 /// A running session with its recording and devices.
 pub(super) struct Live {
     pub(super) engine: SessionEngine,
-    /// The assistant's thread, if the session requests advice.
+    /// Connection to the assistant's thread, if the session requests advice.
     pub(super) advisor: Option<LiveAdvisor>,
     /// The comparison of wizard and assistants, if the console shows it.
     pub(super) comparison: Option<LiveComparison>,
     /// The participant's display, if there is one.
     pub(super) display: Option<ParticipantDisplay>,
     pub(super) model: ConsoleModel,
-    /// Header of the recording.
+    /// Header of the session's recording.
     header: LogHeader,
     pub(super) log: LogWriter,
-    /// Stream to Rerun viewers.
+    /// The session's stream to Rerun viewers, if it has one.
     pub(super) viewing: Option<StreamedSession>,
-    /// Streams of the Lab Streaming Layer.
+    /// The session's streams of the Lab Streaming Layer, if it sends any.
     pub(super) lsl: Option<LslStreaming>,
-    /// Lock on the previous part of a continued recording.
+    /// Lock on the previous part of a continued recording, so that no other program writes to it.
     _before: Option<RecordingLock>,
     /// Error of writing the log, if writing has failed.
     pub(super) failed: Option<RecordingWriteError>,
@@ -66,9 +66,9 @@ pub(super) struct Live {
     pub(super) undrawn: Option<u64>,
     /// Last recorded content of the wizard's screen.
     pub(super) seen: Option<WizardScreenContent>,
-    /// Number of judged presses that the console has been told.
+    /// Number of judged presses that were passed to the console.
     pub(super) judged: usize,
-    /// Whether the screen has to be redrawn.
+    /// Whether the console's screen has to be redrawn.
     pub(super) dirty: bool,
 }
 
@@ -79,7 +79,7 @@ pub(super) struct Live {
 pub(in crate::run) async fn run(begun: PreparedSession, desk: &mut OperatorDesk) -> Result<LiveOutcome, LiveError> {
     let mut live = Live::open(begun, desk)?;
     live.greet(&desk.tracker);
-    // If the wizard left by no key, the program was told to end.
+    // If the wizard did not leave by a key, the program was told to end.
     let leaving = event_loop::run(&mut live, desk).await?.unwrap_or(LeavingReason::Quit);
     desk.tracker.keep(live.engine.session().calibrated.clone());
     let end = live.close(leaving);
@@ -105,7 +105,8 @@ impl ConsoleShell for Live {
     }
 
     fn samples_pointer(&self) -> bool {
-        // In sessions with a participant's display, the pointer there stands for gaze, not the one at the console.
+        // In sessions with a participant's display, the mouse pointer on the display stands for gaze, not the
+        // console's.
         self.engine.session().spec.participant.gaze == GazeSource::Mouse && self.display.is_none()
     }
 
@@ -203,7 +204,7 @@ impl Live {
         Ok(live)
     }
 
-    /// Opens the stream to Rerun if the session has one; if that fails, the session continues without the stream.
+    /// Opens the stream to Rerun if the session has one; if opening fails, the session continues without the stream.
     fn begin_viewing(&mut self, is_new: bool, next: u64) {
         match StreamedSession::open(self.engine.session(), &self.header, &mut self.log, next, is_new) {
             Ok(viewing) => self.viewing = viewing,
@@ -212,7 +213,7 @@ impl Live {
         self.model.viewers = self.viewing.as_ref().map(StreamedSession::status);
     }
 
-    /// Opens the session's LSL streams, if it has any; if that fails, the session continues without them.
+    /// Opens the session's LSL streams, if it has any; if opening fails, the session continues without LSL streams.
     fn begin_lsl(&mut self, desk: &mut OperatorDesk) {
         match LslStreaming::open(desk, self.engine.session(), &self.name(), &self.clock) {
             Ok(lsl) => self.lsl = lsl,
@@ -228,7 +229,7 @@ impl Live {
         self.capture = CaptureOrders::begin(tracker, self.name(), self.engine.session(), Instant::now());
     }
 
-    /// Begins the first phase of a study plan; the participant's consent is the first event.
+    /// Begins the first phase of a study plan's recording; the participant's consent is its first event.
     fn begin_protocol(&mut self, consent: Option<ProtocolEvent>) {
         if let Some(consent) = consent {
             self.input(Event::Protocol(consent));
@@ -240,12 +241,12 @@ impl Live {
         }
     }
 
-    /// Name of the recording.
+    /// Name of the session's recording.
     fn name(&self) -> String {
         self.log.folder().file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Start of a repetition of this trial in a new recording beside this one.
+    /// Start of a repetition of this trial in a new recording beside this session's.
     fn beginning_again(&self) -> SessionStart {
         let out = self.log.folder().parent().unwrap_or(std::path::Path::new(".")).to_path_buf();
         let header = LogHeader { redoes: Some(self.name()), started: None, continues: None, ..self.header.clone() };
@@ -254,7 +255,7 @@ impl Live {
 
     fn close(mut self, leaving: LeavingReason) -> Result<LiveOutcome, LiveError> {
         if self.failed.is_none() {
-            // A planned recording that is left early stays unfinished, so that it can be continued.
+            // A planned recording that the wizard leaves early stays unfinished, so that it can be continued.
             if leaving != LeavingReason::Quit || self.engine.session().is_step_done() {
                 self.input(Event::SessionEnded);
             }

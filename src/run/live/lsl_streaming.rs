@@ -16,15 +16,15 @@ use crate::session::{Session, TimestampedEvent};
 pub(super) struct LslStreaming {
     maker: LslSampleConverter,
     streams: Rc<LslStreams>,
-    /// Numbers of lost samples that the wizard was told.
+    /// Numbers of lost LSL samples that the wizard was told last.
     told: LslCounts,
 }
 
 impl LslStreaming {
-    /// The streams for a recording with this name, which begins now; `None` if the session sends none.
+    /// The LSL streams for a recording with this name, which begins now; `None` if the session sends none.
     ///
     /// # Errors
-    /// The streams cannot be opened, for this reason; the session can continue without them.
+    /// The LSL streams cannot be opened, for this reason; the session can continue without them.
     pub fn open(
         desk: &mut OperatorDesk,
         session: &Session,
@@ -41,7 +41,7 @@ impl LslStreaming {
         Ok(streams.map(open))
     }
 
-    /// Sends the samples of events that have just been recorded. `belief`: the estimate after the last event.
+    /// Sends the samples of events that have just been recorded. `belief`: the belief estimate after the last event.
     pub fn tell(
         &mut self,
         events: &[TimestampedEvent],
@@ -61,14 +61,14 @@ impl LslStreaming {
         self.streams.tell(samples.into_iter().map(timed).collect());
     }
 
-    /// State of the LSL streams.
+    /// State of the LSL streams, for the console.
     pub fn status(&self) -> LslStatus {
         let LslCounts { sent, dropped, refused } = self.streams.counts();
         let names = self.streams.descriptions.iter().map(|stream| stream.outlet.name().to_string()).collect();
         LslStatus { streams: names, sent, lost: dropped + refused }
     }
 
-    /// Message to the wizard about samples that were lost since the last call.
+    /// Message to the wizard about LSL samples that were lost since the last call.
     pub fn complaint(&mut self) -> Option<String> {
         let now = self.streams.counts();
         let before = std::mem::replace(&mut self.told, now);

@@ -13,7 +13,7 @@ use crate::session::probes::ProbeEvent;
 use crate::session::{Event, TimestampedEvent, TrialPhase};
 
 impl Live {
-    /// Writes events to the log. If that fails, the session ends, since it would have no data.
+    /// Writes events to the log. If writing fails, the session ends, since it would have no data.
     pub(super) fn record(&mut self, events: &[TimestampedEvent]) {
         self.dirty = true;
         for stamped in events {
@@ -65,7 +65,7 @@ impl Live {
         }
     }
 
-    /// Flushes log and stream, and moves the robot's hand on the participant's display.
+    /// Flushes the log and the stream to Rerun, and moves the robot's hand on the participant's display.
     pub(super) fn flush(&mut self) {
         self.move_robot();
         self.flush_log();
@@ -105,7 +105,7 @@ impl Live {
         self.check_log();
     }
 
-    /// Checks that the log is in place and undamaged.
+    /// Checks that the log file is in place and undamaged.
     pub(super) fn check_log(&mut self) {
         if self.failed.is_none()
             && let Err(error) = self.log.check()
@@ -115,7 +115,7 @@ impl Live {
     }
 
     /// Handles a log that cannot be written: alarm, robot stop, end of the session. The console stays open until the
-    /// wizard leaves.
+    /// wizard leaves it.
     pub(super) fn fail(&mut self, error: RecordingWriteError) {
         let (reason, saved) = match &error {
             RecordingWriteError::Unwritable { reason, saved, .. } => (reason.to_string(), saved.clone()),
@@ -128,8 +128,8 @@ impl Live {
         self.failed = Some(error);
         self.dirty = true;
         for event in [Event::RobotStopped, Event::SessionEnded] {
-            // The result is ignored: these events cannot be recorded, and a robot that is stopped already refuses to
-            // stop.
+            // The result is ignored: events after the failure cannot be recorded, and a robot that is stopped already
+            // refuses to stop.
             let _ = self.engine.input(self.clock.now(), event);
         }
     }

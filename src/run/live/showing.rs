@@ -8,7 +8,7 @@ use crate::session::wall_display::DisplayEvent;
 use crate::session::{Event, TrialPhase};
 
 impl Live {
-    /// Updates the time that the console shows.
+    /// Updates the time that the wizard's console shows.
     pub(super) fn tick(&mut self) {
         self.model.now = self.clock.now();
         self.model.clock = self.model.now;
@@ -37,7 +37,7 @@ impl Live {
         }
     }
 
-    /// Records that the frame just drawn is the first to show a signal.
+    /// Records that the frame just drawn is the first one that shows a signal to the wizard.
     pub(super) fn tell_drawn(&mut self) {
         if let Some(signal) = self.undrawn.take_if(|_| self.engine.session().phase != TrialPhase::Closed) {
             self.input(Event::SignalDrawn { signal });
@@ -50,7 +50,7 @@ impl Live {
             display.build(self.engine.session());
         }
         self.examine_display();
-        // A page can have been connected since before this recording.
+        // The participant's page can have been connected since before this recording.
         let page = self.model.display.as_ref().and_then(|display| display.page);
         if let Some([width_px, height_px]) = page {
             self.input(Event::Display(DisplayEvent::Connected { width_px, height_px }));
@@ -58,7 +58,7 @@ impl Live {
         self.show_participant();
     }
 
-    /// Updates the participant's display.
+    /// Updates what the participant's display shows.
     pub(super) fn show_participant(&mut self) {
         if let Some(display) = &mut self.display {
             display.show(self.engine.session(), self.clock.now());
@@ -72,7 +72,7 @@ impl Live {
         }
     }
 
-    /// Updates the state of the participant's display that the wizard sees.
+    /// Updates the state of the participant's display that the console shows to the wizard.
     pub(super) fn examine_display(&mut self) {
         if let (Some(display), Some(health)) = (&self.display, &mut self.model.display) {
             display.examine(health);

@@ -1,4 +1,4 @@
-//! Timing of the targets in a check of gaze accuracy.
+//! Timing of the targets in a gaze accuracy check.
 
 use super::live_session::Live;
 use crate::base::time::SessionTime;
@@ -7,8 +7,8 @@ use crate::session::accuracy_check::{AcceptedGazeCheck, GazeCheckEvent, RunningG
 use crate::session::settings::GazeSource;
 
 impl Live {
-    /// Carries an accepted check over from the previous recording, since tracker and participant are the same (not for
-    /// simulated participants, whose eyes are drawn anew).
+    /// Uses the gaze accuracy check that was accepted in the previous recording again, since tracker and participant
+    /// are the same (not for simulated participants, whose eyes are drawn anew).
     pub(super) fn carry_calibration(&mut self, before: Option<&AcceptedGazeCheck>) {
         let session = self.engine.session();
         let is_wanted = !matches!(session.spec.participant.gaze, GazeSource::None | GazeSource::Simulated);
@@ -20,12 +20,12 @@ impl Live {
         }
     }
 
-    /// Session time at which the next target is due; `None` without a running check.
+    /// Session time at which the next target is due; `None` while no gaze accuracy check is running.
     pub(super) fn target_due(&self) -> Option<SessionTime> {
         self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next).map(|(time, _)| time)
     }
 
-    /// Shows the next target of the gaze check, or hides the last one.
+    /// Shows the next target of the gaze accuracy check, or hides the last target.
     pub(super) fn show_target(&mut self) {
         if let Some((_, event)) = self.engine.session().calibration.as_ref().and_then(RunningGazeCheck::next) {
             self.input(Event::Calibration(event));

@@ -1,5 +1,5 @@
-//! Live stream to Rerun viewers: events update the scene, and its updates go to a stream that never makes the session
-//! wait.
+//! Live stream to Rerun viewers: events update the 3D scene, and the scene's updates go to a stream that never makes
+//! the session wait.
 
 use std::net::SocketAddr;
 
@@ -13,23 +13,23 @@ use crate::run::engine::SessionEngine;
 use crate::scene::{DerivedData, SessionScene};
 use crate::session::{LogHeader, Session, TimestampedEvent};
 
-/// Delay with which motion between events is streamed, so that no earlier event can follow.
+/// Delay with which motion between events is streamed, so that no event with an earlier time can follow.
 const BEHIND: SessionTime = SessionTime(100_000_000);
 
 /// Streams a live session to Rerun viewers.
 pub(super) struct StreamedSession {
     scene: SessionScene,
     stream: RerunStream,
-    /// Whether the stream shows the session from its beginning.
+    /// Whether the stream shows the session from the session's beginning.
     is_whole: bool,
 }
 
 impl StreamedSession {
     /// Opens the stream of a recording, whose next event has the sequence number `next`; `None` if the session has no
-    /// stream. `is_whole`: the recording does not continue an earlier part.
+    /// stream. `is_whole`: whether the recording is the first part of its session.
     ///
     /// # Errors
-    /// The stream cannot be opened, for this reason; the session can continue without it.
+    /// The stream to Rerun cannot be opened, for this reason; the session can continue without it.
     pub fn open(
         session: &Session,
         header: &LogHeader,
@@ -68,22 +68,23 @@ impl StreamedSession {
         }
     }
 
-    /// Streams the arm's motion since the last event.
+    /// Streams the motion of the robot's arm since the last event.
     pub fn view_motion(&mut self, now: SessionTime) {
         self.stream.tell(self.scene.until(now - BEHIND));
     }
 
-    /// State of the stream to Rerun.
+    /// State of the stream to Rerun, for the console.
     pub fn status(&self) -> RerunStreamStatus {
         let fares = self.stream.fares();
         let address = self.stream.server.map(|address| address.to_string());
         RerunStreamStatus { address, written: fares.written, dropped: fares.dropped }
     }
 
-    /// Ends the stream. If its file shows the whole log, which is complete now, the file is sealed as up to date.
+    /// Ends the stream to Rerun. If the stream's file shows the whole log, which is complete now, the file is sealed as
+    /// up to date.
     pub fn close(self, log: &LogWriter) {
         if let Some(file) = self.stream.close().filter(|_| self.is_whole) {
-            // If sealing fails, the file is rebuilt from the log when it is needed.
+            // If sealing fails, the stream file is rebuilt from the log when it is needed.
             let _ = rrd::seal(&file, &[log.folder().join(LOG_NAME)]);
         }
     }

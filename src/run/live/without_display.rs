@@ -6,16 +6,16 @@ use crate::console::notice::NoticeLevel;
 use crate::run::desk::{OperatorDesk, PageInput};
 use crate::session::{Event, Session};
 
-/// The participant's display, which this build lacks: the type has no value.
+/// The participant's display, which this build lacks; so the type has no values.
 pub(super) enum ParticipantDisplay {}
 
 impl ParticipantDisplay {
-    /// Returns no display, since this build lacks it.
+    /// Returns no display, since this build lacks the participant's display.
     pub fn at(_: &OperatorDesk) -> (Option<ParticipantDisplay>, Option<ParticipantDisplayHealth>) {
         (None, None)
     }
 
-    /// Does nothing: this build has no display.
+    /// Does nothing: this build has no participant's display.
     pub fn build(&mut self, _: &Session) {
         match *self {}
     }
@@ -36,14 +36,14 @@ impl ParticipantDisplay {
     }
 }
 
-/// An input of the page, converted to an event of the session and a notice to the wizard.
+/// What an input of the participant's page leads to: an event of the session, or a notice to the wizard.
 pub(super) struct PageEvent {
     pub event: Option<Event>,
     pub notice: Option<(NoticeLevel, String)>,
 }
 
 impl PageEvent {
-    /// Never called, since this build has no page.
+    /// Never called, since this build has no participant's page.
     pub fn from_input(input: PageInput, _: &Session, _: SessionTime) -> PageEvent {
         match input {}
     }

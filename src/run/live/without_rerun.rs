@@ -8,14 +8,14 @@ use crate::edge::log::LogWriter;
 use crate::run::engine::SessionEngine;
 use crate::session::{LogHeader, Session, TimestampedEvent};
 
-/// The stream to Rerun, which this build lacks: the type has no value.
+/// The stream to Rerun, which this build lacks; so the type has no values.
 pub(super) enum StreamedSession {}
 
 impl StreamedSession {
     /// Opens no stream, since this build lacks Rerun.
     ///
     /// # Errors
-    /// The session asks for a stream.
+    /// The session's settings ask for a stream to Rerun.
     pub fn open(
         session: &Session,
         _: &LogHeader,
@@ -26,22 +26,22 @@ impl StreamedSession {
         if session.spec.rerun.is_on() { Err(MissingFeature(Feature::Rerun).to_string()) } else { Ok(None) }
     }
 
-    /// Does nothing: this build has no stream.
+    /// Does nothing: this build has no stream to Rerun.
     pub fn view(&mut self, _: &[TimestampedEvent], _: &SessionEngine) {
         match *self {}
     }
 
-    /// Does nothing: this build has no stream.
+    /// Does nothing: this build has no stream to Rerun.
     pub fn view_motion(&mut self, _: SessionTime) {
         match *self {}
     }
 
-    /// Never called, since this build has no stream.
+    /// Never called, since this build has no stream to Rerun.
     pub fn status(&self) -> RerunStreamStatus {
         match *self {}
     }
 
-    /// Never called, since this build has no stream.
+    /// Never called, since this build has no stream to Rerun.
     pub fn close(self, _: &LogWriter) {
         match self {}
     }

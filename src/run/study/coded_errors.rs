@@ -1,4 +1,5 @@
-//! The causes of a person's errors, from the consensus of two raters, from both raters' codes, or from the estimate.
+//! The causes of a person's errors, from the consensus of two raters, from both raters' codes, or from the belief
+//! estimate.
 
 use crate::analysis::follower::SessionFollower;
 use crate::edge::file_error::{FileError, FileResult};
@@ -14,23 +15,23 @@ use crate::session::settings::ParticipantKind;
 /// Raters' codes of the errors of a recording.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CodedErrors {
-    /// Codes of two raters: those who were named or settled a consensus, else the two who coded most errors. `None`
-    /// with fewer than two raters, or if the choice is ambiguous.
+    /// Codes of two raters: of those whom the user named or who settled a consensus, else of the two who coded most
+    /// errors. `None` with fewer than two raters, or if it is ambiguous which two.
     pub raters: Option<[RaterCodes; 2]>,
-    /// Consensus codes of the two raters, if these hold and cover every error.
+    /// Consensus codes of the two raters, if the codes hold and cover every error.
     pub consensus: Option<RaterCodes>,
     /// The two raters who settled the consensus.
     pub settled_by: Option<[String; 2]>,
-    /// Why the raters' consensus does not hold, if there is one.
+    /// Why the raters' consensus does not hold; `None` if it holds, or if there is no consensus.
     pub stale: Option<String>,
 }
 
 impl CodedErrors {
-    /// Reads the codes beside a log. `named`: the two raters whose codes are to be used, if the user names them.
+    /// Reads the codes beside a log. `named`: the two raters whose codes shall be used, if the user names them.
     ///
     /// # Errors
     /// A file with codes is damaged; or more than two raters have coded every error of a person, and the user did not
-    /// name two of them.
+    /// name two of these raters.
     pub fn read(log: &LogReader, follower: &SessionFollower, named: Option<&[String; 2]>) -> FileResult<CodedErrors> {
         let codable = CodableErrors::from_presses(&follower.session.kitchen, &follower.judged);
         let all = rater_codes::read_all(log.folder(), &codable)?;
@@ -73,8 +74,8 @@ impl CodedErrors {
     }
 
     /// Human presses with the causes of errors, and the source of the causes: recorded beliefs for simulated
-    /// participants; for people the raters' consensus, the codes of two raters who both coded every error, else the
-    /// estimate. The source is `None` for a simulated participant without recorded beliefs.
+    /// participants; for people the raters' consensus, the codes of two raters who both coded every error, or else the
+    /// belief estimate. The source is `None` for a simulated participant without recorded beliefs.
     pub fn judged(
         &self,
         follower: &SessionFollower,
@@ -102,13 +103,13 @@ impl CodedErrors {
         (judged, Some(basis))
     }
 
-    /// Codes that two raters share: their consensus, else the errors that both coded alike, if both coded every error.
+    /// Codes that two raters share: their consensus, or else errors that both coded alike, if both coded every error.
     pub fn shared(&self, judged: &[JudgedPress]) -> Option<RaterCodes> {
         let alike = || self.complete_raters(judged).map(|[one, other]| one.agreed(other));
         self.consensus.clone().or_else(alike)
     }
 
-    /// The codes of the two raters, if both coded every error.
+    /// The codes of the two raters; `None` unless both coded every error.
     fn complete_raters(&self, judged: &[JudgedPress]) -> Option<&[RaterCodes; 2]> {
         let coded =
             |codes: &RaterCodes| judged.iter().all(|press| !press.verdict.error || codes.0.contains_key(&press.seq));
@@ -116,7 +117,7 @@ impl CodedErrors {
     }
 }
 
-/// Whether raters who each coded this many errors determine the causes of a person's errors.
+/// Whether the causes of this trial's errors are determined by raters who each coded this many errors.
 fn is_needed(follower: &SessionFollower, codable: &CodableErrors, coded: usize) -> bool {
     let is_person = follower.session.spec.participant.kind != ParticipantKind::Simulated;
     is_person && !codable.errors.is_empty() && coded == codable.errors.len()
@@ -131,7 +132,7 @@ fn tied(log: &LogReader, raters: &[String]) -> FileError {
     FileError::from_finding(log.folder(), found, remedy)
 }
 
-/// The cause of an error that a code stands for.
+/// The cause of an error that a rater's code stands for.
 fn cause(kitchen: &Kitchen, press: &JudgedPress, code: &ErrorCauseCode) -> Option<ErrorCause> {
     if code.kind() != ErrorCauseKind::Belief {
         return Some(ErrorCause::Slip);
@@ -139,9 +140,9 @@ fn cause(kitchen: &Kitchen, press: &JudgedPress, code: &ErrorCauseCode) -> Optio
     Some(ErrorCause::Belief { gain_nats: f64::NAN, target: code.target(kitchen, press.before)?, with: None })
 }
 
-/// The cause of an error by two raters, whatever their order. If both coded a false belief, the error follows from one;
-/// if the raters name two different ones, the first in the layout's order comes first. Otherwise the error does not
-/// count as following from a false belief.
+/// The cause of an error by two raters, whatever the raters' order. If both raters coded a false belief, the error
+/// follows from a false belief; if they name two different ones, the first in the layout's order comes first. Otherwise
+/// the error does not count as following from a false belief.
 fn agreed(kitchen: &Kitchen, press: &JudgedPress, [one, other]: &[RaterCodes; 2]) -> Option<ErrorCause> {
     let codes = [one.0.get(&press.seq)?, other.0.get(&press.seq)?];
     if codes.iter().any(|code| code.kind() != ErrorCauseKind::Belief) {

@@ -1,8 +1,9 @@
 //! Command `tomcom study`: replays the recordings of a study on all processors and writes tables, charts and the
 //! report.
 //!
-//! Each recording is analysed by itself ([`reading`]) and kept as an [`AnalysedRecording`]; all of them together give summary, tables and report.
-//! Between the two a study can be cut into parts, which are analysed on different machines and joined ([`shards`]).
+//! Each recording is analysed by itself ([`reading`]) and kept as an [`AnalysedRecording`]; all analysed recordings
+//! together give summary, tables and report. Between these two steps a study can be cut into parts, which are analysed
+//! on different machines and joined ([`shards`]).
 
 mod coded_errors;
 mod questionnaire_answers;
@@ -64,26 +65,27 @@ impl From<FileError> for StudyError {
 /// Inputs and outputs of the analysis of a study.
 #[derive(Clone, Debug)]
 pub struct AnalysisRequest {
-    /// Recordings, or folders that contain recordings; or the parts of a study that are joined.
+    /// Paths of recordings, or of folders that contain recordings; or files with the parts of a study that are joined.
     pub paths: Vec<PathBuf>,
-    /// The folder for tables and report, or the file of a part.
+    /// The folder for tables and report, or the file of a part of the study.
     pub out: PathBuf,
-    /// Optional parts of the analysis that are computed.
+    /// Which optional parts of the analysis are computed.
     pub extent: AnalysisScope,
-    /// The two raters whose codes are used; `None` for those with the most complete codes of each recording.
+    /// The two raters whose codes are used; `None`: for each recording the two with the most complete codes.
     pub raters: Option<[String; 2]>,
-    /// File of the frozen plan with which the recordings are compared.
+    /// File of the frozen (preregistered) plan with which the recordings are compared.
     pub frozen: Option<PathBuf>,
 }
 
-/// Recordings of an analysis, each with the name that identifies it in tables.
+/// The recordings of an analysis, each with the name that identifies the recording in tables.
 #[derive(Clone, Debug)]
 pub struct NamedRecordings {
     found: Vec<(PathBuf, String)>,
 }
 
 impl NamedRecordings {
-    /// Finds the recordings at these paths, each once, ordered by name: the order does not depend on how they are spread over folders.
+    /// Finds the recordings at these paths, each once, ordered by name, so that the order does not depend on how
+    /// recordings are spread over folders.
     ///
     /// # Errors
     /// A path is neither a recording nor a folder with recordings.
@@ -97,7 +99,7 @@ impl NamedRecordings {
                 }
             }
         }
-        // Recordings from several folders with the same name are named by their full paths.
+        // Recordings from several folders with the same name are identified by their full paths.
         let names: Vec<String> = found.iter().map(|(_, name)| name.clone()).collect();
         for (path, name) in &mut found {
             if names.iter().filter(|other| *other == name).count() > 1 {
@@ -108,7 +110,7 @@ impl NamedRecordings {
         Ok(NamedRecordings { found })
     }
 
-    /// Number of recordings.
+    /// Number of recordings that were found.
     pub fn number(&self) -> usize {
         self.found.len()
     }
@@ -146,12 +148,13 @@ pub fn study(
     conclude(analysed, &export, analysis.extent, frozen)
 }
 
-/// The plan that the recordings are held against, with its digest.
+/// The frozen plan with which the recordings are compared, with its digest; `None` if the user names no frozen plan.
 fn frozen(analysis: &AnalysisRequest) -> Result<Option<(String, FrozenPlan)>, FileError> {
     analysis.frozen.as_ref().map(|file| read_frozen(file)).transpose()
 }
 
-/// Analyses one recording. `first` is a recording of the study with its kitchen. Returns the rows of the tables of events, too.
+/// Analyses one recording. `first` is a recording of the study with its kitchen. Returns also the recording's rows of
+/// the tables of events.
 fn analyse(
     (path, name): &(PathBuf, String),
     analysis: &AnalysisRequest,
@@ -168,13 +171,13 @@ fn analyse(
     Ok((AnalysedRecording { recording: name.clone(), plan, consent, tutorial, trial }, rows))
 }
 
-/// The plan that a recording with these settings belongs to.
+/// The study plan to which a recording with these settings belongs.
 fn recorded_plan(spec: &SessionSpec) -> RecordedPlan {
     let plan = spec.step.as_ref().map(|step| (step.plan.clone(), step.digest.clone()));
     RecordedPlan { participant: spec.participant.code.clone(), plan }
 }
 
-/// Puts the rows of a recording aside until all recordings are read; practice has none.
+/// Keeps the rows of a recording until all recordings are read; practice recordings have no rows.
 fn keep(
     export: &AnalysisFolder,
     index: usize,
@@ -184,8 +187,8 @@ fn keep(
     if analysed.trial.is_some() { export.keep(index, rows) } else { Ok(()) }
 }
 
-/// The summary, the tables and the report from all recordings of a study, which are ordered by name; each with the number under which its rows
-/// are kept.
+/// Computes the summary, the tables and the report from all recordings of a study, which are ordered by name; each is
+/// given with the number under which its rows are kept.
 fn conclude(
     analysed: Vec<(usize, AnalysedRecording)>,
     export: &AnalysisFolder,
@@ -207,7 +210,7 @@ fn conclude(
     arrange(&mut trials);
     let practice = (plans.len() - trials.len()) as u64;
     consents.sort_by(|a, b| a.started.cmp(&b.started));
-    // The order of a tutorial's questions stays.
+    // The sort is stable, so the order of a tutorial's questions stays.
     tutorials.sort_by(|a, b| (&a.participant, &a.recording).cmp(&(&b.participant, &b.recording)));
     let preregistration = frozen.map(|(digest, frozen)| PreregistrationCheck::new(digest, &frozen, &plans));
     let figures = StudySummary::from_trials(&trials, &facts, practice).with_tutorials(&tutorials);

@@ -5,7 +5,7 @@ use crate::session::protocol::StudyProtocolState;
 use crate::session::{Session, TrialPhase};
 use crate::study::trial_statistics::QuestionnaireAnswer;
 
-/// Answers to the questionnaire that was just confirmed.
+/// Answers to the questionnaire that the participant has just confirmed.
 pub(super) fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {
     let (Some(questionnaire), Some(protocol)) = (session.questionnaire(), &session.protocol) else { return Vec::new() };
     let before = session.phase == TrialPhase::Ready;
@@ -33,14 +33,14 @@ pub(super) fn confirmed(session: &Session) -> Vec<QuestionnaireAnswer> {
     questionnaire.items.iter().enumerate().map(answered).collect()
 }
 
-/// Answer to an item as a number from 0 to 1 on its scale, reversed if the item is.
+/// Answer to an item as a number from 0 to 1 on the item's scale, reversed if the item is reverse coded.
 fn share(questionnaire: &Questionnaire, protocol: &StudyProtocolState, index: usize) -> Option<f64> {
     let [least, most] = questionnaire.form(index)?.ends()?;
     let share = (protocol.given(index)?.number()? - least) as f64 / (most - least).max(1) as f64;
     Some(if questionnaire.items.get(index)?.reversed { 1.0 - share } else { share })
 }
 
-/// Score of the questionnaire; `None` if it has no scoring rule, or if an item was left out.
+/// Score of the questionnaire; `None` if the questionnaire has no scoring rule, or if an item was left out.
 fn score(questionnaire: &Questionnaire, protocol: &StudyProtocolState) -> Option<f64> {
     let count = questionnaire.items.len();
     let shares: Option<Vec<f64>> = (0..count).map(|index| share(questionnaire, protocol, index)).collect();
@@ -54,7 +54,8 @@ fn score(questionnaire: &Questionnaire, protocol: &StudyProtocolState) -> Option
             let sum: Option<f64> = shares.iter().enumerate().map(on_scale).sum();
             Some(sum? / count as f64)
         }
-        // System Usability Scale: each item adds 0 to 4 points, and the sum is multiplied by 2.5 (Brooke 1996).
+        // System Usability Scale: each item adds 0 to 4 points, and the sum of points is multiplied by 2.5 (Brooke
+        // 1996).
         ScoreRule::Sus => Some(2.5 * shares.iter().map(|share| (4.0 * share).round()).sum::<f64>()),
     }
 }

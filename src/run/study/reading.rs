@@ -1,4 +1,4 @@
-//! Replays one recording of a study once, and reduces it to the statistics that the analysis keeps.
+//! Replays one recording of a study once, and reduces the recording to the statistics that the analysis keeps.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -47,15 +47,15 @@ use crate::study::trial_statistics::{FalseBeliefErrors, TrialStatistics};
 /// Result of analysing one recording.
 #[derive(Debug)]
 pub struct RecordingAnalysis {
-    /// Statistics of the trial.
+    /// Statistics of the recording's trial.
     pub trial: TrialStatistics,
     /// Settings and circumstances of the recording, for the report.
     pub facts: RecordingFacts,
-    /// Rows of the CSV tables of events.
+    /// Rows of the recording in the CSV tables of events, a text for each table.
     pub rows: [Vec<u8>; 5],
 }
 
-/// Optional parts of the analysis.
+/// Which optional parts of the analysis are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AnalysisScope {
     /// Whether hypothetical signals of communication concepts are computed.
@@ -74,8 +74,8 @@ enum Pass {
 }
 
 impl Pass {
-    /// The replay for this session. `is_known`: the participant's beliefs are recorded, or may follow from raters'
-    /// codes.
+    /// The replay for this session. `is_known`: whether the participant's beliefs are recorded, or may follow from
+    /// raters' codes.
     fn new(session: Session, extent: AnalysisScope, is_known: bool) -> Pass {
         let (spec, mut session) = (&session.spec.clone(), session);
         let cost = CostToGo::new(session.kitchen.clone());
@@ -108,7 +108,7 @@ impl Pass {
     }
 }
 
-/// Attributes people's errors to causes by the estimated beliefs.
+/// Attributes people's errors to causes by means of the estimated beliefs.
 struct ByEstimate {
     attributor: ErrorAttributor,
     cost: CostToGo,
@@ -116,7 +116,7 @@ struct ByEstimate {
 }
 
 impl ByEstimate {
-    /// Attributes the error of a press that was just applied to a cause.
+    /// Attributes a press that was just applied to a cause, if the press was an error.
     fn note(&mut self, stamped: &TimestampedEvent, change: &KitchenChange, follower: &SessionFollower) {
         let Some(press) = change.human_press() else { return };
         let (kitchen, judged) = (&follower.session.kitchen, follower.judged.last());
@@ -131,7 +131,7 @@ impl ByEstimate {
     }
 }
 
-/// A belief state whose probabilities are those that the estimate expects.
+/// A belief state whose probabilities are the expected probabilities of the estimate.
 fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &DirichletBelief) -> Belief {
     let mut belief = Belief::of_truth(kitchen, state);
     for index in 0..kitchen.aspects.len() {
@@ -141,8 +141,8 @@ fn expected(kitchen: &Kitchen, state: crate::kitchen::State, estimate: &Dirichle
     belief
 }
 
-/// Analyses the recording with this name in tables; `None` for a practice recording. `raters`: the two whose codes are
-/// used, if the user named them.
+/// Analyses the recording, which tables call by `name`; `None` for a practice recording. `raters`: the two raters whose
+/// codes are used, if the user named them.
 ///
 /// # Errors
 /// The recording cannot be read or replayed, or it is not clear which two raters' codes to use.
@@ -245,8 +245,8 @@ pub fn read(
     )))
 }
 
-/// Communications of each sender, with the sender's name: those that were sent and, in a wizard trial, the assistant's
-/// hypothetical ones.
+/// Communications of each sender, with the sender's name: the communications that were sent and, in a wizard trial,
+/// those that the assistant would have sent.
 fn lanes(pass: &mut Pass) -> Vec<(String, Vec<CommunicationEvent>)> {
     if let Pass::Beside(watcher) = pass {
         watcher.finish();
@@ -258,7 +258,7 @@ fn lanes(pass: &mut Pass) -> Vec<(String, Vec<CommunicationEvent>)> {
     vec![(name.to_string(), sent(session))]
 }
 
-/// Number of contents of a signal on the timeline; 0 for other entries.
+/// Number of pieces of content of a signal on the timeline; 0 for other entries of the timeline.
 fn contents(entry: &TimelineEntry) -> u64 {
     match &entry.what {
         TimelineEvent::Signal { signal, .. } => signal.contents() as u64,
@@ -283,7 +283,8 @@ fn sent(session: &Session) -> Vec<CommunicationEvent> {
     sent
 }
 
-/// The participant's false beliefs, recorded or from codes that raters share; `None` if only the estimate is known.
+/// The participant's false beliefs, from recorded beliefs or from codes that raters share; `None` if only the estimate
+/// is known.
 fn known_beliefs(
     follower: &SessionFollower,
     judged: &[JudgedPress],

@@ -1,5 +1,5 @@
-//! Collects the rows of the CSV tables of events while a recording is replayed. [`crate::study::tables`] declares their
-//! columns.
+//! Collects the rows of the CSV tables of events while a recording is replayed. The module [`crate::study::tables`]
+//! declares the tables' columns.
 
 use super::coded_errors::CodedErrors;
 use crate::analysis::follower::SessionFollower;
@@ -31,7 +31,7 @@ pub struct RowCollector {
     rows: EventRows,
     /// Session time of each agent's last press.
     pressed_at: [Option<SessionTime>; 2],
-    /// Presses of both agents; human presses are judged after the replay.
+    /// Presses of both agents so far; human presses are judged after the replay.
     presses: Vec<RecordedPress>,
     witness: Option<RecordedBelief>,
     look: Option<GazeRun>,
@@ -54,18 +54,18 @@ impl EventRows {
 pub struct PressFacts<'a> {
     /// The human's presses with their judgements, in order.
     pub judged: &'a [JudgedPress],
-    /// Error sequences of the trial.
+    /// Error sequences (errors that follow from one false belief) of the trial.
     pub sequences: &'a [ErrorSequence],
-    /// Causes of people's errors by the estimated beliefs, with the sequence number of the press.
+    /// Causes of people's errors by the estimated beliefs, each with the sequence number of the press.
     pub by_estimate: Option<&'a [(u64, ErrorCause)]>,
-    /// Raters' codes of the errors.
+    /// Raters' codes of the human's errors.
     pub coded: &'a CodedErrors,
     /// The participant's false beliefs, if they are known.
     pub known: Option<&'a KnownFalseBeliefs>,
 }
 
 impl<'a> PressFacts<'a> {
-    /// Analysis of the press with this sequence number; `None` for presses of the robot.
+    /// Analysis of the human's press with this sequence number; `None` for presses of the robot.
     fn analysis(&self, seq: u64, session: &Session) -> Option<PressAnalysis<'a>> {
         let index = self.judged.binary_search_by_key(&seq, |press| press.seq).ok()?;
         let episode = self.known.and_then(|known| known.episode(&session.kitchen, &self.judged[index]));
@@ -88,7 +88,7 @@ impl<'a> PressFacts<'a> {
 }
 
 impl RowCollector {
-    /// A collector for the recording with this name, without rows yet.
+    /// A collector for the recording that tables call by this name, without rows yet.
     pub fn new(recording: &str) -> RowCollector {
         RowCollector {
             recording: recording.to_string(),
@@ -100,7 +100,7 @@ impl RowCollector {
         }
     }
 
-    /// Adds the rows of an event that was just applied; `was_running`: the trial was running before the event.
+    /// Adds the rows of an event that was just applied; `was_running`: whether the trial was running before the event.
     pub fn note(
         &mut self,
         stamped: &TimestampedEvent,
@@ -132,7 +132,7 @@ impl RowCollector {
         }
     }
 
-    /// Adds a press; `number` counts the presses of its agent from 1.
+    /// Adds a press to the rows; `number` counts the presses of the pressing agent from 1.
     fn pressed(&mut self, stamped: &TimestampedEvent, press: &Press, number: u32, follower: &SessionFollower) {
         let session = &follower.session;
         let before = self.pressed_at[press.agent.index()].replace(stamped.time);
@@ -192,8 +192,8 @@ impl RowCollector {
         self.rows.add(&GazeRow { recording: &self.recording, kitchen: &session.kitchen, time_s, run });
     }
 
-    /// The CSV rows, in the order of [`CsvTable::OF_EVENTS`]. `lanes`: communications that were sent, and the assistant's
-    /// hypothetical ones.
+    /// The CSV rows, in the order of [`CsvTable::OF_EVENTS`]. `lanes`: communications that were sent, and
+    /// communications that the assistant would have sent.
     pub fn finish(
         mut self,
         session: &Session,
@@ -215,7 +215,7 @@ impl RowCollector {
             for (index, sent) in all.iter().enumerate() {
                 let is_matched = |pairs: &Vec<(usize, usize)>| pairs.iter().any(|&(a, b)| [a, b][side] == index);
                 let matched = pairs.as_ref().map(is_matched);
-                // The first lane contains the communications that were sent, which can have used an offer.
+                // The first lane has the communications that were really sent, which can have used an offer.
                 let took = |timed: &&TimedOffer| side == 0 && timed.sent == Some(sent.clock);
                 let offer = offers.iter().find(took).map(|timed| timed.offer.seq);
                 self.rows.add(&CommunicationRow { recording, kitchen, lane, sent, offer, matched });

@@ -1,7 +1,9 @@
-//! A study in parts: a shard of its recordings is analysed into one file, and the parts are joined ([`crate::study::study_part`]).
+//! A study in parts: a shard of its recordings is analysed into one file, and the files are joined
+//! ([`crate::study::study_part`]).
 //!
-//! To which shard a recording belongs follows from its header alone, by the rule of `tomcom simulate --shard`. So a job that simulated shard 3 of 8
-//! analyses shard 3 of 8, whether it has a folder of its own or shares one with the others.
+//! The shard to which a recording belongs follows from the recording's header alone, by the rule of `tomcom simulate
+//! --shard`. So a job that simulated shard 3 of 8 also analyses shard 3 of 8, whether the job has a folder of its own
+//! or shares one with other jobs.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -25,7 +27,7 @@ const BLOCK: usize = 32;
 
 /// What a recording's header says about its place in a study.
 struct RecordingPlace {
-    /// Whether it belongs to the shard.
+    /// Whether the recording belongs to the shard that is analysed.
     is_own: bool,
     plan: Option<(String, String)>,
 }
@@ -38,8 +40,8 @@ impl RecordingPlace {
     }
 }
 
-/// Analyses a shard of these recordings and writes the part to the file `analysis.out`. `begun` is called with the number of recordings of the
-/// shard, which is returned, and `done` after each.
+/// Analyses a shard of these recordings and writes the result to the file `analysis.out`. `begun` is called with the
+/// number of the shard's recordings, which is also returned, and `done` after each recording.
 ///
 /// # Errors
 /// A recording cannot be read or replayed, or belongs to another kitchen than the first; or the file cannot be written.
@@ -88,11 +90,12 @@ pub fn analyse_shard(
     Ok(header.recordings)
 }
 
-/// Joins the parts of a study, the files `analysis.paths`: the results are those of one analysis of all recordings, to the last byte. Returns the
-/// summary and the report's path.
+/// Joins the parts of a study, the files `analysis.paths`: the results are those of one analysis of all recordings, to
+/// the last byte. Returns the summary and the path of the report.
 ///
 /// # Errors
-/// A file is no part; the parts do not make one study; a recording is in two of them; or the results cannot be written.
+/// A file is no part of a study; the parts do not make one study; a recording is in two parts; or the results cannot be
+/// written.
 pub fn join(analysis: &AnalysisRequest) -> Result<(StudySummary, PathBuf), StudyError> {
     let frozen = frozen(analysis)?;
     let mut parts = analysis.paths.iter().map(|path| PartReader::open(path)).collect::<FileResult<Vec<_>>>()?;

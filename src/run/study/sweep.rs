@@ -1,5 +1,6 @@
-//! Hypothetical signals of communication concepts in an unassisted trial, for all values of their parameters in one
-//! replay. The planner runs once per decision; all costs of communication are then applied to the same benefits.
+//! Signals that communication concepts would have sent in an unassisted trial, for all values of the concepts'
+//! parameters in one replay. The planner runs once per decision; all costs of communication are then applied to the
+//! same benefits.
 
 use crate::analysis::advisor::AdviceRequest;
 use crate::analysis::follower::SessionFollower;
@@ -19,12 +20,12 @@ use crate::session::{AppliedEvent, Event, Session, TimestampedEvent};
 use crate::study::prevention::{HypotheticalSignal, TrialGroundTruth};
 use crate::study::roc::{CONCEPTS, LEAST_COST, PreventedTrialErrors, parameters};
 
-/// A concept with one value of its parameter, and its hypothetical signals.
+/// A concept with one value of its parameter, and the signals that the concept would have sent.
 #[derive(Debug)]
 struct SweptConcept {
     concept: ConceptName,
     parameter: f64,
-    /// Signals that the concept may not repeat yet.
+    /// Rule that says which signals the concept may not repeat yet.
     repeats: SignalRepeatRule,
     sent: Vec<HypotheticalSignal>,
 }
@@ -32,22 +33,22 @@ struct SweptConcept {
 /// Replays a session, and evaluates all communication concepts whenever the assistant is asked for advice.
 #[derive(Debug)]
 pub struct ConceptSweep {
-    /// The session with the belief estimate.
+    /// The replayed session with the belief estimate.
     pub follower: SessionFollower,
     planner: Planner,
     tom: TomConcept,
     cost: CostToGo,
     swept_concepts: Vec<SweptConcept>,
-    /// Sequence number and time of the event after which the concepts are evaluated, once simultaneous events have been
-    /// applied.
+    /// Sequence number and time of the event after which the concepts are evaluated, once all events of the same time
+    /// have been applied.
     pending: Option<(u64, SessionTime)>,
 }
 
 impl ConceptSweep {
-    /// Creates the replay of a session that has no events yet.
+    /// The replay of a session, before the session's first event.
     pub fn new(session: Session, cost: CostToGo) -> ConceptSweep {
         let (kitchen, spec) = (session.kitchen.clone(), &session.spec);
-        // The planner is as accurate as the smallest of the analysed costs requires.
+        // The planner computes as accurately as the smallest of the analysed costs of communication requires.
         let assistant = AssistantSpec { cost_of_communication: LEAST_COST, ..spec.assistant.clone() };
         let swept = |concept: ConceptName, parameter: f64| SweptConcept {
             concept,
@@ -67,10 +68,10 @@ impl ConceptSweep {
         }
     }
 
-    /// Applies one event of the session.
+    /// Applies one event of the replayed session.
     ///
     /// # Errors
-    /// Errors of [`SessionFollower::apply`].
+    /// The errors of [`SessionFollower::apply`].
     pub fn apply(&mut self, stamped: &TimestampedEvent) -> Result<KitchenChange, ApplyError> {
         if self.pending.is_some_and(|(_, time)| !follows_at_once(stamped, time)) {
             self.evaluate();
@@ -92,7 +93,7 @@ impl ConceptSweep {
         Ok(change)
     }
 
-    /// Evaluates every communication concept in the session's present state.
+    /// Asks every communication concept for its signal in the session's present state.
     fn evaluate(&mut self) {
         let Some((seq, time)) = self.pending.take().filter(|_| self.follower.session.is_running()) else { return };
         let question = AdviceRequest::from_follower(&mut self.follower, seq, time);
@@ -121,8 +122,8 @@ impl ConceptSweep {
         }
     }
 
-    /// Errors that each concept would have prevented with each parameter value, given the trial's true errors and false
-    /// beliefs; to be called after the last event.
+    /// Number of errors that each concept would have prevented with each parameter value, given the trial's true errors
+    /// and false beliefs; to be called after the last event.
     pub fn swept(&self, truth: &TrialGroundTruth) -> Vec<PreventedTrialErrors> {
         let signalled = self.swept_concepts.iter().map(|swept| PreventedTrialErrors {
             concept: swept.concept,

@@ -155,8 +155,8 @@ fn of_live(arms: &[LiveStudyArm]) -> String {
     text
 }
 
-/// Similarity of wizard and assistant at its three levels, as text. The paper does not say which level its 74 % belong
-/// to.
+/// Similarity of wizard and assistant at each of its three levels, as text. The paper does not say to which level its
+/// 74 % belong.
 fn of_similarity(who: &str, found: &Similarity) -> String {
     let number = |value: Option<f64>| value.map_or("-".to_string(), |value| format!("{value:.2}"));
     let level = |level: &MatchShares| format!("{} (by chance {})", number(level.recall), number(level.chance_recall));

@@ -5,7 +5,8 @@ use crate::edge::file_error::FileResult;
 use crate::edge::log::LogReader;
 use crate::study::tables::tutorial_answers::{TutorialAnswer, TutorialAnswers};
 
-/// The answers in a log of which nothing was read; `name` is the recording's in tables. None if it has no tutorial.
+/// The participant's answers in a log of which nothing was read yet; `name` is the recording's name in tables. None if
+/// the recording has no tutorial.
 ///
 /// # Errors
 /// The recording cannot be read.

@@ -1,10 +1,11 @@
-//! Usefulness of the signals in a simulated trial, judged by running the trial without them (unassisted twins).
+//! Usefulness of the signals in a simulated trial, judged by running the trial without these signals (unassisted
+//! twins).
 //!
-//! The trial is run again from its recording. At every signal the run is copied, and the copy continues with the same
-//! random streams and without this or any later signal, until the false beliefs that the signal is about have ended.
-//! The signal is useful if the copy has more errors from these beliefs than the trial had until the beliefs ended
-//! there. A proposal of k presses is useful if the copy has more errors in its next k presses, whatever their cause, so
-//! that a prevented slip counts, too.
+//! The trial is run again from its recording. At every signal the run is copied, and the copy (the twin) continues with
+//! the same random streams and without this or any later signal, until the false beliefs that the signal is about have
+//! ended. The signal is useful if the twin has more errors from these beliefs than the trial had until the beliefs
+//! ended there. A proposal of k presses is useful if the twin has more errors in its next k presses, whatever their
+//! cause, so that a prevented slip counts, too.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -25,11 +26,11 @@ use crate::session::admit::is_external;
 use crate::session::settings::Condition;
 use crate::session::{Event, Session, TimestampedEvent, TrialPhase};
 
-/// Errors that a signal can prevent.
+/// Which errors a signal can prevent.
 enum SignalScope {
-    /// Errors that follow from false beliefs about these state aspects.
+    /// The signal can prevent errors that follow from false beliefs about these state aspects.
     Beliefs(Vec<AspectId>),
-    /// Errors in this number of next presses.
+    /// The signal can prevent errors in this number of next presses.
     Presses(usize),
 }
 
@@ -46,12 +47,12 @@ impl SignalScope {
 struct TwinResult {
     time: SessionTime,
     scope: SignalScope,
-    /// Number of the twin's errors that the signal could have prevented.
+    /// Number of errors in the twin that the signal could have prevented.
     errors: u64,
 }
 
 /// Number of useful signals of a recorded trial of a simulated participant; `None` if the trial cannot be run again:
-/// simulated participants decide differently since the program's version that recorded it, or this build lacks the arm.
+/// the program version that recorded it had other simulated participants, or this build lacks the robot's arm.
 ///
 /// # Errors
 /// The recording cannot be read.
@@ -78,8 +79,8 @@ pub(super) fn useful_signals(recording: &Path) -> FileResult<Option<u64>> {
     Ok(Some(twins.iter().filter(is_useful).count() as u64))
 }
 
-/// Runs the session up to a recorded event, and a twin for every signal before it. Recommendations are taken from the
-/// recording.
+/// Runs the session up to a recorded event, and a twin for every signal before that event. Recommendations are taken
+/// from the recording.
 fn run_to(
     again: &mut SessionEngine,
     recorded: &TimestampedEvent,
@@ -123,7 +124,7 @@ fn twin(mut engine: SessionEngine, time: SessionTime, signal: &Signal) -> TwinRe
     while engine.session().phase == TrialPhase::Running || engine.session().is_frozen() {
         attendant.step(&mut engine);
         let _ = engine.take_questions();
-        // The belief is over once the twin's recorded beliefs say so; they are recorded before each press.
+        // The belief is over once the twin's recorded beliefs, which are recorded before each press, say so.
         let is_over = match &scope {
             SignalScope::Beliefs(told) => {
                 let corrected = open_at(engine.follower(), time, told).all(|episode| episode.corrected.is_some());
@@ -139,7 +140,7 @@ fn twin(mut engine: SessionEngine, time: SessionTime, signal: &Signal) -> TwinRe
     TwinResult { time, scope, errors }
 }
 
-/// False belief episodes about these aspects that were open at this time.
+/// False belief episodes about these state aspects that were open at this time.
 fn open_at<'a>(
     follower: &'a SessionFollower,
     time: SessionTime,
@@ -150,7 +151,7 @@ fn open_at<'a>(
     follower.episodes.all().filter(|episode| told.contains(&episode.aspect)).filter(is_open)
 }
 
-/// Number of errors after this time that a signal at this time can prevent.
+/// Number of errors after this time that a signal sent at this time can prevent.
 fn errors_after(follower: &SessionFollower, time: SessionTime, scope: &SignalScope) -> u64 {
     match scope {
         SignalScope::Beliefs(told) => belief_errors_after(follower, time, told),
@@ -162,7 +163,7 @@ fn errors_after(follower: &SessionFollower, time: SessionTime, scope: &SignalSco
 }
 
 /// Number of errors after this time that follow from false beliefs, held at this time, about the aspects in `told`;
-/// counted until each belief is corrected.
+/// errors are counted until each belief is corrected.
 fn belief_errors_after(follower: &SessionFollower, time: SessionTime, told: &[AspectId]) -> u64 {
     let kitchen = &follower.session.kitchen;
     let open: Vec<&FalseBeliefEpisode> = open_at(follower, time, told).collect();

@@ -1,6 +1,6 @@
-//! Queries to the terminal about its abilities, and the terminal's answers (escape sequences). They are exchanged
-//! before anything else reads the keyboard, and answers are read to their end, so that no part of an answer is taken
-//! for a key.
+//! Queries to the terminal about its abilities, and the terminal's answers (escape sequences). Queries and answers are
+//! exchanged before anything else reads the keyboard, and answers are read to their end, so that no part of an answer
+//! is taken for a key.
 
 use std::time::{Duration, Instant};
 
@@ -8,8 +8,8 @@ use crate::console::view::theme::TerminalBackground;
 
 /// Longest wait for the terminal's answer: terminals answer within milliseconds, over a network within a second.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Query that every terminal answers (primary device attributes). It is sent last, so that its answer shows that no
-/// answer to an earlier query is still to come.
+/// Query that every terminal answers (primary device attributes). The program sends this query last, so that its answer
+/// shows that no answer to an earlier query is still to come.
 const LAST: &str = "\x1b[c";
 
 /// Writes a query to the terminal, which must be in raw mode, and reads the terminal's answer.
@@ -21,7 +21,8 @@ pub fn ask(question: &str) -> Option<String> {
 
     let mut terminal = std::fs::OpenOptions::new().read(true).write(true).open("/dev/tty").ok()?;
     let until = Instant::now() + PATIENCE;
-    // A terminal that nobody reads has a full buffer some day: without a time limit, writing to it would block forever.
+    // A terminal whose output nobody reads has a full buffer some day: without a time limit, writing to it would block
+    // forever.
     let is_in_time = |terminal: &std::fs::File, what: PollFlags| {
         let left = Timespec::try_from(until.saturating_duration_since(Instant::now())).ok()?;
         poll(&mut [PollFd::new(terminal, what)], Some(&left)).ok().filter(|&ready| ready > 0)
@@ -46,13 +47,13 @@ pub fn ask(_: &str) -> Option<String> {
     None
 }
 
-/// Whether the answer to the query [`LAST`] has arrived: `ESC [ ? … c`.
+/// Whether the terminal's answer to the query [`LAST`] has arrived: `ESC [ ? … c`.
 fn is_whole(answer: &[u8]) -> bool {
     let start = answer.windows(3).rposition(|bytes| bytes == b"\x1b[?");
     start.is_some_and(|start| answer[start..].iter().all(|byte| byte.is_ascii()) && answer.last() == Some(&b'c'))
 }
 
-/// The terminal's background, if the terminal tells its colour (OSC 11).
+/// Whether the terminal's background is dark or light; `None` if the terminal does not tell its colour (OSC 11).
 pub fn ground() -> Option<TerminalBackground> {
     let answer = ask("\x1b]11;?\x1b\\")?;
     let colour = answer.split("]11;rgb:").nth(1)?;
@@ -62,7 +63,7 @@ pub fn ground() -> Option<TerminalBackground> {
         Some(f64::from(value) / f64::from(16_u32.pow(digits.len() as u32) - 1))
     });
     let [red, green, blue] = [parts.next()??, parts.next()??, parts.next()??];
-    // Perceived brightness (ITU-R BT.601) of the colour values, without gamma correction.
+    // Perceived brightness (ITU-R BT.601) of the background's colour values, without gamma correction.
     let brightness = 0.299 * red + 0.587 * green + 0.114 * blue;
     Some(if brightness > 0.5 { TerminalBackground::Light } else { TerminalBackground::Dark })
 }

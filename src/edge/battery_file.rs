@@ -10,7 +10,7 @@ use super::place::place_of;
 use crate::session::battery::{BatterySpec, CohortSpec};
 use crate::session::settings::{Condition, GazeSource, ParticipantKind, SettingError};
 
-/// A battery of cohorts of simulated participants, with the session that they share.
+/// A battery: cohorts of simulated participants, with the session settings that the cohorts share.
 #[derive(Clone, Debug)]
 pub struct BatteryFiles {
     /// Session settings that all cohorts share, with their files.
@@ -66,7 +66,7 @@ fn is_simulated(gaze: GazeSource) -> bool {
     matches!(gaze, GazeSource::Simulated | GazeSource::None)
 }
 
-/// Position of a cohort's invalid setting in the battery file: the first setting of that name after the cohort's name.
+/// Position of a cohort's invalid setting in the battery file: the first setting of its name after the cohort's name.
 fn place_in_cohort(text: &str, cohort: &CohortSpec, error: &SettingError) -> Range<usize> {
     let name = cohort.name.span();
     let path = error.path.strip_prefix("participant.").unwrap_or(&error.path);

@@ -40,8 +40,8 @@ impl BidsTree {
         Ok(BidsTree { root: root.to_path_buf() })
     }
 
-    /// Writes a file of the data set; the file's name is its path below the root folder. Files that end with `.gz` are
-    /// compressed.
+    /// Writes a file of the data set; the file's name is the path below the root folder. Files whose name ends with
+    /// `.gz` are compressed.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -69,7 +69,7 @@ pub(super) fn codes(root: &Path) -> Option<Vec<String>> {
     Some(rows.filter_map(|mut cells| cells.nth(column).map(str::to_string)).collect())
 }
 
-/// The text compressed with gzip, without time and name, so that the same text gives the same bytes.
+/// Compresses a text with gzip, without time and file name, so that the same text gives the same bytes.
 fn compressed(text: &str) -> io::Result<Vec<u8>> {
     let mut out = GzBuilder::new().write(Vec::new(), Compression::default());
     out.write_all(text.as_bytes())?;

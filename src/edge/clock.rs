@@ -1,20 +1,20 @@
-//! Clocks of the program. Session time comes from the monotonic clock. The wall clock can be set and can jump; it is
-//! used only for names and headers of recordings, and its jumps are recorded in the log.
+//! Clocks of the program. Session time comes from the monotonic clock. The wall clock can be set and can jump; the
+//! program uses it only for names and headers of recordings, and records its jumps in the log.
 
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use crate::base::time::SessionTime;
 
-/// Gap between two clock readings after which the program counts as having been suspended.
+/// Gap between two readings of the clock after which the program counts as having been suspended.
 const STANDSTILL: Duration = Duration::from_secs(1);
-/// Least change of wall clock minus session time that counts as a jump of the wall clock, in milliseconds.
+/// Least change of the difference between wall clock and session time that counts as a jump, in milliseconds.
 const JUMP_MS: i64 = 500;
 
-/// Clock of a live session (session time). It stops while the program is suspended or blocked for more than a second,
-/// so that pending actions of robot and participant do not all happen at once afterwards.
+/// Clock of a live session (session time). The clock stops while the program is suspended or blocked for more than a
+/// second, so that pending actions of robot and participant do not all happen at once afterwards.
 #[derive(Clone, Debug)]
 pub struct SessionClock {
-    /// Session time at the instant `began`.
+    /// Session time at the instant `began`, when the clock was started.
     offset: SessionTime,
     began: Instant,
     looked: Instant,
@@ -37,12 +37,12 @@ impl SessionClock {
         self.at(Instant::now())
     }
 
-    /// Instant at which a session time will be reached without further suspensions.
+    /// Instant at which the clock will reach a session time if the program is not suspended meanwhile.
     pub fn instant_of(&self, time: SessionTime) -> Instant {
         self.began + self.stood + Duration::from_nanos((time - self.offset).0)
     }
 
-    /// Jump of the wall clock since the last call, in milliseconds, if there was one.
+    /// Jump of the wall clock since the last call of this function, in milliseconds; `None` if there was none.
     pub fn jump(&mut self) -> Option<i64> {
         let wall = WallTime::now();
         let now = self.now();
@@ -82,7 +82,7 @@ pub struct WallTime {
 }
 
 impl WallTime {
-    /// The present wall clock time; a clock before 1970 gives 1970.
+    /// The present wall clock time; a computer clock before 1970 gives 1970.
     pub fn now() -> WallTime {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         WallTime { unix_ms: since_1970.as_millis() as u64 }
@@ -102,8 +102,8 @@ impl WallTime {
     }
 }
 
-/// Year, month and day of a number of days since 1970-01-01, in the Gregorian calendar (H. Hinnant, "chrono-compatible
-/// low-level date algorithms", civil_from_days).
+/// Year, month and day from a number of days since 1970-01-01, in the Gregorian calendar (H. Hinnant,
+/// "chrono-compatible low-level date algorithms", civil_from_days).
 fn civil(days: u64) -> (u64, u64, u64) {
     let shifted = days + 719_468;
     let era = shifted / 146_097;
@@ -131,8 +131,8 @@ mod tests {
         let wall_after = |ms: i64| WallTime { unix_ms: (wall.unix_ms as i64 + ms) as u64 };
         assert_eq!(clock.at(after(400)), shows(400));
         assert_eq!(clock.jump_at(shows(400), wall_after(410)), None);
-        // The wall clock is set forward by an hour, then back again: each jump is reported once, and no session time
-        // passes.
+        // Test: the wall clock is set forward by an hour, then back again. Each jump is reported once, and no session
+        // time passes.
         let told = clock.jump_at(shows(400), wall_after(3_600_400)).expect("a jump");
         assert!((told - 3_600_000).abs() < 100, "{told}");
         assert_eq!(clock.jump_at(shows(400), wall_after(3_600_400)), None);

@@ -1,40 +1,40 @@
-//! Offset between this computer's clock and another one, estimated from replies to time requests: the clock of Pupil
-//! Capture, or that of the Lab Streaming Layer.
+//! Offset between this computer's clock and another clock, estimated from replies to time requests. The other clock is
+//! that of Pupil Capture, or that of the Lab Streaming Layer.
 
 use std::time::{Duration, Instant};
 
 /// Number of clock replies averaged for the offset between two clocks (as Pupil Labs does).
 pub(super) const ANSWERS: usize = 10;
-/// Largest difference between two replies' offsets that their delays do not explain, in seconds; beyond it, the other
-/// clock was slewed between them, and they are not averaged. Capture's Time Sync slews by 0.5 ms every 0.1 s, up to 10
-/// ms in a row; clocks drift by far less.
+/// Largest difference between two replies' offsets that the replies' delays do not explain, in seconds. Beyond it, the
+/// other clock was slewed between the replies, and they are not averaged. Capture's Time Sync slews its clock by 0.5 ms
+/// every 0.1 s, up to 10 ms in a row; clocks drift by far less.
 const SLEWED_S: f64 = 0.0005;
-/// Least change of the offset, beyond what slow replies explain, that means that the other clock was set, in seconds.
+/// Least change of the offset, beyond what slow replies explain, by which the other clock counts as set, in seconds.
 const SET_S: f64 = 0.01;
 
-/// A step of the other clock: somebody or something set it.
+/// A step of the other clock: somebody or something set that clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DeviceClockStep {
-    /// Size of the step in seconds; negative if the clock was set back.
+    /// Size of the other clock's step in seconds; negative if the clock was set back.
     pub by_s: f64,
-    /// Instant at which the clock's offset was last found unchanged before the step.
+    /// Instant before the step at which the other clock's offset was last found unchanged.
     pub known_at: Instant,
 }
 
-/// Estimator of the other clock's offset: mean over the latest replies, without slow replies and without those from
+/// Estimator of the other clock's offset: mean over the latest replies, without slow replies and without replies from
 /// before the clock was slewed. A delay in one direction shifts a reply's offset by half of the delay.
 #[derive(Debug)]
 pub(super) struct ClockOffsetEstimator {
     anchor: Instant,
-    /// For each reply, the other clock's time minus seconds since the anchor, and the round-trip time in seconds;
-    /// newest last.
+    /// For each reply, the other clock's time minus seconds since the anchor, and the round-trip time in seconds; the
+    /// newest reply is last.
     answers: Vec<(f64, f64)>,
     /// Instant at which the latest reply of the other clock arrived.
     known_at: Instant,
 }
 
 impl ClockOffsetEstimator {
-    /// An estimator without any reply yet.
+    /// An estimator of a clock's offset without any reply yet.
     pub fn new() -> ClockOffsetEstimator {
         let now = Instant::now();
         ClockOffsetEstimator { anchor: now, answers: Vec::new(), known_at: now }
@@ -44,8 +44,8 @@ impl ClockOffsetEstimator {
     pub fn take(&mut self, asked: Instant, answered: Instant, device_s: f64) -> Option<DeviceClockStep> {
         let since = |at: Instant| at.saturating_duration_since(self.anchor).as_secs_f64();
         let (offset, took_s) = (device_s - (since(asked) + since(answered)) / 2.0, since(answered) - since(asked));
-        // A reply's offset is uncertain by half of the round-trip time; the mean of earlier replies, by no more than
-        // the shortest round trip.
+        // A reply's offset is uncertain by half of its round-trip time; the mean of earlier replies is uncertain by no
+        // more than the shortest round trip.
         let unsure_s = took_s / 2.0 + self.least_s().unwrap_or(0.0);
         let before = self.offset().filter(|before| (before - offset).abs() > SET_S + unsure_s);
         let step = before.map(|before| DeviceClockStep { by_s: offset - before, known_at: self.known_at });
@@ -106,7 +106,7 @@ mod tests {
         let [anchor, later] = [at(0), at(5000)];
         let after = |ms: u64| anchor + Duration::from_millis(ms);
         assert_eq!(clock.instant(7.0), None);
-        // The other clock is 100 s ahead; every third reply is late by 40 ms.
+        // Test: the other clock is 100 s ahead; every third reply is late by 40 ms.
         for second in 0..30u64 {
             let asked = 1000 * second;
             let late = if second % 3 == 1 { 40 } else { 0 };
@@ -119,7 +119,7 @@ mod tests {
         assert!((clock.device_s(later).expect("a time") - 105.0).abs() < 1e-5);
         assert!((clock.device_s(anchor).expect("a time") - 100.0).abs() < 1e-5);
         assert_eq!(clock.take(after(29_500), after(29_502), 129.501), None);
-        // The other clock is set by 0.2 s, then by 20 ms; a slow reply of 60 ms does not count as a step.
+        // Test: the other clock is set by 0.2 s, then by 20 ms; a slow reply of 60 ms does not count as a step.
         let step = clock.take(after(30_000), after(30_002), 130.201).expect("a step");
         assert!((step.by_s - 0.2).abs() < 0.002 && step.known_at == after(29_502), "{step:?}");
         assert!((clock.device_s(after(30_001)).expect("a time") - 130.201).abs() < 1e-9);
@@ -131,8 +131,8 @@ mod tests {
         assert_eq!(clock.instant(1e300), None);
     }
 
-    /// Recorded behaviour of Capture's Time Sync (`tests/pupil/time_sync.csv`): seconds at which Capture's clock was
-    /// asked and answered, Pupil time, and how far Pupil time was behind the true time.
+    /// Recorded behaviour of Capture's Time Sync (`tests/pupil/time_sync.csv`), used in tests: seconds at which
+    /// Capture's clock was asked and answered, Pupil time, and how far Pupil time was behind the true time.
     fn time_sync() -> Vec<[f64; 4]> {
         let numbers = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect::<Vec<f64>>();
         let table = include_str!("../../tests/pupil/time_sync.csv");
@@ -154,7 +154,7 @@ mod tests {
             let Some([_, next_s, _, behind_s]) = answers.get(index + 1) else { continue };
             let told = clock.instant(next_s - behind_s).expect("a clock that was compared");
             let off_s = told.saturating_duration_since(clock.anchor).as_secs_f64() - next_s;
-            // A step of the clock is known from the next reply on.
+            // A step of the other clock is known from the next reply on.
             if (behind_s - bases[index]).abs() < SET_S {
                 wrong_s = wrong_s.max(off_s.abs());
             }

@@ -1,5 +1,6 @@
-//! Table of a server's open network connections. It limits their number, in total and per address. A new connection
-//! beyond a limit replaces the one that was silent longest, so that silent connections cannot keep others out.
+//! Table of a server's open network connections. The table limits their number, in total and per address. A new
+//! connection beyond a limit replaces the one that was silent longest, so that silent connections cannot keep others
+//! out.
 
 use std::collections::BTreeMap;
 use std::net::IpAddr;
@@ -8,31 +9,32 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::watch;
 
-/// Limits for the open connections of a server.
+/// Limits for the numbers of open connections of a server.
 #[derive(Clone, Copy, Debug)]
 pub struct ConnectionLimits {
-    /// Largest number of open connections. The sum over all servers of this program stays well below 1024, a usual
-    /// limit of open files.
+    /// Largest number of open connections. The sum of this limit over all servers of the program stays well below 1024,
+    /// a usual limit of open files.
     pub most: usize,
     /// Largest number of open network connections per address.
     pub per_address: usize,
-    /// Largest number of admitted network connections.
+    /// Largest number of admitted network connections (whose sender has been identified).
     pub admitted: usize,
-    /// Largest number of admitted connections per address. Fewer than [`Self::per_address`] leave room for new
+    /// Largest number of admitted connections per address. Keeping it below [`Self::per_address`] leaves room for new
     /// connections.
     pub admitted_per_address: usize,
-    /// Silence after which an admitted connection may be replaced, if no connection is waiting for admission.
+    /// Silence after which an admitted connection may be replaced by a new one, if no connection is waiting for
+    /// admission.
     pub silence: Duration,
 }
 
 /// How a connection is treated when there are too many connections.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ConnectionStanding {
-    /// Sender not identified yet: new connections may replace this one.
+    /// The connection's sender is not identified yet: a new connection may replace this connection.
     Waiting,
-    /// Sender identified as a page or a tracker: the connection is replaced only after a silence.
+    /// The connection's sender is identified as a page or a tracker: the connection is replaced only after a silence.
     Admitted,
-    /// Reserved connection: never replaced, and not counted by the limits of admitted connections.
+    /// The connection is reserved: it is never replaced, and not counted by the limits of admitted connections.
     Reserved,
 }
 
@@ -73,19 +75,19 @@ pub struct ConnectionHandle {
 pub struct NewConnection {
     /// Table entry of the new network connection.
     pub place: ConnectionHandle,
-    /// Whether another connection is closed to make room.
+    /// Whether another connection is closed to make room for the new one.
     pub made_room: bool,
 }
 
 impl ConnectionTable {
-    /// A table without connections.
+    /// A table of network connections without entries.
     pub fn new(limits: ConnectionLimits) -> Arc<ConnectionTable> {
         Arc::new(ConnectionTable { limits, inner: Mutex::default() })
     }
 
-    /// Adds a connection from this address. Beyond a limit it replaces the connection that was silent longest: one of
-    /// the same address if that address has too many, else one of the address with the most waiting connections. `None`
-    /// if no connection can be replaced, so that the new one has to be refused.
+    /// Adds a connection from this address. Beyond a limit the new connection replaces the one that was silent longest:
+    /// one of the same address if that address has too many, else one of the address with the most waiting connections.
+    /// `None` if no connection can be replaced, so that the new one has to be refused.
     pub fn arrive(self: &Arc<Self>, address: IpAddr, now: Instant) -> Option<NewConnection> {
         let address = network_of(address);
         let mut inner = self.lock();
@@ -105,7 +107,7 @@ impl ConnectionTable {
         Some(NewConnection { place, made_room: is_full })
     }
 
-    /// Index of the connection that a new one may replace, among those of this address or among all.
+    /// Index of the connection that a new one may replace, among connections of the address `only` or among all.
     fn replaceable(&self, entries: &[ConnectionEntry], only: Option<IpAddr>, now: Instant) -> Option<usize> {
         let is_waiting = |entry: &ConnectionEntry| entry.standing == ConnectionStanding::Waiting;
         let mut waiting = BTreeMap::<IpAddr, usize>::new();
@@ -122,7 +124,7 @@ impl ConnectionTable {
             (_, ConnectionStanding::Reserved) => false,
         };
         let candidates = entries.iter().enumerate().filter(|(_, entry)| is_replaceable(entry));
-        // Waiting connections are replaced before admitted ones.
+        // Connections that wait for admission are replaced before admitted connections.
         candidates.min_by_key(|(_, entry)| (!is_waiting(entry), entry.heard)).map(|(index, _)| index)
     }
 
@@ -137,7 +139,7 @@ impl ConnectionTable {
 }
 
 impl ConnectionHandle {
-    /// Address of the connection's other end, as the limits count it; see [`network_of`].
+    /// Network address of the connection's other end, as the limits count addresses; see [`network_of`].
     pub fn address(&self) -> IpAddr {
         self.address
     }
@@ -147,7 +149,8 @@ impl ConnectionHandle {
         self.change(|entry| entry.heard = now);
     }
 
-    /// Admits the connection, if the limits of admitted connections leave room; returns whether it is admitted.
+    /// Admits the connection if the limits of admitted connections leave room; returns whether the connection is
+    /// admitted.
     #[must_use]
     pub fn admit(&self) -> bool {
         let limits = self.table.limits;
@@ -163,7 +166,7 @@ impl ConnectionHandle {
         entry.standing != ConnectionStanding::Waiting
     }
 
-    /// Reserves the connection's entry, or turns a reserved entry into an admitted one.
+    /// Reserves the connection's entry, or turns a reserved entry into an admitted entry.
     pub fn reserve(&self, is_reserved: bool) {
         self.change(|entry| match (is_reserved, entry.standing) {
             (true, _) => entry.standing = ConnectionStanding::Reserved,
@@ -192,8 +195,8 @@ impl Drop for ConnectionHandle {
     }
 }
 
-/// The network that limits count as one address: an IPv4 address, or the /64 prefix of an IPv6 address, all of which
-/// one site can use.
+/// The network that the limits count as one address: an IPv4 address, or the /64 prefix of an IPv6 address, since one
+/// site can use all addresses of such a prefix.
 pub fn network_of(address: IpAddr) -> IpAddr {
     match address.to_canonical() {
         IpAddr::V4(address) => address.into(),

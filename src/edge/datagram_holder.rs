@@ -1,4 +1,4 @@
-//! Filter of gaze datagrams by sender. A datagram identifies its sender by nothing but the address: the address that
+//! Filter of gaze datagrams by sender. A datagram identifies its sender only by the network address: the address that
 //! sends the first sample keeps the gaze input to itself until it has been silent for a while.
 
 use std::net::IpAddr;
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::session::settings::GazeSenders;
 
-/// Silence after which the present sender's address loses its exclusive use of the gaze input.
+/// Silence after which the network address that sent gaze loses its exclusive use of the gaze input.
 pub const RELEASE: Duration = Duration::from_secs(5);
 
 /// Which address may send gaze datagrams: the first sender has exclusive use until it falls silent.
@@ -23,7 +23,7 @@ impl ExclusiveDatagramSender {
         ExclusiveDatagramSender { senders, holder: None }
     }
 
-    /// Whether a gaze datagram from this address is read.
+    /// Whether a gaze datagram from this network address is read.
     pub fn admits(&self, from: IpAddr, now: Instant) -> bool {
         match (self.senders, self.holder) {
             (GazeSenders::Any, _) | (_, None) => true,
@@ -33,7 +33,7 @@ impl ExclusiveDatagramSender {
         }
     }
 
-    /// Records that a datagram from this address contained a gaze sample.
+    /// Records that a datagram from this network address contained a gaze sample.
     pub fn heard(&mut self, from: IpAddr, now: Instant) {
         self.holder = Some((from, now));
     }

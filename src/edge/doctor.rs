@@ -24,9 +24,9 @@ use crate::session::settings::ConsoleSpec;
 
 /// Terminal size at which the console shows all panels, in columns and rows.
 const ROOMY: (u16, u16) = (120, 40);
-/// Smallest terminal in which the console is usable, in columns and rows; in between, `tomcom doctor` warns.
+/// Smallest terminal in which the console is usable, in columns and rows; `tomcom doctor` warns below [`ROOMY`].
 const WORKABLE: (u16, u16) = (80, 24);
-/// Date before which this program did not exist; a clock that shows an earlier date is not set.
+/// Date before which this program did not exist; a clock that shows an earlier date was never set.
 const WRITTEN: &str = "2025-01-01";
 
 /// Findings of the command `tomcom doctor`.
@@ -42,7 +42,7 @@ pub struct DoctorReport {
 pub fn examine(spec: &SessionSpec, out: &Path) -> DoctorReport {
     let mut checks = terminal(&spec.console);
     let place = folder(out);
-    // The free disk space matters only if the folder can be written to.
+    // The free disk space matters only if the folder for recordings can be written to.
     let room = (place.verdict == PreflightVerdict::Ok).then(|| space(free_bytes(&existing(out)).ok()));
     checks.push(place);
     checks.extend(room);
@@ -133,7 +133,7 @@ fn colours(spec: &ConsoleSpec) -> PreflightCheck {
     PreflightCheck::new("colours", verdict, found, remedy)
 }
 
-/// Whether the terminal knows mouse reports (DECRQM); `None` if it does not answer.
+/// Whether the terminal knows mouse reports (query DECRQM); `None` if the terminal does not answer.
 fn mouse_mode() -> Option<bool> {
     enable_raw_mode().ok()?;
     let answer = ask("\x1b[?1006$p");
@@ -143,7 +143,7 @@ fn mouse_mode() -> Option<bool> {
     Some(state != '0')
 }
 
-/// The nearest existing parent folder.
+/// The nearest parent folder of a path that exists.
 fn existing(out: &Path) -> PathBuf {
     let there = out.ancestors().find(|folder| folder.is_dir());
     there.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()
@@ -185,7 +185,7 @@ fn folder(out: &Path) -> PreflightCheck {
 /// Free bytes on the disk of a folder.
 ///
 /// # Errors
-/// The operating system does not tell.
+/// The operating system does not tell the free space.
 #[cfg(unix)]
 pub fn free_bytes(folder: &Path) -> io::Result<u64> {
     let found = rustix::fs::statvfs(folder)?;
@@ -213,8 +213,8 @@ fn left_out() -> impl Iterator<Item = PreflightCheck> {
     })
 }
 
-/// Checks whether Rerun's viewer is installed, which shows recordings in a window; without it, they are shown in a
-/// browser.
+/// Checks whether Rerun's viewer is installed, which shows recordings in a window; without it, a browser shows the
+/// recordings.
 #[cfg(feature = "rerun")]
 fn viewer() -> PreflightCheck {
     use super::viewer::{REMEDY, ViewerAvailability};

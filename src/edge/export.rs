@@ -1,6 +1,6 @@
-//! Output files of an analysis: tables as CSV (RFC 4180, UTF-8), and the report. Event rows are kept in temporary files
-//! until all recordings are read, so that memory does not grow with the number of recordings and tables have the order
-//! of the recordings.
+//! Output files of an analysis: tables as CSV (RFC 4180, UTF-8), and the report. Rows of events are kept in temporary
+//! files until all recordings are read, so that memory use does not grow with the number of recordings and tables have
+//! the order of the recordings.
 
 use std::borrow::{Borrow, Cow};
 use std::fs::{self, File};
@@ -47,35 +47,35 @@ impl TableRows {
         self.rows.serialize(row.cells()).expect("rows are flat, and written to memory");
     }
 
-    /// The rows as CSV in UTF-8, without a header line.
+    /// The table's rows as CSV in UTF-8, without a header line.
     pub fn into_bytes(self) -> Vec<u8> {
         self.rows.into_inner().expect("rows are written to memory")
     }
 }
 
-/// Output folder of an analysis.
+/// Output folder of an analysis, with tables and report.
 #[derive(Debug)]
 pub struct AnalysisFolder {
     folder: PathBuf,
 }
 
 impl AnalysisFolder {
-    /// Creates the output folder if it does not exist.
+    /// Creates the output folder of an analysis if the folder does not exist.
     ///
     /// # Errors
-    /// The folder cannot be created or written to, or it contains files that this program did not write and that have
-    /// the names of tables or report.
+    /// The folder cannot be created or written to, or it contains files that have the names of tables or report but
+    /// that this program did not write.
     pub fn create(folder: &Path) -> Result<AnalysisFolder, AnalysisWriteError> {
         let export = AnalysisFolder { folder: folder.to_path_buf() };
         export.check_replaced()?;
         let parts = export.parts();
-        // Temporary files of an interrupted run are removed.
+        // Temporary files that an interrupted analysis left are removed.
         remove_parts(&parts).map_err(|reason| AnalysisWriteError { path: parts.clone(), reason })?;
         fs::create_dir_all(&parts).map_err(|reason| AnalysisWriteError { path: parts, reason })?;
         Ok(export)
     }
 
-    /// Checks that all files to be replaced come from an earlier analysis.
+    /// Checks that all files that would be replaced come from an earlier analysis.
     fn check_replaced(&self) -> Result<(), AnalysisWriteError> {
         let written = ListedTables::read(&self.folder)
             .map_err(|reason| AnalysisWriteError { path: self.folder.clone(), reason })?;
@@ -89,7 +89,7 @@ impl AnalysisFolder {
             overwrite::check(&path, &what, is_own).map_err(|reason| AnalysisWriteError { path, reason })?;
         }
         let path = self.folder.join(REPORT_NAME);
-        // Reports of earlier versions do not name their program, but have a data dictionary beside them.
+        // Reports of earlier program versions do not name the program, but have a data dictionary beside them.
         let is_own =
             |head: &[u8]| written.is_listed() || page_head::participants(&String::from_utf8_lossy(head)).is_some();
         overwrite::check(&path, "a report", is_own).map_err(|reason| AnalysisWriteError { path, reason })
@@ -115,7 +115,7 @@ impl AnalysisFolder {
         Ok(())
     }
 
-    /// Writes a table; returns it if it has rows.
+    /// Writes a table of the analysis; returns the table if it has rows.
     ///
     /// # Errors
     /// The table cannot be written.
@@ -129,7 +129,7 @@ impl AnalysisFolder {
         self.write_table(Row::TABLE, |out| out.write_all(&rows).map(|()| !rows.is_empty()))
     }
 
-    /// Writes the event tables from the stored rows of these recordings, in this order, and removes the temporary
+    /// Writes the tables of events from the stored rows of these recordings, in this order, and removes the temporary
     /// files. Returns the tables that have rows.
     ///
     /// # Errors
@@ -149,7 +149,7 @@ impl AnalysisFolder {
         Ok(filled)
     }
 
-    /// Writes the report and returns its path.
+    /// Writes the analysis report and returns its path.
     ///
     /// # Errors
     /// The report cannot be written.
@@ -179,7 +179,7 @@ impl AnalysisFolder {
 }
 
 /// Removes the folder of temporary files that an analysis has left. Files that this program did not write stay, and
-/// then so does the folder.
+/// then the folder stays, too.
 fn remove_parts(folder: &Path) -> io::Result<()> {
     let entries = match fs::read_dir(folder) {
         Ok(entries) => entries,

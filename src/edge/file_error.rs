@@ -18,7 +18,7 @@ pub type FileResult<T> = Result<T, FileError>;
 /// An error of a file that the program reads or writes: unreadable, unsuitable as a whole, or invalid in one place.
 #[derive(Debug, thiserror::Error, Diagnostic)]
 pub enum FileError {
-    /// The file cannot be read or written.
+    /// The file cannot be read or written at all.
     #[error("{}: cannot be read: {reason}", path.display())]
     Unreadable {
         /// Path of the file that cannot be read or written.
@@ -62,7 +62,7 @@ pub enum FileError {
 }
 
 impl FileError {
-    /// An error at one place of a file's text. Control characters are escaped.
+    /// An error at one place of a file's text. Control characters in the message are escaped.
     pub fn at(path: &Path, text: &str, span: Option<Range<usize>>, found: String, remedy: String) -> FileError {
         let name = name_of(path);
         let boundary = |at: usize| (0..=at.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0);
@@ -76,7 +76,7 @@ impl FileError {
         FileError::Wrong { name, line, found: one_line(found), text: Arc::new(source), span, remedy }
     }
 
-    /// An error of a folder, an option, or a file as a whole, which has no place in a text.
+    /// An error of a folder, an option, or a file as a whole, for which no line can be named.
     pub fn from_finding(what: &Path, found: String, remedy: String) -> FileError {
         FileError::Unfit { name: name_of(what), found: one_line(found), remedy }
     }
@@ -99,8 +99,8 @@ impl FileError {
     }
 }
 
-/// The error about a file that a session file names and that cannot be read. Arguments are the setting's path, the
-/// index among settings with this path (0 is the first), and the file's name.
+/// The error about a file that a session file names and that cannot be read. Arguments are the dotted path of the
+/// setting that names the file, the index among settings with this path (0 is the first), and the file's name.
 pub(super) fn missing(
     session: &Path,
     text: &str,
@@ -137,7 +137,7 @@ pub fn open_regular(path: &Path) -> io::Result<File> {
 /// Reads the text of a file in the folder of a recording.
 ///
 /// # Errors
-/// Errors of [`open_regular`], or the file is not UTF-8.
+/// The errors of [`open_regular`], or the file is not UTF-8.
 pub fn read_regular(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     open_regular(path)?.read_to_string(&mut text).map(|_| text)

@@ -32,16 +32,16 @@ pub struct SessionFiles {
     pub spec: SessionSpec,
     /// Kitchen of the session, with its layout and recipe files.
     pub kitchen: KitchenFiles,
-    /// Key file, if the settings name one.
+    /// Key file (key bindings of the console); `None` if the settings name none.
     pub keys: Option<RecordedFile>,
     /// Questionnaires that the study plan names, in the plan's order.
     pub questionnaires: Vec<Questionnaire>,
-    /// Tutorial that the study plan names, if any.
+    /// Tutorial that the study plan names; `None` if the plan has no tutorial.
     pub tutorial: Option<Tutorial>,
 }
 
 impl SessionFiles {
-    /// The study that these settings plan, if they contain a study plan.
+    /// The study that these settings plan; `None` if the settings contain no study plan.
     pub fn study(&self) -> Option<Study> {
         let kitchen = [&*self.kitchen.layout.text, &*self.kitchen.recipes.text];
         Study::new(&self.spec, self.questionnaires.clone(), self.tutorial.clone(), kitchen)
@@ -53,7 +53,7 @@ pub fn read_session(path: &Path) -> FileResult<SessionFiles> {
     read_session_in(path, None)
 }
 
-/// Reads a session file as [`read_session`] does, but with the display's texts in this language.
+/// Reads a session file as [`read_session`] does, but with the texts of the participant's display in this language.
 pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<SessionFiles> {
     let text = read_text(path)?;
     let mut spec: SessionSpec = parse(path, &text)?;
@@ -85,7 +85,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     spec.display.reasons.get_or_insert(true);
     spec.display.served.get_or_insert(false);
     spec.display.arm.get_or_insert(DisplayedArm::Hand);
-    // In a study plan, the condition decides whether the wizard sees offers.
+    // In a study plan, the condition of a trial decides whether the wizard sees offers.
     if spec.plan.is_none() && spec.wizard.kind == WizardKind::Scripted {
         spec.wizard.offers.get_or_insert_default();
     }
@@ -119,7 +119,7 @@ pub fn read_session_in(path: &Path, language: Option<&str>) -> FileResult<Sessio
     Ok(SessionFiles { spec, kitchen, keys, questionnaires, tutorial })
 }
 
-/// Reads the key file that the session file names, if any.
+/// Reads the key file that the session file names; `None` if the session file names no key file.
 fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Option<RecordedFile>> {
     let Some(name) = &spec.console.keys else { return Ok(None) };
     let path = session.parent().unwrap_or(Path::new(".")).join(name);
@@ -130,7 +130,7 @@ fn read_keys(session: &Path, text: &str, spec: &SessionSpec) -> FileResult<Optio
     Ok(Some(RecordedFile { path: path.display().to_string(), text: keys }))
 }
 
-/// Reads the questionnaires of a study plan, in the plan's order and in the session's language.
+/// Reads the questionnaires that a study plan names, in the plan's order and in the session's language.
 fn read_questionnaires(
     session: &Path,
     text: &str,
@@ -152,7 +152,7 @@ fn read_questionnaires(
     plan.questionnaire.iter().enumerate().map(read).collect()
 }
 
-/// Reads the tutorial of a study plan, in the session's language, and checks that it fits the kitchen.
+/// Reads the tutorial that a study plan names, in the session's language, and checks that it fits the kitchen.
 fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitchen) -> FileResult<Option<Tutorial>> {
     let Some(file) = spec.plan.as_ref().and_then(|plan| plan.tutorial.as_ref()) else { return Ok(None) };
     let path = in_language(session.parent().unwrap_or(Path::new(".")).join(file), spec.display.code());
@@ -167,7 +167,7 @@ fn read_tutorial(session: &Path, text: &str, spec: &SessionSpec, kitchen: &Kitch
     Ok(Some(tutorial))
 }
 
-/// Path of a file's translation into this language, if that exists beside it: `acceptance.de.toml` beside
+/// Path of a file's translation into this language, if there is such a file beside it: `acceptance.de.toml` beside
 /// `acceptance.toml`.
 fn in_language(path: PathBuf, code: &str) -> PathBuf {
     // A setting that names a file of texts instead of a language has a path here, not a language code.
@@ -184,7 +184,7 @@ fn wrong_setting(path: &Path, text: &str, error: SettingError) -> FileError {
 /// Reads a file with parameters of the human model; parameters that the file does not name have their defaults.
 ///
 /// # Errors
-/// It cannot be read, or a parameter of the population or of a person cannot be.
+/// The file cannot be read, or a parameter of the population or of a person is invalid.
 pub fn read_human_model(path: &Path) -> FileResult<HumanModelFile> {
     let text = read_text(path)?;
     let file: HumanModelFile = parse(path, &text)?;
@@ -199,7 +199,7 @@ pub fn read_human_model(path: &Path) -> FileResult<HumanModelFile> {
     Ok(file)
 }
 
-/// Checks the parameters of persons, each in a model that is otherwise that of the population.
+/// Checks the parameters of persons, each in a human model that is otherwise that of the population.
 fn check_people(path: &Path, text: &str, population: &HumanModel, people: Option<&FittedPeople>) -> FileResult<()> {
     for (code, own) in people.iter().flat_map(|people| &people.0) {
         if !is_code(code) {
@@ -222,16 +222,16 @@ fn check_people(path: &Path, text: &str, population: &HumanModel, people: Option
 /// Checks that a file of fitted parameters can be written to this path.
 ///
 /// # Errors
-/// The path has a file that this program did not write.
+/// There is a file at the path that this program did not write.
 pub fn check_fitted(path: &Path) -> std::io::Result<()> {
     let begins = format!("# {FITTED}");
     overwrite::check(path, "a file of fitted parameters", |head| head.starts_with(begins.as_bytes()))
 }
 
-/// Writes a file with all parameters of the human model, after a comment.
+/// Writes a file with all parameters of the human model, after a comment at its top.
 ///
 /// # Errors
-/// The file cannot be written, or the path has a file that this program did not write.
+/// The file cannot be written, or there is a file at the path that this program did not write.
 pub fn write_human_model(path: &Path, file: &HumanModelFile, comment: &str) -> std::io::Result<()> {
     check_fitted(path)?;
     let comment: String = comment.lines().map(|line| format!("# {line}\n")).collect();
@@ -239,10 +239,10 @@ pub fn write_human_model(path: &Path, file: &HumanModelFile, comment: &str) -> s
     std::fs::write(path, format!("{comment}\n{text}"))
 }
 
-/// The default session with its kitchen, which are part of the program, so that it runs without any file.
+/// The default session with its kitchen; both are part of the program, so that it runs without any file.
 ///
 /// # Errors
-/// Only if the program was built from invalid files.
+/// Occurs only if the program was built from invalid files.
 pub fn built_in_session() -> FileResult<SessionFiles> {
     let spec: SessionSpec = parse(Path::new("sessions/default.toml"), include_str!("../../sessions/default.toml"))?;
     let layout = (Path::new(&spec.layout), include_str!("../../layouts/sushi.toml").to_string());
@@ -258,7 +258,7 @@ pub struct KitchenFiles {
     pub kitchen: Kitchen,
     /// Layout file of the kitchen.
     pub layout: RecordedFile,
-    /// Recipe file of the kitchen; its path is as the layout file names it.
+    /// Recipe file of the kitchen; its path is written as in the layout file.
     pub recipes: RecordedFile,
 }
 
@@ -285,13 +285,13 @@ fn read_kitchen_with(layout_path: &Path, keys: Option<&RecordedFile>) -> FileRes
     Ok(files)
 }
 
-/// The error about a layout that has a number outside of its range.
+/// The error about a layout file with a number outside of its allowed range.
 fn wrong_layout(path: &Path, text: &str, error: OutOfRange) -> FileError {
     FileError::at(path, text, error.place, error.found, error.remedy)
 }
 
 /// Compiles a kitchen from texts without checking the ranges of its numbers, since it may be the kitchen of an old
-/// recording. The paths only serve error messages.
+/// recording. The paths serve error messages only.
 pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> FileResult<KitchenFiles> {
     let layout_spec: LayoutSpec = parse(layout.0, &layout.1)?;
     let recipes_spec: RecipesSpec = parse(recipes.0, &recipes.1)?;
@@ -311,7 +311,7 @@ pub fn compile_kitchen(layout: (&Path, String), recipes: (&Path, String)) -> Fil
     }
 }
 
-/// Checks that the robot's arm can reach all its buttons.
+/// Checks that the robot's arm can reach all of the robot's buttons.
 #[cfg(feature = "physics")]
 fn check_reach(path: &Path, text: &str, layout: &LayoutSpec, kitchen: &Kitchen) -> FileResult<()> {
     let Some((button, why)) = crate::arm::reach::out_of_reach(kitchen) else { return Ok(()) };

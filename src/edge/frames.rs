@@ -1,5 +1,5 @@
 //! Writes frames to the terminal from a separate thread, so that a slow or unread terminal blocks neither the session
-//! nor its end.
+//! nor the session's end.
 
 use std::io::{self, Write};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
@@ -22,17 +22,17 @@ struct Pending {
     frame: Option<Vec<u8>>,
     /// Last bytes for the terminal, which restore its modes.
     last: Option<Vec<u8>>,
-    /// Whether the thread is writing to the terminal.
+    /// Whether the writing thread is writing to the terminal now.
     writing: bool,
-    /// Whether the rest of the present frame is skipped, to end sooner.
+    /// Whether the writing thread skips the rest of the present frame, to end sooner.
     hurries: bool,
-    /// Whether a write failed, since the terminal was closed.
+    /// Whether a write to the terminal failed, since the terminal was closed.
     lost: bool,
     /// Whether the writing thread has ended.
     done: bool,
 }
 
-/// Writer of frames to the terminal. It holds at most one frame that is not yet being written.
+/// Writer of frames to the terminal. The writer holds at most one frame that is not yet being written.
 #[derive(Debug)]
 pub(super) struct FrameWriter {
     pending: Mutex<Pending>,
@@ -40,7 +40,7 @@ pub(super) struct FrameWriter {
 }
 
 impl FrameWriter {
-    /// Starts the writing thread.
+    /// Starts the thread that writes frames to the terminal.
     ///
     /// # Errors
     /// The thread cannot be started.
@@ -55,7 +55,7 @@ impl FrameWriter {
         self.pending.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Whether the terminal has accepted the last frame.
+    /// Whether the terminal has accepted the last frame of the console.
     pub(super) fn is_ready(&self) -> bool {
         let pending = self.pending();
         pending.frame.is_none() && !pending.writing
@@ -73,8 +73,9 @@ impl FrameWriter {
         self.changed.notify_all();
     }
 
-    /// Writes the last bytes after the present frame, and ends the thread; returns whether the terminal accepted them.
-    /// Waits for less than a second. If the terminal's buffer is full, its unread content is discarded to make room.
+    /// Writes the last bytes after the present frame, and ends the thread; returns whether the terminal accepted the
+    /// bytes. Waits for less than a second. If the terminal's buffer is full, its unread content is discarded to make
+    /// room.
     pub(super) fn end(&self, last: Vec<u8>) -> bool {
         let mut pending = self.pending();
         pending.last = Some(last);
@@ -126,7 +127,7 @@ impl FrameWriter {
     }
 }
 
-/// Runs a write on a separate thread, and waits for it until the time limit; a write that takes longer counts as done.
+/// Runs a write on a separate thread, and waits for it until a time limit; a write that takes longer counts as done.
 ///
 /// # Errors
 /// The write fails within the time limit, or the thread cannot be started.

@@ -1,5 +1,6 @@
-//! File of a frozen study plan: one line with the digest, then the frozen content as JSON. The digest is SHA-256 of
-//! every byte after the first line, so that it can be checked without this program (`tail -n +2 FILE | sha256sum`).
+//! File of a frozen (preregistered) study plan: one line with the digest, then the frozen content as JSON. The digest
+//! is SHA-256 of every byte after the first line, so that it can be checked without this program (`tail -n +2 FILE |
+//! sha256sum`).
 
 use std::fs::OpenOptions;
 use std::io::{self, ErrorKind, Write};
@@ -10,7 +11,7 @@ use sha2::{Digest, Sha256};
 use super::file_error::{FileError, FileResult, read_text};
 use crate::study::frozen_plan::{FROZEN_FORMAT, FrozenPlan};
 
-/// Text of a frozen plan's first line before the digest.
+/// Text in the first line of a frozen plan's file, before the digest.
 const HEAD: &str = "tomcom frozen plan, SHA-256 of all that follows this line: ";
 const REMEDY: &str = "a file that tomcom plan PLAN --freeze FILE wrote, unchanged";
 
@@ -19,7 +20,7 @@ const REMEDY: &str = "a file that tomcom plan PLAN --freeze FILE wrote, unchange
 /// # Errors
 /// A file of that name exists already, or the folder cannot be written to.
 pub fn freeze(path: &Path, frozen: &FrozenPlan) -> FileResult<String> {
-    // A plan contains only string keys and finite numbers, so serialisation cannot fail.
+    // Writing JSON cannot fail here, since a plan contains only string keys and finite numbers.
     let body = serde_json::to_string_pretty(frozen).unwrap_or_default() + "\n";
     let digest = sha256(body.as_bytes());
     let write = || -> io::Result<()> {

@@ -1,7 +1,7 @@
 //! One network connection that sends lines of gaze. A connection that does not begin with a JSON object is rejected and
-//! counted, and none of its lines is read: websites can make a browser send requests to this port. From another
-//! computer whose address is not listed, the first line must be the pairing code; the program replies, so that the
-//! sender can tell whether the code was right.
+//! counted, and none of its lines is read: websites can make a browser send requests to this port. If the sender is at
+//! another computer whose address is not listed, the first line must be the pairing code; the program replies, so that
+//! the sender can tell whether the code was right.
 
 use std::net::IpAddr;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -24,24 +24,24 @@ const FIRST_LINE: Duration = Duration::from_secs(10);
 /// Time limit for sending the reply to a pairing code.
 const ANSWER: Duration = Duration::from_secs(1);
 
-/// The access check that all gaze connections share.
+/// The access check, shared by all gaze connections.
 pub(super) type SharedGate = Arc<Mutex<GazeAccessCheck>>;
 
 /// A gaze connection with the state of its sender.
 pub(super) struct GazeConnection {
     /// TCP stream of the connection.
     pub stream: TcpStream,
-    /// Network address of the gaze sender.
+    /// Network address of the sender of gaze.
     pub from: IpAddr,
-    /// Entry of the connection in the table of connections.
+    /// Entry of this connection in the table of network connections.
     pub place: ConnectionHandle,
-    /// Access check for senders of gaze.
+    /// Access check for senders of gaze, shared by all connections.
     pub gate: SharedGate,
-    /// Channel to which the connection's messages go.
+    /// Channel by which the connection's gaze messages reach the session.
     pub news: Sender<TrackerMessage>,
 }
 
-/// Reads a gaze connection until it ends, is rejected, or is replaced by another.
+/// Reads a gaze connection until the connection ends, is rejected, or is replaced by another one.
 pub(super) async fn attend(connection: GazeConnection) {
     let GazeConnection { stream, from, place, gate, news } = connection;
     let is_paired = lock(&gate).admission(from) == GazeAdmission::Open;
@@ -57,18 +57,18 @@ pub(super) async fn attend(connection: GazeConnection) {
     }
 }
 
-/// Counts a rejected sender of gaze.
+/// Counts one rejected sender of gaze.
 pub(super) fn reject(news: &Sender<TrackerMessage>) {
     // A queue that is closed or full has worse consequences than a wrong count of rejected senders.
     let _ = news.try_send(TrackerMessage::Rejected(1));
 }
 
-/// Locks the shared access check; it stays usable after a panic in another thread.
+/// Locks the shared access check, which stays usable after a panic in another thread.
 pub(super) fn lock(gate: &SharedGate) -> std::sync::MutexGuard<'_, GazeAccessCheck> {
     gate.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Content of a line of a gaze connection.
+/// Content of one line of a gaze connection.
 enum LineContent {
     /// The first line of the connection, with a pairing code.
     Pairing(String),
@@ -87,10 +87,10 @@ struct LineReader {
 }
 
 impl LineReader {
-    /// Adds a byte to the present line; returns the content of the line that the byte ends, if any.
+    /// Adds a byte to the present line; returns the content of the line if the byte ends it.
     fn take(&mut self, byte: u8) -> Option<LineContent> {
         if byte != b'\n' {
-            // The limit protects the memory against a sender that never ends its line.
+            // The length limit protects the memory against a sender that never ends its line.
             match self.line.len() < MAX_LINE {
                 true => self.line.push(byte),
                 false => self.is_too_long = true,
@@ -100,7 +100,7 @@ impl LineReader {
         self.end()
     }
 
-    /// Ends the present line and returns its content, if any.
+    /// Ends the present line and returns the line's content; `None` if the line has none.
     fn end(&mut self) -> Option<LineContent> {
         let code = if self.has_line || self.is_too_long { None } else { code_in(&self.line) };
         let found = match (code, self.is_too_long) {
@@ -128,13 +128,13 @@ struct SampleReader<'a> {
     gate: &'a SharedGate,
     news: &'a Sender<TrackerMessage>,
     lines: LineReader,
-    /// Whether the sender is admitted, so that its lines are read.
+    /// Whether the sender of gaze is admitted, so that its lines are read.
     is_paired: bool,
 }
 
 impl SampleReader<'_> {
-    /// Reads lines until the gaze connection ends; a sender that is too fast is slowed down by TCP. Returns false if
-    /// the sender has to be counted as rejected.
+    /// Reads lines until the gaze connection ends; TCP slows down a sender that is too fast. Returns false if the
+    /// sender has to be counted as rejected.
     async fn read(&mut self) -> bool {
         let mut buffer = vec![0; MAX_LINE];
         let first_by = tokio::time::Instant::now() + FIRST_LINE;
@@ -165,7 +165,7 @@ impl SampleReader<'_> {
         true
     }
 
-    /// Handles the content of a line; returns whether further lines are read.
+    /// Handles the content of a gaze line; returns whether further lines are read.
     async fn handle(&mut self, found: LineContent) -> bool {
         let code = match found {
             LineContent::News(found) if self.is_paired => return self.tell(found).await,
@@ -185,17 +185,18 @@ impl SampleReader<'_> {
                 wait.as_secs_f64().ceil()
             ),
         };
-        // A sender that does not read the reply notices the result when the connection is closed.
+        // A sender that does not read the program's reply notices the result when the connection is closed.
         let _ = timeout(ANSWER, self.stream.write_all(answer.as_bytes())).await;
         self.is_paired
     }
 
-    /// Passes on the content of a line, preceded by `Began` before the first sample; returns false if the receiver is
-    /// gone.
+    /// Passes on the content of a line, preceded by `Began` before the first sample; returns false if the receiver of
+    /// gaze messages is gone.
     async fn tell(&mut self, found: TrackerMessage) -> bool {
         if matches!(found, TrackerMessage::Sample(..)) && !self.lines.has_begun {
             self.lines.has_begun = true;
-            // The limits never reject an admitted sender: no more connections can be open than may be admitted.
+            // The connection table's limits never reject an admitted sender: no more connections can be open than may
+            // be admitted.
             let _ = self.place.admit();
             if self.news.send(TrackerMessage::Began).await.is_err() {
                 return false;

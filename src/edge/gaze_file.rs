@@ -25,7 +25,7 @@ pub struct GazeFile {
 
 /// Reads gaze from a recording of this program (folder or log), or from a table of gaze on a surface, which `map` maps
 /// to the display. The trial starts `start_s` seconds after the first sample, or after the start of the recorded trial;
-/// earlier samples are left out.
+/// samples from before that time are left out.
 ///
 /// # Errors
 /// The file cannot be read, has another format, or ends before `start_s`.

@@ -1,5 +1,5 @@
-//! Access check for senders of gaze. Every program of this computer may send; of other computers, those that the
-//! session lists or, if it lists none, those that know the pairing code.
+//! Access check for senders of gaze. Every program of this computer may send gaze; of other computers, those that the
+//! session lists or, if the session lists none, those that know the pairing code.
 
 use std::collections::VecDeque;
 use std::net::{IpAddr, SocketAddr};
@@ -28,7 +28,7 @@ pub(super) enum GazeAdmission {
 }
 
 /// Access check for senders of gaze, which also reports rejected senders. Connections and datagrams have separate
-/// instances, so that wrong codes in datagrams, whose sender addresses can be forged, lock no connection out.
+/// access checks, so that wrong codes in datagrams, whose sender addresses can be forged, lock no connection out.
 #[derive(Debug)]
 pub(super) struct GazeAccessCheck {
     listed: Vec<IpAddr>,
@@ -37,20 +37,20 @@ pub(super) struct GazeAccessCheck {
     /// Senders of datagrams that have sent the right code, oldest first.
     paired: VecDeque<SocketAddr>,
     news: Sender<TrackerMessage>,
-    /// Time of the last report about rejected senders, and number of senders rejected since.
+    /// Time of the last report about rejected senders, and number of senders rejected since that report.
     told: Option<Instant>,
     untold: u64,
 }
 
 impl GazeAccessCheck {
-    /// An access check for listed addresses, and for senders that know this code.
+    /// An access check for listed addresses, and for senders that know the pairing code `code`.
     pub fn new(listed: &[IpAddr], code: Option<&String>, news: Sender<TrackerMessage>) -> GazeAccessCheck {
         let desk = code.map(|code| PairingCodeCheck::new(code.clone()));
         let listed = listed.iter().map(IpAddr::to_canonical).collect();
         GazeAccessCheck { listed, desk, paired: VecDeque::new(), news, told: None, untold: 0 }
     }
 
-    /// Condition under which gaze from this address is read.
+    /// Condition under which gaze from this network address is read.
     pub fn admission(&self, from: IpAddr) -> GazeAdmission {
         // A socket for both IP versions reports IPv4 addresses as IPv6 addresses, which are converted back.
         let from = from.to_canonical();
@@ -61,10 +61,10 @@ impl GazeAccessCheck {
         }
     }
 
-    /// Checks the pairing code of a sender that needs one, and reports the sender if it is rejected.
+    /// Checks the pairing code of a sender that needs a code, and reports the sender if it is rejected.
     ///
     /// # Errors
-    /// Why the sender is rejected, and for how long codes of its address are not checked.
+    /// Why the sender is rejected, and for how long codes from the sender's address are not checked.
     pub fn pair(
         &mut self,
         from: IpAddr,
@@ -116,7 +116,7 @@ impl GazeAccessCheck {
             return;
         }
         let refused = TrackerMessage::Refused { from: from.to_canonical(), why, senders: self.untold };
-        // A queue that is closed or full has worse consequences than a missing notice.
+        // A message queue that is closed or full has worse consequences than a missing notice.
         if self.news.try_send(refused).is_ok() {
             (self.told, self.untold) = (Some(now), 0);
         }
@@ -149,7 +149,8 @@ mod tests {
         assert_eq!(gate.lines(sender(1), &paired, now).map(<[u8]>::trim_ascii), Some(SAMPLE.trim_ascii()));
         assert_eq!(gate.lines(sender(1), SAMPLE, now), Some(SAMPLE), "paired");
         assert_eq!(gate.lines(sender(2), SAMPLE, now), None, "another program there is not");
-        // A code from a paired sender is not checked, so it may be repeated, and nobody can guess codes in its name.
+        // Test: a code from a paired sender is not checked, so it may be repeated, and nobody can guess codes in its
+        // name.
         assert_eq!(gate.lines(sender(1), b"{\"pair\": \"WRONG2\"}", now), Some(&b""[..]));
         now += NOTICE;
         assert_eq!(gate.lines(sender(2), b"{\"pair\": \"WRONG2\"}", now), None);
@@ -183,7 +184,7 @@ mod tests {
         assert_eq!(gate.lines(SocketAddr::new(other, 1), SAMPLE, now), None);
         let refused = TrackerMessage::Refused { from: other, why: GazeSenderRejection::Unlisted, senders: 1 };
         assert_eq!(told.try_recv(), Ok(refused));
-        // A sender that needs no code may send one.
+        // Test: a sender of gaze that needs no code may still send one.
         assert_eq!(gate.lines(sender(1), b"{\"pair\": \"anything\"}\n{}", now), Some(&b"\n{}"[..]));
     }
 }

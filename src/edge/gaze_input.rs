@@ -1,4 +1,4 @@
-//! Messages from all kinds of eye trackers to the session.
+//! Messages that eye trackers of all kinds send to the session.
 
 use std::net::IpAddr;
 use std::time::Instant;
@@ -14,9 +14,9 @@ pub const WAITING: usize = 4096;
 pub enum TrackerMessage {
     /// Gaze sample, with the time at which it was taken if the tracker's clock has been compared with this computer's.
     Sample(GazeSample, Option<Instant>),
-    /// Number of malformed messages, lines or gaze samples.
+    /// Number of malformed messages, lines or gaze samples that the tracker sent.
     Malformed(u64),
-    /// A gaze sample whose time stamp is invalid: this number.
+    /// A gaze sample's time stamp is invalid: it is this number.
     WrongTime(f64),
     /// Number of rejected senders: connections and datagrams that do not come from an eye tracker.
     Rejected(u64),
@@ -26,7 +26,7 @@ pub enum TrackerMessage {
         from: IpAddr,
         /// Why the last gaze sender was rejected.
         why: GazeSenderRejection,
-        /// Number of senders rejected since the last such message.
+        /// Number of senders rejected since the last message of this kind.
         senders: u64,
     },
     /// Number of tracker messages dropped because the queue to the session was full.
@@ -39,13 +39,13 @@ pub enum TrackerMessage {
     Lost(String),
     /// Whether the tracker detects the display's markers now.
     SeesDisplay(bool),
-    /// The tracker detects surfaces with these names, but not that of the display.
+    /// The tracker detects surfaces with these names, but not the display's surface.
     OtherSurfaces(Vec<String>),
     /// Somebody or something set the tracker's clock.
     ClockSet {
-        /// Step of the clock in seconds; negative if it was set back.
+        /// Step of the tracker's clock in seconds; negative if the clock was set back.
         by_s: f64,
-        /// Instant at which the clock's offset was last found unchanged before the step.
+        /// Instant before the step at which the tracker's clock was last found unchanged.
         known_at: Instant,
     },
     /// State of the recording that the tracker's program makes of the trial.
@@ -58,7 +58,7 @@ pub enum TrackerMessage {
         is_onset: bool,
         /// Confidence of the tracker in the blink, 0 to 1.
         confidence: f64,
-        /// Time of the blink's onset or offset.
+        /// Time of the blink's onset or offset, on the tracker's and this computer's clock.
         taken: TrackerTime,
     },
 }
@@ -66,18 +66,18 @@ pub enum TrackerMessage {
 /// Why a gaze sender at another computer is not admitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GazeSenderRejection {
-    /// The session lists addresses, and the sender's is not among them.
+    /// The session lists admitted network addresses, and the sender's is not among them.
     Unlisted,
-    /// The sender has sent something else than the pairing code.
+    /// The sender at another computer has sent something else than the pairing code.
     Unpaired,
-    /// The sender sent a wrong pairing code.
+    /// The sender at another computer sent a wrong pairing code.
     WrongCode,
     /// The pairing code was not checked, because too many wrong ones came before.
     Locked,
 }
 
 impl GazeSenderRejection {
-    /// The reason in words, to complete "gaze from ADDRESS is rejected: …".
+    /// The reason for the rejection in words, to complete "gaze from ADDRESS is rejected: …".
     pub fn words(self) -> &'static str {
         match self {
             GazeSenderRejection::Unlisted => "gaze_from does not list it",
@@ -100,7 +100,7 @@ pub struct TrackerTime {
 /// A fixation detected by a tracker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackerFixation {
-    /// Position in fractions of the display, if the fixation was on it.
+    /// Position of the fixation in fractions of the display; `None` if it was not on the display.
     pub at: Option<[f64; 2]>,
     /// Duration of the fixation, in milliseconds.
     pub duration_ms: f64,
@@ -108,6 +108,6 @@ pub struct TrackerFixation {
     pub dispersion_deg: f64,
     /// Confidence of the tracker in the fixation, 0 to 1.
     pub confidence: f64,
-    /// Beginning of the fixation.
+    /// Time at which the fixation began.
     pub began: TrackerTime,
 }

@@ -1,4 +1,4 @@
-//! Gaze input from any other program: lines of JSON over TCP and UDP (`gaze_line.rs`). Lines that are not samples are
+//! Gaze input from any other program: lines of JSON over TCP and UDP (`gaze_line.rs`). Lines that are no samples are
 //! counted. A connection or datagram that does not begin with a JSON object is rejected and counted. Gaze from other
 //! computers is read only from listed addresses, or from senders that know the pairing code.
 
@@ -21,10 +21,10 @@ use super::outer_address::reachable;
 use super::pairing_code::pairing_code;
 use crate::session::settings::GazeSenders;
 
-/// Longest datagram, in bytes; it can contain several lines.
+/// Longest datagram of gaze, in bytes; a datagram can contain several lines.
 const MAX_DATAGRAM: usize = 1 << 16;
-/// Limits for gaze connections. A sender that has sent a sample may be silent as long as there is room; senders that
-/// are not admitted are replaced first.
+/// Limits for gaze connections. A sender that has sent a gaze sample may be silent as long as there is room; senders
+/// that are not admitted are replaced first.
 const LIMITS: ConnectionLimits = ConnectionLimits {
     most: 32,
     per_address: 32,
@@ -36,12 +36,12 @@ const LIMITS: ConnectionLimits = ConnectionLimits {
 /// The open gaze input for connections (TCP) and datagrams (UDP).
 #[derive(Debug)]
 pub struct GazeListener {
-    /// Address at which connections and datagrams are received.
+    /// Network address at which gaze connections and datagrams are received.
     pub address: SocketAddr,
     /// Pairing code for senders at other computers; `None` if no other computer can reach the input, or if the session
     /// lists addresses.
     pub code: Option<String>,
-    /// Messages from the senders of gaze.
+    /// Channel of messages from the senders of gaze.
     pub news: Receiver<TrackerMessage>,
 }
 
@@ -52,8 +52,9 @@ impl GazeListener {
     }
 }
 
-/// Listens at this address for connections and datagrams of this computer and of others: from listed addresses, or, if
-/// none is listed, from senders that know the pairing code. Senders may come and go. Port 0 stands for a free port.
+/// Listens at the address `at` for gaze connections and datagrams, of this computer and of others: from listed
+/// addresses, or, if none is listed, from senders that know the pairing code. Senders may come and go. Port 0 stands
+/// for a free port.
 ///
 /// # Errors
 /// The program cannot listen at the address.
@@ -74,7 +75,7 @@ async fn take_connections(listener: TcpListener, gate: SharedGate, news: Sender<
     let table = ConnectionTable::new(LIMITS);
     while !news.is_closed() {
         let Ok((stream, from)) = listener.accept().await else {
-            // The process may have run out of file descriptors: the pause prevents a busy loop.
+            // The process may have run out of file descriptors: the pause prevents a loop that never sleeps.
             sleep(Duration::from_millis(100)).await;
             continue;
         };
@@ -104,7 +105,7 @@ async fn take_datagrams(
     let (mut lost, mut tracker) = (0, None);
     while !news.is_closed() {
         let Ok((count, from)) = socket.recv_from(&mut buffer).await else {
-            // The error only says that an earlier sender is gone.
+            // The error only says that an earlier sender of datagrams is gone.
             sleep(Duration::from_millis(1)).await;
             continue;
         };

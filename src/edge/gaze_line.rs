@@ -10,7 +10,7 @@ use serde::Deserialize;
 use super::gaze_input::TrackerMessage;
 use crate::gaze::GazeSample;
 
-/// Largest age of a sample, in seconds; a larger age is an error of the sender.
+/// Largest age of a gaze sample, in seconds; a larger age is an error of the sender.
 const MAX_AGE_S: f64 = 60.0;
 
 #[derive(Deserialize)]
@@ -30,7 +30,7 @@ struct PairingLine {
     pair: String,
 }
 
-/// Whether bytes begin a JSON object; `None` if there are too few to decide.
+/// Whether bytes begin a JSON object; `None` if there are too few bytes to decide.
 pub(super) fn begins_object(bytes: &[u8]) -> Option<bool> {
     let mut signs = bytes.iter().filter(|byte| !byte.is_ascii_whitespace());
     match (signs.next(), signs.next()) {
@@ -40,7 +40,7 @@ pub(super) fn begins_object(bytes: &[u8]) -> Option<bool> {
     }
 }
 
-/// The pairing code in a line; `None` if the line is not a pairing line.
+/// The pairing code in a line of the gaze input; `None` if the line is no pairing line.
 pub fn code_in(line: &[u8]) -> Option<String> {
     serde_json::from_slice::<PairingLine>(line).ok().map(|line| line.pair)
 }
@@ -65,8 +65,9 @@ pub fn parse(line: &[u8], arrived: Instant) -> Option<TrackerMessage> {
     Some(TrackerMessage::Sample(sample, taken))
 }
 
-/// Converts a time stamp to nanoseconds; `None` if it is invalid. Stamps of up to ten digits are seconds of any clock.
-/// Longer ones are milliseconds, microseconds or nanoseconds since 1970, which differ by three digits each.
+/// Converts a gaze sample's time stamp to nanoseconds; `None` if the stamp is invalid. Stamps of up to ten digits are
+/// seconds of any clock. Longer stamps are milliseconds, microseconds or nanoseconds since 1970, which differ by three
+/// digits each.
 fn device_ns(t: f64) -> Option<u64> {
     let ns_per_unit = match t {
         0.0..1e10 => 1e9,
@@ -119,7 +120,7 @@ mod tests {
         {
             assert_eq!(code_in(other.as_bytes()), None, "{other}");
         }
-        // For a parser of samples, a pairing line is malformed.
+        // Test: for the parser of samples, a pairing line is malformed.
         assert_eq!(parse(b"{\"pair\": \"ABC234\"}", Instant::now()), Some(TrackerMessage::Malformed(1)));
     }
 }

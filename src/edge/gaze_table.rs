@@ -32,9 +32,9 @@ struct GazeColumns {
     time: usize,
     x: usize,
     y: usize,
-    /// Index of the confidence column; only in tables of Pupil Player.
+    /// Index of the confidence column; only tables of Pupil Player have it.
     confidence: Option<usize>,
-    /// Columns of the blink id and of the recording; only in tables of Marker Mapper.
+    /// Indices of the columns of blink id and recording; only tables of Marker Mapper have them.
     blink: Option<usize>,
     recording: Option<usize>,
 }
@@ -42,16 +42,16 @@ struct GazeColumns {
 /// Content of a row of the gaze table.
 enum GazeRow {
     Sample(i64, GazeSample),
-    /// The surface was not found in the scene, so the gaze on it is unknown.
+    /// The surface was not found in the scene camera's image, so the gaze on the surface is unknown.
     Unlocated,
     Malformed,
 }
 
-/// Reads at most `most` samples of a table whose surface is mapped by `map`. Returns each sample with the nanoseconds
-/// since the first one, and the number of malformed lines.
+/// Reads at most `most` samples of a table whose surface is mapped to the display by `map`. Returns each sample with
+/// the nanoseconds since the first sample, and the number of malformed lines.
 ///
 /// # Errors
-/// The file cannot be read, is not such a table, or contains gaze of several recordings.
+/// The file cannot be read, is no table of gaze on a surface, or contains gaze of several recordings.
 pub(super) fn read(path: &Path, map: &SurfaceHomography, most: usize) -> FileResult<(Vec<(i64, GazeSample)>, u64)> {
     let unreadable = |reason| FileError::unreadable(path, reason, REMEDY);
     let mut input = BufReader::new(File::open(path).map_err(unreadable)?);
@@ -142,8 +142,8 @@ impl GazeColumns {
                 return GazeRow::Unlocated;
             }
             GazeExporter::MarkerMapper => {
-                // During a blink the table's gaze direction is invented, so its confidence is 0. The table's origin is
-                // the top left corner, that of the map the bottom left.
+                // During a blink the table's gaze direction is invented, so its confidence is set to 0. The table's
+                // origin is the top left corner, that of the surface map the bottom left.
                 let is_blink = self.blink.is_some_and(|column| !cell(column).is_empty());
                 let confidence = if is_blink { 0.0 } else { 1.0 };
                 let place = number(self.x).zip(number(self.y)).and_then(|(x, y)| map.to_display([x, 1.0 - y]));

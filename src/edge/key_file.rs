@@ -17,7 +17,7 @@ impl ParsedFile for KeyFileBindings {
     const KIND: FileKind = FileKind::Keys;
 }
 
-/// Checks the keys of a kitchen's layout file together with a key file.
+/// Checks the keys in a kitchen's layout file together with a key file.
 ///
 /// # Errors
 /// A key is used twice, or the key file is invalid.
@@ -45,7 +45,7 @@ pub(super) fn check_keys(
     }
 }
 
-/// Parses a key file; an empty map without a file.
+/// Parses a key file into key bindings; without a file there are no bindings.
 ///
 /// # Errors
 /// The text is not a key file.

@@ -10,7 +10,7 @@ use super::parse::{FileKind, ParsedFile, parse};
 use crate::session::SessionSpec;
 use crate::session::wall_display::DisplaySpec;
 
-/// Translations of the display's texts, by their English originals.
+/// Translations of the display's texts, by the English originals.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(transparent)]
 pub struct LanguageFile(pub BTreeMap<String, String>);
@@ -19,7 +19,7 @@ impl ParsedFile for LanguageFile {
     const KIND: FileKind = FileKind::Language;
 }
 
-/// Reads the texts of a session's display from a file; texts in the session file take precedence.
+/// Reads the texts of a session's display from a language file; texts in the session file take precedence.
 ///
 /// # Errors
 /// The file does not exist, or contains no texts.

@@ -1,8 +1,10 @@
-//! Figures of closed recordings, kept from one list to the next: to count errors a recording must be read and its presses judged.
+//! Numbers about closed recordings, kept from one list of recordings to the next: to count errors, a recording must be
+//! read and its presses judged.
 //!
-//! They stand in the user's folder for caches (`$XDG_CACHE_HOME/tomcom` or `~/.cache/tomcom`), not beside the logs, and the file can be deleted at any
-//! time. A recording is found by a digest of the program's version and of the log's length, time of change and last bytes; a changed log
-//! has another one. There is neither code nor name in the file. What has free text, the reason of an abort or an exclusion, is not kept.
+//! The numbers are in the user's folder for caches (`$XDG_CACHE_HOME/tomcom` or `~/.cache/tomcom`), not beside the
+//! logs, and the cache file can be deleted at any time. A recording is found by a digest of the program's version and
+//! of the log's length, time of change and last bytes; a changed log has another digest. The file contains neither
+//! codes nor names. Recordings with free text (the reason of an abort or an exclusion) are not kept.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -22,23 +24,23 @@ use crate::session::{Event, TimestampedEvent};
 
 /// Number of bytes at the end of a log that its digest covers.
 const TAIL: u64 = 4096;
-/// Number of recordings that are kept, about 150 bytes each.
+/// Largest number of recordings in the cache, about 150 bytes each.
 const MOST: usize = 50_000;
-/// No header is longer, in bytes.
+/// Largest length of a log's header that is read, in bytes; no header is longer.
 const MAX_HEADER: u64 = 1 << 24;
 
-/// What is kept of a recording.
+/// Numbers about a closed recording that the cache keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KeptFigures {
-    /// The arm by what was done.
+    /// Study arm of the recording's trial, as it was carried out.
     pub arm: StudyArm,
-    /// The trial's length by its own clock, in seconds.
+    /// Duration of the trial by its own clock, in seconds.
     pub trial_s: f64,
-    /// The human's presses that were errors.
+    /// Number of the human's presses that were errors.
     pub errors: u64,
 }
 
-/// A line of the file.
+/// A line of the cache file: the digest of a log, and the numbers about its recording.
 #[derive(Serialize, Deserialize)]
 struct KeptLine {
     log: String,
@@ -46,20 +48,20 @@ struct KeptLine {
     figures: KeptFigures,
 }
 
-/// What a closed log tells without being read: its digest, and what a list needs of its header.
+/// What is known of a closed log without reading its events: its digest, and what a list needs of its header.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogGlance {
-    /// Digest of the log.
+    /// Digest of the log, by which the cache finds the recording.
     pub digest: String,
     /// The participant's code.
     pub code: String,
-    /// Who sent signals.
+    /// Condition of the trial: who could send signals.
     pub condition: Condition,
-    /// When the recording began (UTC, RFC 3339).
+    /// Wall clock time at which the recording began (UTC, RFC 3339).
     pub date: Option<String>,
 }
 
-/// The part of a header that a glance takes.
+/// The part of a log's header that a list of recordings needs.
 #[derive(Deserialize)]
 struct HeaderGlance {
     #[serde(default)]
@@ -86,7 +88,8 @@ struct TrialGlance {
 }
 
 impl LogGlance {
-    /// A glance at a recording; `None` if it is not closed, has several parts, or cannot be read: it is then read in full, which tells why.
+    /// Reads what a list needs of a recording without reading its events; `None` if the recording is not closed, has
+    /// several parts, or cannot be read: then it is read in full, which shows what is wrong.
     pub fn read(recording: &Path) -> Option<LogGlance> {
         let log = recording.join(LOG_NAME);
         let mut file = open_regular(&log).ok()?;
@@ -109,7 +112,7 @@ impl LogGlance {
     }
 }
 
-/// The end of a log.
+/// The last bytes of a log.
 struct Tail {
     length: u64,
     changed_ns: u128,
@@ -126,7 +129,7 @@ impl Tail {
         Ok(Tail { length, changed_ns, bytes })
     }
 
-    /// The last line, if it is whole.
+    /// The last line of the log; `None` if the line is not complete.
     fn last_line(&self) -> Option<&[u8]> {
         self.bytes.strip_suffix(b"\n")?.rsplit(|&byte| byte == b'\n').next()
     }
@@ -139,7 +142,7 @@ impl Tail {
     }
 }
 
-/// The kept figures, by the digests of the logs.
+/// The cache of numbers about recordings, by the digests of the recordings' logs.
 #[derive(Debug, Default)]
 pub struct ListCache {
     path: Option<PathBuf>,
@@ -147,14 +150,14 @@ pub struct ListCache {
 }
 
 impl ListCache {
-    /// The cache of this user; empty if there is none.
+    /// The cache of this user; empty if the user has no cache file.
     pub fn open() -> ListCache {
         let set = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
         let folder = set("XDG_CACHE_HOME").or_else(|| set("HOME").map(|home| home.join(".cache")));
         folder.map_or_else(ListCache::default, |folder| ListCache::in_folder(&folder.join("tomcom")))
     }
 
-    /// The cache in this folder. Lines that cannot be read are none of it.
+    /// The cache in this folder. Lines of the cache file that cannot be read are skipped.
     pub fn in_folder(folder: &Path) -> ListCache {
         let path = folder.join("lists.jsonl");
         let text = open_regular(&path).and_then(io::read_to_string).unwrap_or_default();
@@ -163,13 +166,13 @@ impl ListCache {
         ListCache { path: Some(path), kept }
     }
 
-    /// The figures of the log with this digest, if they are kept.
+    /// The cached numbers of the recording whose log has this digest; `None` if the cache does not have them.
     pub fn figures(&self, digest: &str) -> Option<KeptFigures> {
         self.kept.get(digest).copied()
     }
 
-    /// Keeps new figures, too. If there are too many, only the new ones stay. Where the file cannot be written, the next list takes longer, and
-    /// nothing else.
+    /// Adds new numbers to the cache. If there are too many, only the new ones stay. If the cache file cannot be
+    /// written, the only consequence is that the next list takes longer.
     pub fn keep(mut self, new: impl IntoIterator<Item = (String, KeptFigures)>) {
         let new: Vec<_> = new.into_iter().collect();
         let Some(path) = self.path.filter(|_| !new.is_empty()) else { return };
@@ -178,7 +181,7 @@ impl ListCache {
         }
         self.kept.extend(new);
         let line = |(log, figures): (String, KeptFigures)| {
-            // Names and finite numbers serialise.
+            // Writing JSON cannot fail here, since the line contains only names and finite numbers.
             serde_json::to_string(&KeptLine { log, figures }).unwrap_or_default() + "\n"
         };
         let text: String = self.kept.into_iter().map(line).collect();

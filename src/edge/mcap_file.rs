@@ -12,17 +12,17 @@ use super::log::MCAP_NAME;
 use super::overwrite;
 use crate::analysis::foxglove::{McapChannel, McapMessage};
 
-/// First bytes of every MCAP file.
+/// First bytes of every MCAP file (its magic number).
 const BEGINS: &[u8] = b"\x89MCAP0\r\n";
 /// Name of this program in the header of the MCAP file.
 const LIBRARY: &str = "tomcom";
 /// Suffix of the name of an MCAP file that is still being written.
 const BEGUN: &str = ".new";
-/// Encodings of an MCAP file's messages and of their schemas.
+/// Encoding of an MCAP file's messages and of their schemas.
 const ENCODING: &str = "json";
 const SCHEMA_ENCODING: &str = "jsonschema";
 
-/// An MCAP file that is being written. It gets its final name when it is complete.
+/// An MCAP file that is being written. The file gets its final name when it is complete.
 pub struct McapFile {
     writer: Writer<BufWriter<File>>,
     /// For each channel, its number in the file and its number of messages so far.
@@ -57,7 +57,7 @@ impl McapFile {
         Ok(McapFile { writer, channels, begun, path })
     }
 
-    /// Writes a message to its channel.
+    /// Writes a message to its channel in the MCAP file.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -73,8 +73,8 @@ impl McapFile {
         self.writer.write_to_known_channel(&header, message.content.to_string().as_bytes()).map_err(reason)
     }
 
-    /// Completes the file with these metadata about the recording, and gives it its final name; returns the path, and
-    /// the number of messages by channel.
+    /// Completes the MCAP file with these metadata about the recording, and gives it its final name; returns the file's
+    /// path, and the number of messages by channel.
     ///
     /// # Errors
     /// The file cannot be written.

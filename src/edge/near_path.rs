@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// Largest number of wrong letters in a mistyped name.
+/// Largest number of wrong letters in a mistyped name for which a path is suggested.
 const MOST_EDITS: usize = 2;
 
 /// The existing path that is nearest to a path that does not exist: each missing name is replaced by the most similar
-/// existing one. `None` if there is no similar path, or the path exists.
+/// existing name. `None` if there is no similar path, or the path exists.
 pub fn nearest(path: &Path) -> Option<PathBuf> {
     let mut found = PathBuf::new();
     for part in path.components() {

@@ -8,11 +8,11 @@ use std::path::Path;
 const HEAD: u64 = 1 << 16;
 
 /// Checks that a file can be written to this path. `is_own` receives the beginning of an existing file, and returns
-/// whether this program wrote it; `what` names such files in the error message. Empty files, pipes and devices contain
-/// nothing that could be lost.
+/// whether this program wrote it; `what` names such files in the error message. Empty files, pipes and devices may be
+/// overwritten, since they contain nothing that could be lost.
 ///
 /// # Errors
-/// The path has a file that this program did not write, or one that cannot be read.
+/// There is a file at the path that this program did not write or that cannot be read.
 pub fn check(path: &Path, what: &str, is_own: impl FnOnce(&[u8]) -> bool) -> io::Result<()> {
     match fs::metadata(path) {
         Ok(data) if data.is_file() => {}

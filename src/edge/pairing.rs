@@ -1,7 +1,7 @@
-//! Check of pairing codes, sent by pages of the display and by gaze senders. Each wrong code locks its network address
-//! for a while, and longer with every further one. A lock holds for all connections of an address together. Of all
-//! addresses together, only a few wrong codes per second are checked, since the sender address of a datagram can be
-//! forged.
+//! Check of pairing codes, which pages of the display and gaze senders send. Each wrong code locks its sender's network
+//! address for a while, and each further one locks it longer. A lock holds for all connections of an address together.
+//! Of all addresses together, only a few wrong codes per second are checked, since the sender address of a datagram can
+//! be forged.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::net::IpAddr;
@@ -10,32 +10,32 @@ use std::time::{Duration, Instant};
 use super::connection_table::network_of;
 use super::pairing_code::is_code;
 
-/// Time for which an address is locked after a wrong pairing code.
+/// Time for which a network address is locked after a wrong pairing code.
 const WAIT: Duration = Duration::from_secs(1);
-/// Number of wrong codes that count as typing errors; each further one doubles the lock time.
+/// Number of wrong pairing codes that count as typing errors; each further one doubles the lock time.
 const SLIPS: u32 = 4;
-/// Longest time for which an address is locked.
+/// Longest time for which a network address is locked.
 const LONGEST: Duration = Duration::from_secs(300);
-/// Time after the end of its lock at which an address's wrong codes are forgotten.
+/// Time after the end of an address's lock at which the address's wrong codes are forgotten.
 const FORGOTTEN: Duration = Duration::from_secs(3600);
 /// Largest number of wrong codes of all addresses together that are checked within [`WAIT`].
 const MOST_WRONG: u32 = 10;
 /// Number of addresses whose wrong codes are remembered; beyond it, the address whose lock ends first is forgotten.
 const MAX_ADDRESSES: usize = 1024;
-/// Number of paired pages that are remembered.
+/// Number of paired participant pages that are remembered.
 const MAX_PAGES: usize = 64;
 
 /// Result of an attempt to pair with a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PairingVerdict {
     Right,
-    /// The code was wrong, and the address is locked for this time.
+    /// The pairing code was wrong, and the sender's address is locked for this time.
     Wrong(Duration),
-    /// The code was not checked: the address is still locked for this time.
+    /// The pairing code was not checked: the sender's address is still locked for this time.
     Locked(Duration),
 }
 
-/// Wrong codes that an address has sent.
+/// Wrong pairing codes that a network address has sent.
 #[derive(Clone, Copy, Debug)]
 struct WrongCodes {
     count: u32,
@@ -47,9 +47,9 @@ struct WrongCodes {
 pub(super) struct PairingCodeCheck {
     code: String,
     wrong: BTreeMap<IpAddr, WrongCodes>,
-    /// Start of the present counting interval for wrong codes of all addresses, and their number since.
+    /// Start of the present counting interval for wrong codes of all addresses, and number of wrong codes in it.
     recent: Option<(Instant, u32)>,
-    /// Names of paired pages, oldest first. A name is a random number that only its page knows.
+    /// Names of paired pages, oldest first. A page's name is a random number that only this page knows.
     known: VecDeque<String>,
 }
 
@@ -93,14 +93,15 @@ impl PairingCodeCheck {
         PairingVerdict::Wrong(wait)
     }
 
-    /// Time for which no code of any sender is checked; `None` if codes are checked.
+    /// Time for which no code of any sender is checked, since there were too many wrong ones; `None` if codes are
+    /// checked.
     fn crowd_lock(&mut self, now: Instant) -> Option<Duration> {
         self.recent = self.recent.filter(|(since, _)| now < *since + WAIT);
         self.recent.filter(|(_, count)| *count >= MOST_WRONG).map(|(since, _)| since + WAIT - now)
     }
 }
 
-/// Time for which an address is locked after this number of wrong codes.
+/// Time for which a network address is locked after this number of wrong codes.
 fn wait_after(count: u32) -> Duration {
     let doublings = count.saturating_sub(SLIPS).min(16);
     (WAIT * 2_u32.pow(doublings)).min(LONGEST)
@@ -121,7 +122,7 @@ mod tests {
     fn who_guesses_tries_some_dozen_codes_an_hour_however_often_it_asks() {
         let (mut desk, start) = (desk(), Instant::now());
         let tried = |verdict| matches!(verdict, PairingVerdict::Wrong(_));
-        // Codes are tried 400 times per second, as if from 400 connections.
+        // Test: codes are tried 400 times per second, as if from 400 connections.
         let times = (0..3600 * 400).map(|step| start + Duration::from_micros(2500 * step));
         let looked_at = times.filter(|now| tried(desk.attempt(HERE, Some("guesser"), "AAAAAA", *now))).count();
         assert!((10..30).contains(&looked_at), "{looked_at} codes in an hour");
@@ -152,7 +153,7 @@ mod tests {
         assert_eq!(desk.attempt(HERE, Some("guesser"), "AAAAAA", now), PairingVerdict::Wrong(WAIT));
         assert_eq!(desk.attempt(HERE, Some("participant"), "ABC234", now), PairingVerdict::Right);
         assert_eq!(desk.attempt(HERE, Some("guesser"), "ABC234", now), PairingVerdict::Locked(WAIT));
-        // The name of a paired page does not replace the code.
+        // Test: the name of a paired page does not replace the pairing code.
         assert_eq!(desk.attempt(HERE, Some("participant"), "AAAAAA", now), PairingVerdict::Locked(WAIT));
     }
 
@@ -179,7 +180,7 @@ mod tests {
         assert!((590..=600).contains(&checked), "{checked} codes in a minute");
         let later = start + Duration::from_secs(62);
         assert_eq!(desk.attempt(THERE, None, "ABC234", later), PairingVerdict::Right);
-        // A sender without a name is not recognised the next time.
+        // Test: a sender without a name is not recognised the next time.
         assert_eq!(desk.attempt(THERE, None, "WRONG2", later), PairingVerdict::Wrong(WAIT));
         assert_eq!(desk.attempt(THERE, None, "ABC234", later), PairingVerdict::Locked(WAIT));
     }

@@ -20,24 +20,24 @@ pub enum FileKind {
     Session,
     /// A layout file of a kitchen: places, buttons and the display.
     Layout,
-    /// A recipe file of a kitchen: items, dishes and their recipes.
+    /// A key file, which changes key bindings of the console.
     Recipes,
     /// A parameter file of the human model (beliefs and choices of simulated people).
     HumanModel,
     /// A key file, which changes keys of the console.
     Keys,
-    /// A questionnaire for participants.
+    /// A file with a questionnaire for participants.
     Questionnaire,
-    /// A tutorial for participants.
+    /// A file with a tutorial for participants.
     Tutorial,
-    /// Texts of the participant's display in a language.
+    /// A file with the texts of the participant's display in a language.
     Language,
-    /// A battery of cohorts of simulated participants.
+    /// A file with a battery of cohorts of simulated participants.
     Battery,
 }
 
 impl FileKind {
-    /// The kind of file that a text is, judged by its tables; `None` if unknown.
+    /// The kind of file to which a text belongs, judged by the tables in it; `None` if unknown.
     fn from_text(text: &str) -> Option<FileKind> {
         let table: toml::Table = text.parse().ok()?;
         let has = |keys: &[&str]| keys.iter().any(|key| table.contains_key(*key));
@@ -86,7 +86,7 @@ impl FileKind {
 
 /// A type into which files of one kind are parsed.
 pub trait ParsedFile: DeserializeOwned {
-    /// The kind of file that this type is parsed from.
+    /// The kind of file from which this type is parsed.
     const KIND: FileKind;
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 /// Byte range of the `nth` setting (from 0) with this dotted path in a TOML text, outermost table first:
-/// "rerun.address". Inner tables may be left out: "human.tau". `None` if the setting does not occur.
+/// "rerun.address". Inner tables may be left out: "human.tau". `None` if the text has no such setting.
 pub(super) fn place_of(text: &str, path: &str, nth: usize) -> Option<Range<usize>> {
     let document = DeTable::parse(text).ok()?;
     let names: Vec<&str> = path.split('.').collect();
@@ -15,7 +15,7 @@ pub(super) fn place_of(text: &str, path: &str, nth: usize) -> Option<Range<usize
     places.into_iter().nth(nth)
 }
 
-/// Collects the byte ranges of all settings with this path in a table.
+/// Collects the byte ranges of all settings with this dotted path in a TOML table.
 fn collect(table: &DeTable, names: &[&str], places: &mut Vec<Range<usize>>) {
     let Some((first, rest)) = names.split_first() else { return };
     for (name, value) in table {

@@ -16,7 +16,7 @@ const REMEDY: &str = "a pool that tomcom power or tomcom arms wrote with --out";
 /// Reads the parts of a pool of simulated participants and joins them.
 ///
 /// # Errors
-/// A file cannot be read, is not a pool of this format, or the parts do not belong to one pool.
+/// A file cannot be read, is no pool of this format, or the parts do not belong to one pool.
 pub fn read_pool(paths: &[PathBuf]) -> FileResult<SimulationPool> {
     let parts = paths.iter().map(|path| read_part(path)).collect::<FileResult<Vec<_>>>()?;
     SimulationPool::joined(parts).map_err(|wrong| {
@@ -56,21 +56,21 @@ fn parsed<T: DeserializeOwned>(line: &str) -> Result<T, String> {
     serde_json::from_str(line).map_err(|error| format!("a line that is none of a pool: {error}"))
 }
 
-/// Checks that a pool with this header can be written to this path. A pool takes long to simulate, so no other pool is
-/// overwritten.
+/// Checks that a pool with this header can be written to this path. A pool takes long to simulate, so a file with
+/// another pool is not overwritten.
 ///
 /// # Errors
-/// The path has a file that is not this pool.
+/// There is a file at the path that is not this pool.
 pub fn check_pool(path: &Path, header: &PoolHeader) -> FileResult<()> {
     let own = line(header);
     let is_own = |head: &[u8]| overwrite::first_line(head) == own.trim_end().as_bytes();
     overwrite::check(path, "the same pool", is_own).map_err(|reason| FileError::unwritable(path, reason))
 }
 
-/// Writes a pool of simulated participants, completely or not at all.
+/// Writes the file of a pool of simulated participants, completely or not at all.
 ///
 /// # Errors
-/// The path has a file that is not this pool, or the folder cannot be written to.
+/// There is a file at the path that is not this pool, or the folder cannot be written to.
 pub fn write_pool(path: &Path, pool: &SimulationPool) -> FileResult<()> {
     check_pool(path, &pool.header)?;
     let mut text = line(&pool.header);
@@ -81,6 +81,6 @@ pub fn write_pool(path: &Path, pool: &SimulationPool) -> FileResult<()> {
 }
 
 fn line(value: &impl Serialize) -> String {
-    // Headers and trials contain only string keys and finite numbers, so serialisation cannot fail.
+    // Writing JSON cannot fail here, since headers and trials contain only string keys and finite numbers.
     serde_json::to_string(value).unwrap_or_default() + "\n"
 }

@@ -9,7 +9,7 @@ use crate::study::drawn_study::SignificanceTestMethod;
 use crate::study::power_answer::{PowerSummary, SampleSizePower, TestPower};
 use crate::study::power_chart;
 
-/// A column of the table of statistical power: its name, and the function for its value in a row.
+/// A column of the table of statistical power: its name, and the function that computes its value for a row.
 type PowerColumn = (&'static str, fn(&SampleSizePower, &TestPower) -> String);
 
 const COLUMNS: [PowerColumn; 12] = [
@@ -37,7 +37,7 @@ fn method(method: SignificanceTestMethod) -> &'static str {
 /// Checks that table and plot of statistical power can be written to these paths.
 ///
 /// # Errors
-/// A path has a file that this program did not write.
+/// There is a file at a path that this program did not write.
 pub fn check_power(table: Option<&Path>, picture: Option<&Path>) -> FileResult<()> {
     let names = COLUMNS.map(|(name, _)| name).join(",");
     let check = |path: Option<&Path>, what: &str, is_own: &dyn Fn(&[u8]) -> bool| match path {

@@ -15,7 +15,7 @@ use crate::session::protocol::{ProtocolEvent, StudyPhase};
 use crate::session::{Event, LogHeader, TimestampedEvent};
 
 /// Live recordings of the study plan with this name in a folder, by folder name; the parts of a continued recording
-/// count as one. Simulated recordings and other files do not count.
+/// count as one recording. Simulated recordings and other files do not count.
 ///
 /// # Errors
 /// The folder or a recording in it cannot be read.
@@ -31,7 +31,7 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
         let path = entry.map_err(unreadable)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if let Some(mut part) = Part::read(&path.join(LOG_NAME), plan)? {
-            // A later decision in the file beside the log takes precedence over the log.
+            // A later decision in the file `exclusion.toml` beside the log takes precedence over the log.
             if let Some(ruling) = ruling(&path)? {
                 part.excluded = Some(ruling.excluded.then_some(ruling.reason));
             }
@@ -43,8 +43,8 @@ pub fn of_plan(folder: &Path, plan: &str) -> FileResult<Vec<PlanRecording>> {
     Ok(last.map(|(name, part)| part.made(name, &found)).collect())
 }
 
-/// Recordings that a path means: the recording itself, or all in the folder, sorted by name. Of a recording with
-/// several parts, only the last part is listed.
+/// Recordings that a path means: the recording itself, or all recordings in the folder, sorted by name. Of a recording
+/// with several parts, only the last part is listed.
 ///
 /// # Errors
 /// The folder cannot be read, or contains no recording.
@@ -78,7 +78,7 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
         let log = path.join(LOG_NAME);
         let file = open_regular(&log).map_err(|reason| FileError::unreadable(&log, reason, remedy))?;
         let mut line = String::new();
-        // An invalid header is reported later, where the recording is read.
+        // An invalid header is reported when the recording is read.
         let read = BufReader::new(file).read_line(&mut line).ok();
         let header = read.and_then(|_| serde_json::from_str::<PartHeaderGlance>(&line).ok());
         continued.extend(header.and_then(|header| header.continues).map(|before| folder.join(before.recording)));
@@ -87,7 +87,7 @@ pub fn of_folder(folder: &Path) -> FileResult<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Which part a log continues; the rest of its header would take longer to read.
+/// The field of a log's header that names the part which the recording continues; the rest is not parsed, to save time.
 #[derive(Deserialize)]
 struct PartHeaderGlance {
     #[serde(default)]
@@ -115,7 +115,7 @@ struct Part {
 }
 
 impl Part {
-    /// Reads the log of one part; `None` if it does not belong to this study plan.
+    /// Reads the log of one part of a recording; `None` if the recording does not belong to this study plan.
     fn read(path: &Path, plan: &str) -> FileResult<Option<Part>> {
         let Ok(file) = open_regular(path) else { return Ok(None) };
         let mut lines = BufReader::with_capacity(1 << 16, file);
@@ -124,7 +124,7 @@ impl Part {
             line.clear();
             let read = lines.read_until(b'\n', line);
             let read = read.map_err(|reason| FileError::unreadable(path, reason, "a readable recording"))?;
-            // A last line without a line end was cut off, or is still being written.
+            // A last line of the log without a line end was cut off, or is still being written.
             Ok::<bool, FileError>(read > 0 && line.last() == Some(&b'\n'))
         };
         if !next(&mut line)? {
@@ -178,10 +178,10 @@ impl Part {
         }
     }
 
-    /// The whole recording of which this is the last part.
+    /// The whole recording that ends with this part.
     fn made(&self, name: &str, parts: &BTreeMap<String, Part>) -> PlanRecording {
         let mut all = vec![self];
-        // Parts that refer to each other must not lead to an endless loop.
+        // Parts of a recording whose headers refer to each other must not lead to an endless loop.
         while let Some(before) = all.last().and_then(|part| parts.get(part.continues.as_ref()?)) {
             if all.len() > parts.len() {
                 break;
@@ -190,7 +190,7 @@ impl Part {
         }
         let any = |is: fn(&Part) -> bool| all.iter().any(|part| is(part));
         let phase = all.iter().map(|part| part.phase).max().unwrap_or(0);
-        // The last part that contains a decision about exclusion counts.
+        // The last part of the recording that contains a decision about exclusion counts.
         let excluded = all.iter().find_map(|part| part.excluded.clone()).flatten();
         let aborted = all.iter().find_map(|part| part.aborted.as_ref());
         let void = |reason: &str| RecordingOutcome::Void { reason: reason.to_string() };
@@ -217,7 +217,7 @@ impl Part {
     }
 }
 
-/// Whether a line of a log is a gaze or arm sample, as most are; such lines are skipped here.
+/// Whether a line of a log is a gaze or arm sample, as most lines are; such lines are skipped here.
 fn is_sample(line: &[u8]) -> bool {
     let head = &line[..line.len().min(80)];
     let is = |kind: &[u8]| head.windows(kind.len()).any(|part| part == kind);

@@ -1,14 +1,14 @@
-//! Replaces a small file as a whole: a program that reads it meanwhile, or after a crash, finds the old content or the
-//! new one.
+//! Replaces a small file as a whole: a program that reads the file meanwhile, or after a crash, finds the old content
+//! or the new content.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Suffix of the name of the new file before it is renamed.
+/// Suffix of the new file's name until the file is renamed.
 const NEW: &str = ".new";
 
-/// A file that is being written, and takes its name when it is whole.
+/// A file that is being written, and that replaces the old file when it is complete.
 #[derive(Debug)]
 pub struct Replacement {
     path: PathBuf,
@@ -28,7 +28,7 @@ impl Replacement {
         Ok(Replacement { path: path.to_path_buf(), out: BufWriter::new(File::create(&new)?), new })
     }
 
-    /// Adds to the new file.
+    /// Appends bytes to the new file.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -36,7 +36,7 @@ impl Replacement {
         self.out.write_all(bytes)
     }
 
-    /// Brings the new file to the disk and gives it the name.
+    /// Writes the new file to the disk and renames it, so that it replaces the old file.
     ///
     /// # Errors
     /// The folder cannot be written to.

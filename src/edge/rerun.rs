@@ -1,5 +1,5 @@
-//! Output for the viewer program Rerun; only this module and its submodules use Rerun's SDK. Updates of a scene become
-//! rows of a stream, which goes to a file, to viewers that connect to a server of this program, or both.
+//! Output for the viewer program Rerun; only this module and its submodules use Rerun's SDK. Updates of a 3D scene
+//! become rows of a stream, which goes to a file, to viewers that connect to a server of this program, or both.
 //!
 //! This program never connects to a viewer: a slow or stopped viewer would delay the stream, and the file with it.
 //! Viewers connect to the program instead (`rerun/viewer_server.rs`), and read the messages that are kept for them.
@@ -31,26 +31,26 @@ use crate::base::time::SessionTime;
 use crate::scene::entity_content::{MarkShape, SceneArea, SceneDisc, SceneLogLevel, ScenePoint, SceneSeries};
 use crate::scene::{EntityData, EntityUpdate, SceneUpdate};
 
-/// Version of Rerun that streams are written with; viewers of the same version can read them.
+/// Version of Rerun with which streams are written; viewers of the same version can read the streams.
 pub const VERSION: &str = "0.36.3";
 /// A millisecond in nanoseconds.
 const MS: u64 = 1_000_000;
-/// Largest delay of the data that connected viewers see.
+/// Largest delay with which connected viewers get data.
 const PIECE: Duration = Duration::from_millis(300);
 /// Duration of a piece (chunk) of a stream file, in session time. Every piece of every entity costs some 2 kB in the
-/// file besides its rows, and some 6 kB of memory until the file's index is written at its end.
+/// file besides its rows, and some 6 kB of memory until the index at the end of the file is written.
 const PIECE_OF_FILE: SessionTime = SessionTime(60_000_000_000);
-/// Largest size of rows that wait for the end of their piece, in bytes: of one entity, and of all.
+/// Largest size of rows that wait for the end of their piece of the stream, in bytes: of one entity, and of all.
 const WAITING_BYTES: u64 = 1 << 20;
 const WAITING_IN_ALL: u64 = 16 << 20;
 /// Size of the past data that is kept for viewers that connect later, in bytes.
 const KEPT_BYTES: usize = 64 << 20;
-/// Limit of kept data while a recording is viewed: all data are kept.
+/// Limit of the data kept for viewers while a recording is viewed: all data are kept.
 const ALL_BYTES: usize = usize::MAX;
-/// Least time between the gaze samples that viewers of a running session get, since people cannot see more.
+/// Least time between two gaze samples that viewers of a running session get; more frequent samples could not be seen.
 const GAZE_EVERY: SessionTime = SessionTime(33_000_000);
 
-/// Radius of the mark where somebody looks, and half the line width of the circle around it, in millimetres.
+/// Radius of the mark where somebody looks, and half the line width of the circle around that mark, in millimetres.
 const SIGHT_MM: f32 = 9.0;
 const LINE_MM: f32 = 2.0;
 
@@ -63,24 +63,24 @@ pub struct StreamIdentity {
     pub name: String,
 }
 
-/// Outputs of a Rerun stream: file and server.
+/// Outputs of a Rerun stream: a file, a server, or both.
 #[derive(Clone, Debug, Default)]
 pub struct StreamOutlets {
-    /// File that the stream is written to, if any.
+    /// File to which the stream is written; `None` for no file.
     pub file: Option<PathBuf>,
     /// Address of the server for viewers; `true` if viewers get the whole stream, whatever its size.
     pub server: Option<(SocketAddr, bool)>,
-    /// Time on the trial's clock from which connected viewers play; without it they wait at the beginning, or follow
-    /// the newest data.
+    /// Time on the trial's clock from which connected viewers play; `None`: they wait at the beginning, or follow the
+    /// newest data.
     pub at: Option<SessionTime>,
 }
 
-/// Writer of a Rerun stream. It writes to each output independently, so that none delays another.
+/// Writer of a Rerun stream. The writer serves each output independently, so that no output delays another.
 pub struct RerunWriter {
     streams: Vec<OpenStream>,
 }
 
-/// Rerun stream to one of the outputs, file or server.
+/// Rerun stream to one of its outputs, file or server.
 struct OpenStream {
     stream: RecordingStream,
     /// Duration of the stream's pieces in session time; `None` if rows are passed on by the wall clock instead.
@@ -94,7 +94,8 @@ struct OpenStream {
 }
 
 impl RerunWriter {
-    /// Opens a stream to these outputs, and sends its layout, in which a viewer shows these recordings side by side.
+    /// Opens a stream to these outputs, and sends the stream's layout, in which a viewer shows these recordings side by
+    /// side.
     ///
     /// # Errors
     /// The file cannot be created, or the address does not belong to this machine.
@@ -121,7 +122,7 @@ impl RerunWriter {
         Ok(RerunWriter { streams })
     }
 
-    /// Writes rows that are valid for the whole stream (without a time).
+    /// Writes rows that hold for the whole stream, without a time.
     pub fn fixed(&self, lane: &StreamLane, rows: &[EntityUpdate]) {
         for row in rows {
             let (entity, components) = written(lane, row);
@@ -129,7 +130,7 @@ impl RerunWriter {
         }
     }
 
-    /// Writes the rows of a scene update; returns their number.
+    /// Writes the rows of a scene update to the stream; returns the number of rows.
     pub fn moment(&mut self, lane: &StreamLane, moment: &SceneUpdate) -> u64 {
         self.streams.iter_mut().for_each(|one| one.go_to(moment));
         for row in &moment.rows {
@@ -144,7 +145,7 @@ impl RerunWriter {
         moment.rows.len() as u64
     }
 
-    /// Completes the file, if there is one; connected viewers keep the data that they have.
+    /// Completes the stream's file, if there is one; connected viewers keep the data that they have.
     pub fn finish(&self) {
         self.streams.iter().for_each(|one| one.stream.finalize_deferred_sinks());
     }
@@ -160,7 +161,7 @@ impl OpenStream {
         let nth = self.piece.map_or(0, |piece| moment.time.0 / piece.0);
         if nth != self.nth {
             self.nth = nth;
-            // Errors of the file are reported when it is completed.
+            // Errors of the stream's file are reported when the file is completed.
             let _ = self.stream.flush_async();
         }
         let nanoseconds = |time: u64| re_sdk::TimeCell::from_duration_nanos(i64::try_from(time).unwrap_or(i64::MAX));
@@ -170,7 +171,7 @@ impl OpenStream {
         self.stream.set_time_sequence("step", i64::try_from(moment.step).unwrap_or(i64::MAX));
     }
 
-    /// Whether a gaze sample at this time is written to the stream.
+    /// Whether a gaze sample at this time is written to the stream (samples that come too fast are left out).
     fn shows_gaze(&mut self, time: SessionTime) -> bool {
         let shows = self.gaze_at.is_none_or(|last| time - last >= self.gaze_every);
         if shows {
@@ -180,7 +181,7 @@ impl OpenStream {
     }
 
     fn log(&self, entity: &str, is_fixed: bool, components: &[SerializedComponentBatch]) {
-        // Logging fails only if components cannot be serialised, and these can.
+        // Logging fails only if components cannot be serialised, and these components can.
         let _ = self.stream.log_serialized_batches(entity, is_fixed, components.iter().cloned());
     }
 }
@@ -195,7 +196,7 @@ fn written(lane: &StreamLane, row: &EntityUpdate) -> (String, Vec<SerializedComp
     (entity, parts.iter().flat_map(|part| part.as_serialized_batches()).collect())
 }
 
-/// A Rerun stream without an output yet. It passes rows on in pieces of this duration of the wall clock.
+/// A Rerun stream without an output yet. The stream passes rows on in pieces of this duration of the wall clock.
 fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStream> {
     let config = ChunkBatcherConfig {
         flush_tick: piece,
@@ -211,7 +212,7 @@ fn stream(identity: &StreamIdentity, piece: Duration) -> io::Result<RecordingStr
         .batcher_config(config)
         .buffered()
         .map_err(io::Error::other)?;
-    // The stream contains only times of the session, not those of Rerun's SDK.
+    // The stream contains only times of the session, not times of Rerun's SDK.
     stream.set_log_time_enabled(false);
     stream.set_log_tick_enabled(false);
     Ok(stream)
@@ -228,10 +229,10 @@ pub struct WebViewer {
 }
 
 impl WebViewer {
-    /// Provides Rerun's viewer to browsers on this port of this machine.
+    /// Serves Rerun's viewer to browsers at this port of this machine.
     ///
     /// # Errors
-    /// The port is in use.
+    /// The network port is in use.
     pub fn serve(port: u16) -> io::Result<WebViewer> {
         let config = WebViewerConfig {
             bind_ip: "127.0.0.1".to_string(),
@@ -246,7 +247,7 @@ impl WebViewer {
 
 type Part = Box<dyn AsComponents>;
 
-/// Rerun's archetypes that show this entity data.
+/// Rerun's archetypes (kinds of graphical elements) that show these data of an entity.
 fn parts(shown: &EntityData) -> Vec<Part> {
     match shown {
         EntityData::Areas(areas) => vec![Box::new(areas_in_2d(areas))],
@@ -306,7 +307,7 @@ fn discs_in_2d(discs: &[SceneDisc]) -> archetypes::Points2D {
         .with_show_labels(true)
 }
 
-/// A row for the point of regard in two archetypes: a point, and the circle around it.
+/// Rerun's elements that show a point of regard: a point, and the circle around it.
 fn sight_in_2d(at: [f64; 2], around: f64, colour: Color) -> Vec<Part> {
     let at = at.map(|length| length as f32);
     let circle = archetypes::Ellipses2D::from_half_sizes([[around as f32; 2]]).with_centers([at]).with_colors([colour]);
@@ -333,7 +334,7 @@ fn transform(place: &Isometry3<f64>) -> archetypes::Transform3D {
     archetypes::Transform3D::from_translation_rotation(metres(place), turn(place))
 }
 
-/// Archetypes for collision solids: all solids of one shape are in one archetype.
+/// Rerun's elements for collision solids: all solids of one shape are in one element.
 fn solids_in_3d(solids: &[CollisionSolid], colour: Color) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     let (mut cylinders, mut boxes, mut balls) = (Vec::new(), Vec::new(), Vec::new());

@@ -1,5 +1,5 @@
-//! Rescue of recordings whose folder vanished while they were written: the rescue folder, and a note with the original
-//! folder.
+//! Rescue of recordings whose folder vanished while they were written: the folder for rescued recordings, and a note
+//! that names the original folder.
 
 use std::fs::OpenOptions;
 use std::io::{self, Write};
@@ -42,7 +42,7 @@ impl RescueNote {
         file.write_all(text.as_bytes())
     }
 
-    /// Reads the note in the folder of a recording; `None` if it is missing or unreadable.
+    /// Reads the rescue note in the folder of a recording; `None` if the note is missing or unreadable.
     pub fn read(folder: &Path) -> Option<RescueNote> {
         toml::from_str(&read_regular(&folder.join(RESCUE_NOTE_NAME)).ok()?).ok()
     }

@@ -13,7 +13,7 @@ use super::rerun::VERSION;
 use super::stream_head::{BEGINS, MARK, MARK_END};
 use crate::scene;
 
-/// Marker in the last bytes of a completely written Rerun file.
+/// Marker in the last bytes of a Rerun file that was written to its end.
 const ENDS: &[u8] = b"FOOT";
 /// Lengths of the file's beginning and end in which the version and the end marker are looked for, in bytes.
 const HEAD: u64 = 4096;
@@ -23,7 +23,7 @@ const SEALED: &str = ".toml";
 /// Number of bytes of a file that are read at a time.
 const PIECE: usize = 1 << 16;
 
-/// Text in the identity of every stream that this program version made of a recording from its beginning.
+/// Text in the identity of every Rerun stream that this program version made of a recording from its beginning.
 pub fn mark() -> String {
     format!("{MARK}{}{MARK_END}", scene::VERSION)
 }
@@ -39,7 +39,7 @@ pub enum RerunFileState {
     Other,
     /// The Rerun file has no seal file, so it is unknown which log it shows.
     Unsealed,
-    /// The bytes of the Rerun file have changed since it was written.
+    /// The bytes of the Rerun file have changed since the file was written.
     Damaged,
     /// The Rerun file was made from another log, or from this log before more was written to it.
     Stale,
@@ -48,7 +48,7 @@ pub enum RerunFileState {
 }
 
 impl RerunFileState {
-    /// Why the Rerun file has to be made anew, in words; `None` if it is complete, or did not exist.
+    /// Why the Rerun file has to be made anew, in words; `None` if the file is complete, or did not exist.
     pub fn reason(self) -> Option<&'static str> {
         match self {
             RerunFileState::Missing | RerunFileState::Whole => None,
@@ -85,12 +85,12 @@ impl Sum {
     }
 }
 
-/// Seal file of a Rerun file that was written to its end: checksums of the file and of the logs that it shows.
+/// Content of the seal file of a completely written Rerun file: checksums of the file and of the logs that it shows.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Seal {
     stream: Sum,
-    /// Checksums of the logs of all parts of the recording, first part first.
+    /// Checksums of the logs of all parts of the recording, those of the first part first.
     logs: Vec<Sum>,
 }
 
@@ -101,7 +101,7 @@ impl Seal {
         PathBuf::from(name)
     }
 
-    /// Reads the seal file; `None` if it is missing or unreadable, so that the Rerun file is made anew.
+    /// Reads the seal file; `None` if it is missing or unreadable, in which case the Rerun file is made anew.
     fn read(stream: &Path) -> Option<Seal> {
         toml::from_str(&read_regular(&Seal::path(stream)).ok()?).ok()
     }

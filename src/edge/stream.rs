@@ -13,12 +13,12 @@ use std::time::Duration;
 use super::rerun::{RerunWriter, StreamIdentity, StreamLane, StreamOutlets};
 use crate::scene::{EntityUpdate, SceneUpdate};
 
-/// Number of packets of scene updates that may wait to be written; at 200 gaze samples per second, they are those of 20
-/// seconds.
+/// Number of packets of scene updates that may wait to be written: the packets of 20 seconds at 200 gaze samples per
+/// second.
 const WAITING: usize = 4096;
 /// Longest time for which the end of a session waits for the stream's file to be completed.
 const END: Duration = Duration::from_secs(5);
-/// Number of further ports that are tried if the wanted one is in use.
+/// Number of further network ports that are tried if the wanted port is in use.
 pub const PORTS: u16 = 20;
 
 /// Numbers of written and dropped rows of a Rerun stream.
@@ -26,7 +26,7 @@ pub const PORTS: u16 = 20;
 pub struct StreamCounts {
     /// Number of rows written to the Rerun stream.
     pub written: u64,
-    /// Number of rows that the Rerun stream dropped.
+    /// Number of rows that were dropped because the Rerun stream was too slow.
     pub dropped: u64,
 }
 
@@ -40,7 +40,7 @@ struct Counters {
 /// A live Rerun stream that is open.
 #[derive(Debug)]
 pub struct RerunStream {
-    /// Address to which viewers connect, if there is a server.
+    /// Address at which viewers connect; `None` without a server.
     pub server: Option<SocketAddr>,
     file: Option<PathBuf>,
     news: SyncSender<Vec<SceneUpdate>>,
@@ -49,7 +49,7 @@ pub struct RerunStream {
 }
 
 impl RerunStream {
-    /// Opens a stream that begins with these rows. If the port is in use, the server takes one of the next ports.
+    /// Opens a Rerun stream that begins with these rows. If the port is in use, the server takes one of the next ports.
     ///
     /// # Errors
     /// The file cannot be created, or the program cannot listen at the address.
@@ -78,14 +78,14 @@ impl RerunStream {
             for moment in told.iter().flatten() {
                 counted.written.fetch_add(writer.moment(&lane, &moment), Relaxed);
             }
-            // The file is completed first, since a viewer that does not read may delay the rest.
+            // The stream's file is completed first, since a viewer that does not read may delay the rest.
             writer.finish();
             let _ = end.send(());
         })?;
         Ok(RerunStream { server, file: outlets.file, news, counters, done })
     }
 
-    /// Passes scene updates to the writing thread, or drops them if it is too slow.
+    /// Passes scene updates to the writing thread, or drops the updates if the thread is too slow.
     pub fn tell(&self, moments: Vec<SceneUpdate>) {
         if moments.is_empty() {
             return;
@@ -96,7 +96,7 @@ impl RerunStream {
         }
     }
 
-    /// Numbers of rows written to the stream and dropped so far.
+    /// Numbers of rows that were written to the Rerun stream and dropped so far.
     pub fn fares(&self) -> StreamCounts {
         StreamCounts { written: self.counters.written.load(Relaxed), dropped: self.counters.dropped.load(Relaxed) }
     }
@@ -117,12 +117,12 @@ impl RerunStream {
 /// Checks that the program can listen at this address now.
 ///
 /// # Errors
-/// It cannot.
+/// The program cannot listen at the address.
 pub fn is_free(address: SocketAddr) -> io::Result<()> {
     TcpListener::bind(address).map(drop)
 }
 
-/// This address, or the one with the next free port.
+/// This network address, or the same address with the next free port.
 ///
 /// # Errors
 /// None of the ports is free.

@@ -7,18 +7,18 @@ use std::path::Path;
 
 /// First bytes of a Rerun file, before the version that wrote it.
 pub const BEGINS: &[u8] = b"RRF2";
-/// Beginning of the mark by which Rerun files of this program are recognised.
+/// Beginning of the mark by which the program recognises its own Rerun files.
 pub const MARK: &str = "tomcom-scene-";
-/// End of the mark by which Rerun files of this program are recognised.
+/// End of the mark by which the program recognises its own Rerun files of whole recordings.
 pub const MARK_END: &str = "-whole";
 /// Protocol Buffers tag of the identity in Rerun's `StoreId`: field 2, with a length before its content.
 const IDENTITY_TAG: u8 = 0x12;
-/// Number of bytes from the file's beginning that contain the stream's identity; only for hundreds of recordings side
-/// by side it is longer.
+/// Number of bytes from the file's beginning that contain the stream's identity; the identity is longer only for
+/// hundreds of recordings side by side.
 const HEAD: u64 = 1 << 16;
 
-/// Identity of a Rerun file that this program made of whole recordings: the names of their folders, their begins, and
-/// the mark, separated by spaces. `None` if the file does not exist, or is anything else.
+/// Identity of a Rerun file that this program made of whole recordings: the names of their folders, the times at which
+/// they began, and the mark, separated by spaces. `None` if the file does not exist, or is anything else.
 ///
 /// # Errors
 /// The file exists but cannot be read.
@@ -35,9 +35,9 @@ pub fn identity(path: &Path) -> io::Result<Option<String>> {
     Ok(head.starts_with(BEGINS).then(|| identity_in(&head)).flatten())
 }
 
-/// Finds the identity in the file's first bytes. The identity is a field of a Protocol Buffers message, with the
-/// field's tag and its length before it, and ends with the mark. The search includes the tag, a control character,
-/// which cannot occur in an identity: a length alone may look like one of its digits.
+/// Finds the stream's identity in the file's first bytes. The identity is a field of a Protocol Buffers message, with
+/// the field's tag and its length before it, and ends with the mark. The search includes the tag, a control character,
+/// which cannot occur in an identity: a length alone may look like one of an identity's digits.
 fn identity_in(head: &[u8]) -> Option<String> {
     let find = |from: usize, what: &str| head[from..].windows(what.len()).position(|bytes| bytes == what.as_bytes());
     let mark = find(0, MARK)?;

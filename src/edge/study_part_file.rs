@@ -1,5 +1,5 @@
-//! Files of parts of a study: JSON Lines ([`crate::study::study_part`]). They are written and read recording by recording, so that memory does not
-//! grow with their number.
+//! Files with the parts of a study: JSON Lines ([`crate::study::study_part`]). They are written and read recording by
+//! recording, so that memory use does not grow with the number of recordings.
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -17,7 +17,7 @@ use crate::study::study_part::{AnalysedRecording, PART_FORMAT, PartHeader, PartK
 
 const REMEDY: &str = "a part that tomcom study wrote with --shard, unchanged";
 
-/// A part that is being written; it takes its name when it is whole.
+/// Writer of the file of a study's part; the file gets its name when it is complete.
 #[derive(Debug)]
 pub struct PartWriter {
     path: PathBuf,
@@ -25,10 +25,10 @@ pub struct PartWriter {
 }
 
 impl PartWriter {
-    /// Begins a part. The same part of an analysis before this one is replaced.
+    /// Begins the file of a part. An earlier file with the same part of the study is replaced.
     ///
     /// # Errors
-    /// There is a file that is not this part, or the folder cannot be written to.
+    /// There is a file at the path that is not this part, or the folder cannot be written to.
     pub fn create(path: &Path, header: &PartHeader, kitchen: &PartKitchen) -> FileResult<PartWriter> {
         let unwritable = |reason| FileError::unwritable(path, reason);
         let is_own = |head: &[u8]| {
@@ -43,13 +43,13 @@ impl PartWriter {
         Ok(part)
     }
 
-    /// Adds a recording, with its rows of the tables of events.
+    /// Adds an analysed recording, with its rows of the tables of events.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn add(&mut self, recording: &AnalysedRecording, rows: &[Vec<u8>; 5]) -> FileResult<()> {
         self.line(recording)?;
-        // Rows are UTF-8.
+        // Rows of tables are always UTF-8.
         let rows: [Cow<str>; 5] = rows.each_ref().map(|rows| String::from_utf8_lossy(rows));
         self.line(&rows)
     }
@@ -61,7 +61,7 @@ impl PartWriter {
         self.file.write(&line).map_err(|reason| FileError::unwritable(&self.path, reason))
     }
 
-    /// Gives the part its name.
+    /// Completes the part's file and gives it its name.
     ///
     /// # Errors
     /// The folder cannot be written to.
@@ -71,24 +71,24 @@ impl PartWriter {
     }
 }
 
-/// A part that is being read.
+/// Reader of the file of a study's part.
 #[derive(Debug)]
 pub struct PartReader {
-    /// Its first line.
+    /// First line of the part's file: its header.
     pub header: PartHeader,
-    /// Its second line.
+    /// Second line of the part's file: the kitchen.
     pub kitchen: PartKitchen,
     path: PathBuf,
     lines: BufReader<File>,
-    /// Number of lines that were read.
+    /// Number of lines of the file that were read.
     number: usize,
 }
 
 impl PartReader {
-    /// Opens a part and reads its first two lines.
+    /// Opens the file of a part and reads its first two lines.
     ///
     /// # Errors
-    /// The file cannot be read, or is no part of this format.
+    /// The file cannot be read, or is no study part of this format.
     pub fn open(path: &Path) -> FileResult<PartReader> {
         let mut lines =
             BufReader::new(open_regular(path).map_err(|reason| FileError::unreadable(path, reason, REMEDY))?);
@@ -108,15 +108,15 @@ impl PartReader {
         Ok(PartReader { header, kitchen, path, lines, number })
     }
 
-    /// The file.
+    /// Path of the part's file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The next recording with its rows of the tables of events; `None` after the last.
+    /// The next analysed recording with its rows of the tables of events; `None` after the last recording.
     ///
     /// # Errors
-    /// A line is none of a part, or there are more or fewer of them than the header says.
+    /// A line is not that of a part, or there are more or fewer recordings than the header says.
     pub fn next_recording(&mut self) -> FileResult<Option<(AnalysedRecording, [Vec<u8>; 5])>> {
         let (read, all) = ((self.number as u64 - 2) / 2, self.header.recordings);
         let is_whole = read == all;
@@ -146,7 +146,8 @@ impl PartReader {
     }
 }
 
-/// The next line without its end; `None` at the end of the file. A last line without its end was cut.
+/// The next line of the file without its line end; `None` at the end of the file. A last line without a line end was
+/// cut.
 fn next_line(path: &Path, lines: &mut BufReader<File>, number: &mut usize) -> FileResult<Option<String>> {
     let mut text = String::new();
     lines.read_line(&mut text).map_err(|reason| FileError::unreadable(path, reason, REMEDY))?;

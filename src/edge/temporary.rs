@@ -1,6 +1,6 @@
 //! Creates files and folders in the system's folder for temporary files, where other users can put files and links of
 //! any name. Everything is newly created: nothing that exists is used, and no link is followed. Only the user of the
-//! program can read it.
+//! program can read what is created.
 
 use std::fs::{DirBuilder, File, OpenOptions};
 use std::io::{self, ErrorKind};
@@ -17,7 +17,8 @@ pub fn new_folder(below: &Path, name: &str) -> io::Result<PathBuf> {
     first_free(below, name, "", make_folder).map(|(path, ())| path)
 }
 
-/// Creates the empty file `STEM` with this ending, or else the first of `STEM-2`, `STEM-3`, … that does not exist.
+/// Creates the empty file `STEM` with the name's ending, or else the first of `STEM-2`, `STEM-3`, … that does not
+/// exist.
 ///
 /// # Errors
 /// The file cannot be created.

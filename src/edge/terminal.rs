@@ -31,23 +31,24 @@ use crate::console::{ConsoleMessage, ConsoleModel, view};
 use crate::session::Session;
 use crate::session::settings::{ColourTheme, ConsoleSpec};
 
-/// Writer of frames while the terminal is set up for the console.
+/// Writer of frames; `None` unless the terminal is set up for the console.
 static TAKEN: Mutex<Option<Arc<FrameWriter>>> = Mutex::new(None);
-/// Whether the terminal did not accept the bytes that restore it.
+/// Whether the terminal did not accept the bytes that restore its modes.
 static OUT_OF_REACH: AtomicBool = AtomicBool::new(false);
-/// Completed when the terminal is first set up; from then on a panic restores the terminal.
+/// Done when the terminal is first set up for the console; from then on a panic restores the terminal.
 static HOOK: Once = Once::new();
 /// Time limit for output to the terminal after a session.
 const LAST_WORDS: Duration = Duration::from_millis(300);
-/// Time limit for the program's end after a signal, since a reader of its output may be stuck; closing a recording
-/// takes milliseconds.
+/// Time limit for the program's end after a termination signal, since a reader of its output may be stuck; closing a
+/// recording takes milliseconds.
 const ENDING: Duration = Duration::from_millis(1800);
 
-/// The terminal in the modes of the console. It is restored when this value is dropped, and when any thread panics.
+/// The terminal in the modes of the console. Its modes are restored when this value is dropped, and when a thread
+/// panics.
 #[derive(Debug)]
 pub struct TerminalScreen {
     terminal: Terminal<CrosstermBackend<ComposedFrame>>,
-    /// The terminal's background; dark if the terminal does not tell.
+    /// Whether the terminal's background is dark or light; dark if the terminal does not tell.
     pub ground: TerminalBackground,
     composed: ComposedFrame,
     frames: Arc<FrameWriter>,
@@ -87,7 +88,7 @@ impl TerminalScreen {
         HOOK.call_once(|| {
             let then = std::panic::take_hook();
             std::panic::set_hook(Box::new(move |panic| {
-                // Writing a message to an unread terminal could block.
+                // Writing a message to a terminal whose output nobody reads could block.
                 if give_back() || !io::stderr().is_terminal() {
                     then(panic);
                 }
@@ -111,7 +112,7 @@ impl TerminalScreen {
         size()
     }
 
-    /// Whether the terminal has accepted the last frame.
+    /// Whether the terminal has accepted the last frame of the console.
     pub fn is_ready(&self) -> bool {
         self.frames.is_ready()
     }
@@ -164,21 +165,21 @@ impl Drop for TerminalScreen {
     }
 }
 
-/// Restores the terminal, once; returns whether it accepted the bytes for that. Waits for less than a second, since an
-/// unread terminal must not keep the program from ending.
+/// Restores the terminal, once; returns whether the terminal accepted the bytes for that. Waits for less than a second,
+/// since a terminal whose output nobody reads must not keep the program from ending.
 fn give_back() -> bool {
     let taken = TAKEN.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take();
     let Some(frames) = taken else { return !OUT_OF_REACH.load(Ordering::Acquire) };
     let took = frames.end(way_out());
     OUT_OF_REACH.store(!took, Ordering::Release);
-    // The terminal's modes can be restored even if it accepts no bytes.
+    // The terminal's modes can be restored even if the terminal accepts no bytes.
     let _ = disable_raw_mode();
     took
 }
 
-/// Writes to standard output or standard error. After a session at the console the write has a time limit, since an
-/// unread terminal must not keep the program from ending. Nothing is written to a terminal that did not accept the
-/// bytes that restore it.
+/// Writes to standard output or standard error. After a session at the console the write has a time limit, since a
+/// terminal whose output nobody reads must not keep the program from ending. Nothing is written to a terminal that did
+/// not accept the bytes that restore its modes.
 ///
 /// # Errors
 /// The write fails.
@@ -233,7 +234,7 @@ pub struct TerminalInput {
 }
 
 impl TerminalInput {
-    /// The next message; `None` when the terminal is closed.
+    /// The next message from the terminal; `None` when the terminal is closed.
     pub async fn next(&mut self) -> Option<ConsoleMessage> {
         loop {
             let message = match self.events.next().await?.ok()? {
@@ -255,7 +256,7 @@ impl TerminalInput {
 }
 
 /// Theme of the console: colours unless `NO_COLOR` is set (no-color.org), for this background unless the settings name
-/// another; Unicode unless the settings ask for ASCII or the locale has another character set.
+/// another background; Unicode unless the settings ask for ASCII or the locale has another character set.
 pub fn theme(console: &ConsoleSpec, ground: TerminalBackground) -> Theme {
     let value = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
     let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(value).map(|locale| locale.to_lowercase());
@@ -269,7 +270,7 @@ pub fn theme(console: &ConsoleSpec, ground: TerminalBackground) -> Theme {
 }
 
 /// Keeps the program alive if a file grows beyond the size limit (`ulimit -f`): without a handler, the signal SIGXFSZ
-/// would kill it; with one, the write fails as on a full disk.
+/// would kill the program; with a handler, the write fails as on a full disk.
 ///
 /// # Errors
 /// Signals cannot be received.
@@ -281,7 +282,7 @@ pub fn outlive_file_limits() -> io::Result<()> {
     signal(SignalKind::from_raw(SIGXFSZ)).map(drop)
 }
 
-/// On this operating system the signal does not exist, or has another number.
+/// Does nothing: on this operating system the signal SIGXFSZ does not exist, or has another number.
 #[cfg(not(target_os = "linux"))]
 pub fn outlive_file_limits() -> io::Result<()> {
     Ok(())
@@ -299,7 +300,7 @@ pub async fn asked_to_end() -> io::Result<()> {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         let signal = runtime.and_then(|runtime| runtime.block_on(next_signal()));
         let is_asked = signal.is_ok();
-        // If the receiver no longer exists, the program is about to end.
+        // If the signal's receiver no longer exists, the program is about to end.
         let _ = sender.send(signal);
         if is_asked {
             std::thread::sleep(ENDING);

@@ -1,6 +1,6 @@
-//! Recognition of the files of eye trackers' own programs, to explain why they cannot be used: their recordings and
-//! downloads contain gaze in the scene camera's image, from which the gaze on the display cannot be computed. For each
-//! there is a program that maps it to the display.
+//! Recognition of the files of eye trackers' own programs, to explain why they cannot be used: recordings and downloads
+//! of trackers contain gaze in the scene camera's image, from which the gaze on the display cannot be computed. For
+//! each tracker there is a program that maps such gaze to the display.
 
 use std::ffi::OsStr;
 use std::fs::read_dir;
@@ -26,7 +26,7 @@ const NEON: &str = "open it in Neon Player with the plugin Surface Tracking and 
 const CLOUD: &str = "Pupil Cloud's Marker Mapper: gaze.csv of its download; or the native recording data, exported by Neon Player with the \
                      plugin Surface Tracking";
 
-/// What a path contains, if it belongs to an eye tracker's program and is not gaze on the display.
+/// What a path contains, if it belongs to an eye tracker's program and is no gaze on the display; else `None`.
 pub(super) fn tracker_data(path: &Path) -> Option<TrackerFinding> {
     let extension = path.extension().and_then(OsStr::to_str).unwrap_or_default();
     if path.is_dir() {
@@ -40,7 +40,7 @@ pub(super) fn tracker_data(path: &Path) -> Option<TrackerFinding> {
     path.parent().filter(|_| RECORDED.contains(&extension)).and_then(folder)
 }
 
-/// What a folder contains, judged by the names of its files.
+/// What a folder of an eye tracker's program contains, judged by the names of its files.
 fn folder(folder: &Path) -> Option<TrackerFinding> {
     let names = names(folder);
     let has = |name: &str| names.iter().any(|found| found == name);
@@ -69,7 +69,7 @@ fn folder(folder: &Path) -> Option<TrackerFinding> {
     None
 }
 
-/// The table of gaze on the display in a folder of exports.
+/// Path of the table of gaze on the display in a folder of exports.
 fn table_in(folder: &Path, names: &[String]) -> Option<PathBuf> {
     let is_table = |name: &&String| name.starts_with("gaze_positions_on_surface_") && name.ends_with(".csv");
     let surfaces = folder.join("surfaces");

@@ -29,7 +29,7 @@ pub fn write(folder: &Path, record: &WizardTrainingRecord) -> io::Result<PathBuf
     Err(io::Error::other("too many files"))
 }
 
-/// The training records of a wizard in the folder, in order of time; empty if the folder does not exist.
+/// The training records of a wizard in the folder, in the order of time; empty if the folder does not exist.
 ///
 /// # Errors
 /// A file cannot be read or is not a training record.

@@ -3,8 +3,8 @@
 
 use serde::de::DeserializeOwned;
 
-/// Message of the parser. For a value that is not a text, the parser does not list the valid words, but for a wrong
-/// text it does; so the value is replaced by a text to get the list.
+/// The error message of the TOML parser in words. For a value that is no text, the parser does not list the valid
+/// words, but for a wrong text it does; so the value is replaced by a text to get the list.
 pub(super) fn message<T: DeserializeOwned>(text: &str, error: &toml::de::Error) -> String {
     let no_word = error.span().filter(|_| error.message() == "wanted string or table");
     let said = no_word.and_then(|span| {
@@ -16,7 +16,7 @@ pub(super) fn message<T: DeserializeOwned>(text: &str, error: &toml::de::Error) 
     said.unwrap_or_else(|| error.message().to_string())
 }
 
-/// The value that was found, in words, and a description of valid ones if serde's message contains it.
+/// The value that was found, in words, and a description of valid values if serde's message contains one.
 pub(super) fn in_words(message: &str) -> (String, Option<String>) {
     let (found, expected) = match message.split_once(", expected ") {
         Some((found, expected)) => (found, Some(expected)),
@@ -59,13 +59,13 @@ fn value(what: &str) -> String {
     }
 }
 
-/// Description of a setting's valid values.
+/// Description of a setting's valid values in words, from serde's notation.
 fn values(expected: &str) -> String {
     let whole = |most: u64| format!("a whole number from 0 to {most}");
     match expected {
         "u8" => whole(u8::MAX.into()),
         "u16" => whole(u16::MAX.into()),
-        // Most settings have narrower bounds, which are checked and reported elsewhere.
+        // Most settings have narrower bounds, which are checked and reported by other code.
         "u32" | "u64" | "usize" => "a whole number, not below 0".to_string(),
         "i64" => "a whole number".to_string(),
         "f64" | "f32" => "a number".to_string(),

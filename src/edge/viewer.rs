@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 use super::rerun::{TRIAL_TIME, VERSION};
 use super::stream::free_port;
 
-/// First port at which an opened viewer may listen; if it is in use, one of the next is taken.
+/// First network port at which an opened viewer may listen; if the port is in use, one of the next ports is taken.
 const PORT: u16 = 9900;
-/// Time limit for the viewer to become ready, and period of asking it.
+/// Time limit for the Rerun viewer to become ready, and period of asking whether it is.
 const READY: Duration = Duration::from_secs(30);
 const RETRY: Duration = Duration::from_millis(500);
 /// Time limit and size limit of the viewer program's answer about its version.
@@ -22,9 +22,9 @@ const ANSWER_BYTES: u64 = 1 << 16;
 /// Viewer program that was found on this machine.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ViewerAvailability {
-    /// A viewer whose version can read this program's streams is installed; its path.
+    /// A viewer whose version can read this program's streams is installed; the path of its program.
     Ready(PathBuf),
-    /// A viewer of another version is installed; its version.
+    /// A viewer of another version is installed; that version.
     Other(String),
     /// There is no screen on which the viewer could open a window.
     NoScreen,
@@ -65,8 +65,8 @@ pub fn has_screen() -> bool {
     !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
 }
 
-/// Opens the viewer on a file; the viewer stays when this program ends, and writes nothing into its terminal. With a
-/// time in nanoseconds on the trial's clock, the viewer goes to that time as soon as it is ready.
+/// Opens the viewer on a file; the viewer stays open when this program ends, and writes nothing into the terminal. With
+/// a time in nanoseconds on the trial's clock, the viewer goes to that time as soon as it is ready.
 ///
 /// # Errors
 /// The viewer cannot be started, or cannot be told the time.
@@ -91,8 +91,8 @@ pub fn open(viewer: &Path, file: &Path, at_ns: Option<u64>) -> io::Result<()> {
 fn go_to(port: u16, at_ns: u64) -> io::Result<()> {
     let mut viewer = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
     viewer.set_read_timeout(Some(ANSWER))?;
-    // Protocol Buffers message: SetTimeCursorRequest { timeline (2): Timeline { name (1) }, time (3): TimelineTime {
-    // time (1) } }
+    // Layout of the Protocol Buffers message: SetTimeCursorRequest { timeline (2): Timeline { name (1) }, time (3):
+    // TimelineTime { time (1) } }
     let mut request = field(2, &field(1, TRIAL_TIME.as_bytes()));
     request.extend(field(3, &[&[0x08], &varint(at_ns)[..]].concat()));
     let length = (request.len() as u32).to_be_bytes();
@@ -124,7 +124,7 @@ fn varint(mut number: u64) -> Vec<u8> {
     bytes
 }
 
-/// Opens a web page in the browser, if there is a screen and a command for that.
+/// Opens a web page in the user's browser, if there is a screen and a command that opens pages.
 pub fn browse(url: &str) {
     let opener = match env::consts::OS {
         "macos" => "open",
@@ -132,7 +132,7 @@ pub fn browse(url: &str) {
         _ => "xdg-open",
     };
     if has_screen() {
-        // If there is no such command, the user can open the printed address.
+        // If there is no command that opens pages, the user can open the printed address.
         let _ = Command::new(opener).arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
     }
 }

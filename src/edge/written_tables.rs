@@ -1,5 +1,5 @@
-//! Recognition of tables that this program wrote: by the columns of this version, or by the data dictionary beside the
-//! table.
+//! Recognition of tables that this program wrote: by the columns that this version's tables have, or by the data
+//! dictionary beside the table.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -18,10 +18,10 @@ pub struct ListedTables {
 }
 
 impl ListedTables {
-    /// Reads the data dictionary in a folder, if there is one.
+    /// Reads the data dictionary in a folder, if the folder has one.
     ///
     /// # Errors
-    /// The file exists but cannot be read.
+    /// The data dictionary exists but cannot be read.
     pub fn read(folder: &Path) -> io::Result<ListedTables> {
         let mut tables = ListedTables::default();
         let dictionary = records(&folder.join("dictionary.csv"))?;
@@ -49,7 +49,7 @@ impl ListedTables {
             || table_named(name).is_some_and(|table| has_columns_of(header, table))
     }
 
-    /// Columns of the table with this name, if a study has such a table.
+    /// Columns of the table with this name in a study's tables; `None` if a study has no such table.
     pub fn columns_of(&self, name: &str) -> Option<Vec<Vec<u8>>> {
         let listed = self.columns.get(name.as_bytes()).cloned();
         listed.or_else(|| {
@@ -58,7 +58,7 @@ impl ListedTables {
     }
 }
 
-/// The kind of a study's table that has this name.
+/// The table of a study that has this name.
 pub fn table_named(name: &str) -> Option<CsvTable> {
     CsvTable::ALL.into_iter().find(|table| table.name() == name)
 }

@@ -1,5 +1,5 @@
-//! One network connection of a participant page, which identifies itself and then either takes part (acts) or only
-//! watches.
+//! One network connection of a participant page. The page identifies itself, and then either takes part (its inputs
+//! count) or only watches.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -40,11 +40,11 @@ struct Talk {
     page: String,
     size: ActivePage,
     faults: u32,
-    /// Budget of messages that the page may send (token bucket), with the time of its last update.
+    /// Budget of messages that the page may still send (token bucket), with the time of the budget's last update.
     allowed: (f64, Instant),
     /// Number of the last press on the participant's page.
     pressed: u64,
-    /// Name of the last pressed button, and the time of the press on the server's clock.
+    /// Name of the button that was pressed last, and the time of that press on the server's clock, in milliseconds.
     last: Option<(String, f64)>,
 }
 
@@ -55,7 +55,7 @@ pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<Co
     let (faults, allowed, pressed) = (0, (PER_SECOND, now), 0);
     let mut talk = Talk { socket, hub, place, life, page, size, faults, allowed, pressed, last: None };
     let Some(waits) = talk.greet().await else { return };
-    // Beyond the limit of watching pages, only the page that takes part is admitted.
+    // Beyond the limit of watching pages, only the page that takes part is admitted to the display.
     if !talk.take_seat(waits).await && !talk.place.admit() {
         count(&talk.hub.status.refused);
         return;
@@ -67,8 +67,8 @@ pub(super) async fn talk(socket: WebSocket, hub: Arc<ServerState>, place: Arc<Co
 }
 
 impl Talk {
-    /// Sends the display texts to a new page, and waits until the page has identified itself and, if required, sent the
-    /// right pairing code. Returns whether the page wants to watch while another page takes part.
+    /// Sends the display texts to a new page, and waits until the page has identified itself and, if a pairing code is
+    /// required, sent the right code. Returns whether the page wants to watch while another page takes part.
     async fn greet(&mut self) -> Option<bool> {
         self.say(&MessageToPage::Words { words: self.hub.words.clone() }).await?;
         let hello_by = tokio::time::Instant::now() + HELLO;
@@ -101,7 +101,7 @@ impl Talk {
                         return None;
                     }
                 }
-                // A page that shows the form for the pairing code also sends pings.
+                // A page that shows the form for the pairing code sends pings, too.
                 Some(MessageFromPage::Ping { t, hidden, .. }) if has_said => self.pong(t, hidden).await?,
                 Some(MessageFromPage::Size { width, height, upright }) if has_said => {
                     self.note_size(width, height, upright)
@@ -128,7 +128,7 @@ impl Talk {
         Some(false)
     }
 
-    /// Parses the page's message, if the WebSocket frame contains one that is to be handled; outer `None` ends the
+    /// Parses the page's message, if the WebSocket frame contains a message to be handled; an outer `None` ends the
     /// connection.
     fn message(&mut self, message: Message) -> Option<Option<MessageFromPage>> {
         let now = Instant::now();
@@ -172,8 +172,8 @@ impl Talk {
         (self.faults < FAULTS).then_some(())
     }
 
-    /// Lets the page take part if no other page does and it does not want to wait, or if it is the same page after a
-    /// reload. Returns whether this page takes part now.
+    /// Lets the page take part if no other page does and the page does not want to wait, or if the page took part
+    /// before it was loaded again. Returns whether this page takes part now.
     async fn take_seat(&mut self, waits: bool) -> bool {
         let mut took = false;
         self.hub.acting.send_if_modified(|acting| {
@@ -190,7 +190,7 @@ impl Talk {
         took
     }
 
-    /// Keeps the size of the page in pixels, and whether it shows the layout of upright screens.
+    /// Keeps the size of the page in pixels, and whether the page shows the layout of upright screens.
     fn note_size(&mut self, width_px: u32, height_px: u32, upright: bool) {
         self.size = ActivePage { width_px, height_px, upright, ..self.size };
     }
@@ -222,7 +222,7 @@ impl Talk {
     async fn run(&mut self) -> Option<()> {
         let PageFeed { mut scene, mut sight, mut robot } = self.hub.told.clone();
         let mut acting = self.hub.acting.subscribe();
-        // For a newly connected page, the present content counts as new.
+        // For a newly connected page, the present content of the display counts as new.
         scene.mark_changed();
         sight.mark_changed();
         robot.mark_changed();
@@ -235,7 +235,7 @@ impl Talk {
                 changed = scene.changed() => {
                     changed.ok()?;
                     self.pass_on(&mut scene).await?;
-                    // After a new scene, a page shows no state yet, so the state is sent again.
+                    // After a new scene a page shows no state of the kitchen, so the state is sent again.
                     sight.mark_changed();
                     robot.mark_changed();
                 }
@@ -299,8 +299,8 @@ impl Talk {
         }
     }
 
-    /// Whether a message is within the rate that hands and pointer can produce; faster messages are ignored for a
-    /// while.
+    /// Whether a message is within the rate that hands and pointer can produce; messages beyond that rate are ignored
+    /// for a while.
     fn is_allowed(&mut self) -> bool {
         let (allowed, since) = self.allowed;
         let now = Instant::now();
@@ -319,7 +319,7 @@ impl Talk {
                 }
                 PageInput::Press { button, at: self.hub.moment(at) }
             }
-            // Pointer positions may be dropped, since newer ones follow at once.
+            // Pointer positions may be dropped, since newer positions follow at once.
             MessageFromPage::Pointer { x, y } => {
                 let _ = self.hub.inputs.try_send(PageInput::Pointer { x, y });
                 return Some(());
@@ -341,7 +341,7 @@ impl Talk {
         self.hub.inputs.send(input).await.ok()
     }
 
-    /// Whether a press is a new one: neither a repeated message nor contact bounce of the button.
+    /// Whether a press is a new press: neither a repeated message nor contact bounce of the button.
     fn is_new(&mut self, number: u64, button: &str, at: f64) -> bool {
         let bounces = self.last.as_ref().is_some_and(|(last, when)| last == button && (at - when).abs() < BOUNCE_MS);
         let is_new = number > self.pressed && !bounces;

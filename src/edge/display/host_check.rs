@@ -7,7 +7,7 @@ use crate::edge::host_name::is_local;
 
 /// Whether an HTTP request is addressed to this server. Without a pairing code, the host must be a loopback address or
 /// `localhost`: any other name that resolves to this machine, such as `127.evil.example`, belongs to a foreign website
-/// (DNS rebinding). In the network, the pairing code keeps foreign websites out.
+/// (DNS rebinding). For a server open to the network, the pairing code keeps foreign websites out.
 pub(super) fn has_own_host(headers: &HeaderMap, target: &Uri, has_code: bool) -> bool {
     let Some(host) = single(headers, header::HOST) else { return false };
     // A host in the HTTP request line takes precedence over the `Host` header (RFC 9112, section 3.2.2).
@@ -15,8 +15,8 @@ pub(super) fn has_own_host(headers: &HeaderMap, target: &Uri, has_code: bool) ->
     is_named_alike && (has_code || is_local(host))
 }
 
-/// Whether an HTTP request has no `Origin` header, or this server's own origin. Browsers always send the header when a
-/// page opens a WebSocket.
+/// Whether an HTTP request has no `Origin` header, or this server's own origin. Browsers always send the `Origin`
+/// header when a page opens a WebSocket.
 pub(super) fn has_own_origin(headers: &HeaderMap) -> bool {
     if !headers.contains_key(header::ORIGIN) {
         return true;
@@ -53,7 +53,7 @@ mod tests {
         assert!(!is_own("localhost:50022", Some("https://localhost:50022"), false));
         assert!(!is_own("localhost:50022", Some("null"), false));
         assert!(!is_own("somewhere.example:50022", Some("http://somewhere.example:50022"), false));
-        // Host names that only look like an address of this machine.
+        // Test: host names that only look like an address of this machine are refused.
         for foreign in [
             "127.evil.example",
             "127.0.0.1.evil.example",

@@ -1,5 +1,5 @@
-//! Messages between the participant's page and the program, one JSON object each. Times are milliseconds on the
-//! server's clock.
+//! Messages between the participant's page and the program, one JSON object each. Times in messages are milliseconds on
+//! the server's clock.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -14,9 +14,9 @@ use crate::session::answer_value::AnswerValue;
 pub(super) const MAX_BYTES: usize = 4096;
 /// Longest name or other text in a page's message, in bytes.
 const MAX_TEXT: usize = 64;
-/// Largest number of items in a stack that a participant answers.
+/// Largest number of items in a stack (dish) that a participant answers to a probe.
 const MAX_ITEMS: usize = 16;
-/// Longest typed answer, in characters.
+/// Longest answer that a participant can type, in characters.
 const MAX_ANSWER: usize = 500;
 /// Largest page width or height that is accepted, in pixels.
 const MAX_PIXELS: u32 = 100_000;
@@ -27,18 +27,18 @@ const MAX_PIXELS: u32 = 100_000;
 pub enum MessageFromPage {
     /// First message of a page, with which it identifies itself.
     Hello {
-        /// Random name of the page, which it keeps when it is loaded again.
+        /// Random name of the page, which the page keeps when it is loaded again.
         page: String,
         /// Width of the participant's page in pixels.
         width: u32,
         /// Height of the participant's page in pixels.
         height: u32,
-        /// The page shows the layout of upright screens.
+        /// Whether the page shows the layout of upright screens.
         #[serde(default)]
         upright: bool,
-        /// Pairing code that was typed into the page.
+        /// Pairing code that somebody typed into the page.
         code: Option<String>,
-        /// Whether the page only watched before it was reconnected, so that it leaves taking part to another page.
+        /// Whether the page only watched before it was reconnected, so that it lets another page take part.
         #[serde(default)]
         waits: bool,
     },
@@ -48,13 +48,13 @@ pub enum MessageFromPage {
         width: u32,
         /// Height of the participant's page in pixels.
         height: u32,
-        /// The page shows the layout of upright screens.
+        /// Whether the page shows the layout of upright screens.
         #[serde(default)]
         upright: bool,
     },
     /// A watching page asks to take part.
     TakePart,
-    /// Ping of the page, to measure the round-trip time.
+    /// Ping of the page, by which the page measures the round-trip time.
     Ping {
         /// Time on the page's clock, in milliseconds.
         t: f64,
@@ -66,18 +66,18 @@ pub enum MessageFromPage {
     },
     /// A press of a kitchen button on the page.
     Press {
-        /// Number of the press on this page, counted from 1.
+        /// Number of the press among all presses on this page, counted from 1.
         number: u64,
-        /// Name of the pressed button.
+        /// Name of the pressed kitchen button.
         button: String,
         /// Time of the press, in milliseconds on the server's clock.
         at: f64,
     },
     /// Position of the mouse pointer on the page.
     Pointer {
-        /// Horizontal position, as a fraction of the display's width.
+        /// Horizontal position of the pointer, as a fraction of the display's width.
         x: f64,
-        /// Vertical position, as a fraction of the display's height, downwards.
+        /// Vertical position of the pointer, as a fraction of the display's height, downwards.
         y: f64,
     },
     /// Report that the page has drawn the event with this sequence number.
@@ -101,14 +101,15 @@ pub enum MessageFromPage {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub(super) enum MessageToPage {
-    /// Answer to a page's ping: the time in the ping, and the server's time.
+    /// Answer to a page's ping: the time in the ping, and the server's time, both in milliseconds.
     Pong { t: f64, at: f64 },
     /// Texts of the page in the participant's language.
     Words { words: BTreeMap<String, String> },
     /// Role of the page: taking part, watching while another page takes part, or watching while it could take part.
     Role { acts: bool, free: bool },
-    /// Result of pairing: "code" asks for the pairing code; "wrong" says that the code was wrong; "locked" says that it
-    /// was not checked, since too many wrong ones came before. After `wait_s` seconds the next code is checked.
+    /// Result of pairing: "code" asks for the pairing code; "wrong" says that the code was wrong; "locked" says that
+    /// the code was not checked, since too many wrong ones came before. The next code is checked after `wait_s`
+    /// seconds.
     Pairing { why: &'static str, wait_s: u64 },
 }
 
@@ -176,8 +177,8 @@ pub(super) fn scene(scene: &DisplayScene) -> Arc<str> {
     text(&Message { kind: "scene", scene })
 }
 
-/// The message with the present sight; during a probe, or with the trial's clock, also the seconds that are left, and when that was on the
-/// server's clock.
+/// The message with what the display shows now; during a probe, or with the trial's clock, also with the seconds that
+/// are left, and the time on the server's clock at which they were left.
 pub(super) fn sight(sight: &DisplayUpdate, left: Option<(f64, f64)>) -> Arc<str> {
     #[derive(Serialize)]
     struct Message<'a> {

@@ -1,8 +1,8 @@
-//! The participant's wall display: a page in a browser, served on its own thread, so that connections cannot delay the
-//! session.
+//! The participant's wall display: a page in a browser, served by a thread of its own, so that connections cannot delay
+//! the session.
 //!
-//! The page receives scene and state as JSON over a WebSocket, and sends presses, answers and the pointer. One page
-//! takes part (acts), all others watch.
+//! The page receives the scene (fixed layout) and the state as JSON over a WebSocket, and sends presses, answers and
+//! the pointer. One page takes part (its inputs count), all others watch.
 
 mod connection;
 mod host_check;
@@ -35,7 +35,7 @@ use crate::edge::pairing_code::pairing_code;
 /// Largest number of page inputs that wait for the session.
 const WAITING: usize = 1024;
 
-/// Server of the participant's display: its address and its inputs. Dropping it stops the server.
+/// Server of the participant's display: its address and its inputs. Dropping the value stops the server.
 pub struct DisplayServer {
     address: SocketAddr,
     code: Option<String>,
@@ -55,8 +55,8 @@ pub struct DisplayHandle {
 }
 
 impl DisplayServer {
-    /// Serves the participant's page at an address, with these texts. Addresses other than localhost need a pairing
-    /// code.
+    /// Serves the participant's page at an address, with the page's texts `words`. Addresses other than localhost need
+    /// a pairing code.
     ///
     /// # Errors
     /// The program cannot listen at the address.
@@ -87,7 +87,7 @@ impl DisplayServer {
         Ok(DisplayServer { address, code, inputs, screen })
     }
 
-    /// Waits for the next input of the page that takes part.
+    /// Waits for the next input of the page that takes part in the session.
     pub async fn next(&mut self) -> Option<PageInput> {
         self.inputs.recv().await
     }
@@ -98,7 +98,7 @@ impl DisplayServer {
         format!("http://{}", reachable(self.address))
     }
 
-    /// Pairing code that the page asks for, if it needs one.
+    /// Pairing code that the participant's page asks for; `None` if no code is needed.
     pub fn code(&self) -> Option<&str> {
         self.code.as_deref()
     }
@@ -110,12 +110,12 @@ impl DisplayServer {
 }
 
 impl DisplayHandle {
-    /// Sends a new static scene to the pages.
+    /// Sends a new scene (the fixed layout of kitchen and page) to the pages.
     pub fn build(&self, scene: &DisplayScene) {
         self.scene.send_replace(message::scene(scene));
     }
 
-    /// Sends the present sight to the pages, with the time in seconds that a probe or the trial still has.
+    /// Sends to the pages what the display shows now, with the time in seconds that a probe or the trial still has.
     pub fn show(&self, sight: &DisplayUpdate, left_s: Option<f64>) {
         let at_ms = self.began.elapsed().as_secs_f64() * 1000.0;
         self.sight.send_replace(message::sight(sight, left_s.map(|left_s| (at_ms, left_s))));

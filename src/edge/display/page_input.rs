@@ -27,16 +27,16 @@ pub enum PageInput {
     },
     /// Position of the mouse pointer, in fractions of the display.
     Pointer {
-        /// Horizontal position, as a fraction of the display's width.
+        /// Horizontal position of the pointer, as a fraction of the display's width.
         x: f64,
-        /// Vertical position, as a fraction of the display's height, downwards.
+        /// Vertical position of the pointer, as a fraction of the display's height, downwards.
         y: f64,
     },
     /// What the participant does on the page apart from the task: consent, answers, tutorial pages.
     Reply(ParticipantResponse),
-    /// Report that the page has drawn an event.
+    /// Report that the page has drawn a frame with an event such as a signal.
     Drawn {
-        /// Sequence number of the drawn event.
+        /// Sequence number of the event that was drawn.
         cue: u64,
         /// Time of the drawing, on this computer's clock.
         at: Instant,
@@ -52,7 +52,7 @@ pub enum ParticipantResponse {
     Answer {
         /// Name of the questionnaire item.
         item: String,
-        /// The answer; `None` leaves the item unanswered.
+        /// The answer to the questionnaire item; `None` leaves the item unanswered.
         answer: Option<AnswerValue>,
     },
     /// Going on to the next questionnaire item, or to the list of all answers.
@@ -62,7 +62,7 @@ pub enum ParticipantResponse {
         /// Name of the questionnaire item.
         item: String,
     },
-    /// Consent: the participant held its button for as long as the page asks.
+    /// Consent of the participant, who held the consent button for as long as the page asks.
     Consent,
     /// Confirmation of all questionnaire answers.
     Confirm,
@@ -70,14 +70,14 @@ pub enum ParticipantResponse {
     Turn {
         /// Id of the tutorial step that is shown.
         step: String,
-        /// Whether to go to the next step; else to the previous one.
+        /// Whether the participant turns to the next tutorial step; false: to the previous one.
         forward: bool,
     },
     /// Answer to the question of a tutorial step.
     Choose {
         /// Id of the tutorial step.
         step: String,
-        /// Number of the chosen answer, counted from 1.
+        /// Number of the chosen answer to the tutorial's question, counted from 1.
         choice: u8,
     },
     /// The recipe cards of a tutorial step have been shown for their set time.
@@ -89,13 +89,13 @@ pub enum ParticipantResponse {
     Believe {
         /// Number of the freeze probe.
         probe: u32,
-        /// Number of the question, counted from 1.
+        /// Number of the question in the freeze probe, counted from 1.
         question: u32,
-        /// Number of the chosen answer, counted from 1.
+        /// Number of the chosen answer to the probe's question, counted from 1.
         choice: Option<u16>,
         /// Names of the items of which the answered stack consists.
         items: Vec<String>,
-        /// How sure the participant is of the answer, from 1 to 3, if that is asked.
+        /// How sure the participant is of the answer, from 1 to 3; `None` if that is not asked.
         sure: Option<u8>,
     },
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 const PING: Duration = Duration::from_secs(2);
 /// Silence of a browser (no answer to pings) after which it counts as gone.
 const SILENCE: Duration = Duration::from_secs(8);
-/// Time without a message after which a visible page counts as hanging; it sends one per second.
+/// Time without a message after which a visible page counts as hanging; a visible page sends one message per second.
 const VISIBLE: Duration = Duration::from_secs(8);
 /// Time without a message after which a hidden page counts as hanging.
 const HIDDEN: Duration = Duration::from_secs(90);
@@ -17,7 +17,7 @@ const HIDDEN: Duration = Duration::from_secs(90);
 pub(super) struct PageLife {
     /// Arrival of the last WebSocket frame of any kind, answers to pings included.
     heard: Instant,
-    /// Arrival of the last message that the page itself sent.
+    /// Arrival of the last message that the page itself sent (not the browser).
     spoke: Instant,
     pinged: Instant,
     is_hidden: bool,
@@ -47,7 +47,7 @@ impl PageLife {
         self.pinged = now;
     }
 
-    /// Time of the server's next ping, or of giving up the page.
+    /// Time of the server's next ping to the page, or of giving up the page.
     pub fn next(&self) -> Instant {
         (self.pinged + PING).min(self.gone_at())
     }
@@ -67,7 +67,7 @@ impl PageLife {
 mod tests {
     use super::*;
 
-    /// Seconds, out of six hours, for which a page stays connected.
+    /// Test: number of seconds, out of six hours, for which a page stays connected.
     fn stays_s(answers: bool, is_hidden: bool, message_s: u64) -> u64 {
         let start = Instant::now();
         let mut life = PageLife::new(start);

@@ -26,7 +26,7 @@ use super::server_state::ServerState;
 use super::status::count;
 use crate::edge::connection_table::ConnectionHandle;
 
-/// Content security policy: the page loads nothing from other servers and must not be framed.
+/// Content security policy of the page: it loads nothing from other servers and must not be framed.
 const POLICY: &str = "default-src 'self'; connect-src 'self' ws:; img-src data:; style-src 'self' 'unsafe-inline'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 /// Time limit for receiving the head of an HTTP request.
 const HEADER: Duration = Duration::from_secs(5);
@@ -34,13 +34,13 @@ const HEADER: Duration = Duration::from_secs(5);
 const ANSWER: Duration = Duration::from_secs(30);
 /// Longest head of an HTTP request, in bytes.
 const MAX_REQUEST: usize = 16 * 1024;
-/// Pause after an error while accepting connections.
+/// Pause after an error while accepting network connections.
 const AGAIN: Duration = Duration::from_millis(100);
 
-/// Response to somebody who opened the page by another host name.
+/// Response to a request for the participant's page under another host name.
 const REFUSED: &str = "Refused: open the participant's page at the address that the console shows.";
 
-/// Files of the participant's page: path, content type, content.
+/// Files of the participant's page: path, content type, and content of each file.
 const FILES: [(&str, &str, &str); 14] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/display.css", "text/css; charset=utf-8", include_str!("page/display.css")),
@@ -61,7 +61,7 @@ const FILES: [(&str, &str, &str); 14] = [
 /// The router of HTTP requests, as a service of the `hyper` crate.
 type Answers = TowerToHyperService<Router>;
 
-/// Serves the display until the receiver of page inputs is dropped.
+/// Serves the participant's display until the receiver of page inputs is dropped.
 pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> io::Result<()> {
     let listener = TcpListener::from_std(listener)?;
     let hub = Arc::new(hub);
@@ -77,7 +77,7 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> 
     }
     let answers = TowerToHyperService::new(router.with_state(hub.clone()));
     let inputs = hub.inputs.clone();
-    // At the end of the session its connections are closed, without waiting for further messages.
+    // At the end of the session its network connections are closed, without waiting for further messages.
     tokio::select! {
         () = take_connections(listener, hub, answers) => Ok(()),
         () = inputs.closed() => Ok(()),
@@ -88,7 +88,7 @@ pub(super) async fn serve(listener: std::net::TcpListener, hub: ServerState) -> 
 async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers: Answers) {
     loop {
         let Ok((stream, from)) = listener.accept().await else {
-            // The process may have run out of file descriptors: the pause prevents a busy loop.
+            // The process may have run out of file descriptors: the pause prevents a loop that never sleeps.
             sleep(AGAIN).await;
             continue;
         };
@@ -100,13 +100,13 @@ async fn take_connections(listener: TcpListener, hub: Arc<ServerState>, answers:
         // Small messages such as presses are sent at once (no Nagle delay).
         let _ = stream.set_nodelay(true);
         tokio::spawn(answer(stream, Arc::new(arrival.place), hub.clone(), answers.clone()));
-        // The new connection's request is read before further connections can replace it.
+        // The new connection's first request is read before further connections can replace the new one.
         tokio::task::yield_now().await;
     }
 }
 
-/// Answers one HTTP request. A WebSocket that the request opens continues in a task of its own; other connections are
-/// then closed.
+/// Answers one HTTP request. A WebSocket that the request opens continues in a task of its own; connections without a
+/// WebSocket are closed afterwards.
 async fn answer(stream: TcpStream, place: Arc<ConnectionHandle>, hub: Arc<ServerState>, answers: Answers) {
     let shared = place.clone();
     let service = service_fn(move |mut request: Request<Incoming>| {
@@ -120,7 +120,7 @@ async fn answer(stream: TcpStream, place: Arc<ConnectionHandle>, hub: Arc<Server
     http.timer(TokioTimer::new()).header_read_timeout(HEADER).keep_alive(false).max_buf_size(MAX_REQUEST);
     let served = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
     tokio::select! {
-        // Errors and time-outs close the connection in the same way as success does.
+        // Errors and time-outs close the network connection in the same way as success does.
         _ = timeout(ANSWER, served) => {}
         () = place.closed() => {}
     }

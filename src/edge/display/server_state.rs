@@ -24,23 +24,23 @@ const LIMITS: ConnectionLimits = ConnectionLimits {
     silence: Duration::from_secs(90),
 };
 
-/// Messages for the pages: of each kind, the newest one.
+/// Messages for the participant's pages: the newest message of each kind.
 #[derive(Clone)]
 pub(super) struct PageFeed {
     pub scene: watch::Receiver<Arc<str>>,
     pub sight: watch::Receiver<Arc<str>>,
-    /// Pose of the robot's hand.
+    /// Message with the pose of the robot's hand on the display.
     pub robot: watch::Receiver<Arc<str>>,
 }
 
 /// State that all connections of the participant's display share.
 pub(super) struct ServerState {
-    /// Pairing code and attempts at it; `None` if no code is required.
+    /// Check of pairing codes for participant pages; `None` if no code is required.
     pairing: Option<Mutex<PairingCodeCheck>>,
     /// Texts of the participant's page, by key.
     pub words: BTreeMap<String, String>,
     pub inputs: Sender<PageInput>,
-    /// Messages for the participant's pages.
+    /// Newest messages for the participant's pages.
     pub told: PageFeed,
     pub status: Arc<DisplayStatus>,
     /// Connection number and page name of the page that takes part.
@@ -84,8 +84,8 @@ impl ServerState {
         self.began.elapsed().as_secs_f64() * 1000.0
     }
 
-    /// Instant of a time on the server's clock. Times of pages are trusted only within the last 2 s, and else set to
-    /// that range.
+    /// Instant that corresponds to a time on the server's clock. Times that pages send are trusted only within the last
+    /// 2 s; other times are set to the nearest end of that range.
     pub fn moment(&self, at_ms: f64) -> Instant {
         /// Longest delay of a press between page and server, in milliseconds.
         const OLDEST_MS: f64 = 2000.0;

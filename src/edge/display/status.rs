@@ -10,7 +10,7 @@ pub struct ActivePage {
     pub width_px: u32,
     /// Height of the participant's page in pixels.
     pub height_px: u32,
-    /// It shows the layout of upright screens, on which gaze is not mapped.
+    /// Whether the page shows the layout of upright screens, on which gaze is not mapped.
     pub upright: bool,
     /// Last measured round-trip time between page and server, in milliseconds.
     pub round_trip_ms: Option<f64>,
@@ -51,13 +51,13 @@ impl DisplayStatus {
         }
     }
 
-    /// Updates the state of the page that takes part.
+    /// Updates the state of the participant page that takes part.
     pub fn page(&self, change: impl FnOnce(&mut Option<ActivePage>)) {
         change(&mut self.page.lock().unwrap_or_else(std::sync::PoisonError::into_inner));
     }
 }
 
-/// Adds 1 to a counter.
+/// Adds 1 to a counter of the participant's pages.
 pub(super) fn count(counter: &AtomicU64) {
     counter.fetch_add(1, Ordering::Relaxed);
 }

@@ -1,5 +1,5 @@
-//! Checks of the participant's page and of the gaze sources for `tomcom doctor`. Sources that the session does not use
-//! are checked at their default addresses and never fail.
+//! Checks of the participant's page and of the gaze sources for `tomcom doctor`. Gaze sources that the session does not
+//! use are checked at their default addresses; such checks never fail.
 
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
@@ -15,8 +15,8 @@ use crate::session::preflight_checks::{PreflightCheck, PreflightVerdict};
 use crate::session::settings::{GazeSource, ParticipantKind, ParticipantSpec};
 use crate::session::tracker::TrackerSpec;
 
-/// Corners of a surface that covers the whole display, since the check of a gaze file does not depend on the display's
-/// markers.
+/// Corners of a surface that covers the whole display, used because the check of a gaze file does not depend on the
+/// display's markers.
 const WHOLE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
 /// Time limit for finding streams of the Lab Streaming Layer and for reading their channels, in seconds.
@@ -35,7 +35,7 @@ pub(super) fn display(spec: &SessionSpec) -> PreflightCheck {
     }
 }
 
-/// Checks the gaze source of the session.
+/// Checks the session's gaze source.
 pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
     match spec.participant.gaze {
         GazeSource::Pupil => eye_tracker(&spec.tracker, true),
@@ -46,8 +46,8 @@ pub(super) fn gaze(spec: &SessionSpec) -> PreflightCheck {
     }
 }
 
-/// Result for a missing device: a failure if the session uses it, else a remark that names the option that would use
-/// it.
+/// Result for a missing device: a failure if the session uses the device, else a remark that names the option by which
+/// a session would use it.
 fn missing(is_used: bool, name: &str, found: String, flag: &str, remedy: &str) -> PreflightCheck {
     match is_used {
         true => PreflightCheck::new(name, PreflightVerdict::Failed, found, remedy),
@@ -57,7 +57,7 @@ fn missing(is_used: bool, name: &str, found: String, flag: &str, remedy: &str) -
     }
 }
 
-/// Checks whether Pupil Capture responds.
+/// Checks whether the eye tracker's program Pupil Capture responds.
 fn eye_tracker(tracker: &TrackerSpec, is_used: bool) -> PreflightCheck {
     let (address, port) = (&tracker.address, tracker.port);
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
@@ -94,14 +94,14 @@ pub(super) fn lsl(spec: &SessionSpec) -> PreflightCheck {
             PreflightCheck::ok("lsl", format!("liblsl {:.2} can be loaded", f64::from(library.version) / 100.0))
         }
         Err(error) => {
-            // Error texts of the operating system's loader are long.
+            // Only the first part of the error text is shown, since texts of the operating system's loader are long.
             missing(spec.uses_lsl(), "lsl", printable(&error.to_string()).into_owned(), "[lsl]", error.remedy())
         }
     }
 }
 
-/// Checks whether the session's gaze stream is offered by the Lab Streaming Layer, and lists the available streams with
-/// their channels.
+/// Checks whether the Lab Streaming Layer offers the session's gaze stream, and lists the available streams with their
+/// channels.
 fn stream(spec: &SessionSpec) -> PreflightCheck {
     let Some(wanted) = spec.lsl.as_ref().and_then(|lsl| lsl.gaze.as_ref()) else {
         return PreflightCheck::new(
@@ -159,7 +159,7 @@ fn file(tracker: &TrackerSpec) -> PreflightCheck {
     }
 }
 
-/// The remedy that a file error names.
+/// The remedy that a file error names for the user.
 fn told(error: &FileError) -> String {
     match error {
         FileError::Unreadable { remedy, .. } | FileError::Unfit { remedy, .. } | FileError::Wrong { remedy, .. } => {

@@ -1,5 +1,5 @@
-//! Deletes the data of a participant that were found (`tomcom forget`). Every step that can fail is tried first without
-//! changing anything.
+//! Deletes the data of a participant that were found (`tomcom forget`). Every step that can fail is tried first in a
+//! way that changes nothing.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -41,7 +41,7 @@ pub enum ParticipantDeletionError {
     },
 }
 
-/// Deletes the participant's data that were found. Files that could not be deleted in the end are listed as left.
+/// Deletes the participant's data that were found. Files that could not be deleted in the end are listed in the result.
 /// Nothing is deleted if one of the recordings is being written, if a file has changed since it was found, or if a
 /// folder cannot be written to.
 ///
@@ -68,14 +68,14 @@ pub fn delete(found: ParticipantData) -> Result<ParticipantData, ParticipantDele
         replacements.push(Replacement::begin(path, rewrite).map_err(unwritable(path))?);
     }
     for path in &found.files {
-        // Whether a folder can be written to is only known after writing a file there.
+        // Whether a folder can be written to is known only after writing a file into the folder.
         Replacement::begin(path, |_| Ok(())).map_err(unwritable(path))?;
     }
     Ok(commit(found, replacements, locks))
 }
 
-/// Moves the new files into place, and deletes all others. Recordings are deleted last, since other files are
-/// recognised by their names if the command has to be run again.
+/// Moves the new versions of files into place, and deletes all other found files. Recordings are deleted last, since
+/// other files are recognised by the recordings' names if the command has to be run again.
 fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<RecordingLock>) -> ParticipantData {
     let mut done =
         ParticipantData { recording_files: Vec::new(), files: Vec::new(), left: Vec::new(), ..found.clone() };
@@ -99,8 +99,8 @@ fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<Rec
             done.files.push(path);
         }
     }
-    // A recording's log and settings are deleted last, since they tell whose recording it is if another file cannot be
-    // deleted.
+    // A recording's log and settings are deleted last, since they tell to whom the recording belongs if another file
+    // cannot be deleted.
     let (known_by, mut files): (Vec<PathBuf>, Vec<PathBuf>) =
         found.recording_files.into_iter().partition(|path| path.ends_with(LOG_NAME) || path.ends_with(SETTINGS_NAME));
     files.extend(known_by);
@@ -126,7 +126,7 @@ fn commit(found: ParticipantData, replacements: Vec<Replacement>, locks: Vec<Rec
     ParticipantData { left, ..done }
 }
 
-/// A new file beside the one that it is to replace. It is removed again unless it is moved into place.
+/// A new file beside the file that it is to replace. The new file is removed again unless it is moved into place.
 struct Replacement {
     new: PathBuf,
     path: PathBuf,
@@ -163,7 +163,7 @@ impl Drop for Replacement {
     }
 }
 
-/// Copies a file without these byte ranges.
+/// Copies a file without the bytes in these ranges.
 fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut File) -> io::Result<()> {
     let mut old = File::open(path)?;
     let mut from = 0;
@@ -174,7 +174,7 @@ fn copy_without(path: &Path, cut: &[Range<u64>], new: &mut File) -> io::Result<(
     io::copy(&mut old, new).map(drop)
 }
 
-/// Writes a wizard's training record without the participant's recordings.
+/// Writes a wizard's training record without the forgotten participant's recordings.
 fn write_others(path: &Path, found: &ParticipantData, new: &mut File) -> io::Result<()> {
     let record = training(path)?.ok_or_else(|| io::Error::other("it is no record of training any more"))?;
     let record = WizardTrainingRecord { recordings: others(&record, &found.subject), ..record };

@@ -4,7 +4,7 @@
 //! Only files that say that this program wrote them are deleted or changed: recordings say it in their headers, tables
 //! by their columns, reports and streams in their first bytes, training records by their fields. The participant is
 //! looked for in the column or field that means the participant or the recording. A file that may contain data of the
-//! participant, but does not say so, is left, and listed with the reason.
+//! participant, but does not say so, is kept, and listed with the reason.
 
 mod deletion;
 mod owner;

@@ -14,7 +14,8 @@ use crate::session::header::FORMAT;
 pub(super) enum RecordingOwner {
     Participant {
         code: String,
-        /// Begin of the recording, as the identity of a stream states it; `None` without a readable header.
+        /// Time at which the recording began, as the identity of a Rerun stream states it; `None` without a readable
+        /// header.
         began: Option<String>,
     },
     /// A recording whose participant cannot be determined, with the reason.
@@ -36,9 +37,9 @@ enum FirstLine {
 }
 
 impl RecordingOwner {
-    /// Determines the owner of the recording in a folder from the header of its log. If the header is damaged or the
-    /// log is gone, the settings beside it tell the participant's code. A settings file alone counts as a recording
-    /// only if this program wrote it: a program that is killed before it writes the log leaves one behind.
+    /// Determines the participant of the recording in a folder from the header of its log. If the header is damaged or
+    /// the log is gone, the settings beside it tell the participant's code. A settings file alone counts as a recording
+    /// only if this program wrote it: a program that is killed before it writes the log leaves such a file behind.
     pub(super) fn read(folder: &Path) -> RecordingOwner {
         let settings = || read_settings(folder);
         match first_line(folder) {
@@ -69,8 +70,8 @@ impl RecordingOwner {
     }
 }
 
-/// Whether this path is a regular file: the targets of symbolic links are left alone, and opening a named pipe would
-/// block.
+/// Whether this path is a regular file: the targets of symbolic links must not be touched, and opening a named pipe
+/// would block.
 fn is_file(path: &Path) -> bool {
     path.symlink_metadata().is_ok_and(|data| data.is_file())
 }
@@ -86,7 +87,7 @@ fn first_line(folder: &Path) -> FirstLine {
         return FirstLine::Damaged;
     };
     if header.get("format").and_then(Value::as_str) != Some(FORMAT) {
-        // The first line is an event, so the header before it is lost.
+        // The first line of the log is an event, so the header before it is lost.
         let is_event = header.contains_key("seq") && header.contains_key("t_ns");
         return if is_event { FirstLine::Damaged } else { FirstLine::Foreign };
     }
@@ -102,8 +103,8 @@ fn first_line(folder: &Path) -> FirstLine {
     code.map_or(FirstLine::Damaged, |code| FirstLine::Header { code: code.to_string(), began })
 }
 
-/// The participant's code in the settings of a folder, and whether this program wrote the settings: it writes all of
-/// them and nothing else.
+/// The participant's code in the settings file of a folder, and whether this program wrote that file (then it has all
+/// settings and nothing else).
 fn read_settings(folder: &Path) -> Option<(String, bool)> {
     let path = folder.join(SETTINGS_NAME);
     let text = is_file(&path).then(|| fs::read_to_string(path).ok()).flatten()?;

@@ -18,7 +18,7 @@ use crate::edge::stream_head;
 use crate::edge::written_tables::table_named;
 use crate::study::report::page_head;
 
-/// Largest size of a report or a training record, in bytes.
+/// Largest size of a report or a training record that is searched, in bytes.
 const MAX_BYTES: u64 = 64 << 20;
 
 /// Everything that a folder contains about one participant code.
@@ -32,36 +32,36 @@ pub struct ParticipantData {
     pub temporary: PathBuf,
     /// Folders of the participant's recordings, including later parts of continued recordings.
     pub recordings: Vec<PathBuf>,
-    /// Files in the folders of the participant's recordings that are deleted.
+    /// Files in the folders of the participant's recordings that will be deleted.
     pub recording_files: Vec<PathBuf>,
-    /// Other files about the participant that are deleted as a whole.
+    /// Other files about the participant that will be deleted as a whole.
     pub files: Vec<PathBuf>,
-    /// CSV tables about several participants, each with the number of rows that are deleted.
+    /// CSV tables about several participants, each with the number of rows that will be deleted.
     pub tables: Vec<(PathBuf, u64)>,
-    /// Training records of wizards from which the participant's recordings are deleted.
+    /// Training records of wizards from which the participant's recordings will be deleted.
     pub trainings: Vec<PathBuf>,
-    /// Files that are or may be about the participant and stay, with the reason.
+    /// Files that are or may be about the participant and that will be kept, with the reason.
     pub left: Vec<RetainedFile>,
-    /// Byte ranges of the participant's rows in each table.
+    /// Byte ranges of the participant's rows in each CSV table.
     pub(super) cuts: BTreeMap<PathBuf, Vec<Range<u64>>>,
-    /// Folders that are removed if they are empty afterwards, each after the one that contains it.
+    /// Folders that are removed if they are empty after the deletion; a folder comes after the one that contains it.
     pub(super) folders: Vec<PathBuf>,
     pub(super) subject: ForgetSubject,
 }
 
 impl ParticipantData {
-    /// Whether there is nothing to delete; there may still be files that are left.
+    /// Whether there is nothing to delete; there may still be files that are listed as kept.
     pub fn is_empty(&self) -> bool {
         self.recording_files.is_empty() && self.files.is_empty() && self.tables.is_empty() && self.trainings.is_empty()
     }
 }
 
 /// Looks for everything about this code below a folder, and in `temporary`, the system's folder for temporary files,
-/// for recordings that were rescued from that folder and for streams made from its recordings. Session files and the
-/// targets of symbolic links are left alone.
+/// for recordings that were rescued from that folder and for Rerun streams made from its recordings. Session files and
+/// the targets of symbolic links are not touched.
 ///
 /// # Errors
-/// The folder cannot be read. Unreadable files in it are listed as left.
+/// The folder cannot be read. Unreadable files in the folder are listed as kept instead.
 pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<ParticipantData> {
     let mut walk = ForgetWalk::through(root, temporary, code)?;
     let folders = std::mem::take(&mut walk.folders);
@@ -99,8 +99,8 @@ pub fn find(root: &Path, temporary: &Path, code: &str) -> FileResult<Participant
         look.close();
     }
     found.left.append(&mut walk.left);
-    // A recording's settings tell whose its folder is, so they stay as long as another file of the participant stays
-    // there.
+    // A recording's settings tell to whom its folder belongs, so the settings stay as long as another file of the
+    // participant stays in the folder.
     let is_occupied =
         |folder: &Path| found.left.iter().any(|left| left.path != folder && left.path.starts_with(folder));
     let (kept, deleted): (Vec<PathBuf>, Vec<PathBuf>) = walk
@@ -120,13 +120,14 @@ struct FolderLook<'a> {
     tables: &'a FolderTables,
     /// Whether the folder is, or is inside, the folder of one of the participant's recordings.
     is_own: bool,
-    /// Tables with rows of the participant, and the byte ranges of the rows.
+    /// Tables with rows of the participant, each with the byte ranges of these rows.
     cuts: Vec<(PathBuf, Vec<Range<u64>>)>,
     found: &'a mut ParticipantData,
 }
 
 impl FolderLook<'_> {
-    /// Adds a file to the results if it contains data of the participant. Returns whether the kind of file is known.
+    /// Adds a file to the results if the file contains data of the participant. Returns whether the kind of file is
+    /// known.
     fn at(&mut self, path: &Path) -> io::Result<bool> {
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -153,7 +154,7 @@ impl FolderLook<'_> {
         let is_dictionary = path.ends_with("dictionary.csv");
         match self.tables.look_at(path, &self.found.subject)? {
             TableMatch::Nothing => return Ok(false),
-            // Tables of an analysis of this participant alone are deleted as a whole.
+            // Tables from an analysis of this participant alone are deleted as a whole.
             TableMatch::Own { kept, .. } if self.is_own && (kept == 0 || is_dictionary) => {
                 self.found.files.push(path.to_path_buf());
             }
@@ -206,7 +207,7 @@ impl FolderLook<'_> {
     }
 
     /// Adds the tables of the folder to the results: all that name the participant, or none. The table of trials tells
-    /// whose the recordings in the other tables are, so it must not be changed while one of those stays.
+    /// to whom the recordings in the other tables belong, so it must not be changed while one of those tables is kept.
     fn close(self) {
         let is_study_table = |path: &Path| {
             let stem = path.file_stem().unwrap_or_default().to_string_lossy();

@@ -1,5 +1,5 @@
-//! Rows of CSV tables that are about the participant. Tables are read as bytes, so that text that is not UTF-8 stays as
-//! it is.
+//! Rows of CSV tables that are about the participant. Tables are read as bytes, so that text that is not UTF-8 is kept
+//! as it is.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -15,20 +15,20 @@ use crate::edge::log::rater_codes::EXPORT_COLUMNS;
 use crate::edge::written_tables::{ListedTables, reader, records};
 use crate::study::column::CsvTable;
 
-/// Why a table is left if it names a recording whose name several people's recordings share.
+/// Why a table is kept if it names a recording whose name several people's recordings share.
 const AMBIGUOUS: &str = "it names a recording, and recordings of several people in different folders have this name; \
                          tomcom forget --in the folder with one of them, or delete the rows by hand";
 /// Advice for a table that this program does not change.
 const REMEDY: &str = "make it anew with tomcom study or tomcom codes --export, or delete it";
 
-/// What a table contains about the participant.
+/// What a CSV table contains about the participant.
 #[derive(Debug)]
 pub(super) enum TableMatch {
-    /// Nothing about the participant, as far as can be determined.
+    /// The table contains nothing about the participant, as far as can be determined.
     Nothing,
-    /// A table that this program wrote: byte ranges of the participant's rows, and number of other rows.
+    /// This program wrote the table: byte ranges of the participant's rows, and number of other rows.
     Own { cut: Vec<Range<u64>>, kept: u64 },
-    /// The table names the participant but stays as it is, for this reason.
+    /// The table names the participant but is kept as it is, for this reason.
     Unclear(String),
 }
 
@@ -36,11 +36,11 @@ pub(super) enum TableMatch {
 #[derive(Debug)]
 pub(super) struct FolderTables {
     written: ListedTables,
-    /// Whose each recording is, according to the folder's table of trials.
+    /// To which person each recording belongs, according to the folder's table of trials.
     recordings: BTreeMap<Vec<u8>, NamedPerson>,
 }
 
-/// Columns of a table that name the participant and the recording.
+/// Positions of the columns that name the participant and the recording in a table.
 #[derive(Clone, Copy)]
 struct KeyColumns {
     participant: Option<usize>,
@@ -58,7 +58,7 @@ impl FolderTables {
     /// Reads the data dictionary and the table of trials of a folder, if they exist.
     ///
     /// # Errors
-    /// One of them exists but cannot be read.
+    /// One of the two files exists but cannot be read.
     pub fn read(folder: &Path, subject: &ForgetSubject) -> io::Result<FolderTables> {
         let mut tables = FolderTables { written: ListedTables::read(folder)?, recordings: BTreeMap::new() };
         let trials = records(&folder.join("trials.csv"))?;
@@ -110,13 +110,13 @@ impl FolderTables {
     ) -> io::Result<TableMatch> {
         let key = KeyColumns::new(header.iter());
         let (mut cut, mut kept, mut row) = (Vec::new(), 0, ByteRecord::new());
-        // Each record begins where the previous one ended, so that byte ranges are whole lines with any kind of line
-        // end.
+        // Each record of the table begins where the previous one ended, so that byte ranges are whole lines with any
+        // kind of line end.
         let mut start = table.position().byte();
         while table.read_byte_record(&mut row)? {
             let end = table.position().byte();
-            // No cell of a table contains line breaks; one quotation mark too many would make one record of several
-            // rows.
+            // No cell of a table of this program contains line breaks; one quotation mark too many would make one
+            // record of several rows.
             let is_damaged = row.len() != header.len() || row.iter().any(|cell| cell.contains(&b'\n'));
             if is_damaged && row.iter().any(|cell| subject.may_be_in(cell)) {
                 let line = row.position().map_or(0, |position| position.line());
@@ -137,8 +137,8 @@ impl FolderTables {
         Ok(TableMatch::Own { cut, kept })
     }
 
-    /// Looks at a table that may not be of this program. Such a table stays as it is, and is listed if it names the
-    /// participant.
+    /// Looks at a table that this program may not have written. Such a table is kept as it is, and is listed if it
+    /// names the participant.
     fn look_at_other(
         &self,
         mut table: Reader<File>,
@@ -147,7 +147,7 @@ impl FolderTables {
         subject: &ForgetSubject,
     ) -> io::Result<TableMatch> {
         let own = self.written.columns_of(stem);
-        // If the header is damaged but has the right number of columns, the columns are still known.
+        // If the table's header is damaged but has the right number of columns, the columns are still known.
         let is_damaged = own.as_ref().is_some_and(|own| own.len() == header.len());
         let key = match &own {
             Some(own) if is_damaged => KeyColumns::new(own.iter().map(Vec::as_slice)),

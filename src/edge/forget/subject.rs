@@ -6,13 +6,13 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::session::participant_code::{is_participant_code, without_seed};
 
-/// Which person a name or a row of a table is about.
+/// Which person a name or a row of a table is about (when a participant's data are to be deleted).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NamedPerson {
     /// The participant whose data are to be deleted.
     Subject,
     Other,
-    /// Either the participant or somebody else: both have this name.
+    /// Either the participant or somebody else: both have the name.
     Ambiguous,
 }
 
@@ -20,7 +20,8 @@ pub(super) enum NamedPerson {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct OwnRecording {
     pub folder: PathBuf,
-    /// Begin of the recording, as the identity of a stream states it; `None` without a readable header.
+    /// Time at which the recording began, as the identity of a Rerun stream states it; `None` without a readable
+    /// header.
     pub began: Option<String>,
 }
 
@@ -58,13 +59,13 @@ impl ForgetSubject {
         self.others.insert(code);
     }
 
-    /// Which person a name in a column of participants means: the name is a code, with a random seed before it if
-    /// several seeds were analysed together.
+    /// Which person a name in a column of participants means: the name is a participant's code, with a random seed
+    /// before it if several seeds were analysed together.
     pub fn participant(&self, cell: &str) -> NamedPerson {
         let is_code = cell == self.code;
         let is_simulated = without_seed(cell) == Some(&self.code);
         match is_code || is_simulated {
-            // `seed7-S001` can mean S001 with seed 7, but also somebody with exactly this code.
+            // The name `seed7-S001` can mean S001 with seed 7, but also somebody with exactly this code.
             true if is_simulated && self.others.contains(cell) => NamedPerson::Ambiguous,
             true if is_code && without_seed(cell).is_some() => NamedPerson::Ambiguous,
             true => NamedPerson::Subject,
@@ -72,8 +73,8 @@ impl ForgetSubject {
         }
     }
 
-    /// Which person's recording has this name: that of its folder, with parent folders before it if several folders
-    /// share the name.
+    /// To which person the recording with this name belongs. The name is that of the recording's folder, with parent
+    /// folders before it if several folders share the name.
     pub fn recording(&self, cell: &str) -> NamedPerson {
         let path = Path::new(cell);
         let named = path.file_name().and_then(|name| self.recordings.get(name.to_string_lossy().as_ref()));
@@ -101,7 +102,7 @@ impl ForgetSubject {
     }
 
     /// Whether a text of unknown origin names the participant. Codes that are numbers or ordinary words do not count,
-    /// since they mean something else there.
+    /// since in such a text they mean something else.
     pub fn is_named_in(&self, text: &[u8]) -> bool {
         let is_distinct = is_participant_code(&self.code) && self.code.bytes().any(|byte| byte.is_ascii_alphabetic());
         words(text).any(|word| self.is_own_folder(&word) || (is_distinct && self.is_own_code(&word)))
@@ -130,8 +131,8 @@ fn name(folder: &Path) -> String {
     folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Words of a text that consist of the characters of codes and recording names. Zero bytes are skipped, so that words
-/// of a file in UTF-16 are found, too.
+/// Words of a text that consist of the characters of codes and recording names. Zero bytes are skipped, so that the
+/// function also finds words of a file in UTF-16.
 fn words(text: &[u8]) -> impl Iterator<Item = String> + '_ {
     let mut bytes = text.iter().copied().filter(|&byte| byte != 0);
     let is_sign = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'-' || byte == b'_';

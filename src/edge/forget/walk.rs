@@ -16,15 +16,15 @@ use crate::edge::log::{
 use crate::edge::rescue::{RESCUE_NOTE_NAME, RESCUED, RescueNote};
 use crate::session::settings::is_code;
 
-/// Why an unknown file in the folder of a recording is left.
+/// Why an unknown file in the folder of a recording is kept.
 const STRANGE: &str = "in the folder of one of the participant's recordings, and tomcom did not write it; it is to be deleted or \
                        moved by hand";
 
-/// Why a data set that contains the participant is left.
+/// Why a BIDS data set that contains the participant is kept.
 const EXPORTED: &str = "a BIDS data set of tomcom export with the participant in it; delete the folder, and export what is left of the \
                         recordings again";
 
-/// A file that is or may be about the participant and is left, with the reason.
+/// A file that is or may be about the participant and is kept, with the reason.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct RetainedFile {
     /// Path of the file that is not deleted.
@@ -48,7 +48,7 @@ impl RetainedFile {
 enum EntryKind {
     File,
     Folder,
-    /// A symbolic link, a named pipe, or a device.
+    /// Neither file nor folder: a symbolic link, a named pipe, or a device.
     Other,
 }
 
@@ -68,8 +68,8 @@ pub(super) struct ForgetWalk {
     pub recordings: Vec<PathBuf>,
     /// Files of the participant's recordings.
     pub recording_files: Vec<PathBuf>,
-    /// Folders of the participant's recordings, and folders in them that belong to nobody else; each after the one that
-    /// contains it.
+    /// Folders of the participant's recordings, and folders in them that belong to nobody else; a folder comes after
+    /// the one that contains it.
     pub own_folders: Vec<PathBuf>,
     /// All files that do not belong to a recording, by folder.
     pub folders: BTreeMap<PathBuf, WalkedFolder>,
@@ -77,10 +77,11 @@ pub(super) struct ForgetWalk {
 }
 
 impl ForgetWalk {
-    /// Searches a folder, and those of its recordings that were rescued into the system's folder for temporary files.
+    /// Searches a folder, and the recordings of this folder that were rescued into the system's folder for temporary
+    /// files.
     ///
     /// # Errors
-    /// The folder cannot be read. Unreadable files in it are listed as left.
+    /// The folder cannot be read. Unreadable files in the folder are listed as kept instead.
     pub(super) fn through(root: &Path, temporary: &Path, code: &str) -> FileResult<ForgetWalk> {
         let mut walk = ForgetWalk {
             subject: ForgetSubject::new(code),
@@ -95,7 +96,7 @@ impl ForgetWalk {
         }
         walk.enter(root, false);
         let (home, elsewhere) = (canonical(root), canonical(temporary));
-        // A folder for temporary files inside the searched folder has been searched already.
+        // A folder for temporary files inside the searched folder has been searched with it.
         if !elsewhere.starts_with(&home) {
             walk.enter_rescued(&home, temporary);
         }
@@ -137,7 +138,7 @@ impl ForgetWalk {
             let is_of_recording = is_known && is_of_recording(&path);
             match kind {
                 EntryKind::Folder => self.enter(&path, is_own),
-                // The lock of a recording is removed by the program that holds it.
+                // The lock file of a recording is removed by the program that holds the lock.
                 EntryKind::File if is_of_recording && is_lock(&path) => {}
                 EntryKind::File if is_of_recording => self.recording_files.push(path),
                 EntryKind::File => files.push(path),
@@ -148,25 +149,25 @@ impl ForgetWalk {
         self.folders.insert(folder.to_path_buf(), WalkedFolder { files, is_own });
     }
 
-    /// Searches recordings that were rescued from a folder below `home`.
+    /// Searches recordings that were rescued from a folder below the folder `home`.
     fn enter_rescued(&mut self, home: &Path, temporary: &Path) {
         for (folder, _) in entries(temporary).unwrap_or_default().iter().filter(is_rescued) {
             for (recording, kind) in entries(folder).unwrap_or_default() {
                 let is_from_here = RescueNote::read(&recording).is_some_and(|note| note.home.starts_with(home));
                 if kind == EntryKind::Folder && is_from_here {
-                    // The rescue folder is also removed once it is empty.
+                    // The folder of rescued recordings is also removed once it is empty.
                     self.own_folders.push(folder.clone());
                     self.enter(&recording, false);
                 }
             }
         }
-        // Streams of recordings that could not be written beside them.
+        // Rerun streams of recordings that could not be written beside the recordings' logs.
         let streams =
             entries(temporary).unwrap_or_default().into_iter().filter(is_stream).map(|(path, _)| path).collect();
         self.folders.insert(temporary.to_path_buf(), WalkedFolder { files: streams, is_own: false });
     }
 
-    /// Lists a file of unknown kind in the participant's own folders as left.
+    /// Lists a file of unknown kind in the participant's own folders as kept.
     pub(super) fn leave_strange(&mut self, path: &Path) {
         self.left.push(RetainedFile::new(path, STRANGE));
     }
@@ -209,7 +210,7 @@ fn is_rescued((path, kind): &&(PathBuf, EntryKind)) -> bool {
     *kind == EntryKind::Folder && name.starts_with(RESCUED)
 }
 
-/// Whether this file is a stream that `tomcom review` left in the system's folder for temporary files.
+/// Whether this file is a Rerun stream that `tomcom review` left in the system's folder for temporary files.
 fn is_stream((path, kind): &(PathBuf, EntryKind)) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     *kind == EntryKind::File && name.starts_with("tomcom-") && (name.ends_with(".rrd") || name.ends_with(".rrd.new"))

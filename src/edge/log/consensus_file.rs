@@ -1,5 +1,5 @@
 //! The file `consensus.csv` beside a log: codes of errors on which two raters agree, or which they decided together,
-//! each with the code that each rater had given before. The raters' own files stay as they are.
+//! each with the code that each rater had given before. The raters' own files are not changed.
 
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -64,7 +64,7 @@ pub fn read(folder: &Path, codable: &CodableErrors) -> FileResult<Option<RaterCo
     Ok(consensus)
 }
 
-/// A rater's own code in a row; `None` if its cells are empty.
+/// A rater's own code in a row of the consensus file; `None` if its cells are empty.
 fn own(cause: &str, aspect: &str) -> Result<Option<ErrorCauseCode>, (String, &'static str)> {
     match (cause, aspect) {
         ("", "") => Ok(None),
@@ -72,7 +72,7 @@ fn own(cause: &str, aspect: &str) -> Result<Option<ErrorCauseCode>, (String, &'s
     }
 }
 
-/// Writes the consensus to the disk; programs that read it meanwhile find the old file or the new one.
+/// Writes the consensus file to the disk; programs that read it meanwhile find the old file or the new one.
 ///
 /// # Errors
 /// The folder cannot be written to.

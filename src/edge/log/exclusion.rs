@@ -1,6 +1,6 @@
 //! The file `exclusion.toml` beside a closed log: whether the trial is excluded from the analysis, and why. The log of
-//! a closed recording is never changed; exclusions at the console are events in the log instead. All entries are kept,
-//! and the last one holds.
+//! a closed recording is never changed; exclusions at the console are events in the log instead. All entries of the
+//! file are kept, and the last entry holds.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -21,7 +21,7 @@ pub const EXCLUSION_NAME: &str = "exclusion.toml";
 pub struct ExclusionRecord {
     /// Whether the recording is excluded from the analysis; false if it is included again.
     pub excluded: bool,
-    /// Reason of the decision; may be empty if the recording is included again.
+    /// Reason of the decision; may be empty if the decision includes the recording again.
     #[serde(default)]
     pub reason: String,
     /// Time of the decision about the recording (UTC, RFC 3339).
@@ -46,7 +46,7 @@ pub enum ExclusionError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Recording(#[from] RecordingWriteError),
-    /// The reason does not have 1 to 200 characters; the number is its length.
+    /// The reason of a decision does not have 1 to 200 characters; the number is its length.
     #[error("found a reason of {0} characters")]
     #[diagnostic(help("a reason of 1 to 200 characters, on one line"))]
     Reason(usize),
@@ -81,7 +81,7 @@ fn rulings(folder: &Path) -> FileResult<Rulings> {
     })
 }
 
-/// Records a decision about a closed recording, and returns it.
+/// Records a decision about whether analyses count a closed recording, and returns the decision.
 ///
 /// # Errors
 /// The folder is not a recording, the recording is being written or is continued by a later part, or its folder cannot

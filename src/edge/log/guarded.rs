@@ -1,5 +1,5 @@
-//! File of a log while it is written, with a guarding copy that no other program can change: the log is compared with
-//! the copy, and restored from it if another program damaged the log.
+//! File of a log while the log is written, with a guarding copy that no other program can change: the log is compared
+//! with the copy, and restored from the copy if another program damaged the log.
 
 use std::fs::File;
 use std::io::{self, Seek, Write};
@@ -8,10 +8,10 @@ use std::path::Path;
 #[cfg(unix)]
 use crate::edge::temporary::new_file;
 
-/// Length of the log's end that every check compares with the copy, in bytes (some seconds of gaze).
+/// Length of the log's end that every check compares with the guarding copy, in bytes (some seconds of gaze).
 const TAIL: u64 = 64 << 10;
-/// Length of the further stretch that every check compares with the copy, in bytes; consecutive checks go through the
-/// whole log.
+/// Length of the further stretch that every check compares with the guarding copy, in bytes; consecutive checks go
+/// through the whole log.
 const STRETCH: u64 = 1 << 20;
 /// Number of bytes of log and copy that are compared at a time.
 #[cfg(unix)]
@@ -21,11 +21,12 @@ const PIECE: usize = 64 << 10;
 #[derive(Debug)]
 pub(super) struct GuardedFile {
     file: File,
-    /// Guarding copy, a file without a name; `None` if the log is not guarded or the copy could not be written.
+    /// Guarding copy of the log, a file without a name; `None` if the log is not guarded or the copy could not be
+    /// written.
     copy: Option<File>,
     /// Number of bytes written to the log.
     length: u64,
-    /// Position of the next check's stretch, in bytes.
+    /// Position in the log at which the next check's stretch begins, in bytes.
     next: u64,
 }
 
@@ -33,7 +34,7 @@ impl Write for GuardedFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = self.file.write(bytes)?;
         self.length += written as u64;
-        // An incomplete copy is dropped, and the log continues without a copy.
+        // An incomplete guarding copy is dropped, and the log continues without a copy.
         self.copy = self.copy.take().filter(|mut copy| copy.write_all(&bytes[..written]).is_ok());
         Ok(written)
     }
@@ -49,7 +50,7 @@ impl GuardedFile {
         GuardedFile { file, copy: None, length: 0, next: 0 }
     }
 
-    /// A log file with a guarding copy in the system's folder for temporary files, or else in this folder.
+    /// A log file with a guarding copy, which is in the system's folder for temporary files, or else in this folder.
     pub(super) fn guarded(file: File, folder: &Path) -> GuardedFile {
         let copy = nameless(&std::env::temp_dir()).or_else(|_| nameless(folder)).ok();
         GuardedFile { copy, ..GuardedFile::unguarded(file) }
@@ -59,8 +60,8 @@ impl GuardedFile {
         &self.file
     }
 
-    /// Compares the length, the end and the next stretch of the log with what was written; returns the damage in words,
-    /// if any.
+    /// Compares the length, the end and the next stretch of the log with what was written; returns the damage in words;
+    /// `None` if the log is undamaged.
     pub(super) fn damage(&mut self) -> Option<String> {
         let length = match self.file.metadata() {
             Ok(data) => data.len(),
@@ -80,8 +81,8 @@ impl GuardedFile {
         Some(format!("was overwritten by another program, at byte {at} of {}", self.length))
     }
 
-    /// Position of the first byte in this range that differs between log and copy; `None` without a difference or a
-    /// copy.
+    /// Position of the first byte in this range that differs between log and guarding copy; `None` if nothing differs
+    /// or there is no copy.
     #[cfg(unix)]
     fn difference(&mut self, from: u64, until: u64) -> Option<u64> {
         use std::os::unix::fs::FileExt;
@@ -94,7 +95,7 @@ impl GuardedFile {
                 self.copy = None;
                 return None;
             }
-            // The log was cut meanwhile, or the disk is broken.
+            // The read failed: the log was cut meanwhile, or the disk is broken.
             if self.file.read_exact_at(&mut found[..size], at).is_err() {
                 return Some(at);
             }
@@ -107,13 +108,13 @@ impl GuardedFile {
         None
     }
 
-    /// On this operating system, logs have no copies.
+    /// Nothing differs on this operating system, on which logs have no guarding copies.
     #[cfg(not(unix))]
     fn difference(&mut self, _from: u64, _until: u64) -> Option<u64> {
         None
     }
 
-    /// Saves the log to another file: from the copy, or from the log itself if that is undamaged.
+    /// Saves the log to another file: from the guarding copy, or from the log itself if the log is undamaged.
     ///
     /// # Errors
     /// There is no undamaged source, or the other file cannot be written.
@@ -147,7 +148,8 @@ mod tests {
     use super::*;
     use crate::edge::temporary::new_folder;
 
-    /// Damages a guarded log of this length, and compares the reported damage and the saved log with the expected ones.
+    /// Test: damages a guarded log of this length, and compares the reported damage and the saved log with the expected
+    /// ones.
     fn check(name: &str, bytes: usize, harm: impl FnOnce(&Path), found: Option<&str>) {
         let name_of_folder = format!("tomcom-guarded-{}-{name}", std::process::id());
         let folder = new_folder(&std::env::temp_dir(), &name_of_folder).unwrap();
@@ -157,7 +159,7 @@ mod tests {
         log.write_all(&vec![b'x'; bytes]).unwrap();
         assert_eq!(log.damage(), None);
         harm(&path);
-        // As in a live session, something is written before the next check.
+        // Something is written to the log before the next check, as in a live session.
         log.write_all(b"more\n").unwrap();
         let rounds = bytes as u64 / STRETCH + 2;
         let damage = (0..rounds).find_map(|_| log.damage());
@@ -179,7 +181,7 @@ mod tests {
     fn what_another_program_does_to_a_log_is_noticed_and_what_was_recorded_is_saved() {
         const LONG: usize = 5 << 20;
         check("untouched", LONG, |_| (), None);
-        // The next write restores the log's length, with zeros in between.
+        // Test: the next write restores the log's length, with zeros in between.
         check(
             "cut",
             LONG,

@@ -7,17 +7,17 @@ use std::path::{Path, PathBuf};
 use super::RecordingWriteError;
 use crate::edge::file_error::open_regular;
 
-/// Name of the lock file in the folder of a recording that is being written. The file contains the process id and the
-/// address for viewers.
+/// Name of the lock file in the folder of a recording that is being written. The lock file contains the writing
+/// program's process id and the network address for viewers.
 pub const LOCK_NAME: &str = "lock";
-/// Prefix of the lock file's name while raters' codes are written; the raters' names follow.
+/// Prefix of the lock file's name while raters' codes are written; the names of the raters follow the prefix.
 pub const CODES_LOCK: &str = "lock-codes-";
-/// Number of times that taking the lock is tried again because its holder removed the file meanwhile.
+/// Number of attempts to take the lock again because the lock's holder removed the file meanwhile.
 const ATTEMPTS: usize = 8;
 
 /// The right to write a recording, until the value is dropped. The operating system holds the lock and releases it when
-/// the process ends, so a lock file that a killed program left behind blocks nobody, even if another process has its id
-/// now.
+/// the process ends, so a lock file that a killed program left behind blocks nobody, even if another process has the
+/// killed program's id now.
 #[derive(Debug)]
 pub struct RecordingLock {
     file: File,
@@ -29,14 +29,14 @@ pub struct RecordingLock {
 pub struct LockHolder {
     /// Process id of the program that writes the recording.
     pub pid: Option<u32>,
-    /// Address at which viewers can watch the running session.
+    /// Network address at which viewers can watch the running session.
     pub viewers: Option<String>,
 }
 
 impl LockHolder {
     fn read(file: &mut File) -> LockHolder {
         let mut text = String::new();
-        // If the lock file cannot be read, the lock still counts as held.
+        // A lock file that cannot be read still counts as held.
         let _ = file.read_to_string(&mut text);
         let mut lines = text.lines();
         let pid = lines.next().and_then(|line| line.trim().parse().ok());
@@ -57,7 +57,7 @@ impl RecordingLock {
     /// replaced as a whole.
     ///
     /// # Errors
-    /// Another program holds it, or the folder cannot be written to.
+    /// Another program has that right, or the folder cannot be written to.
     pub fn take_for_codes(folder: &Path, raters: &[&str]) -> Result<RecordingLock, RecordingWriteError> {
         let mut raters = raters.to_vec();
         raters.sort_unstable();
@@ -72,8 +72,8 @@ impl RecordingLock {
 
     fn take_file(path: PathBuf, folder: &Path) -> Result<RecordingLock, RecordingWriteError> {
         let failed = |reason| RecordingWriteError::unwritable(&path, reason);
-        // Taking the lock empties the file, which must therefore not be the target of a link; and opening a named pipe
-        // would block.
+        // Taking the lock empties the lock file, which must therefore not be the target of a link; and opening a named
+        // pipe would block.
         if fs::symlink_metadata(&path).is_ok_and(|data| !data.is_file()) {
             return Err(failed(io::Error::new(
                 ErrorKind::InvalidInput,
@@ -84,14 +84,15 @@ impl RecordingLock {
             let options = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
             let mut file = options.map_err(failed)?;
             match file.try_lock() {
-                // On a file system without locks, recording without a lock is better than not recording.
+                // On a file system without locks, recording without a lock is better than no recording.
                 Ok(()) | Err(TryLockError::Error(_)) => {}
                 Err(TryLockError::WouldBlock) => {
                     let pid = LockHolder::read(&mut file).pid;
                     return Err(RecordingWriteError::InUse { folder: folder.to_path_buf(), pid });
                 }
             }
-            // If the previous holder removed the file after it was opened here, the lock on it has no effect.
+            // If the lock's previous holder removed the file after it was opened here, a lock on the removed file has
+            // no effect.
             if is_same(&file, &path) {
                 file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(failed)?;
                 return Ok(RecordingLock { file, path });
@@ -109,7 +110,7 @@ impl RecordingLock {
         }
     }
 
-    /// Writes into the lock file the address at which viewers can watch.
+    /// Writes the network address at which viewers can watch into the lock file.
     ///
     /// # Errors
     /// The lock file cannot be written to.
@@ -121,13 +122,13 @@ impl RecordingLock {
 impl Drop for RecordingLock {
     fn drop(&mut self) {
         if is_same(&self.file, &self.path) {
-            // A lock file that is left behind does no harm.
+            // A lock file that cannot be removed does no harm.
             let _ = fs::remove_file(&self.path);
         }
     }
 }
 
-/// Whether the file at this path is still the opened one.
+/// Whether the file at this path is still the one that was opened.
 #[cfg(unix)]
 pub fn is_same(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -138,7 +139,7 @@ pub fn is_same(file: &File, path: &Path) -> bool {
     }
 }
 
-/// Whether a file still exists at this path.
+/// Whether any file still exists at this path.
 #[cfg(not(unix))]
 pub fn is_same(_: &File, path: &Path) -> bool {
     path.exists()

@@ -24,7 +24,7 @@ pub use writer::{LogWriter, check_continued, is_written_settings};
 
 /// File name of the log in the folder of a recording.
 pub const LOG_NAME: &str = "events.jsonl";
-/// Suffix of the name of an unusable log; from the second one on, a number follows.
+/// Suffix of the name of an unusable log that was renamed; from the second one on, a number follows.
 const DAMAGED: &str = ".damaged";
 /// File name of the settings in the folder of a recording.
 pub const SETTINGS_NAME: &str = "session.toml";
@@ -36,7 +36,7 @@ pub const MCAP_NAME: &str = "recording.mcap";
 /// Why a recording cannot be written, or not any further.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum RecordingWriteError {
-    /// The recording cannot be written any further; events acknowledged before are in it.
+    /// The recording cannot be written any further; events that were acknowledged before are in the recording.
     #[error("{}: the recording cannot be written: {reason}{}", path.display(), rescued(.saved))]
     #[diagnostic(help("a folder that can be written to, on a disk with free space"))]
     Unwritable {
@@ -44,7 +44,7 @@ pub enum RecordingWriteError {
         path: PathBuf,
         /// Why the recording's file or folder cannot be written.
         reason: io::Error,
-        /// Folder to which the recording was saved, if it is no longer at its place.
+        /// Folder to which the recording was saved, if the recording is no longer at its original place.
         saved: Option<PathBuf>,
     },
     /// Another program changed the log; the saved log, if there is one, contains every acknowledged event.
@@ -58,7 +58,7 @@ pub enum RecordingWriteError {
         path: PathBuf,
         /// Damage of the log that was found, in words.
         found: String,
-        /// Folder to which the recording was saved, if it could be saved.
+        /// Folder to which the recording was saved; `None` if it could not be saved.
         saved: Option<PathBuf>,
     },
     /// Another program is writing this recording.
@@ -67,7 +67,7 @@ pub enum RecordingWriteError {
     InUse {
         /// Folder of the recording.
         folder: PathBuf,
-        /// Process id of the program that writes the recording, if known.
+        /// Process id of the program that writes the recording; `None` if not known.
         pid: Option<u32>,
     },
     /// Another program is coding the errors of this recording as the same rater.
@@ -78,7 +78,7 @@ pub enum RecordingWriteError {
         folder: PathBuf,
         /// Name of the rater, or of the two raters who settle their differences.
         raters: String,
-        /// Process id of the program that codes the errors, if known.
+        /// Process id of the program that codes the errors; `None` if not known.
         pid: Option<u32>,
     },
     /// The recording has already been continued.
@@ -90,11 +90,11 @@ pub enum RecordingWriteError {
         /// Folder of the part that continues the recording.
         part: PathBuf,
     },
-    /// The folder for a recording already contains something else.
+    /// The folder that a new recording needs already contains something else.
     #[error("{}: {what} is there already", folder.display())]
     #[diagnostic(help("another folder, or remove that one first: only the same session replaces its recording"))]
     Taken {
-        /// Folder that was to contain the recording.
+        /// Folder in which the recording was to be made.
         folder: PathBuf,
         /// What the folder contains instead.
         what: &'static str,
@@ -121,8 +121,8 @@ pub fn is_damaged_log(name: &str) -> bool {
     number.is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()))
 }
 
-/// Renames an unusable log to the first free one of `events.jsonl.damaged`, `events.jsonl.damaged2`, …; returns its new
-/// path, or `None` if there was no log.
+/// Renames an unusable log to the first free name of `events.jsonl.damaged`, `events.jsonl.damaged2`, …; returns the
+/// log's new path, or `None` if there was no log.
 fn move_aside(log: &Path) -> io::Result<Option<PathBuf>> {
     let named = |n: u32| {
         let number = if n == 1 { String::new() } else { n.to_string() };
@@ -133,7 +133,7 @@ fn move_aside(log: &Path) -> io::Result<Option<PathBuf>> {
     fs::rename(log, &aside).map(|()| Some(aside))
 }
 
-/// The log's line for an event, without its line end.
+/// The line of the log for an event, without its line end.
 pub fn event_line(stamped: &TimestampedEvent) -> String {
     serde_json::to_string(stamped).expect("events have no maps with other keys than strings")
 }

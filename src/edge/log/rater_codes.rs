@@ -1,5 +1,5 @@
-//! The file `codes-RATER.csv` beside a log: the codes that one rater gave to the errors in the log. The log stays as it
-//! is.
+//! The file `codes-RATER.csv` beside a log: the codes that one rater gave to the errors in the log. The log itself is
+//! not changed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -14,14 +14,14 @@ use crate::edge::replace_file;
 use crate::measures::cause_codes::{CodableErrors, ErrorCauseCode, ErrorCauseKind, RaterCodes};
 use crate::session::settings::is_code;
 
-/// Columns of the file of one rater's codes; an export of several recordings has two more columns before them.
+/// Columns of the file of one rater's codes; an export of several recordings has two columns more, before these.
 const COLUMNS: [&str; 3] = ["press", "cause", "aspect"];
-/// Columns of an export of raters' codes of several recordings.
+/// Columns of a file with exported codes of several recordings.
 pub const EXPORT_COLUMNS: [&str; 5] = ["recording", "rater", "press", "cause", "aspect"];
-/// Advice for a line that has the wrong number of cells.
+/// Advice for a line of a table of codes that has the wrong number of cells.
 const REMEDY: &str = "as many fields as the first line has";
 
-/// A row of an export of raters' codes.
+/// A row of a file with exported codes of raters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RaterCodeRow {
     /// Line of the row in the file, for error messages.
@@ -32,7 +32,7 @@ pub struct RaterCodeRow {
     pub rater: String,
     /// Sequence number of the press that was an error.
     pub press: u64,
-    /// Cause of the error, as the rater judged it.
+    /// Cause of the error, as the rater judged the error.
     pub code: ErrorCauseCode,
 }
 
@@ -77,13 +77,13 @@ pub fn raters(folder: &Path) -> FileResult<BTreeSet<String>> {
 /// The codes of all raters for the recording in this folder, by rater.
 ///
 /// # Errors
-/// Those of [`read`] and [`raters`].
+/// The errors of [`read`] and [`raters`].
 pub fn read_all(folder: &Path, codable: &CodableErrors) -> FileResult<BTreeMap<String, RaterCodes>> {
     let codes = |rater: String| read(folder, &rater, codable).map(|codes| (rater, codes));
     raters(folder)?.into_iter().map(codes).collect()
 }
 
-/// Writes a rater's codes to the disk; programs that read them meanwhile find the old file or the new one.
+/// Writes a rater's codes to the disk; programs that read the file meanwhile find the old file or the new one.
 ///
 /// # Errors
 /// The folder cannot be written to.
@@ -103,7 +103,7 @@ pub fn write(folder: &Path, rater: &str, codes: &RaterCodes) -> Result<(), Recor
 /// Reads an export of the codes of several raters for several recordings.
 ///
 /// # Errors
-/// The file cannot be read, or is not an export.
+/// The file cannot be read, or is no export of raters' codes.
 pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
     let bytes = fs::read(path);
     let bytes =
@@ -117,10 +117,10 @@ pub fn read_export(path: &Path) -> FileResult<(String, Vec<RaterCodeRow>)> {
     Ok((text, rows))
 }
 
-/// Writes an export of raters' codes.
+/// Writes an export of raters' codes into a table file.
 ///
 /// # Errors
-/// The file cannot be written, or the path has a file of another kind.
+/// The file cannot be written, or there is a file of another kind at the path.
 pub fn write_export(path: &Path, rows: &[RaterCodeRow]) -> Result<(), RecordingWriteError> {
     let failed = |reason| RecordingWriteError::unwritable(path, reason);
     let is_own = |head: &[u8]| overwrite::first_line(head) == EXPORT_COLUMNS.join(",").as_bytes();
@@ -137,10 +137,10 @@ pub fn write_export(path: &Path, rows: &[RaterCodeRow]) -> Result<(), RecordingW
     write().map_err(|error| failed(error.into()))
 }
 
-/// The text of a table file.
+/// The text of a table file of raters' codes.
 ///
 /// # Errors
-/// A line is not UTF-8.
+/// A line of the file is not UTF-8.
 pub(super) fn text_of(path: &Path, bytes: Vec<u8>) -> FileResult<String> {
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
@@ -157,14 +157,14 @@ pub fn wrong_line(path: &Path, text: &str, line: usize, found: String, remedy: &
     FileError::at(path, text, Some(before..before + length), found, remedy.to_string())
 }
 
-/// A parsed row: line number, cells before the code, sequence number of the press, and code.
+/// A parsed row of a raters' table: line number, cells before the code, sequence number of the press, and code.
 pub(super) type ParsedRow = (usize, Vec<String>, u64, ErrorCauseCode);
 
-/// Reads the rows of a raters' table, whose last three columns are a press and its code. No press may occur twice for
-/// the same rater and recording.
+/// Reads the rows of a raters' table, whose last three columns are a press and the code of that press. No press may
+/// occur twice for the same rater and recording.
 pub(super) fn rows(path: &Path, text: &str, columns: &[&str]) -> FileResult<Vec<ParsedRow>> {
     let mut table = csv::Reader::from_reader(text.as_bytes());
-    // The CSV reader gives as a row's position that of empty lines before it, so lines are counted here.
+    // Lines are counted here, since the CSV reader reports a row after empty lines at the position of the empty lines.
     let (mut counted, mut number) = (0, 1);
     let mut line_of = |position: Option<&csv::Position>| {
         let start = position.map_or(0, |position| (position.byte() as usize).min(text.len()));
@@ -214,7 +214,7 @@ fn said(press: &str, cause: &str, aspect: &str) -> Result<(u64, ErrorCauseCode),
     Ok((number, code_of(cause, aspect)?))
 }
 
-/// The code of a cause and a state aspect, or what was found and what would be valid.
+/// The code made of a cause and a state aspect, or what was found and what would be valid.
 pub(super) fn code_of(cause: &str, aspect: &str) -> Result<ErrorCauseCode, (String, &'static str)> {
     let kind = ErrorCauseKind::named(cause);
     let kind = kind.ok_or_else(|| (format!("the cause \"{cause}\""), "belief, slip, race, other or buttons"))?;

@@ -1,4 +1,5 @@
-//! Reader of recordings: also of those that are still being written, and of those that consist of several parts.
+//! Reader of recordings, including recordings that are still being written and recordings that consist of several
+//! parts.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom};
@@ -16,7 +17,7 @@ use crate::session::{Event, LogHeader, Session, TimestampedEvent};
 
 /// Longest line of a log, in bytes; a file with a longer line is not a log.
 const MAX_LINE: usize = 1 << 24;
-/// Number of bytes at the end of a log in which the last event is searched.
+/// Number of bytes at the end of a log among which the last event is searched.
 const TAIL: u64 = 1 << 16;
 /// Largest number of parts of a recording.
 const MAX_PARTS: usize = 100;
@@ -32,24 +33,24 @@ pub struct LogLine {
     pub stamped: TimestampedEvent,
 }
 
-/// How the events read so far of a recording end.
+/// How a recording ends, as far as its events have been read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogEnding {
-    /// The session has ended regularly.
+    /// The recording ends with the regular end of its session.
     Closed,
-    /// A program is still writing the recording.
+    /// A program is still writing the recording, so more events will come.
     Running,
-    /// The session's end is missing, and no program is writing.
+    /// The session's end is missing in the recording, and no program is writing it.
     Cut,
 }
 
-/// Reads a log line by line, after the earlier parts that it continues. Reading can go on when a log that is still
+/// Reads a log line by line, after the earlier parts that the log continues. Reading can go on when a log that is still
 /// being written has grown.
 #[derive(Debug)]
 pub struct LogReader {
     /// Header of this part of the recording.
     pub header: LogHeader,
-    /// Kitchen that the header describes.
+    /// Kitchen that the recording's header describes.
     pub kitchen: Arc<Kitchen>,
     path: PathBuf,
     /// Previous part of the recording, until all of its continued events are read.
@@ -57,13 +58,13 @@ pub struct LogReader {
     input: BufReader<File>,
     number: usize,
     next_seq: u64,
-    /// Last line without its line end: cut off, or not yet written completely.
+    /// Last line of the log without its line end: the line was cut off, or is not yet written completely.
     partial: Vec<u8>,
     ended: bool,
 }
 
 impl LogReader {
-    /// Opens a recording by its folder or its log. A recording that continues another one is read from the first part
+    /// Opens a recording by its folder or its log. A recording that continues another one is read from its first part
     /// on.
     ///
     /// # Errors
@@ -97,23 +98,23 @@ impl LogReader {
         Ok(LogReader { header, kitchen, path, before, input, number: 1, next_seq, partial: Vec::new(), ended: false })
     }
 
-    /// The first number in the header that is outside the range which settings files may have today; an earlier version
-    /// of the program accepted it.
+    /// The first number in the header that is outside the range which settings files may have today; `None` if there is
+    /// none. An earlier version of the program accepted such a number.
     pub fn unusual(&self) -> Option<OutOfRange> {
         let layout = || layout_ranges::check(&self.header.layout.text).err();
         ranges::check_session(&self.header.session).err().or_else(layout)
     }
 
-    /// The session's state before its first event.
+    /// The state of the recorded session before its first event.
     pub fn session(&self) -> Session {
         let session = Session::new(self.kitchen.clone(), self.header.session.clone(), self.header.trial);
         Session { makes_offers: self.header.has_offers(), ..session }
     }
 
-    /// Reads the next event; `None` where the log ends at present.
+    /// Reads the next line of the log with its event; `None` where the log ends at present.
     ///
     /// # Errors
-    /// The line is not an event, or not the next one.
+    /// The line is no event, or an event with another sequence number than the next.
     pub fn next_line(&mut self) -> FileResult<Option<LogLine>> {
         if let Some(before) = self.before.as_mut().filter(|before| before.events() < self.next_seq) {
             let line = before.next_line()?;
@@ -155,8 +156,8 @@ impl LogReader {
         Ok(LogLine { number: self.number, text, stamped })
     }
 
-    /// The last event that is whole in the log of this part, wherever the reader is; `None` if there is none, or none that can be read: what is
-    /// wrong with a line is told where the line is read.
+    /// The last complete event in the log of this part, wherever the reader is; `None` if there is none, or none that
+    /// can be read. An invalid line is reported when the reader reaches it.
     ///
     /// # Errors
     /// The log cannot be read.
@@ -168,7 +169,7 @@ impl LogReader {
         file.seek(SeekFrom::Start(length.saturating_sub(TAIL))).map_err(unreadable)?;
         file.take(TAIL).read_to_end(&mut tail).map_err(unreadable)?;
         let mut lines = tail.split(|&byte| byte == b'\n').rev();
-        // What follows the last line end is empty, or a line that is not whole.
+        // After the last line end comes nothing, or a line that is not complete.
         lines.next();
         Ok(lines.next().and_then(|line| serde_json::from_slice(line).ok()))
     }
@@ -187,24 +188,24 @@ impl LogReader {
         }
     }
 
-    /// Logs of all parts of the recording, first part first, before any of it was read.
+    /// Paths of the logs of all parts of the recording, first part first; to be called before any event was read.
     pub fn logs(&self) -> Vec<PathBuf> {
         let mut logs = self.before.as_ref().map_or_else(Vec::new, |before| before.logs());
         logs.push(self.path.clone());
         logs
     }
 
-    /// Number of events read so far.
+    /// Number of events that the reader has read so far.
     pub fn events(&self) -> u64 {
         self.before.as_ref().map_or(self.next_seq, |before| before.events())
     }
 
-    /// File that contains the last line read.
+    /// Path of the file that contains the last line read.
     pub fn path(&self) -> &Path {
         self.before.as_ref().map_or(&self.path, |before| before.path())
     }
 
-    /// Folder of the opened recording; for several parts, that of the last part.
+    /// Folder of the opened recording; for a recording of several parts, the folder of the last part.
     pub fn folder(&self) -> &Path {
         self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
     }
@@ -235,11 +236,11 @@ fn open_before(
     if parts == 0 {
         return Err(wrong(format!("more than {MAX_PARTS} parts"), "parts that lead to a first one"));
     }
-    // The path is resolved, so that the sibling folder is also found from a path like `.`.
+    // The path is resolved, so that the folder of the previous part is also found from a path like `.`.
     let log = path.canonicalize().map_err(|reason| FileError::unreadable(path, reason, "a readable recording"))?;
     let beside = log.parent().and_then(Path::parent).unwrap_or(Path::new("."));
     let beside = match path.parent().and_then(Path::parent) {
-        // If possible, messages show the path as the user typed it, which is shorter.
+        // If possible, messages show the path as the user typed it, because that path is shorter.
         Some(typed) if typed.join(name).exists() => typed,
         _ => beside,
     };
@@ -258,21 +259,21 @@ fn open_before(
     }
 }
 
-/// Whether the first line of a log is what a power failure leaves of a header: nothing, zeros, or the header's
-/// beginning.
+/// Whether the first line of a log is what a power failure leaves of a header: nothing, zeros, or the beginning of a
+/// header.
 pub(super) fn ends_in_header(line: &[u8]) -> bool {
     let begins = format!("{{\"format\":\"{FORMAT}\"");
     let is_begun = line.iter().zip(begins.as_bytes()).all(|(there, ours)| there == ours);
     line.last() != Some(&b'\n') && (is_begun || line.iter().all(|&byte| byte == 0))
 }
 
-/// The first line of a log, with its line end if it has one.
+/// The first line of a log, including its line end if it has one.
 pub(super) fn first_line(log: &mut impl BufRead) -> io::Result<Vec<u8>> {
     let mut line = Vec::new();
     log.take(MAX_LINE as u64).read_until(b'\n', &mut line).map(|_| line)
 }
 
-/// An error in one line of a long file; the excerpt in the message keeps the number of the line.
+/// An error in one line of a long file; the excerpt in the error message keeps the number of the line.
 pub fn at_line(path: &Path, number: usize, text: &str, column: usize, found: String, remedy: String) -> FileError {
     let is_boundary = |index: &usize| text.is_char_boundary(*index);
     let column = (0..=column.min(text.len())).rev().find(is_boundary).unwrap_or(0);
@@ -284,7 +285,7 @@ pub fn at_line(path: &Path, number: usize, text: &str, column: usize, found: Str
     FileError::at(path, &excerpt, Some(place..place), found, remedy)
 }
 
-/// The message of `serde_json`, without the line and column, which refer to the single line that it parsed.
+/// The message of `serde_json`, without line and column, which would refer to the single line that was parsed.
 fn json_message(error: &serde_json::Error) -> String {
     let message = error.to_string();
     message.split(" at line ").next().unwrap_or(&message).to_string()

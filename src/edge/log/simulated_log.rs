@@ -1,5 +1,5 @@
 //! Logs of simulated sessions. The same header always gives the same recording, so a complete recording is kept and
-//! only read, and an incomplete one is replaced. Several programs may simulate into one folder; each recording is
+//! only read, and an incomplete recording is replaced. Several programs may simulate into one folder; each recording is
 //! written by one of them.
 
 use std::fs;
@@ -19,11 +19,11 @@ const LAST: u64 = 256;
 /// State of a simulated session's log before the simulation.
 #[derive(Debug)]
 pub enum SimulatedLog {
-    /// The log is new and has to be written.
+    /// The simulated session has no complete log yet: a new log has to be written.
     Begun {
         /// Writer of the new log.
         log: Box<LogWriter>,
-        /// New path of an old log that ended before the end of its header.
+        /// New path of an old log that ended before the end of its header and was moved out of the way.
         moved: Option<PathBuf>,
     },
     /// The simulated recording exists and is complete.
@@ -31,12 +31,12 @@ pub enum SimulatedLog {
 }
 
 impl SimulatedLog {
-    /// Starts the recording in this folder, unless it exists and is complete.
+    /// Starts the recording of a simulated session in this folder, unless the recording exists and is complete.
     ///
     /// # Errors
-    /// Errors of [`check_simulated`], another program is writing the recording, or the folder cannot be written to.
+    /// The errors of [`check_simulated`], another program is writing the recording, or the folder cannot be written to.
     pub fn open(folder: &Path, header: &LogHeader) -> Result<SimulatedLog, RecordingWriteError> {
-        // A complete recording is not locked, so that several programs can read it.
+        // A complete recording is not locked, so that several programs can read it at once.
         if is_whole(folder, header) {
             return Ok(SimulatedLog::Whole);
         }
@@ -61,11 +61,11 @@ impl SimulatedLog {
 /// and a log that ends before the end of its header.
 ///
 /// # Errors
-/// The folder holds another recording.
+/// The folder contains another recording.
 pub fn check_simulated(folder: &Path, header: &LogHeader) -> Result<(), RecordingWriteError> {
     let path = folder.join(LOG_NAME);
     if !path.exists() {
-        // A program that was killed before it wrote the log leaves settings behind.
+        // A program that was killed before it wrote the log leaves a settings file behind.
         let is_foreign = read_regular(&folder.join(SETTINGS_NAME)).is_ok_and(|text| !is_written_settings(&text));
         let what = "a session.toml that tomcom did not write";
         return if is_foreign {
@@ -92,7 +92,7 @@ fn is_without_header(path: &Path) -> bool {
     line.is_ok_and(|line| ends_in_header(&line))
 }
 
-/// Whether this folder holds the complete recording that has this header.
+/// Whether this folder contains the complete recording that has this header.
 fn is_whole(folder: &Path, header: &LogHeader) -> bool {
     let ends = || -> io::Result<bool> {
         let mut log = open_regular(&folder.join(LOG_NAME))?;

@@ -1,4 +1,4 @@
-//! Writer of recordings: creates the folder, the settings and the log, and appends events.
+//! Writer of recordings: creates the folder, the settings file and the log, and appends events to the log.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
@@ -30,7 +30,7 @@ pub struct LogWriter {
     prompt: bool,
     flushed_at: SessionTime,
     settings: String,
-    /// Original folder of the recording, even if the folder is moved or deleted.
+    /// Original folder of the recording, which stays the same even if the folder is moved or deleted.
     home: PathBuf,
     lock: RecordingLock,
 }
@@ -51,7 +51,7 @@ impl LogWriter {
         }
     }
 
-    /// Starts the live recording that continues the one in `folder`, in a folder beside it.
+    /// Starts the live recording that continues the recording in `folder`, in a folder beside it.
     ///
     /// # Errors
     /// The recording has already been continued, or cannot be written.
@@ -62,7 +62,8 @@ impl LogWriter {
         LogWriter::begin(RecordingLock::take(&part)?, part, header, true)
     }
 
-    /// Creates the log. It gets its name when its header is complete, so that no log lacks a header after a crash.
+    /// Creates the log file. The file gets its name when its header is complete, so that no log lacks a header after a
+    /// crash.
     pub(super) fn begin(
         lock: RecordingLock,
         folder: PathBuf,
@@ -74,7 +75,7 @@ impl LogWriter {
         let settings = toml::to_string(&header.session).map_err(|error| failed(io::Error::other(error)))?;
         fs::write(folder.join(SETTINGS_NAME), &settings).map_err(failed)?;
         let begun = folder.join(format!("{LOG_NAME}.new"));
-        // The file is opened for reading, too, since it is read if the folder vanishes.
+        // The log file is opened for reading, too, since it has to be read if its folder vanishes.
         let file =
             OpenOptions::new().read(true).write(true).create(true).truncate(true).open(&begun).map_err(failed)?;
         let file = if prompt { GuardedFile::guarded(file, &folder) } else { GuardedFile::unguarded(file) };
@@ -90,9 +91,9 @@ impl LogWriter {
         &self.folder
     }
 
-    /// Writes into the lock file the address at which viewers can watch.
+    /// Writes the network address at which viewers can watch into the lock file.
     pub fn announce(&mut self, viewers: &str) {
-        // If the address cannot be written into the lock file, that has no further consequences.
+        // An address that cannot be written into the lock file has no further consequences.
         let _ = self.lock.announce(viewers);
     }
 
@@ -107,14 +108,14 @@ impl LogWriter {
         Ok(())
     }
 
-    /// Hands all events to the operating system.
+    /// Hands all events that were held back to the operating system.
     pub fn flush(&mut self) -> Result<(), RecordingWriteError> {
         self.out.flush().map_err(|reason| RecordingWriteError::unwritable(&self.path, reason))
     }
 
     /// Checks that the log is still at its place and undamaged: an open file accepts every event even after it was
-    /// deleted, moved, cut, overwritten or made read-only. If not, the recording is saved into a folder of the same
-    /// name: at its place, or else below the system's folder for temporary files.
+    /// deleted, moved, cut, overwritten or made read-only. If the log is not, the recording is saved into a folder of
+    /// the same name: at its place, or else below the system's folder for temporary files.
     ///
     /// # Errors
     /// The log is gone or damaged, or must not be written any more.
@@ -137,9 +138,9 @@ impl LogWriter {
         }
     }
 
-    /// Saves the recording elsewhere; returns the folder that contains it now.
+    /// Saves the recording into another folder; returns the folder that contains the recording now.
     fn rescue(&mut self, is_damaged: bool) -> Option<PathBuf> {
-        // Events that cannot be handed over now have not been acknowledged.
+        // Events that cannot be handed to the operating system now have not been acknowledged.
         let _ = self.out.flush();
         let name = self.folder.file_name()?.to_owned();
         if self.save_to(&self.folder.clone(), is_damaged).is_ok() {
@@ -147,7 +148,7 @@ impl LogWriter {
         }
         let elsewhere = new_rescue_folder().ok()?.join(name);
         self.save_to(&elsewhere, is_damaged).ok()?;
-        // The recording is saved; the note only helps to find its original place later.
+        // The recording is saved by now; the note only helps to find its original place later.
         let _ = RescueNote { home: self.home.clone() }.write(&elsewhere);
         Some(elsewhere)
     }
@@ -157,11 +158,11 @@ impl LogWriter {
         let (log, begun) = (folder.join(LOG_NAME), folder.join(format!("{LOG_NAME}.new")));
         let mut saved = File::create(&begun)?;
         if let Err(reason) = self.out.get_mut().save(is_damaged, &mut saved) {
-            // A temporary file that is left behind is harmless.
+            // A temporary file that cannot be removed does no harm.
             let _ = fs::remove_file(&begun);
             return Err(reason);
         }
-        // Existing settings stay, since the log contains all settings, too.
+        // An existing settings file is kept, since the log contains all settings, too.
         match OpenOptions::new().write(true).create_new(true).open(folder.join(SETTINGS_NAME)) {
             Ok(mut file) => file.write_all(self.settings.as_bytes())?,
             Err(reason) if reason.kind() == io::ErrorKind::AlreadyExists => {}
@@ -184,8 +185,8 @@ pub fn check_continued(folder: &Path) -> Result<(), RecordingWriteError> {
     }
 }
 
-/// Folder of the part after the one in `folder`: the first that has a log, or that can be written without losing
-/// anything.
+/// Folder of the part after the one in `folder`: the first folder that has a log, or into which a part can be written
+/// without losing anything.
 fn next_part(folder: &Path) -> PathBuf {
     let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let numbered = name.rsplit_once(PART).and_then(|(first, n)| Some((first, n.parse::<u64>().ok()?)));
@@ -214,7 +215,7 @@ fn holds_nothing(part: &Path) -> bool {
     }
 }
 
-/// Whether this program wrote these settings into the folder of a recording: it writes all settings and nothing else.
+/// Whether this program wrote a settings file in the folder of a recording: it has all settings and nothing else.
 pub fn is_written_settings(text: &str) -> bool {
     let spec = toml::from_str::<SessionSpec>(text).ok();
     spec.and_then(|spec| toml::to_string(&spec).ok()).is_some_and(|written| written == text)
@@ -229,7 +230,7 @@ fn write_line(out: &mut impl Write, value: &impl Serialize) -> io::Result<()> {
 }
 
 /// JSON serialiser that rejects `null`: in a log, only numbers that are not finite would become `null`, and a log with
-/// one could not be read.
+/// a `null` could not be read.
 struct FiniteNumbers;
 
 impl Formatter for FiniteNumbers {

@@ -1,5 +1,5 @@
 //! Configuration of liblsl (the library of the Lab Streaming Layer): the lab's own configuration file, but without log
-//! messages, since the terminal belongs to the console.
+//! messages of the library, since the terminal belongs to the console.
 
 use std::path::PathBuf;
 
@@ -9,10 +9,10 @@ const VARIABLE: &str = "LSLAPICFG";
 const NAME: &str = "lsl_api.cfg";
 /// Table of the configuration file that controls log messages.
 const LOG: &str = "log";
-/// Table that turns off all log messages except fatal ones.
+/// Text of the table that turns off all of liblsl's log messages except fatal ones.
 const QUIET: &str = "\n[log]\nlevel = -3\n";
 
-/// Text of the lab's configuration file for liblsl, if there is one, with log messages turned off.
+/// Text of the lab's configuration file for liblsl (empty without a file), with log messages turned off.
 pub(super) fn configuration() -> String {
     let named = std::env::var_os(VARIABLE).map(PathBuf::from);
     let home = std::env::home_dir().map(|home| home.join("lsl_api").join(NAME));
@@ -22,7 +22,7 @@ pub(super) fn configuration() -> String {
     quiet(&text)
 }
 
-/// A configuration file in which the table for log messages is replaced by one that turns them off.
+/// Text of a configuration file in which the table for log messages is replaced by one that turns them off.
 fn quiet(text: &str) -> String {
     let mut is_about_messages = false;
     let kept = text.lines().filter(|line| {

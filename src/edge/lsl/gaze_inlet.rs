@@ -1,8 +1,8 @@
 //! Gaze from a stream of the Lab Streaming Layer (LSL), read by a separate thread. The stream may come and go.
 //!
-//! Samples are stamped by the sender's LSL clock; `lsl_time_correction` maps these times to this computer's LSL clock.
-//! If a sender stamps samples by another clock, the clock's offset is estimated from the samples' arrival, as for lines
-//! of JSON.
+//! Samples are stamped by the sender's LSL clock; `lsl_time_correction` maps these stamps to this computer's LSL clock.
+//! If a sender stamps samples by another clock, that clock's offset is estimated from the samples' arrival, as for
+//! lines of JSON.
 
 use std::io;
 use std::sync::mpsc;
@@ -19,27 +19,27 @@ use crate::edge::gaze_input::{TrackerMessage, WAITING};
 use crate::gaze::GazeSample;
 use crate::session::settings::LslGazeSpec;
 
-/// Time for which a stream is looked for before the thread checks whether the session goes on, in seconds.
+/// Time for which a gaze stream is looked for before the thread checks whether the session goes on, in seconds.
 const LOOK_S: f64 = 1.0;
-/// Time limit for connecting to a stream, for its metadata, and for the first clock comparison, in seconds.
+/// Time limit for connecting to a gaze stream, for its metadata, and for the first clock comparison, in seconds.
 const CONNECT_S: f64 = 5.0;
-/// Time limit for waiting for a gaze sample, in seconds.
+/// Longest time for which one wait for a gaze sample lasts, in seconds.
 const SAMPLE_S: f64 = 0.2;
 /// Period of comparing LSL's clock with this computer's.
 const COMPARE: Duration = Duration::from_secs(1);
 /// Longest time for which the program's end waits for the end of the reading thread.
 const END: Duration = Duration::from_secs(2);
-/// Pause before the next attempt to read an unreadable stream.
+/// Pause before the next attempt to read a gaze stream that could not be read.
 const RETRY: Duration = Duration::from_secs(1);
 
 /// Waits, when it is dropped, for the end of the reading thread, since liblsl must not be in use when the program ends.
-/// The receiver of gaze messages must be dropped before.
+/// The receiver of gaze messages must be dropped before this value.
 #[derive(Debug)]
 pub struct InletThreadEnd(mpsc::Receiver<()>);
 
 impl Drop for InletThreadEnd {
     fn drop(&mut self) {
-        // A library that hangs does not delay the end of the program beyond the time limit.
+        // An LSL library that hangs does not delay the end of the program beyond the time limit.
         let _ = self.0.recv_timeout(END);
     }
 }
@@ -58,26 +58,26 @@ pub fn follow(
     let mut inlet = GazeInlet { library, stream, display_m, news, lost: 0, complaint: None };
     let work = move || {
         inlet.run();
-        // The waiting side may already have ended.
+        // The side that waits for this thread may already have ended.
         let _ = end.send(());
     };
     thread::Builder::new().name("lsl-gaze".to_string()).spawn(work)?;
     Ok((heard, InletThreadEnd(ended)))
 }
 
-/// Names by which settings can refer to a stream's channels: their labels, or numbers where there is no label.
+/// Names by which settings can refer to a gaze stream's channels: labels, or numbers for channels without a label.
 pub fn channel_names(found: &DiscoveredLslStream, patience_s: f64) -> Option<Vec<String>> {
     let labels = found.connect(patience_s)?.labels(patience_s)?;
     let name = |(index, label): (usize, String)| if label.is_empty() { (index + 1).to_string() } else { label };
     Some(labels.into_iter().enumerate().map(name).collect())
 }
 
-/// The channel that the settings name but that is not among these labels; `None` if all are there.
+/// The channel that the settings name but that is not among these labels; `None` if no channel is missing.
 pub fn missing_channel(stream: &LslGazeSpec, labels: &[String]) -> Option<String> {
     channels(stream, labels).err()
 }
 
-/// Indices of the channels for x, y and confidence.
+/// Indices of the gaze stream's channels for x, y and confidence.
 ///
 /// # Errors
 /// The name of the channel that is missing.
@@ -91,7 +91,7 @@ fn channels(stream: &LslGazeSpec, labels: &[String]) -> Result<GazeChannels, Str
     Ok(GazeChannels { x: place(&stream.x)?, y: place(&stream.y)?, confidence })
 }
 
-/// Nobody receives the gaze any more, so that reading ends.
+/// Error: nobody receives the gaze any more, so that reading has to end.
 struct NobodyListens;
 
 /// Reader of a gaze stream of the Lab Streaming Layer.
@@ -100,9 +100,9 @@ struct GazeInlet {
     stream: LslGazeSpec,
     display_m: [f64; 2],
     news: Sender<TrackerMessage>,
-    /// Number of dropped samples that have not been reported yet.
+    /// Number of gaze samples that were dropped and have not been reported yet.
     lost: u64,
-    /// Why the stream cannot be read, if that has been reported.
+    /// Why the gaze stream cannot be read, if that was reported to the wizard.
     complaint: Option<String>,
 }
 
@@ -126,8 +126,8 @@ impl GazeInlet {
         }
     }
 
-    /// Reads the stream until it is lost; returns why it cannot be read, or `None` if it only vanished before it was
-    /// connected.
+    /// Reads the gaze stream until it is lost; returns why the stream cannot be read, or `None` if it only vanished
+    /// before it was connected.
     fn read(&mut self, found: &DiscoveredLslStream) -> Result<Option<String>, NobodyListens> {
         let [name, _, host] = found.identity();
         if found.is_text() {
@@ -188,7 +188,7 @@ impl GazeInlet {
         let value = |channel: usize| values.get(channel).copied().unwrap_or(f64::NAN);
         let point = [value(channels.x), value(channels.y)];
         let confidence = channels.confidence.map_or(1.0, value);
-        // A tracker that does not see the eyes sends NaN: this is neither a sample nor a fault.
+        // A tracker that does not see the eyes sends NaN, which is neither a sample nor a fault.
         if point.iter().any(|coordinate| coordinate.is_nan()) || confidence.is_nan() {
             return;
         }
@@ -206,12 +206,12 @@ impl GazeInlet {
         self.offer(TrackerMessage::Sample(sample, Some(taken)));
     }
 
-    /// Sends a message that must not be lost; waits if the session is late.
+    /// Sends a message that must not be lost; waits if the session is slow to receive messages.
     fn tell(&self, news: TrackerMessage) -> Result<(), NobodyListens> {
         self.news.blocking_send(news).map_err(|_| NobodyListens)
     }
 
-    /// Sends a message that may be dropped, and counts dropped ones.
+    /// Sends a message that may be dropped, and counts messages that were dropped.
     fn offer(&mut self, news: TrackerMessage) {
         self.lost += u64::from(self.news.try_send(news).is_err());
         if self.lost > 0 && self.news.try_send(TrackerMessage::Overrun(self.lost)).is_ok() {

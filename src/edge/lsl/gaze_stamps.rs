@@ -7,40 +7,40 @@ use crate::edge::compared_clock::ClockOffsetEstimator;
 use crate::edge::gaze_input::TrackerMessage;
 use crate::gaze::device_clock::{ClockStep, DeviceClock};
 
-/// Largest age of the first sample, in seconds, at which its stamp still counts as one of LSL's clock.
+/// Largest age of the first sample, in seconds, at which its time stamp still counts as one of LSL's clock.
 const OLDEST_S: f64 = 2.0;
-/// Largest time by which the first sample's stamp may lie in the future, in seconds, to count as one of LSL's clock:
-/// comparing the clocks of two computers is more exact.
+/// Largest time by which the first sample's stamp may lie in the future, in seconds, to count as one of LSL's clock;
+/// comparing the clocks of two computers is more exact than this.
 const AHEAD_S: f64 = 0.05;
-/// Change of the clock correction that means that the sender's clock was set, in seconds.
+/// Least change of the clock correction from which the sender's clock counts as set, in seconds.
 const SET_S: f64 = 0.01;
 
-/// Maps time stamps of a stream to instants. A stamp plus the correction is a time of this computer's LSL clock. If the
-/// first sample shows that it is not, the offset is estimated from the samples' arrival; if several samples agree that
-/// the sender's clock was set, the change is followed.
+/// Maps time stamps of a gaze stream to instants. A stamp plus the correction is a time of this computer's LSL clock.
+/// If the first sample shows that it is not, the offset is estimated from the samples' arrival; if several samples
+/// agree that the sender's clock was set, the mapping follows the change.
 #[derive(Debug)]
 pub(super) struct StreamStamps {
     /// Correction that is added to the stream's stamps, in seconds.
     correction_s: Option<f64>,
-    /// Instant at which the correction was last found unchanged.
+    /// Instant at which the clock correction was last found unchanged.
     known_at: Instant,
-    /// Zero of the times that `device` receives.
+    /// Instant that is zero for the times that `device` receives.
     origin: Instant,
     device: DeviceClock,
-    /// Seconds by which the sender's clock is ahead of LSL's; `None` before the first sample.
+    /// Seconds by which the sender's clock is ahead of LSL's clock; `None` before the first sample.
     ahead_s: Option<f64>,
-    /// Whether the stamps come from another clock than LSL's.
+    /// Whether the time stamps come from another clock than LSL's.
     is_foreign: bool,
 }
 
 impl StreamStamps {
-    /// Conversion for a stream with this clock correction; `None` if the clocks could not be compared.
+    /// Mapping for a stream with this clock correction; `None` if the two computers' clocks could not be compared.
     pub fn new(correction_s: Option<f64>) -> StreamStamps {
         let (now, device) = (Instant::now(), DeviceClock::default());
         StreamStamps { correction_s, known_at: now, origin: now, device, ahead_s: None, is_foreign: false }
     }
 
-    /// Takes a new clock correction; returns a message if the clock of the sender's computer was set.
+    /// Takes over a new clock correction; returns a message if the clock of the sender's computer was set.
     pub fn correct(&mut self, correction_s: Option<f64>) -> Option<TrackerMessage> {
         let correction_s = correction_s?;
         let by_s = self.correction_s.map(|before| before - correction_s).filter(|by_s| by_s.abs() > SET_S);
@@ -52,7 +52,7 @@ impl StreamStamps {
         step
     }
 
-    /// Instant at which the sample with this stamp, which has just arrived, was taken; and a message if the sender's
+    /// Instant at which a sample that has just arrived was taken, from its time stamp; and a message if the sender's
     /// clock was set.
     pub fn taken(
         &mut self,
@@ -84,7 +84,7 @@ impl StreamStamps {
 mod tests {
     use super::*;
 
-    /// This computer's clock, and LSL's clock, which is 100 s ahead of the seconds since `origin`.
+    /// Test data: this computer's clock, and LSL's clock, which is 100 s ahead of the seconds since `origin`.
     fn clocks() -> (Instant, ClockOffsetEstimator) {
         let (origin, mut clock) = (Instant::now(), ClockOffsetEstimator::new());
         for ms in 0..10 {
@@ -101,7 +101,8 @@ mod tests {
     #[test]
     fn stamps_of_lsl_are_corrected_and_a_delay_does_not_move_them() {
         let (origin, clock) = clocks();
-        // The sender's clock is 5 s behind; samples arrive 8 ms after they were taken, every fifth one after 40 ms.
+        // Test: the sender's clock is 5 s behind; samples arrive 8 ms after they were taken, every fifth one after 40
+        // ms.
         let mut stamps = StreamStamps::new(Some(5.0));
         for index in 0..400u64 {
             let taken = origin + Duration::from_millis(1000 + 5 * index);
@@ -136,7 +137,7 @@ mod tests {
             let mut stamps = StreamStamps::new(correction);
             for index in 0..400u64 {
                 let taken = origin + Duration::from_millis(1000 + 5 * index);
-                // The stamps are seconds since 1970.
+                // Test: the time stamps are seconds since 1970.
                 let (found, step) =
                     stamps.taken(1.7e9 + 0.005 * index as f64, &clock, taken + Duration::from_millis(8));
                 assert!(off_s(found, taken) < 0.009 && step.is_none(), "{index}: {}", off_s(found, taken));

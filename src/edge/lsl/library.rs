@@ -1,6 +1,6 @@
-//! Interface to liblsl, the library of the Lab Streaming Layer, which is loaded when a session asks for it. It wraps
-//! the library's functions and objects in values that are safe to use. This is the only file of the crate with code
-//! whose safety the compiler cannot check.
+//! Interface to liblsl, the library of the Lab Streaming Layer, which is loaded when a session asks for LSL. This
+//! module wraps the library's functions and objects in values that are safe to use. It is the only file of the crate
+//! with code whose safety the compiler cannot check.
 
 use std::error::Error;
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -22,13 +22,13 @@ const SYSTEM_NAMES: [&str; 1] = ["lsl.dll"];
 #[cfg(not(any(target_os = "macos", windows)))]
 const SYSTEM_NAMES: [&str; 2] = ["liblsl.so.2", "liblsl.so"];
 
-/// Formats of channels (liblsl's `lsl_channel_format_t`).
+/// Numeric codes for formats of channels (liblsl's `lsl_channel_format_t`).
 const DOUBLE: i32 = 2;
 const STRING: i32 = 3;
 /// Sampling rate that marks a stream as irregular (`LSL_IRREGULAR_RATE`).
 const IRREGULAR: f64 = 0.0;
-/// Samples that an outlet buffers for a slow consumer, in hundreds, and samples that an inlet buffers for this program,
-/// in seconds.
+/// Buffer sizes: samples that an outlet keeps for a slow consumer, in hundreds, and samples that an inlet keeps for
+/// this program, in seconds.
 const KEPT_OUT: i32 = 360;
 const KEPT_IN: i32 = 10;
 /// Largest number of LSL streams that one search can find.
@@ -38,7 +38,8 @@ const TIMEOUT: i32 = -1;
 
 macro_rules! functions {
     ($($name:ident: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
-        /// The used functions of liblsl, with the signatures of its header files (`include/lsl/*.h`).
+        /// The functions of liblsl that are used, with the signatures of the library's header files
+        /// (`include/lsl/*.h`).
         #[derive(Debug)]
         struct Functions { $($name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)* }
 
@@ -87,16 +88,16 @@ functions! {
     pull_sample_d: fn(Pointer, *mut f64, i32, f64, *mut i32) -> f64;
 }
 
-/// The loaded library liblsl. It stays loaded until the program ends, since its own threads may still run.
+/// The loaded library liblsl. The library stays loaded until the program ends, since its own threads may still run.
 #[derive(Clone, Copy, Debug)]
 pub struct LslLibrary {
     functions: &'static Functions,
-    /// Version of the LSL library, times 100.
+    /// Version of the LSL library, multiplied by 100.
     pub version: i32,
 }
 
 impl LslLibrary {
-    /// Loads liblsl from this path, or the installed one, and passes it this configuration.
+    /// Loads liblsl from this path, or the installed library, and passes it this configuration.
     ///
     /// # Errors
     /// The library is missing, or lacks a required function.
@@ -114,21 +115,21 @@ impl LslLibrary {
         let configuration = text(configuration);
         // SAFETY: the text ends with a zero byte and lives until the call returns; the library copies it.
         unsafe { (functions.set_config_content)(configuration.as_ptr()) };
-        // SAFETY: the function takes nothing and only returns a number.
+        // SAFETY: the function takes no arguments and only returns a number.
         let version = unsafe { (functions.library_version)() };
         Ok(LslLibrary { functions, version })
     }
 
     /// Time of LSL's clock on this computer, in seconds.
     pub fn local_clock(&self) -> f64 {
-        // SAFETY: the function takes nothing and reads a clock.
+        // SAFETY: the function takes no arguments and reads a clock.
         unsafe { (self.functions.local_clock)() }
     }
 
-    /// Starts to offer a stream to other programs.
+    /// Starts to offer an LSL stream to other programs.
     ///
     /// # Errors
-    /// The library refuses the stream.
+    /// The LSL library refuses the stream.
     pub fn offer(&self, stream: &StreamDescription) -> Result<LslOutletHandle, LslError> {
         let functions = self.functions;
         let (name, content, source) = (text(&stream.name), text(stream.content), text(&stream.source));
@@ -160,8 +161,8 @@ impl LslLibrary {
         if pointer.is_null() { Err(refused()) } else { Ok(LslOutletHandle { functions, pointer, channels }) }
     }
 
-    /// Streams that satisfy a predicate (XPath 1.0); waits for `wanted` streams, but not longer than `patience_s`
-    /// seconds.
+    /// Streams that satisfy a predicate (an XPath 1.0 expression); waits for `wanted` streams, but not longer than
+    /// `patience_s` seconds.
     pub fn resolve(&self, predicate: &str, wanted: u16, patience_s: f64) -> Vec<DiscoveredLslStream> {
         let (predicate, mut found) = (text(predicate), vec![std::ptr::null_mut(); usize::from(MOST_FOUND)]);
         // SAFETY: the buffer has room for as many pointers as the library is told.
@@ -178,14 +179,14 @@ fn open(path: &Path) -> Result<Library, LslError> {
     // SAFETY: loading a library runs its initialisers; the session file, or the operating system, names this one as
     // liblsl.
     unsafe { Library::new(path) }.map_err(|error| {
-        // The outer error only names the operating system's function that failed.
+        // The outer error only names the function of the operating system that failed.
         let reason = error.source().map_or(error.to_string(), ToString::to_string);
         let place = path.display().to_string();
         LslError::Missing(if reason.contains(&place) { reason } else { format!("{place}: {reason}") })
     })
 }
 
-/// A text for the library; it ends at its first zero byte (this program's texts contain none).
+/// A text for the LSL library; the text ends at its first zero byte (this program's texts contain none).
 fn text(text: &str) -> CString {
     let bytes: Vec<u8> = text.bytes().take_while(|byte| *byte != 0).collect();
     CString::new(bytes).unwrap_or_default()
@@ -209,7 +210,7 @@ impl Functions {
         }
     }
 
-    /// Copies a text of the library, which exists as long as the object that it belongs to.
+    /// Copies a text of the LSL library, which exists as long as the object to which the text belongs.
     ///
     /// # Safety
     /// `from` is null or a text that ends with a zero byte.
@@ -219,7 +220,7 @@ impl Functions {
     }
 }
 
-/// An outgoing stream, offered until this value is dropped. It stays on the thread that created it.
+/// An outgoing LSL stream, offered until this value is dropped. The value stays on the thread that created it.
 #[derive(Debug)]
 pub struct LslOutletHandle {
     functions: &'static Functions,
@@ -228,14 +229,15 @@ pub struct LslOutletHandle {
 }
 
 impl LslOutletHandle {
-    /// Sends a sample of numbers with this time of LSL's clock; returns whether the library accepted it.
+    /// Sends a sample of numbers, stamped with `time_s` of LSL's clock; returns whether the library accepted the
+    /// sample.
     pub fn push_numbers(&self, values: &[f64], time_s: f64) -> bool {
         // SAFETY: there is a value for every channel, and the outlet has numbers of this type.
         values.len() == self.channels
             && unsafe { (self.functions.push_sample_dt)(self.pointer, values.as_ptr(), time_s) } == 0
     }
 
-    /// Sends a sample of texts with this time of LSL's clock; returns whether the library accepted it.
+    /// Sends a sample of texts, stamped with `time_s` of LSL's clock; returns whether the library accepted the sample.
     pub fn push_texts(&self, values: &[String], time_s: f64) -> bool {
         let texts: Vec<CString> = values.iter().map(|value| text(value)).collect();
         let pointers: Vec<*const c_char> = texts.iter().map(|text| text.as_ptr()).collect();
@@ -258,7 +260,7 @@ impl Drop for LslOutletHandle {
     }
 }
 
-/// A stream that another program offers, found by a search.
+/// An LSL stream that another program offers, found by a search.
 #[derive(Debug)]
 pub struct DiscoveredLslStream {
     functions: &'static Functions,
@@ -286,7 +288,7 @@ impl DiscoveredLslStream {
         usize::try_from(unsafe { (self.functions.get_channel_count)(self.info) }).unwrap_or(0)
     }
 
-    /// Connects to the stream; `None` if it no longer exists or does not answer in time.
+    /// Connects to the stream; `None` if the stream no longer exists or does not answer in time.
     pub fn connect(&self, patience_s: f64) -> Option<LslInletHandle> {
         let channels = self.channel_count();
         // SAFETY: the description exists; the inlet has its own copy of it. Without recovery, the library reports a
@@ -310,11 +312,11 @@ impl Drop for DiscoveredLslStream {
     }
 }
 
-/// The stream was lost, or the library no longer reads it.
+/// Error: the stream was lost, or the library no longer reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LslStreamLost;
 
-/// An incoming stream, read until this value is dropped. It stays on the thread that created it.
+/// An incoming LSL stream, read until this value is dropped. The value stays on the thread that created it.
 #[derive(Debug)]
 pub struct LslInletHandle {
     functions: &'static Functions,
@@ -323,7 +325,8 @@ pub struct LslInletHandle {
 }
 
 impl LslInletHandle {
-    /// Labels of the channels, as far as the stream's metadata name them; `None` if the metadata do not arrive in time.
+    /// Labels of the channels, as far as the stream's metadata name labels; `None` if the metadata do not arrive in
+    /// time.
     pub fn labels(&self, patience_s: f64) -> Option<Vec<String>> {
         let (functions, mut error) = (self.functions, 0);
         // SAFETY: the inlet exists; the description that it returns belongs to this function and is destroyed once.
@@ -345,7 +348,7 @@ impl LslInletHandle {
         }
     }
 
-    /// Correction that maps the stream's times to this computer's LSL clock when it is added, in seconds; `None` while
+    /// Correction in seconds that, added to the stream's times, gives times of this computer's LSL clock; `None` while
     /// unknown.
     pub fn time_correction(&self, patience_s: f64) -> Option<f64> {
         let mut error = 0;
@@ -354,7 +357,8 @@ impl LslInletHandle {
         (error == 0).then_some(correction)
     }
 
-    /// Reads the next sample into `values` and returns its time on the stream's clock; `None` if none arrives in time.
+    /// Reads the next sample into `values` and returns its time on the stream's clock; `None` if no sample arrives in
+    /// time.
     ///
     /// # Errors
     /// The stream is lost.

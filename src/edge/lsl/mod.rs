@@ -1,8 +1,9 @@
-//! The Lab Streaming Layer (LSL): its library is loaded when a session asks for it; separate threads send streams and
+//! The Lab Streaming Layer (LSL): its library is loaded when a session asks for LSL; separate threads send streams and
 //! read gaze.
 //!
-//! LSL needs no Cargo feature: a build gains one small package (`libloading`), and nothing is loaded unless a session
-//! asks. Crates that contain liblsl need a C++ compiler and have an old version (`lsl-sys`), or are GPL (`rlsl`).
+//! LSL needs no Cargo feature: a build gains one small package (`libloading`), and the library is loaded only if a
+//! session asks for it. Crates that contain liblsl need a C++ compiler and have an old version (`lsl-sys`), or are GPL
+//! (`rlsl`).
 
 mod configuration;
 mod gaze_inlet;
@@ -22,32 +23,32 @@ pub use library::{DiscoveredLslStream, LslLibrary};
 pub use lsl_error::LslError;
 pub use outlet_thread::{LslCounts, LslSample, LslStreams};
 
-/// Loads the LSL library that the settings name, or the installed one.
+/// Loads the LSL library that the settings name, or the installed library.
 ///
 /// # Errors
-/// The library is missing or too old.
+/// The LSL library is missing or too old.
 pub fn load(spec: Option<&LslSpec>) -> Result<LslLibrary, LslError> {
     let path = spec.and_then(|spec| spec.library.as_deref());
-    // The operating system's loader would look for a bare file name in other folders.
+    // The path is made absolute, since the system's loader would look for a bare file name in other folders.
     let path = path.map(|path| absolute(path).unwrap_or_else(|_| path.into()));
     LslLibrary::load(path.as_deref(), &configuration::configuration())
 }
 
-/// Predicate that finds the session's gaze stream by name and type, but no stream of this program.
+/// Search expression that finds the session's gaze stream by name and type, but no stream of this program.
 fn predicate(stream: &LslGazeSpec) -> String {
     let wanted = [("name", &stream.name), ("type", &stream.content)];
     let wanted = wanted.iter().filter_map(|(field, value)| Some(format!("{field}='{}'", value.as_ref()?)));
     wanted.chain([not_own()]).collect::<Vec<_>>().join(" and ")
 }
 
-/// Streams of numbers from other programs, which could be gaze. The search takes `patience_s` seconds.
+/// LSL streams of numbers from other programs, which could be gaze. The search takes `patience_s` seconds.
 pub fn streams_of_numbers(library: LslLibrary, patience_s: f64) -> Vec<DiscoveredLslStream> {
     let mut found = library.resolve(&format!("channel_count>1 and {}", not_own()), library::MOST_FOUND, patience_s);
     found.retain(|stream| !stream.is_text());
     found
 }
 
-/// Predicate of streams that other programs offer.
+/// Search expression for LSL streams that other programs offer.
 fn not_own() -> String {
     format!("not(starts-with(source_id,'{SOURCE}-'))")
 }

@@ -1,5 +1,5 @@
-//! Sends streams of the Lab Streaming Layer from a separate thread. Senders of samples never wait: if the thread is too
-//! slow, samples are dropped and counted.
+//! Sends streams of the Lab Streaming Layer from a separate thread. The session never waits: if the thread is too slow,
+//! samples are dropped and counted.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,12 +15,12 @@ use crate::analysis::lsl::{LslSampleValues, StreamDescription};
 use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator};
 use crate::session::settings::LslOutlet;
 
-/// Number of packets of samples that may wait to be sent; at 200 gaze samples per second, they are those of 20 seconds.
+/// Number of packets of samples that may wait to be sent: the packets of 20 seconds at 200 gaze samples per second.
 const WAITING: usize = 4096;
-/// Time limit for the library to offer the streams.
+/// Time limit within which the LSL library has to offer the streams.
 const BEGIN: Duration = Duration::from_secs(10);
 /// Time for which streams are still offered after their last sample, if a program reads them, since the library sends
-/// from its own threads.
+/// from threads of its own.
 const LINGER: Duration = Duration::from_millis(500);
 /// Longest time for which the end of the program waits for the end of the sending thread.
 const END: Duration = Duration::from_secs(2);
@@ -30,7 +30,7 @@ const COMPARE: Duration = Duration::from_secs(1);
 /// A sample for a stream, with the time of the event that it describes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LslSample {
-    /// LSL stream that the sample is sent to.
+    /// LSL stream to which the sample is sent.
     pub outlet: LslOutlet,
     /// Instant of the event that the sample describes.
     pub at: Instant,
@@ -45,7 +45,7 @@ pub struct LslCounts {
     pub sent: u64,
     /// Number of samples dropped because the sending thread was too slow.
     pub dropped: u64,
-    /// Number of samples that the library refused.
+    /// Number of samples that the LSL library refused.
     pub refused: u64,
 }
 
@@ -56,10 +56,10 @@ struct Counters {
     refused: AtomicU64,
 }
 
-/// Streams that are offered to other programs until this value is dropped.
+/// LSL streams that are offered to other programs until this value is dropped.
 #[derive(Debug)]
 pub struct LslStreams {
-    /// Descriptions of the LSL streams on offer.
+    /// Descriptions of the LSL streams that are offered.
     pub descriptions: Vec<StreamDescription>,
     /// Queue to the sending thread; `None` once no more samples will be sent.
     packets: Option<SyncSender<Vec<LslSample>>>,
@@ -68,10 +68,10 @@ pub struct LslStreams {
 }
 
 impl LslStreams {
-    /// Offers these streams to other programs.
+    /// Offers these LSL streams to other programs.
     ///
     /// # Errors
-    /// The library refuses one of the streams, or does not answer.
+    /// The LSL library refuses one of the streams, or does not answer.
     pub fn offer(library: LslLibrary, descriptions: Vec<StreamDescription>) -> Result<LslStreams, LslError> {
         let (packets, told) = sync_channel::<Vec<LslSample>>(WAITING);
         let (begun, begins) = channel();
@@ -90,7 +90,7 @@ impl LslStreams {
                 thread::sleep(LINGER);
             }
             drop(outlets);
-            // The waiting side may already have ended.
+            // The side that waits for this thread may already have ended.
             let _ = end.send(());
         };
         thread::Builder::new().name("lsl".to_string()).spawn(work).map_err(|_| LslError::NoThread)?;
@@ -98,7 +98,7 @@ impl LslStreams {
         Ok(LslStreams { descriptions, packets: Some(packets), counters, done })
     }
 
-    /// Sends samples, or drops them if the sending thread is too slow.
+    /// Queues samples for sending, or drops the samples if the sending thread is too slow.
     pub fn tell(&self, samples: Vec<LslSample>) {
         let Some(packets) = self.packets.as_ref().filter(|_| !samples.is_empty()) else { return };
         if let Err(TrySendError::Full(samples) | TrySendError::Disconnected(samples)) = packets.try_send(samples) {
@@ -116,7 +116,7 @@ impl LslStreams {
 impl Drop for LslStreams {
     fn drop(&mut self) {
         self.packets = None;
-        // A library that hangs does not delay the end of the program beyond the time limit.
+        // An LSL library that hangs does not delay the end of the program beyond the time limit.
         let _ = self.done.recv_timeout(END);
     }
 }

@@ -1,4 +1,4 @@
-//! Carries out requests to Pupil Capture: asks for its time, and does what [`CaptureRecordingControl`] decides.
+//! Carries out requests to Pupil Capture: asks for its time, and executes decisions of [`CaptureRecordingControl`].
 
 use std::future::pending;
 use std::io;
@@ -14,9 +14,9 @@ use super::zmtp::{ZmtpConnection, ZmtpMessage};
 use crate::edge::compared_clock::{ANSWERS, ClockOffsetEstimator, DeviceClockStep};
 use crate::edge::gaze_input::TrackerMessage;
 
-/// Period of time requests to Pupil Capture; a clock that was set is noticed within this time.
+/// Period of time requests to Pupil Capture; a step of Capture's clock is noticed within this time.
 const ASK_TIME: Duration = Duration::from_millis(250);
-/// Time limit for the subscriptions of Capture's plugins, which arrive right after the connection.
+/// Time limit for the subscriptions of Capture's plugins, which arrive right after the connection is made.
 const SUBSCRIPTIONS: Duration = Duration::from_millis(200);
 
 /// Connections to Capture for requests and annotations.
@@ -26,7 +26,7 @@ pub(super) struct CaptureClient {
     pub news: Sender<TrackerMessage>,
 }
 
-/// Event for which the task that serves Capture waits.
+/// Event for which the task that serves requests to Capture waits.
 enum DeskEvent {
     Time,
     Order(Option<CaptureRequest>),
@@ -44,8 +44,8 @@ impl CaptureClient {
         Ok(())
     }
 
-    /// Starts Capture's annotation plugin unless it runs: starting it twice would replace it and the annotations that
-    /// the lab defined in it. Returns whether the plugin already listens.
+    /// Starts Capture's annotation plugin unless the plugin runs: starting it twice would replace it and the
+    /// annotations that the lab defined in it. Returns whether the plugin already listens.
     pub async fn start_plugin(&mut self) -> io::Result<bool> {
         let until = tokio::time::Instant::now() + SUBSCRIPTIONS;
         while let Ok(found) = timeout_at(until, self.annotations.receive()).await {
@@ -58,7 +58,7 @@ impl CaptureClient {
         Ok(false)
     }
 
-    /// Serves requests to Capture until one fails.
+    /// Serves requests to Capture until a request fails.
     pub async fn attend(
         &mut self,
         orders: &mut Receiver<CaptureRequest>,
@@ -105,11 +105,11 @@ impl CaptureClient {
         }
     }
 
-    /// Compares the clocks; if Capture's clock was set, reports that and asks again until the mean is as exact as
-    /// before.
+    /// Compares the clocks of Capture and this computer; if Capture's clock was set, reports that and asks again until
+    /// the mean offset is as exact as before.
     async fn check_time(&mut self, clock: &Mutex<ClockOffsetEstimator>) -> io::Result<()> {
         let Some(DeviceClockStep { by_s, known_at }) = ask_time(&mut self.remote, clock).await? else { return Ok(()) };
-        // The receiver may no longer exist; the listener notices that.
+        // The receiver of tracker messages may no longer exist, which the listener notices.
         let _ = self.news.send(TrackerMessage::ClockSet { by_s, known_at }).await;
         CaptureClient::set_clock(&mut self.remote, clock).await
     }
@@ -130,7 +130,7 @@ impl CaptureClient {
                 Ok(())
             }
             CaptureAction::Report(to) => {
-                // Whoever asked for the report may no longer wait for it.
+                // The task that asked for the report may no longer wait for it.
                 let _ = to.send(());
                 Ok(())
             }
@@ -138,7 +138,7 @@ impl CaptureClient {
     }
 }
 
-/// Whether the message is the subscription of Capture's annotation plugin.
+/// Whether a message is the subscription of Capture's annotation plugin.
 fn is_annotated(message: &ZmtpMessage) -> bool {
     message.first().and_then(|frame| frame.strip_prefix(&[1])) == Some(ANNOTATION.as_bytes())
 }

@@ -1,7 +1,7 @@
 //! Merges the messages of Pupil Capture's online detectors into whole fixations and blinks.
 //!
 //! The fixation detector sends a fixation anew with every frame, under one id, over a window of the latest gaze (300 ms
-//! by default): the windows overlap, and together they are the fixation. The blink detector repeats onset and offset
+//! by default): the windows overlap, and all together are the fixation. The blink detector repeats onset and offset
 //! with every frame in which the confidence falls or rises; as in Pupil Player, a blink lasts from its first onset to
 //! its last offset.
 
@@ -11,11 +11,11 @@ use super::message::PupilBlink;
 
 /// Time without a message after which a fixation, or the end of a blink, is over: several frames of a slow camera.
 const SILENCE: Duration = Duration::from_millis(500);
-/// Time without a message after which an onset begins another blink: the lids must have opened for the confidence to
-/// fall again.
+/// Time without a message after which an onset begins another blink: the lids must have opened meanwhile for the
+/// confidence to fall again.
 const REOPENED: Duration = Duration::from_secs(1);
-/// Largest gap between windows with one id that belong to one fixation, in seconds. Ids begin anew when the detector is
-/// restarted.
+/// Largest gap between windows with one id that belong to one fixation, in seconds. Ids begin anew when the fixation
+/// detector is restarted.
 const APART_S: f64 = 1.0;
 
 /// A window of a fixation as Capture sends it, or several merged windows.
@@ -23,14 +23,14 @@ const APART_S: f64 = 1.0;
 pub struct FixationWindow {
     /// Pupil Capture's id of the fixation.
     pub id: u64,
-    /// Position on the display, in fractions, if known.
+    /// Position of the fixation on the display, in fractions; `None` if unknown.
     pub at: Option<[f64; 2]>,
     /// Beginning and end of the window in Pupil time, in seconds.
     pub span_s: [f64; 2],
     /// Spatial dispersion of the gaze samples, in degrees. For merged windows the largest value, which may be less than
     /// the dispersion of the whole fixation.
     pub dispersion_deg: f64,
-    /// Capture's confidence, 0 to 1; for merged windows the mean.
+    /// Capture's confidence in the fixation, 0 to 1; for merged windows the mean.
     pub confidence: f64,
 }
 
@@ -43,14 +43,14 @@ pub struct FixationMerger {
 #[derive(Clone, Copy, Debug)]
 struct MergedWindows {
     merged: FixationWindow,
-    /// Number of merged windows, and number of those with a position.
+    /// Number of merged windows, and number of merged windows with a position.
     windows: f64,
     places: f64,
     heard: Instant,
 }
 
 impl FixationMerger {
-    /// Adds a window that arrived at `now`; returns the previous fixation, if that is over.
+    /// Adds a window of a fixation that arrived at `now`; returns the previous fixation if the previous one is over.
     pub fn take(&mut self, window: FixationWindow, now: Instant) -> Option<FixationWindow> {
         let belongs = |merged: &FixationWindow| {
             let [begin, end] = merged.span_s;
@@ -64,13 +64,13 @@ impl FixationMerger {
         self.current.replace(MergedWindows { merged: window, windows: 1.0, places, heard: now }).map(|over| over.merged)
     }
 
-    /// Returns the present fixation if no window of it has arrived for a while.
+    /// Returns the present fixation if no window of this fixation has arrived for a while.
     pub fn expire(&mut self, now: Instant) -> Option<FixationWindow> {
         let is_over = |current: &MergedWindows| now.saturating_duration_since(current.heard) >= SILENCE;
         self.current.take_if(|current| is_over(current)).map(|over| over.merged)
     }
 
-    /// Returns the fixation that was not over when the messages ended.
+    /// Returns the fixation that was not yet over when Capture's messages ended.
     pub fn end(&mut self) -> Option<FixationWindow> {
         self.current.take().map(|over| over.merged)
     }
@@ -102,18 +102,18 @@ pub struct BlinkMerger {
 enum Lids {
     #[default]
     Open,
-    /// Closed: an onset was received, the latest one at this instant.
+    /// The lids are closed: an onset was received, the latest one at this instant.
     Closed(Instant),
-    /// Opening: an offset was received; the latest one, and its arrival.
+    /// The lids are opening: an offset was received; the latest offset, and its arrival.
     Opening(PupilBlink, Instant),
 }
 
 impl BlinkMerger {
-    /// Adds an onset or offset that arrived at `now`. Returns the offset of the previous blink, if that is over, and
-    /// then the onset of a new blink.
+    /// Adds an onset or offset of a blink that arrived at `now`. Returns the offset of the previous blink, if that
+    /// blink is over, and then the onset of a new blink.
     pub fn take(&mut self, blink: PupilBlink, now: Instant) -> [Option<PupilBlink>; 2] {
         let (lids, told) = match (self.lids, blink.is_onset) {
-            // An offset without an onset belongs to a blink that began before listening started.
+            // An offset without an onset belongs to a blink that began before the program listened.
             (Lids::Open, false) => (Lids::Open, [None, None]),
             (Lids::Closed(heard), true) if now.saturating_duration_since(heard) < REOPENED => {
                 (Lids::Closed(now), [None, None])
@@ -142,7 +142,7 @@ impl BlinkMerger {
         }
     }
 
-    /// Returns the last offset of a blink that was about to end when the messages ended.
+    /// Returns the last offset of a blink that was about to end when Capture's messages ended.
     pub fn end(&mut self) -> Option<PupilBlink> {
         match std::mem::take(&mut self.lids) {
             Lids::Opening(last, _) => Some(last),

@@ -18,31 +18,32 @@ use crate::gaze::surface::SurfaceHomography;
 
 /// The display's surface counts as lost after this long without a datum about it.
 const UNSEEN: Duration = Duration::from_secs(1);
-/// Longest wait for a message before fixations, blinks and lost surfaces are checked for being over.
+/// Longest wait for a message before the listener checks whether fixations, blinks and the surface's detection are
+/// over.
 const WAKE: Duration = Duration::from_millis(250);
-/// Largest number of other surfaces whose names are reported.
+/// Largest number of other surfaces (than the display's) whose names are reported.
 const MAX_OTHERS: usize = 8;
 
-/// Reads the messages that Capture publishes, and passes them on to the session and to the recorder.
+/// Reads the messages that Capture publishes, and passes them on to the session and to the recorder's task.
 pub(super) struct Listener<'a> {
     news: Sender<TrackerMessage>,
     recorder: Sender<CaptureNotification>,
     surface: &'a str,
     map: SurfaceHomography,
     clock: &'a Mutex<ClockOffsetEstimator>,
-    /// Number of dropped messages that have not been reported yet.
+    /// Number of messages that were dropped and have not been reported yet.
     lost: &'a mut u64,
     fixations: FixationMerger,
     blinks: BlinkMerger,
-    /// Whether the display has been reported as detected; `None` before the first report.
+    /// Whether the display was last reported as detected; `None` before the first report.
     sees: Option<bool>,
-    /// Names of other surfaces that are detected while the display's is not.
+    /// Names of other surfaces that are detected while the display's surface is not.
     others: BTreeSet<String>,
     has_new_others: bool,
 }
 
 impl<'a> Listener<'a> {
-    /// A listener that has received no message yet.
+    /// A listener to Capture that has received no message yet.
     pub fn new(
         news: Sender<TrackerMessage>,
         recorder: Sender<CaptureNotification>,
@@ -84,7 +85,8 @@ impl<'a> Listener<'a> {
                 Err(_) => {}
             }
             let sees = seen.is_some_and(|seen| seen.elapsed() < UNSEEN);
-            // Before the first datum, or until one is overdue, it is unknown whether the surface is detected.
+            // Before the first datum, or until a datum is overdue, it is unknown whether the display's surface is
+            // detected.
             if sees || connected.elapsed() >= UNSEEN {
                 self.tell_surfaces(sees).await;
             }
@@ -95,7 +97,7 @@ impl<'a> Listener<'a> {
         }
     }
 
-    /// Reports the fixation and the blink that had not ended.
+    /// Reports the fixation and the blink that had not ended when the connection ended.
     pub fn end(&mut self) {
         let (fixation, blink) = (self.fixations.end(), self.blinks.end());
         self.tell_over(fixation, blink);
@@ -115,7 +117,7 @@ impl<'a> Listener<'a> {
         }
     }
 
-    /// Reports whether the display's surface is detected, and which other surfaces are if it is not.
+    /// Reports whether the display's surface is detected, and if it is not, which other surfaces are.
     async fn tell_surfaces(&mut self, sees: bool) {
         if sees {
             self.others.clear();
@@ -130,8 +132,8 @@ impl<'a> Listener<'a> {
         }
     }
 
-    /// Passes on a parsed message. If the queue is full, messages are counted and dropped, so that Capture is never
-    /// blocked.
+    /// Passes on a parsed message. If the queue to the session is full, messages are counted and dropped, so that
+    /// Capture is never blocked.
     fn pass(&mut self, told: PupilMessage) {
         let (now, mut malformed) = (Instant::now(), told.malformed);
         for gaze in told.gaze {

@@ -1,5 +1,6 @@
-//! Parser of Pupil Capture's messages: gaze and fixations on a surface, blinks, and the state of its recorder. Payloads
-//! are msgpack maps. Memory is bounded by a multiple of their length; valid parts of a partly invalid message are used.
+//! Parser of Pupil Capture's messages: gaze and fixations on a surface, blinks, and the state of Capture's recorder.
+//! Payloads are msgpack maps. Memory use is bounded by a multiple of the payloads' length; valid parts of a partly
+//! invalid message are used.
 
 use rmpv::Value;
 use rmpv::decode::read_value_with_max_depth;
@@ -11,7 +12,7 @@ const MAX_ITEMS: usize = 4096;
 /// Longest surface name that is passed on, in bytes.
 const MAX_NAME: usize = 100;
 
-/// Prefix of the topics of surfaces; the surface's name follows.
+/// Prefix of the topics of Capture's messages about surfaces; the surface's name follows.
 pub const SURFACES: &str = "surfaces.";
 /// Topic of annotations, to which Capture's annotation plugin subscribes.
 pub const ANNOTATION: &str = "annotation";
@@ -23,7 +24,8 @@ const STOPPED: &str = "notify.recording.stopped";
 /// A gaze sample on a surface, as Capture sends it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceGaze {
-    /// Position in fractions of the surface, origin at the bottom left, y up; can lie outside of the surface.
+    /// Position of the gaze in fractions of the surface, origin at the bottom left, y up; can lie outside of the
+    /// surface.
     pub norm_pos: [f64; 2],
     /// Capture's confidence in the sample, from 0 to 1.
     pub confidence: f64,
@@ -36,7 +38,7 @@ pub struct SurfaceGaze {
 pub struct PupilFixation {
     /// Pupil Capture's id of the fixation.
     pub id: u64,
-    /// Position on the surface; `None` if the position is given in the scene camera's image.
+    /// Position of the fixation on the surface; `None` if the position is given in the scene camera's image.
     pub on_surface: Option<[f64; 2]>,
     /// Capture's confidence in the fixation, 0 to 1.
     pub confidence: f64,
@@ -55,7 +57,7 @@ pub struct PupilBlink {
     pub is_onset: bool,
     /// Capture's confidence in the blink, 0 to 1.
     pub confidence: f64,
-    /// Time of the onset or offset in Pupil time, in seconds.
+    /// Time of the blink's onset or offset in Pupil time, in seconds.
     pub timestamp: f64,
 }
 
@@ -68,20 +70,20 @@ pub enum CaptureNotification {
     Stopped,
 }
 
-/// Content of a message from Capture.
+/// Content of a message from Capture after parsing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PupilMessage {
     /// Whether the message is about the requested surface, which shows that the tracker detects it.
     pub sees_surface: bool,
     /// Gaze samples in the message, in the order in which they were taken.
     pub gaze: Vec<SurfaceGaze>,
-    /// Fixations in the message, which continue or have ended.
+    /// Fixations in the message, which may last on or have ended.
     pub fixations: Vec<PupilFixation>,
     /// Onset or offset of a blink, if the message contains one.
     pub blink: Option<PupilBlink>,
     /// Name of another surface that the tracker detects.
     pub other_surface: Option<String>,
-    /// Notification of the recorder, if the message contains one.
+    /// Notification of Capture's recorder, if the message contains one.
     pub recorder: Option<CaptureNotification>,
     /// Number of malformed items in the message; 1 if the whole message is malformed.
     pub malformed: u64,
@@ -125,7 +127,7 @@ fn of_surface(datum: &Value) -> PupilMessage {
             None => told.malformed += 1,
         }
     }
-    // Samples of the two eyes are interleaved, and not always in the order of time.
+    // Samples of the two eyes are interleaved in a message, and not always in the order of time.
     told.gaze.sort_by(|a, b| a.timestamp.total_cmp(&b.timestamp));
     for item in items(datum, "fixations_on_surfaces", &mut told.malformed) {
         match fixation(item, true) {
@@ -136,7 +138,7 @@ fn of_surface(datum: &Value) -> PupilMessage {
     told
 }
 
-/// The list with this name in a datum; empty if missing, and counted as malformed if not a list.
+/// The list with this name in a datum; empty if missing; something other than a list is counted as malformed.
 fn items<'a>(datum: &'a Value, name: &str, malformed: &mut u64) -> &'a [Value] {
     match field(datum, name) {
         Some(Value::Array(items)) => {
@@ -176,8 +178,8 @@ fn blink(item: &Value) -> Option<PupilBlink> {
     Some(PupilBlink { is_onset, confidence: confidence(item)?, timestamp: time(item)? })
 }
 
-/// Whether the blink detector sent NaN as its confidence: it does while a pupil's confidence is NaN, whatever the lids
-/// do.
+/// Whether the blink detector sent NaN as its confidence, as it does while a pupil's confidence is NaN, whatever the
+/// lids do.
 fn is_undecided(item: &Value) -> bool {
     field(item, "confidence").and_then(Value::as_f64).is_some_and(f64::is_nan)
 }
@@ -193,7 +195,7 @@ fn field<'a>(item: &'a Value, name: &str) -> Option<&'a Value> {
     item.as_map()?.iter().find(|(key, _)| key.as_str() == Some(name)).map(|(_, value)| value)
 }
 
-/// A field that is a finite number; integers are converted.
+/// The value of a field that is a finite number; integers are converted.
 fn number(item: &Value, name: &str) -> Option<f64> {
     field(item, name)?.as_f64().filter(|value| value.is_finite())
 }
@@ -201,7 +203,7 @@ fn number(item: &Value, name: &str) -> Option<f64> {
 fn place(item: &Value) -> Option<[f64; 2]> {
     let [x, y] = field(item, "norm_pos")?.as_array()?.as_slice() else { return None };
     let place = [x.as_f64()?, y.as_f64()?];
-    // Points outside of the surface are valid up to this distance.
+    // Points outside of the surface are valid up to this distance from it.
     place.iter().all(|value| value.abs() < 1e3).then_some(place)
 }
 
@@ -209,7 +211,7 @@ fn confidence(item: &Value) -> Option<f64> {
     number(item, "confidence").filter(|value| (0.0..=1.0).contains(value))
 }
 
-/// The Pupil time of a datum, whose origin is arbitrary; `None` if it does not fit into nanoseconds.
+/// The Pupil time of a datum, in seconds from an arbitrary origin; `None` if it does not fit into nanoseconds.
 fn time(item: &Value) -> Option<f64> {
     number(item, "timestamp").filter(|value| (0.0..1e10).contains(value))
 }

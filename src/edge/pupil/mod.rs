@@ -1,6 +1,6 @@
 //! Connection to the eye tracker Pupil Core through Pupil Capture's network API: requests for ports and time,
-//! subscription, recording, annotations. The connection is retried without limit when Capture is missing, ends, hangs
-//! or restarts.
+//! subscription, recording, annotations. The program tries to connect again without limit when Capture is missing,
+//! ends, hangs or restarts.
 
 mod capture_desk;
 pub mod eye_events;
@@ -48,7 +48,8 @@ pub struct CaptureConfiguration {
     pub records: bool,
 }
 
-/// Starts following Capture; returns the channels for its messages and for requests. Ends when the receiver is dropped.
+/// Starts following Capture; returns the channels for Capture's messages and for requests. Following ends when the
+/// receiver of messages is dropped.
 pub fn follow(capture: CaptureConfiguration) -> (Receiver<TrackerMessage>, Sender<CaptureRequest>) {
     let (news, receiver) = channel(WAITING);
     let (sender, orders) = channel(ORDERS);
@@ -66,7 +67,7 @@ pub fn follow(capture: CaptureConfiguration) -> (Receiver<TrackerMessage>, Sende
     (receiver, sender)
 }
 
-/// Name and version of the Capture at this port.
+/// Name and version of the Capture program at this network port.
 ///
 /// # Errors
 /// Why Capture does not respond.
@@ -82,7 +83,7 @@ struct Follower {
     recorder: CaptureRecordingControl,
     /// Ports of the message bus of the Capture that was connected last, by which a restarted Capture is recognised.
     run: Option<[u16; 2]>,
-    /// Number of dropped messages that have not been reported yet.
+    /// Number of messages that were dropped and have not been reported yet.
     lost: u64,
 }
 
@@ -98,8 +99,8 @@ impl Follower {
         let sub_port = port_of(&remote.ask(&[b"SUB_PORT"]).await.map_err(never)?).map_err(never)?;
         let pub_port = port_of(&remote.ask(&[b"PUB_PORT"]).await.map_err(never)?).map_err(never)?;
         let mut backbone = ZmtpConnection::open(&address, sub_port, SocketRole::Sub).await.map_err(never)?;
-        // All surfaces are subscribed to: if the display's is not detected, the names of the others help to find the
-        // error.
+        // All surfaces are subscribed to: if the display's surface is not detected, the names of the other surfaces
+        // help to find the error.
         for topic in [SURFACES].iter().chain(&TOPICS) {
             backbone.subscribe(topic).await.map_err(never)?;
         }
@@ -114,7 +115,7 @@ impl Follower {
         Err(Lost { reason: ended, was_there: true })
     }
 
-    /// Listens, compares clocks, and passes requests on, until one of these fails.
+    /// Listens to Capture, compares clocks, and passes requests on, until one of these three fails.
     async fn attend(
         &mut self,
         mut desk: CaptureClient,
@@ -158,7 +159,7 @@ impl Follower {
 /// Loss of the connection to Capture, or failure to connect.
 struct Lost {
     reason: io::Error,
-    /// Whether Capture had been connected before.
+    /// Whether Capture had been connected before the loss.
     was_there: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Decides what is requested of Pupil Capture's recorder, and when its recording is annotated; the module
+//! Decides what is requested of Pupil Capture's recorder, and when Capture's recording is annotated; the module
 //! `capture_desk` carries the decisions out.
 //!
 //! Capture answers `OK` to a request for a recording before the recording has begun: an annotation before
@@ -14,11 +14,11 @@ use tokio::sync::oneshot;
 use super::message::CaptureNotification;
 use crate::session::tracker::TrackerRecording;
 
-/// Longest time from a request for a recording to its beginning.
+/// Longest time from a request for a Capture recording to the recording's beginning.
 const BEGINS_WITHIN: Duration = Duration::from_secs(3);
-/// Longest time until Capture's annotation plugin listens.
+/// Longest time for which Capture's annotation plugin is waited for.
 const LISTENS_WITHIN: Duration = Duration::from_millis(1500);
-/// Time from the last annotation to the end of the recording, for Capture to handle the annotation.
+/// Time from the last annotation to the end of Capture's recording, in which Capture handles the annotation.
 const LAST_FRAMES: Duration = Duration::from_millis(500);
 
 /// A request of the session to Capture.
@@ -32,9 +32,9 @@ pub enum CaptureRequest {
     Annotate {
         /// Name of the event that is annotated.
         label: String,
-        /// Instant of the event that is annotated.
+        /// Instant at which the annotated event happened.
         at: Instant,
-        /// Labels of the trial's state from now on, with which a recording that begins later is annotated first.
+        /// Labels of the trial's state from now on; a recording that begins later is first annotated with these labels.
         state: Vec<String>,
     },
     /// Report when all earlier requests to Capture have been carried out.
@@ -52,9 +52,9 @@ pub enum CaptureAction {
     Annotate {
         /// Name of the event that is annotated.
         label: String,
-        /// Instant of the event that is annotated.
+        /// Instant at which the annotated event happened.
         at: Instant,
-        /// Begin of the recording; an earlier event is annotated at this instant.
+        /// Beginning of Capture's recording; an event from before it is annotated at this instant instead.
         not_before: Option<Instant>,
     },
     /// Report the state of Capture's recording to the session.
@@ -77,13 +77,13 @@ enum RecordingOwner {
 /// Why further requests to Capture have to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Hold {
-    /// Capture's recording is about to begin, at the latest at this instant.
+    /// Capture's recording is about to begin, at this instant at the latest.
     Beginning(Instant),
-    /// Capture's recording is ended at this instant.
+    /// Capture's recording will be ended at this instant.
     Ending(Instant),
 }
 
-/// State of Capture's recording, as far as this program knows it, and waiting requests.
+/// State of Capture's recording, as far as this program knows it, and the requests that wait.
 #[derive(Debug)]
 pub struct CaptureRecordingControl {
     /// Whether Capture is to make a recording; its recordings are annotated in any case.
@@ -94,17 +94,17 @@ pub struct CaptureRecordingControl {
     /// Instant at which Capture announced the present recording.
     since: Option<Instant>,
     hold: Option<Hold>,
-    /// Time limit for the annotation plugin to listen; `None` if it listens or is no longer waited for.
+    /// Time limit until which the annotation plugin is waited for; `None` if it listens or is no longer waited for.
     listens_by: Option<Instant>,
-    /// Whether the next recording is first annotated with the trial's state.
+    /// Whether the next Capture recording is first annotated with the trial's state.
     resumes: bool,
-    /// Labels of the trial's present state.
+    /// Labels of the trial's present state, used for annotations.
     state: Vec<String>,
     waiting: VecDeque<CaptureRequest>,
 }
 
 impl CaptureRecordingControl {
-    /// State before anything is known about Capture.
+    /// State of the control before anything is known about Capture.
     pub fn new(records: bool) -> CaptureRecordingControl {
         CaptureRecordingControl {
             records,
@@ -119,13 +119,13 @@ impl CaptureRecordingControl {
         }
     }
 
-    /// Stores a request until Capture is connected.
+    /// Stores a request of the session until Capture is connected.
     pub fn queue(&mut self, request: CaptureRequest) {
         self.waiting.push_back(request);
     }
 
     /// Handles a new connection to Capture. `is_same_run` says that Capture was not restarted since the last
-    /// connection; `listens` says that its annotation plugin runs.
+    /// connection; `listens` says that Capture's annotation plugin runs.
     pub fn connected(&mut self, now: Instant, is_same_run: bool, listens: bool) -> Vec<CaptureAction> {
         let mut actions = Vec::new();
         self.listens_by = (!listens).then_some(now + LISTENS_WITHIN);
@@ -162,7 +162,7 @@ impl CaptureRecordingControl {
         actions
     }
 
-    /// Handles that the annotation plugin listens now.
+    /// Handles that Capture's annotation plugin listens from now on.
     pub fn listens(&mut self, now: Instant) -> Vec<CaptureAction> {
         self.listens_by = None;
         let mut actions = Vec::new();
@@ -178,7 +178,8 @@ impl CaptureRecordingControl {
             CaptureNotification::Started(name)
                 if self.wanted.as_ref() == Some(&name) && (is_beginning || self.is_overdue()) =>
             {
-                // Annotations sent before the recording began are not in it, so the trial's state is annotated again.
+                // Annotations sent before the Capture recording began are not in it, so the trial's state is annotated
+                // again.
                 self.resumes |= !is_beginning;
                 (self.owner, self.since) = (RecordingOwner::Us, Some(now));
                 actions.push(CaptureAction::Tell(TrackerRecording::Begun));
@@ -199,12 +200,12 @@ impl CaptureRecordingControl {
         actions
     }
 
-    /// Whether a recording that this program requested may still begin, later than it should have.
+    /// Whether a Capture recording that this program requested may still begin, later than it should have.
     fn is_overdue(&self) -> bool {
         self.owner == RecordingOwner::Lab && self.since.is_none()
     }
 
-    /// Next instant at which something has to be done even without further messages.
+    /// Next instant at which the control has to act even without further messages.
     pub fn due(&self) -> Option<Instant> {
         let hold = self.hold.map(|hold| match hold {
             Hold::Beginning(by) | Hold::Ending(by) => by,
@@ -212,7 +213,7 @@ impl CaptureRecordingControl {
         hold.into_iter().chain(self.listens_by).min()
     }
 
-    /// Does what is due at this time, such as ending Capture's recording.
+    /// Does what is due at this instant, such as ending Capture's recording.
     pub fn pass(&mut self, now: Instant) -> Vec<CaptureAction> {
         let mut actions = Vec::new();
         if self.listens_by.is_some_and(|by| by <= now) {
@@ -221,8 +222,8 @@ impl CaptureRecordingControl {
         }
         match self.hold {
             Some(Hold::Beginning(by)) if by <= now => match self.owner {
-                // After a lost connection the recording of this program may still run, which Capture does not announce
-                // again.
+                // After a lost connection the Capture recording of this program may still run, which Capture does not
+                // announce again.
                 RecordingOwner::Us => self.begun(now),
                 RecordingOwner::Nobody | RecordingOwner::Lab => self.is_not_ours(now, &mut actions),
             },
@@ -244,7 +245,7 @@ impl CaptureRecordingControl {
         self.resume(now);
     }
 
-    /// If the recording began in the middle of the trial, annotates the trial's state before anything else.
+    /// If the Capture recording began in the middle of the trial, annotates the trial's state before anything else.
     fn resume(&mut self, now: Instant) {
         if !std::mem::take(&mut self.resumes) {
             return;

@@ -1,6 +1,6 @@
 //! The part of ZeroMQ's wire protocol (ZMTP 3.0, <https://rfc.zeromq.org/spec/23/>, without security) that the
-//! connection to Pupil Capture needs. Input is bounded: memory is allocated for received bytes, never for claimed
-//! lengths.
+//! connection to Pupil Capture needs. Memory use is bounded: memory is allocated for bytes that have been received,
+//! never for lengths that the other side claims.
 
 use std::io;
 use std::time::Duration;
@@ -12,10 +12,10 @@ use tokio::time::timeout;
 /// A ZeroMQ message, as a list of its frames.
 pub type ZmtpMessage = Vec<Vec<u8>>;
 
-/// Longest message, in bytes of all frames, and largest number of frames.
+/// Longest ZeroMQ message, in bytes of all frames, and largest number of frames.
 const MAX_MESSAGE: usize = 1 << 20;
 const MAX_FRAMES: usize = 16;
-/// Time limit for replies of the other side that need no work.
+/// Time limit for replies that the other side of the connection can give at once.
 const PATIENCE: Duration = Duration::from_secs(2);
 const GREETING: usize = 64;
 
@@ -26,11 +26,11 @@ const COMMAND: u8 = 4;
 /// Role of a ZeroMQ socket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SocketRole {
-    /// Request socket: sends requests and receives replies.
+    /// Request socket of ZeroMQ: sends requests and receives replies.
     Req,
-    /// Subscriber socket: receives subscribed messages.
+    /// Subscriber socket of ZeroMQ: receives subscribed messages.
     Sub,
-    /// Publisher socket: sends messages to subscribers.
+    /// Publisher socket of ZeroMQ: sends messages to subscribers.
     Pub,
 }
 
@@ -66,10 +66,10 @@ impl ZmtpFrameAssembler {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// The next complete message; protocol commands are skipped.
+    /// The next complete ZeroMQ message; commands of the protocol are skipped.
     ///
     /// # Errors
-    /// The bytes are not a message, or the message is too large.
+    /// The bytes are no ZeroMQ message, or the message is too large.
     pub fn next_message(&mut self) -> io::Result<Option<ZmtpMessage>> {
         while let Some((flags, body)) = self.next_frame()? {
             if flags & COMMAND != 0 {
@@ -153,7 +153,7 @@ impl ZmtpConnection {
         }
         stream.write_all(&[&[COMMAND, ready.len() as u8], ready.as_slice()].concat()).await?;
         let mut connection = ZmtpConnection { stream, inbox: ZmtpFrameAssembler::default(), chunk: vec![0; 1 << 16] };
-        // The other side's READY command comes before anything else.
+        // The READY command of the other side comes before anything else.
         let flags = loop {
             match connection.inbox.next_frame()? {
                 Some((flags, body)) if body.starts_with(b"\x05READY") => break flags,
@@ -177,10 +177,10 @@ impl ZmtpConnection {
         }
     }
 
-    /// Waits for the next ZeroMQ message; cancel safe.
+    /// Waits for the next ZeroMQ message; a cancelled wait loses no bytes (cancel safe).
     ///
     /// # Errors
-    /// The connection ended, or the bytes are not a message.
+    /// The connection ended, or the bytes are no ZeroMQ message.
     pub async fn receive(&mut self) -> io::Result<ZmtpMessage> {
         loop {
             if let Some(message) = self.inbox.next_message()? {
@@ -211,18 +211,18 @@ impl ZmtpConnection {
         timeout(PATIENCE, self.stream.write_all(&bytes)).await.map_err(late)?
     }
 
-    /// Subscribes to messages whose first frame has this prefix.
+    /// Subscribes to ZeroMQ messages whose first frame has this prefix.
     ///
     /// # Errors
-    /// Errors of [`ZmtpConnection::send`].
+    /// The errors of [`ZmtpConnection::send`].
     pub async fn subscribe(&mut self, topic: &str) -> io::Result<()> {
         self.send(&[&[b"\x01", topic.as_bytes()].concat()]).await
     }
 
-    /// Sends a request and waits for the reply.
+    /// Sends a request over ZeroMQ and waits for the reply.
     ///
     /// # Errors
-    /// Errors of [`ZmtpConnection::send`], no reply in time, or a reply that is not text.
+    /// The errors of [`ZmtpConnection::send`], no reply in time, or a reply that is no text.
     pub async fn ask(&mut self, frames: &[&[u8]]) -> io::Result<String> {
         self.send(&[&[b"".as_slice()], frames].concat()).await?;
         let late = |_| io::Error::new(io::ErrorKind::TimedOut, "no answer");

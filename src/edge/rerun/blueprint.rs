@@ -15,12 +15,12 @@ use re_sdk_types::blueprint::archetypes::{EyeControls3D, PlotLegend, ScalarAxis,
 
 use crate::base::time::SessionTime;
 
-/// Application name of all streams, by which recordings share one layout in the viewer.
+/// Application name of all streams, by which recordings share one layout in the Rerun viewer.
 pub(super) const APPLICATION: &str = "tomcom";
 /// The timeline that viewers open with: the trial's clock, as the console shows it.
 pub const TRIAL_TIME: &str = "trial_time";
 
-/// Position of the camera, and the point that it looks at, in metres from the arm's base: the view shows the whole
+/// Position of the camera, and the point at which it looks, in metres from the arm's base: the view shows the whole
 /// table from the human's side.
 const EYE_M: [f32; 3] = [1.3, -1.0, 0.98];
 const LOOKED_AT_M: [f32; 3] = [0.3, 0.0, 0.2];
@@ -39,18 +39,18 @@ pub struct StreamLane {
 /// A property of a view: its path in the blueprint, and its components.
 type Property = (String, Vec<SerializedComponentBatch>);
 
-/// What a viewer does when it has opened a stream.
+/// What a Rerun viewer does when it has opened a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ViewerStart {
-    /// The viewer stands at the beginning of the recording.
+    /// The viewer waits at the beginning of the recording.
     Waiting,
     /// The viewer follows the newest data of a running session.
     Following,
-    /// The viewer plays from this time on the trial's clock; no other layout setting makes it go there.
+    /// The viewer plays from this time on the trial's clock; no other setting of the layout has this effect.
     From(SessionTime),
 }
 
-/// Layout of a viewer: the views, and properties that Rerun's own API for views lacks.
+/// Layout of a Rerun viewer: the views, and properties that Rerun's own API for views lacks.
 pub(super) struct ViewerLayout {
     blueprint: Blueprint,
     properties: Vec<Property>,
@@ -84,8 +84,8 @@ impl ViewerLayout {
         ViewerLayout { blueprint, properties }
     }
 
-    /// Sends the layout before the stream's data. The properties go into the same blueprint as the views, before that
-    /// blueprint is activated.
+    /// Sends the layout before the stream's data. The properties go into the same blueprint (Rerun's layout
+    /// description) as the views, before that blueprint is activated.
     pub(super) fn send(self, stream: &RecordingStream) -> io::Result<()> {
         let memory = || RecordingStreamBuilder::new(APPLICATION).enabled(true);
         let (views, kept) = memory().memory().map_err(io::Error::other)?;
@@ -151,7 +151,7 @@ fn titled(lane: &StreamLane, name: &str) -> String {
     if lane.title.is_empty() { name.to_string() } else { format!("{}: {name}", lane.title) }
 }
 
-/// A view of the Rerun viewer with one property.
+/// A view of the Rerun viewer with one property set.
 fn with(
     view: impl Into<ContainerLike>,
     name: &str,
@@ -177,8 +177,8 @@ fn arm(lane: &StreamLane, properties: &mut Vec<Property>) -> ContainerLike {
     with(view, "EyeControls3D", &eye, properties)
 }
 
-/// A view of curves, without a legend, which would cover them: their colours are those of the names in the kitchen, and
-/// the viewer names the curve under the mouse.
+/// A view of curves, without a legend, which would cover the curves: their colours are those of the names in the
+/// kitchen, and the viewer names the curve under the mouse.
 fn series(lane: &StreamLane, name: &str, entities: &[&str], properties: &mut Vec<Property>) -> ContainerLike {
     let contents: Vec<String> = entities.iter().map(|entities| path(lane, entities)).collect();
     let view = TimeSeriesView::new(titled(lane, name)).with_origin(path(lane, "")).with_contents(contents);

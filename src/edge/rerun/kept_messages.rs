@@ -1,20 +1,20 @@
-//! Messages of a Rerun stream, kept for viewers that connect later, up to a limit in bytes; every viewer reads from its
-//! own position.
+//! Messages of a Rerun stream, kept for viewers that connect later, up to a limit in bytes; every viewer reads the kept
+//! messages from a position of its own.
 //!
-//! Pieces of an entity arrive several times per second, and each has an overhead of some kilobytes. A number of them is
-//! merged into one, which needs a fraction of the memory. Beyond the limit the oldest pieces are removed, but never the
-//! newest piece of an entity: a viewer that connects late still sees the present state.
+//! Pieces (chunks) of an entity's data arrive several times per second, and each has an overhead of some kilobytes. A
+//! number of pieces is merged into one, which needs a fraction of the memory. Beyond the limit the oldest pieces are
+//! removed, but never the newest piece of an entity: a viewer that connects late still sees the present state.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Number of pieces of an entity that are merged into one.
+/// Number of pieces of an entity's data that are merged into one.
 const MERGED: usize = 64;
-/// Number of an entity's newest pieces that are left unmerged. A viewer that keeps up has read all older ones, so it
-/// never receives a piece twice as part of a merged one.
+/// Number of an entity's newest pieces that are left unmerged. A viewer that keeps up has read all older pieces, so it
+/// never receives a piece twice as part of a merged piece.
 const RECENT: usize = 16;
 
-/// A function that merges pieces of one entity; returns the merged piece with its size in bytes, or `None` if they
-/// cannot be merged.
+/// A function that merges pieces of one entity; returns the merged piece with its size in bytes, or `None` if the
+/// pieces cannot be merged.
 pub(super) type Merge<M> = fn(&[M]) -> Option<(M, usize)>;
 
 /// A piece (chunk) of the stream, with data of one entity.
@@ -22,19 +22,19 @@ pub(super) type Merge<M> = fn(&[M]) -> Option<(M, usize)>;
 struct KeptPiece<M> {
     message: M,
     bytes: usize,
-    /// Entity that the piece belongs to; `None` for pieces that are kept for ever.
+    /// Entity to which the piece belongs; `None` for pieces that are kept for ever.
     entity: Option<String>,
 }
 
-/// Bookkeeping of the pieces that are kept of one entity.
+/// Bookkeeping of the kept pieces of one entity.
 #[derive(Debug, Default)]
 struct KeptEntity {
     newest: u64,
-    /// Numbers of the pieces that are not merged yet, oldest first.
+    /// Numbers of the entity's pieces that are not merged yet, oldest first.
     unmerged: Vec<u64>,
 }
 
-/// The kept messages of a stream.
+/// The kept messages of a Rerun stream.
 #[derive(Debug)]
 pub(super) struct KeptMessages<M> {
     most_bytes: usize,
@@ -49,7 +49,7 @@ pub(super) struct KeptMessages<M> {
 }
 
 impl<M: Clone> KeptMessages<M> {
-    /// An empty collection; `most_bytes` limits the size of pieces that may be removed.
+    /// An empty collection of messages; `most_bytes` limits the size of pieces that may be removed.
     pub fn new(most_bytes: usize, merge: Merge<M>) -> KeptMessages<M> {
         let (pieces, outdated, entities) = (BTreeMap::new(), BTreeSet::new(), HashMap::new());
         KeptMessages { most_bytes, merge, bytes: 0, pieces, outdated, entities, next: 0 }
@@ -76,7 +76,7 @@ impl<M: Clone> KeptMessages<M> {
         self.forget();
     }
 
-    /// The first message whose number is at least `from`, with its number.
+    /// The first kept message whose number is at least `from`, with the message's number.
     pub fn next(&self, from: u64) -> Option<(u64, M)> {
         self.pieces.range(from..).next().map(|(number, piece)| (*number, piece.message.clone()))
     }
@@ -87,8 +87,8 @@ impl<M: Clone> KeptMessages<M> {
         self.bytes
     }
 
-    /// Replaces these pieces by one merged piece. It gets the number of the last one: a viewer that has read that
-    /// number has read all of them.
+    /// Replaces these pieces by one merged piece. The merged piece gets the number of the last one: a viewer that has
+    /// read that number has read all of them.
     fn merge(&mut self, numbers: &[u64], entity: &str) {
         let there: Vec<M> =
             numbers.iter().filter_map(|number| self.pieces.get(number)).map(|p| p.message.clone()).collect();
@@ -105,7 +105,7 @@ impl<M: Clone> KeptMessages<M> {
         }
     }
 
-    /// Removes the oldest pieces that may be removed, until the limit is met.
+    /// Removes the oldest pieces that may be removed, until the size limit is met.
     fn forget(&mut self) {
         while self.bytes > self.most_bytes {
             let Some(oldest) = self.outdated.first().copied() else { return };
@@ -159,7 +159,7 @@ mod tests {
         let found = all(&kept);
         let numbers: Vec<u64> = found.iter().map(|(number, _)| *number).collect();
         assert_eq!(numbers, (1000 - 14..1000).collect::<Vec<u64>>());
-        // A slow viewer continues with the oldest message that is still kept.
+        // Test: a slow viewer continues with the oldest message that is still kept.
         assert_eq!(kept.next(3).map(|(number, _)| number), Some(1000 - 14));
         assert_eq!(kept.next(1000), None);
     }
@@ -174,8 +174,8 @@ mod tests {
         let found = all(&kept);
         assert_eq!((found.len(), &found[0]), (1 + RECENT, &(MERGED as u64 - 1, merged.clone())));
         assert_eq!(kept.bytes(), 10 + 100 * RECENT);
-        // A viewer that has read some of the merged pieces gets the whole merged piece; one that has read all of them
-        // gets the next piece.
+        // Test: a viewer that has read some of the merged pieces gets the whole merged piece; a viewer that has read
+        // all of them gets the next piece.
         assert_eq!(kept.next(10).map(|(_, message)| message), Some(merged));
         assert_eq!(kept.next(MERGED as u64), Some((MERGED as u64, MERGED.to_string())));
     }
@@ -186,7 +186,7 @@ mod tests {
         let (mut from, mut read) = (0, Vec::new());
         for step in 0..1000 {
             kept.add(step.to_string(), 100, Some(["human/gaze", "robot/arm"][step % 2]));
-            // The viewer has not yet read the last few pieces.
+            // Test: the viewer has not yet read the last few pieces.
             if step % 10 == 9 {
                 while let Some((number, message)) = kept.next(from) {
                     (from, read) = (number + 1, [read, vec![message]].concat());

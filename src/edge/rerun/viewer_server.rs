@@ -1,10 +1,10 @@
-//! Server to which Rerun's viewers connect. It speaks Rerun's protocol (gRPC, and gRPC-Web for viewers in a browser),
-//! but only provides data: clients that send data are refused.
+//! Server to which Rerun's viewers connect. The server speaks Rerun's protocol (gRPC, and gRPC-Web for viewers in a
+//! browser), but only provides data: clients that send data are refused.
 //!
-//! The server in Rerun's SDK is not suitable. It accepts messages from everybody who reaches its port and shows them to
-//! all viewers; a stopped viewer blocks the stream, and the data that the viewer has not read stay in memory besides
-//! the history. Here each viewer reads from its own position in the kept messages (`kept_messages.rs`): a slow or
-//! stopped viewer delays nobody, takes no memory of its own, and misses only what has been removed meanwhile.
+//! The server in Rerun's SDK is not suitable. That server accepts messages from everybody who reaches its port and
+//! shows them to all viewers; a stopped viewer blocks the stream, and the data that the viewer has not read stay in
+//! memory besides the history. Here each viewer reads from its own position in the kept messages (`kept_messages.rs`):
+//! a slow or stopped viewer delays nobody, takes no memory of its own, and misses only what has been removed meanwhile.
 
 use std::io;
 use std::net::SocketAddr;
@@ -37,19 +37,19 @@ use tower_layer::Layer;
 use super::kept_messages::KeptMessages;
 use crate::edge::host_name::is_local;
 
-/// Largest number of connections at a time; further ones are closed at once.
+/// Largest number of viewers' connections at a time; further connections are closed at once.
 const MOST_CONNECTIONS: usize = 32;
 /// Time limit for the first request of a viewer's connection.
 const ASKS: Duration = Duration::from_secs(5);
-/// Period of checking whether a viewer still responds, and time limit for its response: a stopped viewer does not
-/// respond.
+/// Period of checking whether a viewer still responds, and time limit for the viewer's response: a stopped viewer does
+/// not respond.
 const PING: Duration = Duration::from_secs(10);
 const PONG: Duration = Duration::from_secs(20);
 /// Time that viewers have to read the rest of the stream after its end.
 const LAST: Duration = Duration::from_secs(1);
 /// Pause after a failure to accept a connection, such as too many open files.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Memory that a message needs besides its data, in bytes.
+/// Memory that a kept message needs besides its data, in bytes.
 const OVERHEAD: usize = 512;
 
 /// A message of the stream, as received from the SDK or encoded for viewers.
@@ -60,7 +60,7 @@ enum StreamMessage {
 }
 
 impl StreamMessage {
-    /// The message in the encoding for viewers; `None` if it cannot be encoded.
+    /// The message as viewers receive it; `None` if the message cannot be encoded.
     fn encoded(&self) -> Option<messages::log_msg::Msg> {
         match self {
             StreamMessage::Told(message) => message.to_transport(Compression::LZ4).ok(),
@@ -69,10 +69,10 @@ impl StreamMessage {
     }
 }
 
-/// State that the stream and all viewers share.
+/// State that the stream and all connected viewers share.
 struct SharedStream {
     kept: Mutex<KeptMessages<StreamMessage>>,
-    /// Number of messages so far; the channel closes at the end of the stream.
+    /// Number of messages of the stream so far; the channel closes at the end of the stream.
     told: watch::Receiver<u64>,
 }
 
@@ -107,7 +107,7 @@ impl ViewerServer {
     }
 }
 
-/// Completes when the stream ends.
+/// Waits until the stream ends.
 async fn over(mut told: watch::Receiver<u64>) {
     while told.changed().await.is_ok() {}
 }
@@ -115,8 +115,8 @@ async fn over(mut told: watch::Receiver<u64>) {
 impl LogSink for ViewerServer {
     fn send(&self, message: LogMsg) {
         let bytes = OVERHEAD + message.total_size_bytes() as usize;
-        // Messages that are sent once are kept for ever: the recording's name, the viewer's layout, and data without a
-        // time.
+        // Messages that are sent only once are kept for ever: the recording's name, the viewer's layout, and data
+        // without a time.
         let entity = match &message {
             LogMsg::ArrowMsg(store, data) if store.is_recording() => Chunk::from_arrow_msg(data).ok(),
             _ => None,
@@ -159,8 +159,8 @@ impl SharedStream {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The first message whose number is at least `from`, with its number; waits if there is none yet. `None` at the
-    /// end of the stream.
+    /// The first message whose number is at least `from`, with the message's number; waits if there is none yet. `None`
+    /// at the end of the stream.
     async fn next(&self, from: u64) -> Option<(u64, StreamMessage)> {
         let mut told = self.told.clone();
         loop {
@@ -174,7 +174,7 @@ impl SharedStream {
     }
 }
 
-/// Rerun's gRPC service for stream messages, for reading only.
+/// Rerun's gRPC service for reading the messages of a stream.
 #[derive(Clone)]
 struct ViewerService(Arc<SharedStream>);
 
@@ -240,7 +240,7 @@ async fn serve(listener: std::net::TcpListener, is_loopback: bool, service: View
     }
 }
 
-/// Answers the requests of a connection until it ends. Errors of a connection do not affect the stream.
+/// Answers the requests of a viewer's connection until it ends. Errors of a connection do not affect the stream.
 async fn answer(connection: TcpStream, is_loopback: bool, service: ViewerService) {
     let _ = connection.set_nodelay(true);
     let (asks, mut asked) = watch::channel(false);
@@ -262,8 +262,8 @@ async fn answer(connection: TcpStream, is_loopback: bool, service: ViewerService
     let _ = served.await;
 }
 
-/// Refuses requests that a browser sends to this machine under another name: they come from a foreign website (DNS
-/// rebinding).
+/// Refuses requests that a browser sends to this machine under another name: such requests come from a foreign website
+/// (DNS rebinding).
 fn with_local_host(request: Request<()>) -> Result<Request<()>, Status> {
     let host = request.metadata().get("host").map(|host| host.to_str().unwrap_or_default());
     match host.is_none_or(is_local) {

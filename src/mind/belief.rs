@@ -1,4 +1,4 @@
-//! A belief about the kitchen: one categorical distribution per state aspect, the joint is their product.
+//! A belief about the kitchen: one categorical distribution per state aspect; the joint distribution is their product.
 
 use rand::RngExt;
 
@@ -6,7 +6,7 @@ use super::RecordedBelief;
 use crate::base::rng::Stream;
 use crate::kitchen::{AspectId, AspectKind, Kitchen, OrderContent, State, WeightedWorld, WeightedWorlds, World};
 
-/// Exact sums over a belief leave out values with a smaller probability than this.
+/// Probability below which exact sums over a belief leave a value out.
 const NEGLIGIBLE: f64 = 0.002;
 
 /// A belief about the kitchen: a probability distribution for each state aspect. Every distribution sums to 1.
@@ -16,7 +16,7 @@ pub struct Belief {
 }
 
 impl Belief {
-    /// The belief that gives probability 1 to the truth of every aspect.
+    /// The belief that gives probability 1 to the true value of every state aspect.
     pub fn of_truth(kitchen: &Kitchen, state: State) -> Belief {
         let point = |index: usize| {
             let mut values = vec![0.0; kitchen.aspects[index].values.len()];
@@ -26,8 +26,8 @@ impl Belief {
         Belief { of: (0..kitchen.aspects.len()).map(point).collect() }
     }
 
-    /// The belief that a simulated participant recorded, for the kitchen in `state`: listed values keep their
-    /// probability, the remaining probability is spread evenly over the other values. `None` if the record names
+    /// The belief that a simulated participant recorded, for the kitchen in `state`: listed values keep their recorded
+    /// probability, and the remaining probability is spread evenly over the other values. `None` if the record names
     /// aspects or values that the kitchen does not have, or if its probabilities do not form a distribution.
     pub fn of_witness(kitchen: &Kitchen, state: State, witness: &RecordedBelief) -> Option<Belief> {
         let mut belief = Belief { of: Vec::with_capacity(kitchen.aspects.len()) };
@@ -47,12 +47,12 @@ impl Belief {
         Some(belief)
     }
 
-    /// The distribution over the values of an aspect.
+    /// The belief's distribution over the values of a state aspect.
     pub fn distribution(&self, aspect: AspectId) -> &[f64] {
         &self.of[aspect.index()]
     }
 
-    /// Replaces the distribution of an aspect by these weights, normalised.
+    /// Replaces the distribution of a state aspect by these weights, normalised to sum 1.
     pub fn set(&mut self, aspect: AspectId, weights: &[f64]) {
         let total: f64 = weights.iter().sum();
         self.of[aspect.index()] = weights.iter().map(|weight| weight / total).collect();
@@ -63,9 +63,9 @@ impl Belief {
         self.distribution(aspect)[kitchen.true_value(state, aspect)]
     }
 
-    /// Worlds that represent this belief: all of them with their weights if there are at most `most`, else `most` draws
-    /// by Latin hypercube sampling (McKay et al. 1979), in which each value of an aspect occurs in proportion to its
-    /// probability.
+    /// Worlds that represent this belief: all possible worlds with their weights if there are at most `most`, else
+    /// `most` draws by Latin hypercube sampling (McKay et al. 1979), in which each value of an aspect occurs in
+    /// proportion to its probability.
     pub fn worlds(&self, kitchen: &Kitchen, most: usize, random: &mut Stream) -> WeightedWorlds {
         let all = self.all_worlds(kitchen, most).unwrap_or_else(|| self.drawn_worlds(kitchen, most, random));
         WeightedWorlds { all }
@@ -114,8 +114,8 @@ impl Belief {
         worlds
     }
 
-    /// Whether decisions of the human can depend on the aspect. They cannot depend on the recipe of a dish that no
-    /// order is believed to want.
+    /// Whether decisions of the human can depend on the state aspect. They cannot depend on the recipe of a dish that
+    /// no order is believed to want.
     fn matters(&self, kitchen: &Kitchen, aspect: AspectId) -> bool {
         let AspectKind::Recipe(dish) = kitchen.aspects[aspect.index()].kind else { return true };
         let code = OrderContent::Dish(dish).code();
@@ -127,7 +127,7 @@ impl Belief {
     }
 }
 
-/// Spreads the remaining probability over values that are not listed; `None` if the result is not a distribution.
+/// Spreads the remaining probability over values without a listed one; `None` if the result is not a distribution.
 fn completed(told: &[Option<f64>]) -> Option<Vec<f64>> {
     if told.iter().flatten().any(|p| !(0.0..=1.0).contains(p)) {
         return None;

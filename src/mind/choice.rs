@@ -4,20 +4,20 @@
 //! waiting (paper, section "Human model"). A small share of presses are slips: to the neighbouring button, to the
 //! button with the look-alike symbol, or to any button. The belief filter uses the likelihood of one press, the planner
 //! draws choices, and the attribution of errors uses all probabilities. The reference implementations of filter and
-//! planner implement the same model a second time, so that tests can compare the two.
+//! planner implement the same choice model a second time, so that tests can compare the two.
 
 use super::choice_parameters::ChoiceParameters;
 use super::lapse_posterior::PressParts;
 use crate::kitchen::cost_to_go::{CostToGo, MAX_BUTTONS};
 use crate::kitchen::{Agent, ButtonId, Kitchen, WeightedWorlds};
 
-/// The planner counts softmax weights below e^-20 as 0.
+/// Exponent of negligible softmax weights: the planner counts weights below e^-20 as 0.
 const NEGLIGIBLE_EXPONENT: f64 = 20.0;
 
-/// Largest cost to go in presses: a cost to go is stored in a byte.
+/// Largest cost to go in presses, since a cost to go is stored in a byte.
 const MOST_PRESSES: usize = u8::MAX as usize;
 
-/// A choice of the human: to press a button or to wait.
+/// A choice of the human: to press one of the human's buttons, or to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HumanChoice {
     /// The human presses nothing now.
@@ -26,7 +26,7 @@ pub enum HumanChoice {
     Press(ButtonId),
 }
 
-/// The probabilities of all choices of the human: waiting and each button.
+/// The probabilities of all choices of the human: of waiting, and of each button.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChoiceProbabilities {
     /// Probability that the human waits.
@@ -35,7 +35,7 @@ pub struct ChoiceProbabilities {
     pub press: Vec<f64>,
 }
 
-/// The softmax weights of one decision, before slips. The planner draws choices from them.
+/// The softmax weights of all choices in one decision, before slips. The planner draws choices from these weights.
 #[derive(Clone, Copy, Debug)]
 pub struct ChoiceWeights {
     wait: f64,
@@ -48,12 +48,13 @@ pub struct ChoiceWeights {
 #[derive(Clone, Debug)]
 pub struct ChoiceModel {
     parameters: ChoiceParameters,
-    /// For each intended button, the two buttons that a slip hits: the nearest other button, and the button with the
-    /// look-alike symbol (the nearest button again where there is none).
+    /// For each intended button, the two buttons that a slip may hit: the nearest other button, and the button with the
+    /// look-alike symbol (the nearest button again where no button looks alike).
     slips_to: Vec<[ButtonId; 2]>,
-    /// For each button, the other intended buttons from which a slip hits it, with the probability of that slip.
+    /// For each button, the other intended buttons from which a slip hits this button, with the probability of that
+    /// slip.
     slips_from: Vec<Vec<(usize, f64)>>,
-    /// Probability that a press slips to one given button, independent of the intended one.
+    /// Probability that a press slips to one given button, whichever button is intended.
     anywhere: f64,
     /// `[n][k]`: exp(-tau k / n), the weight of a button whose cost to go, summed over n draws, exceeds that of the
     /// best button by k presses.
@@ -79,7 +80,7 @@ impl ChoiceModel {
         ChoiceModel { parameters: parameters.clone(), slips_from, slips_to, anywhere, weights: Vec::new() }
     }
 
-    /// The choice model for beliefs that are represented by exactly `draws` drawn worlds. Weights are not truncated.
+    /// The choice model for beliefs represented by exactly `draws` drawn worlds. Softmax weights are not truncated.
     pub fn for_draws(kitchen: &Kitchen, parameters: &ChoiceParameters, draws: usize) -> ChoiceModel {
         let mut model = ChoiceModel::new(kitchen, parameters);
         let row = (0..=draws * MOST_PRESSES).map(|more| parameters.weight(more, draws));
@@ -88,7 +89,7 @@ impl ChoiceModel {
         model
     }
 
-    /// The choice model for beliefs that are represented by at most `draws` drawn worlds. Weights below e^-20 are 0.
+    /// The choice model for beliefs represented by at most `draws` drawn worlds. Softmax weights below e^-20 are 0.
     pub fn up_to_draws(kitchen: &Kitchen, parameters: &ChoiceParameters, draws: usize) -> ChoiceModel {
         let row = |n: usize| {
             let last = (NEGLIGIBLE_EXPONENT * n as f64 / parameters.tau).min((n * MOST_PRESSES) as f64) as usize;
@@ -107,7 +108,7 @@ impl ChoiceModel {
         self.slips_to.len()
     }
 
-    /// The probabilities of all choices under a belief.
+    /// The probabilities of all choices of a human whose belief is given by weighted worlds.
     pub fn probabilities(&self, cost: &mut CostToGo, worlds: &WeightedWorlds) -> ChoiceProbabilities {
         let (tau, count) = (self.parameters.tau, self.buttons());
         let mut here = 0.0;
@@ -127,7 +128,7 @@ impl ChoiceModel {
         ChoiceProbabilities { wait: wait / (wait + total), press: self.with_slips(&intended) }
     }
 
-    /// Probability that each button is pressed, from the probability that each is intended: applies slips.
+    /// Probability that each button is pressed, from the probability that each button is intended: applies slips.
     fn with_slips(&self, intended: &[f64]) -> Vec<f64> {
         let lapse = self.parameters.lapse;
         let [anywhere, slipping] = self.parameters.slip_probabilities(intended.len());
@@ -140,8 +141,8 @@ impl ChoiceModel {
         pressed
     }
 
-    /// p(a | b), given that a button is pressed. `sums[x]` is the cost to go after button x, in presses, summed over
-    /// the drawn worlds that represent b. Needs a model from [`ChoiceModel::for_draws`].
+    /// Likelihood p(a | b), given that a button is pressed. `sums[x]` is the cost to go after button x, in presses,
+    /// summed over the drawn worlds that represent the belief b. Needs a model from [`ChoiceModel::for_draws`].
     #[inline]
     pub fn press_likelihood(&self, sums: &[u32], button: ButtonId) -> f64 {
         let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
@@ -155,8 +156,8 @@ impl ChoiceModel {
         pressed / total + self.anywhere
     }
 
-    /// The parts of p(a | b) without and with a slip, from the same sums as [`ChoiceModel::press_likelihood`], which is their sum weighted
-    /// by the lapse.
+    /// The parts of p(a | b) without a slip and given a slip, from the same sums as [`ChoiceModel::press_likelihood`].
+    /// That likelihood is the sum of the two parts weighted by the lapse.
     #[inline]
     pub fn press_parts(&self, sums: &[u32], button: ButtonId) -> PressParts {
         let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
@@ -169,15 +170,16 @@ impl ChoiceModel {
         PressParts { chosen: weight(sums[button.index()]) / total, slipped }
     }
 
-    /// p(wait | b), from the same sums as [`ChoiceModel::press_likelihood`] and the cost to go of the present state,
-    /// summed over the same draws.
+    /// Likelihood p(wait | b), from the same sums as [`ChoiceModel::press_likelihood`] and the cost to go of the
+    /// present state, summed over the same draws.
     pub fn wait_likelihood(&self, here: u32, sums: &[u32]) -> f64 {
         let draws = self.weights.len().saturating_sub(1).max(1);
         let ChoiceWeights { wait, total, .. } = self.weights(here, sums, draws as u32);
         wait / (wait + total)
     }
 
-    /// p(a | b) of every button, given that one is pressed, from the same sums as [`ChoiceModel::press_likelihood`].
+    /// p(a | b) of every button, given that a button is pressed, from the same sums as
+    /// [`ChoiceModel::press_likelihood`].
     pub fn press_probabilities(&self, sums: &[u32]) -> [f64; MAX_BUTTONS] {
         let weights = self.weights.last().map_or(&[][..], Vec::as_slice);
         let least = sums.iter().copied().min().unwrap_or(0);
@@ -194,9 +196,9 @@ impl ChoiceModel {
         pressed
     }
 
-    /// The softmax weights of all choices. `here` is the cost to go of the present state and `sums[x]` that after
-    /// button x, both in presses and summed over `draws` drawn worlds. Needs a model with the weights for that number
-    /// of draws.
+    /// The softmax weights of all choices. `here` is the cost to go of the present state and `sums[x]` the cost to go
+    /// after button x, both in presses and summed over `draws` drawn worlds. Needs a model that has the weights for
+    /// this number of draws.
     #[inline]
     pub fn weights(&self, here: u32, sums: &[u32], draws: u32) -> ChoiceWeights {
         let least = sums.iter().copied().min().unwrap_or(0);
@@ -212,7 +214,7 @@ impl ChoiceModel {
         ChoiceWeights { wait, press, total }
     }
 
-    /// The choice that the human intends; `draw` is uniform in [0, 1).
+    /// The choice that the human intends, before slips; the random number `draw` is uniform in [0, 1).
     pub fn intended(&self, weights: &ChoiceWeights, draw: f64) -> HumanChoice {
         let mut left = draw * (weights.wait + weights.total) - weights.wait;
         if left < 0.0 {
@@ -231,7 +233,7 @@ impl ChoiceModel {
         HumanChoice::Press(ButtonId(last as u8))
     }
 
-    /// The choice that the human executes, slips included; `draw` is uniform in [0, 1).
+    /// The choice that the human executes, slips included; the random number `draw` is uniform in [0, 1).
     pub fn executed(&self, intended: HumanChoice, draw: f64) -> HumanChoice {
         let HumanChoice::Press(button) = intended else { return intended };
         let ChoiceParameters { lapse, lapse_anywhere: anywhere, .. } = self.parameters;

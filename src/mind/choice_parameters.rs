@@ -10,16 +10,16 @@ use crate::kitchen::{Kitchen, WeightedWorlds};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChoiceParameters {
-    /// Softmax rationality tau: preference for a lower expected cost to go, per press.
+    /// Softmax rationality tau, per press: how strongly a lower expected cost to go is preferred.
     pub tau: f64,
-    /// The share of presses that are slips.
+    /// The lapse rate: share of presses that are slips.
     pub lapse: f64,
-    /// Share of the slips that hit any button. The other slips hit the neighbouring and the look-alike button with
-    /// equal probability.
+    /// Share of the slips that hit any button at random. The other slips hit the neighbouring button and the look-alike
+    /// button with equal probability.
     pub lapse_anywhere: f64,
-    /// Cost of waiting instead of pressing, in presses.
+    /// Cost of waiting instead of pressing, in presses, in the choice model.
     pub wait_cost: f64,
-    /// Number of worlds that represent a belief.
+    /// Number of drawn worlds that represent a belief.
     pub cases: usize,
 }
 
@@ -30,13 +30,13 @@ impl Default for ChoiceParameters {
 }
 
 impl ChoiceParameters {
-    /// The worlds that represent a belief in this choice model.
+    /// The worlds that represent the human's belief in this choice model.
     pub fn worlds(&self, kitchen: &Kitchen, belief: &Belief, random: &mut Stream) -> WeightedWorlds {
         belief.worlds(kitchen, self.cases.max(1), random)
     }
 
-    /// For a kitchen with `buttons` buttons: the probability that a press slips to one given button, independent of the
-    /// intended one, and the probability that it slips to the neighbour or, respectively, to the look-alike.
+    /// For a kitchen with `buttons` buttons: the probability that a press slips to one given button, whichever is
+    /// intended, and the probability that it slips to the neighbour or, respectively, to the look-alike.
     pub fn slip_probabilities(&self, buttons: usize) -> [f64; 2] {
         [self.lapse * self.lapse_anywhere / buttons as f64, self.lapse * (1.0 - self.lapse_anywhere) / 2.0]
     }

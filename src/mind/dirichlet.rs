@@ -1,5 +1,5 @@
-//! The estimate of a belief: a Dirichlet distribution over the values of every state aspect; the joint is their
-//! product.
+//! The estimate of a belief: a Dirichlet distribution over the values of every state aspect; the joint distribution is
+//! the product of these.
 //!
 //! Each Dirichlet is stored as its mean and its precision (the sum of the alphas). Moment matching (Minka 2000)
 //! preserves the mean and the pooled second moment S = sum_k E[b_k^2]; the precision follows as (1 - S) / (S - sum_k
@@ -8,7 +8,7 @@
 use super::model::PriorModel;
 use crate::kitchen::{AspectId, AspectKind, ContentId, Kitchen, State};
 
-/// Lower bound of a value's expected probability, so that later evidence can still raise it.
+/// Lower bound of a value's expected probability, which lets later evidence still raise the probability.
 pub const LEAST_MEAN: f64 = 1e-7;
 /// Lower and upper bound of a Dirichlet's precision (the sum of its alphas).
 pub const PRECISIONS: [f64; 2] = [1e-3, 1e4];
@@ -21,52 +21,53 @@ pub struct Dirichlet {
 }
 
 impl Dirichlet {
-    /// The Dirichlet with this mean (weights above or equal to 0, in any scale) and this precision, both within bounds.
+    /// A Dirichlet with this mean (weights of at least 0, in any scale) and this precision, both moved inside their
+    /// bounds.
     pub fn new(mean: Vec<f64>, precision: f64) -> Dirichlet {
         let mut made = Dirichlet { mean, precision: 1.0 };
         made.put_right(precision);
         made
     }
 
-    /// The Dirichlet with this mean and pooled second moment.
+    /// A Dirichlet with this mean and this pooled second moment.
     pub fn of_moments(mean: Vec<f64>, second: f64) -> Dirichlet {
         let mut made = Dirichlet { mean, precision: 1.0 };
         made.set_second(second);
         made
     }
 
-    /// Expected probability of each value.
+    /// Expected probability of each value of the aspect.
     pub fn mean(&self) -> &[f64] {
         &self.mean
     }
 
-    /// The precision of the Dirichlet: the sum of its alphas.
+    /// The precision of the Dirichlet: the sum of its parameters alpha.
     pub fn precision(&self) -> f64 {
         self.precision
     }
 
-    /// The Dirichlet's parameter alpha of a value.
+    /// The parameter alpha of one value: expected probability times precision.
     pub fn alpha(&self, value: usize) -> f64 {
         self.precision * self.mean[value]
     }
 
-    /// The pooled second moment S = sum_k E[b_k^2].
+    /// The pooled second moment S = sum_k E[b_k^2] of the Dirichlet.
     pub fn second(&self) -> f64 {
         (self.precision * self.square() + 1.0) / (self.precision + 1.0)
     }
 
-    /// Index of the value with the highest expected probability; the lowest index where several are equal.
+    /// Index of the value with the highest expected probability; ties go to the lowest index.
     pub fn most_likely(&self) -> usize {
         (1..self.mean.len()).fold(0, |best, value| if self.mean[value] > self.mean[best] { value } else { best })
     }
 
-    /// Sum of the squared expected probabilities.
+    /// Sum of the squared expected probabilities of all values.
     fn square(&self) -> f64 {
         sum_of(&self.mean, |m| m * m)
     }
 
     /// With probability q = `share` the belief becomes certain of one value, drawn from the distribution c = `values`,
-    /// else it stays unchanged: m' = (1 - q) m + q c, S' = (1 - q) S + q.
+    /// otherwise the belief stays unchanged: m' = (1 - q) m + q c, S' = (1 - q) S + q.
     pub fn learn(&mut self, share: f64, values: impl IntoIterator<Item = f64>) {
         let second = (1.0 - share) * self.second() + share;
         for (mean, value) in self.mean.iter_mut().zip(values) {
@@ -75,7 +76,7 @@ impl Dirichlet {
         self.set_second(second);
     }
 
-    /// Mixes with another Dirichlet over the same values, matching mean and second moment.
+    /// Mixes this Dirichlet with another one over the same values, matching mean and second moment of the mixture.
     pub fn mix(&mut self, share: f64, other: &Dirichlet) {
         let second = (1.0 - share) * self.second() + share * other.second();
         for (mean, &value) in self.mean.iter_mut().zip(&other.mean) {
@@ -84,23 +85,23 @@ impl Dirichlet {
         self.set_second(second);
     }
 
-    /// Moves the whole probability of the value `from` to the value `to` (exact).
+    /// Moves all probability of the value `from` to the value `to`; the result is an exact Dirichlet.
     pub fn shift(&mut self, from: usize, to: usize) {
         self.mean[to] += std::mem::take(&mut self.mean[from]);
         self.put_right(self.precision);
     }
 
-    /// Sets the precision from a pooled second moment and the present mean.
+    /// Sets the Dirichlet's precision from a pooled second moment and the present mean.
     fn set_second(&mut self, second: f64) {
         let spread = second - self.square();
         let precision = if spread > 0.0 { (1.0 - second) / spread } else { PRECISIONS[1] };
         self.put_right(precision);
     }
 
-    /// Normalises the mean and enforces the bounds of means and precision.
+    /// Normalises the Dirichlet's mean, and moves means and precision inside their bounds.
     fn put_right(&mut self, precision: f64) {
         for mean in &mut self.mean {
-            // `max` also replaces a mean that is NaN.
+            // The function `max` also replaces a mean that is NaN.
             *mean = mean.max(LEAST_MEAN);
         }
         let total = sum_of(&self.mean, |m| m);
@@ -112,8 +113,8 @@ impl Dirichlet {
     }
 }
 
-/// Sum of `of(value)` over all values in four partial sums, which the compiler vectorises: every gaze sample needs
-/// several.
+/// Sum of `of(value)` over all values, computed in four partial sums that the compiler vectorises, since every gaze
+/// sample needs several such sums.
 #[inline]
 fn sum_of(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     let mut parts = [0.0; 4];
@@ -125,15 +126,15 @@ fn sum_of(values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     (parts[0] + parts[1]) + (parts[2] + parts[3]) + rest
 }
 
-/// The estimate of what the human believes: one Dirichlet per aspect, in the order of the kitchen's aspects.
+/// The estimate of what the human believes: one Dirichlet per state aspect, in the order of the kitchen's aspects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DirichletBelief {
-    /// The Dirichlet distribution of each aspect.
+    /// The Dirichlet distribution over the values of each state aspect.
     pub aspects: Vec<Dirichlet>,
 }
 
 impl DirichletBelief {
-    /// The estimate at the start of a trial, when the kitchen is in `state`.
+    /// The estimate of the belief at the start of a trial, when the kitchen is in `state`.
     pub fn prior(kitchen: &Kitchen, prior: &PriorModel, state: State) -> DirichletBelief {
         let of = |index: usize| match kitchen.aspects[index].kind {
             AspectKind::Location(_) => {

@@ -1,4 +1,5 @@
-//! A file with parameters of the human model: those of the population, and those in which persons differ from it.
+//! A file with parameters of the human model: those of the population, and those of persons who differ from the
+//! population.
 
 use std::collections::BTreeMap;
 
@@ -11,19 +12,21 @@ use super::model::{
 };
 use super::signal_model::SignalModel;
 
-/// Parameters of persons by their codes; what a person's table leaves out is as in the population.
+/// Fitted parameters of persons by the persons' codes; parameters that a person's table leaves out are the
+/// population's.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FittedPeople(pub BTreeMap<String, BTreeMap<HumanModelParameter, f64>>);
 
 impl FittedPeople {
-    /// Gives a model of the population the parameters of the person with this code. Returns whether there are any.
+    /// Sets in a model with the population's parameters those of the person with this code. Returns whether there are
+    /// any.
     pub fn apply(&self, code: &str, model: &mut HumanModel) -> bool {
         let Some(own) = self.0.get(code) else { return false };
         own.iter().for_each(|(parameter, value)| parameter.set(model, *value));
         true
     }
 
-    /// Forgets this parameter of all persons: everybody has that of the population.
+    /// Removes this parameter of all persons, so that everybody has the population's value.
     pub fn forget(&mut self, parameter: HumanModelParameter) {
         self.0.values_mut().for_each(|own| {
             own.remove(&parameter);
@@ -31,7 +34,7 @@ impl FittedPeople {
     }
 }
 
-/// What a file with parameters of the human model has.
+/// Content of a file with parameters of the human model.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HumanModelFile {
@@ -44,19 +47,19 @@ pub struct HumanModelFile {
     #[serde(skip_serializing_if = "AdaptModel::is_off")]
     adapt: AdaptModel,
     inference: InferenceSettings,
-    /// Parameters of persons, if the file has any.
+    /// Parameters of single persons; `None` if the file has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub people: Option<FittedPeople>,
 }
 
 impl HumanModelFile {
-    /// A file with these parameters of the population and of persons.
+    /// The content of a file with these parameters of the population and of persons.
     pub fn new(population: HumanModel, people: Option<FittedPeople>) -> HumanModelFile {
         let HumanModel { prior, perception, looking, transition, decision, signal, adapt, inference } = population;
         HumanModelFile { prior, perception, looking, transition, decision, signal, adapt, inference, people }
     }
 
-    /// The parameters of the population, which are everybody's in a file without persons.
+    /// The parameters of the population, which hold for everybody if the file has no persons.
     pub fn population(&self) -> HumanModel {
         let HumanModelFile { prior, perception, looking, transition, decision, signal, adapt, inference, .. } =
             self.clone();

@@ -1,5 +1,5 @@
-//! Fitting the human model: the parameters that can be fitted, the scale on which each is fitted, and the likelihood of
-//! a trial's presses and answers to freeze probes.
+//! Fitting the human model: the parameters that can be fitted, the scale on which each parameter is fitted, and the
+//! likelihood of a trial's presses and answers to freeze probes.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +12,7 @@ use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, AspectId, Kitchen, Press};
 use std::sync::Arc;
 
-/// Offset of 1 / tau, in presses, at which the scale of tau saturates.
+/// Offset that is added to 1 / tau, in presses, at which the fit's scale of tau saturates.
 const STRICT: f64 = 0.1;
 
 /// A parameter of the human model that can be fitted.
@@ -23,26 +23,26 @@ pub enum HumanModelParameter {
     Tau,
     /// Share of presses that are slips.
     Lapse,
-    /// Radius of the area around the fixation, in degrees.
+    /// Radius of the area around the fixation within which locations are read, in degrees.
     RadiusDeg,
     /// Rate at which a location near the gaze is read, in readings per second.
     ReadingRateHz,
-    /// Half-life of recipe memory, in seconds.
+    /// Half-life with which recipe memory decays, in seconds.
     RecipeHalfLifeS,
-    /// Share of the robot's unseen presses whose consequences the human infers.
+    /// Share of the robot's presses, unseen by the human, whose consequences the human infers.
     Foresight,
-    /// Rate of looks at what the next press needs while the gaze is unknown, per second.
+    /// Rate of looks at places that the next press needs while the gaze is unknown, per second.
     LooksHz,
     /// Rate of looks at other places while the gaze is unknown, per second.
     OtherLooksHz,
-    /// Share of the changes by others that attract the gaze.
+    /// Share of the changes by others (not the human) that attract the human's gaze.
     Capture,
-    /// Expected probability of a true recipe at the start of a trial.
+    /// Expected probability of a dish's true recipe at the start of a trial.
     RecipeTruth,
 }
 
 impl HumanModelParameter {
-    /// The parameters that are fitted by default.
+    /// The parameters of the human model that are fitted by default.
     pub const USUAL: [HumanModelParameter; 5] = [
         HumanModelParameter::Tau,
         HumanModelParameter::Lapse,
@@ -51,7 +51,7 @@ impl HumanModelParameter {
         HumanModelParameter::RecipeHalfLifeS,
     ];
 
-    /// Name of the parameter in a parameter file.
+    /// Name of the human model's parameter in a parameter file.
     pub fn name(self) -> &'static str {
         match self {
             HumanModelParameter::Tau => "tau",
@@ -81,7 +81,7 @@ impl HumanModelParameter {
         }
     }
 
-    /// Value of the parameter in a human model.
+    /// Value of this parameter in a human model.
     pub fn get(self, model: &HumanModel) -> f64 {
         match self {
             HumanModelParameter::Tau => model.decision.tau,
@@ -97,7 +97,7 @@ impl HumanModelParameter {
         }
     }
 
-    /// Sets the parameter in a human model.
+    /// Sets this parameter in a human model.
     pub fn set(self, model: &mut HumanModel, value: f64) {
         match self {
             HumanModelParameter::Tau => model.decision.tau = value,
@@ -113,8 +113,8 @@ impl HumanModelParameter {
         }
     }
 
-    /// Bounds of the parameter in the fit. Above tau = 20 per press the best button is chosen practically always, and
-    /// presses carry no information about tau.
+    /// Bounds of the parameter during the fit. Above tau = 20 per press the best button is chosen practically always,
+    /// so that presses carry no information about tau.
     pub fn bounds(self) -> [f64; 2] {
         match self {
             HumanModelParameter::Tau => [0.05, 20.0],
@@ -128,8 +128,8 @@ impl HumanModelParameter {
         }
     }
 
-    /// Transforms a value to the scale of the fit: the logarithm for a quantity, the log odds for a share, and
-    /// ln(1 / (1 / tau + 0.1)) for tau, since the likelihood changes less and less as tau grows.
+    /// Transforms a parameter's value to the scale of the fit: the logarithm for a quantity, the log odds for a share,
+    /// and ln(1 / (1 / tau + 0.1)) for tau, since the likelihood changes less and less as tau grows.
     pub fn to_scale(self, value: f64) -> f64 {
         match self {
             HumanModelParameter::Lapse
@@ -156,7 +156,7 @@ impl HumanModelParameter {
         }
     }
 
-    /// Standard error of a value from its standard error on the scale of the fit (delta method).
+    /// Standard error of a parameter's value from its standard error on the scale of the fit (delta method).
     pub fn error_of(self, value: f64, scaled_error: f64) -> f64 {
         let slope = match self {
             HumanModelParameter::Lapse
@@ -170,27 +170,27 @@ impl HumanModelParameter {
     }
 }
 
-/// Least probability of a value with which it is given as the answer to a probe; if no value reaches it, the answer is
+/// Least probability from which a value is given as the answer to a freeze probe; if no value reaches it, the answer is
 /// "I don't know".
 const ANSWERED_FROM: f64 = 0.5;
-/// Share of answers to probes that are given at random, by mistake.
+/// Share of answers to freeze probes that are given at random, by mistake.
 pub const ANSWERS_AT_RANDOM: f64 = 0.02;
 
 /// A participant's answer to a question of a freeze probe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProbedValue {
-    /// Number of observations up to and including the freeze.
+    /// Number of the trial's observations up to and including the freeze.
     pub after: usize,
-    /// The aspect that the question was about.
+    /// The state aspect that the probe's question was about.
     pub aspect: AspectId,
-    /// Index of the answered value; `None`: "I don't know".
+    /// Index of the value that the participant answered; `None`: "I don't know".
     pub value: Option<usize>,
 }
 
-/// Observations of a trial, and its answers to freeze probes in order of time.
+/// Observations of a trial for the belief filter, and the trial's answers to freeze probes in order of time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FitObservations {
-    /// Random seed of the belief filter.
+    /// Random seed of the belief filter in this trial.
     pub seed: u64,
     /// The observations of the trial for the belief filter.
     pub observations: Vec<Observation>,
@@ -198,27 +198,27 @@ pub struct FitObservations {
     pub answers: Vec<ProbedValue>,
 }
 
-/// Log likelihoods of the human's presses and answers to probes in one trial, and their numbers.
+/// Log likelihoods of the human's presses and of the answers to freeze probes in one trial, with their numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrialLikelihood {
     /// Number of presses of the human.
     pub presses: u64,
-    /// Sum over presses of ln p under the estimate before each press, in nats.
+    /// Sum over presses of ln p(press) under the estimate before each press, in nats.
     pub log_p: f64,
     /// Number of answers to probes.
     pub answers: u64,
-    /// Sum over answers of ln p under the estimate at the freeze, with the share [`ANSWERS_AT_RANDOM`] of random
-    /// answers, in nats.
+    /// Sum over answers of ln p(answer) under the estimate at the freeze, with the share [`ANSWERS_AT_RANDOM`] of
+    /// random answers, in nats.
     pub log_p_answers: f64,
 }
 
 impl TrialLikelihood {
-    /// Log likelihood of presses and answers together.
+    /// Log likelihood of presses and answers together, in nats.
     pub fn total(&self) -> f64 {
         self.log_p + self.log_p_answers
     }
 
-    /// Sum of the likelihoods of two trials.
+    /// Sum of the log likelihoods of two trials.
     pub fn plus(self, other: TrialLikelihood) -> TrialLikelihood {
         TrialLikelihood {
             presses: self.presses + other.presses,
@@ -229,8 +229,8 @@ impl TrialLikelihood {
     }
 }
 
-/// Log likelihood of a trial's presses and answers under a human model. The filter's random stream depends on the seed
-/// only, so that two models are compared on common random numbers.
+/// Log likelihood of a trial's presses and answers under a human model. The belief filter's random stream depends on
+/// the seed only, so that two models are compared on common random numbers.
 pub fn likelihood(
     kitchen: &Arc<Kitchen>,
     model: &HumanModel,
@@ -259,8 +259,8 @@ pub fn likelihood(
     found
 }
 
-/// Probability of an answer: that the belief, drawn from the estimate, has a probability of one half or more for the
-/// value, or for none. At most one value has, so these probabilities sum to 1.
+/// Probability of an answer to a probe: that the belief, drawn from the estimate, has a probability of one half or more
+/// for the value, or for no value. At most one value has so much, so these probabilities sum to 1.
 pub fn p_answer(estimate: &Dirichlet, value: Option<usize>) -> f64 {
     let values = estimate.mean().len();
     let is_surest = |value: usize| {

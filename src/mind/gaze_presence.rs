@@ -1,21 +1,21 @@
 //! Accounts for the time in which the gaze is known or unknown.
 //!
-//! A sample stands for the time since the previous one, at most `max_sample_s`, and its confidence decides which share
-//! of that time counts as known. Time without known gaze is a blink up to `blink_s`: certainly without reading. After
-//! that the gaze is unknown. A blink uses up an allowance that known time restores, so that a stream with a few good
-//! samples among many bad ones is not mistaken for one with many blinks. At the start of a trial the allowance is zero:
-//! without a tracker all time is unknown.
+//! A sample stands for the time since the previous sample, at most `max_sample_s`, and its confidence decides which
+//! share of that time counts as known. Time without known gaze is a blink up to `blink_s`: certainly without reading.
+//! After that the gaze is unknown. A blink uses up an allowance that known time restores, so that a stream with a few
+//! good samples among many bad ones is not mistaken for a stream with many blinks. At the start of a trial the
+//! allowance is zero: without a tracker all time is unknown.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::mind::model::HumanModel;
 
-/// The time that a gaze sample covers, and the gap before it.
+/// The time that a gaze sample covers, and the gap before that time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CoveredTime {
-    /// Time of unknown gaze before the sample, in seconds.
+    /// Time of unknown gaze before the gaze sample, in seconds.
     pub unknown_before_s: f64,
-    /// Time that the sample covers, in seconds.
+    /// Time that the gaze sample covers, in seconds.
     pub covers_s: f64,
     /// Share of the covered time in which the gaze is known.
     pub known: f64,
@@ -26,22 +26,22 @@ pub struct CoveredTime {
 pub struct GazeAvailability {
     blink_s: f64,
     max_sample_s: f64,
-    /// Time at which the last sample was taken, whether it was usable or not.
+    /// Session time at which the last gaze sample was taken, whether it was usable or not.
     last: Option<SessionTime>,
     /// Time of the last sample with known gaze, or start of the trial.
     dark_since: SessionTime,
-    /// Remaining time of missing gaze that counts as a blink, in seconds.
+    /// Remaining allowance of missing gaze that counts as a blink, in seconds.
     allowance_s: f64,
-    /// Time up to which unknown time has been accounted for.
+    /// Session time up to which unknown time has been accounted for.
     accounted: SessionTime,
-    /// Share of the last sample with known gaze that counts as unknown.
+    /// Share of the time of the last sample with known gaze that counts as unknown, 0 to 1.
     unknown: f64,
-    /// Whether the tracker finds the display in its view; assumed until it reports that it does not.
+    /// Whether the tracker finds the display in its view; true until the tracker reports that it does not.
     pub display_in_view: bool,
 }
 
 impl GazeAvailability {
-    /// The state before the start of a trial.
+    /// The state of the account before the start of a trial.
     pub fn new(model: &HumanModel) -> GazeAvailability {
         GazeAvailability {
             blink_s: model.looking.blink_s,
@@ -55,26 +55,26 @@ impl GazeAvailability {
         }
     }
 
-    /// Records the start of the trial or the end of a pause: time before `now` is ignored, and the next sample does not
-    /// cover it.
+    /// Records the start of the trial or the end of a pause: time before `now` is ignored, and the next gaze sample
+    /// does not cover it.
     pub fn rest(&mut self, now: SessionTime) {
         (self.last, self.dark_since) = (None, now);
     }
 
-    /// Shifts all stored times by a duration in which the task stood still.
+    /// Shifts all stored times by a duration for which the task stood still.
     pub fn postpone(&mut self, by: SessionTime) {
         self.last = self.last.map(|last| last + by);
         self.dark_since = self.dark_since + by;
         self.accounted = self.accounted + by;
     }
 
-    /// Start of the unknown time after the last sample with known gaze.
+    /// Session time at which the unknown time after the last sample with known gaze starts.
     fn unknown_from(&self) -> SessionTime {
         self.dark_since + SessionTime::from_secs_f64(self.allowance_s)
     }
 
-    /// Time of unknown gaze up to `now` that has not been accounted for, in seconds. It counts as accounted for
-    /// afterwards.
+    /// Time of unknown gaze up to `now` that has not been accounted for yet, in seconds. Afterwards that time counts as
+    /// accounted for.
     pub fn pass(&mut self, now: SessionTime) -> f64 {
         let from = self.unknown_from().max(self.accounted);
         if now <= from {
@@ -89,7 +89,7 @@ impl GazeAvailability {
         if now > self.unknown_from() { 1.0 } else { self.unknown }
     }
 
-    /// Accounts for a sample taken at session time `taken`, of whose time the share `known` counts as known gaze.
+    /// Accounts for a gaze sample taken at session time `taken`; the share `known` of its time counts as known gaze.
     pub fn sample(&mut self, sample: &GazeSample, known: f64, taken: SessionTime) -> CoveredTime {
         let covers_s = self.last.map_or(self.max_sample_s, |last| taken.secs_since(last)).min(self.max_sample_s);
         self.last = Some(self.last.map_or(taken, |last| last.max(taken)));

@@ -24,12 +24,12 @@ use serde::{Deserialize, Serialize};
 /// The recorded belief of a simulated participant at one time, with the reason for its next press.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RecordedBelief {
-    /// The belief about each state aspect, in the order of the kitchen's aspects.
+    /// The participant's belief about each state aspect, in the order of the kitchen's aspects.
     pub aspects: Vec<AspectBelief>,
     /// Reason for the participant's next press: "as believed", "slip to the neighbouring button", …
     pub cause: String,
-    /// Origin of the participant's next press, found by repeating its decision with the truth; `None` in recordings
-    /// before version 0.2.0.
+    /// Origin of the participant's next press, found by repeating the participant's decision with the truth; `None` in
+    /// recordings made before version 0.2.0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub origin: Option<PressOrigin>,
     /// Names of the aspects whose replacement by the truth changes a press that a false belief caused.
@@ -41,11 +41,12 @@ pub struct RecordedBelief {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PressOrigin {
-    /// The participant's plan: it would press the same with true beliefs; or the display proposed the press.
+    /// The press comes from the participant's plan (it would be the same with true beliefs), or the display proposed
+    /// it.
     Plan,
-    /// A false belief: with true beliefs the participant would press something else.
+    /// The press comes from a false belief: with true beliefs the participant would press something else.
     Belief,
-    /// A slip: the participant pressed another button than it had decided.
+    /// The press is a slip: the participant pressed another button than decided.
     Slip,
 }
 
@@ -54,12 +55,12 @@ pub enum PressOrigin {
 pub struct AspectBelief {
     /// Name of the state aspect.
     pub aspect: String,
-    /// Name of the most probable value.
+    /// Name of the value that the participant believes most probable.
     pub believes: String,
-    /// Probability that the participant gives to the true value.
+    /// Probability that the participant gives to the aspect's true value.
     pub p_truth: f64,
-    /// Probability of every value with at least [`WORTH_TELLING`]; the remaining probability is spread over the other
-    /// values.
+    /// Probability of every value that has at least [`WORTH_TELLING`]; the remaining probability is spread over the
+    /// other values.
     pub values: BTreeMap<String, f64>,
 }
 

@@ -13,7 +13,7 @@ use super::signal_model::SignalModel;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HumanModel {
-    /// Beliefs before the human has seen anything.
+    /// Prior: beliefs before the human has seen anything.
     pub prior: PriorModel,
     /// How gaze near a location becomes knowledge of its content.
     pub perception: PerceptionModel,
@@ -28,7 +28,7 @@ pub struct HumanModel {
     /// What the estimate learns about the person in a trial.
     #[serde(skip_serializing_if = "AdaptModel::is_off")]
     pub adapt: AdaptModel,
-    /// How the belief is inferred: settings of the computation, not properties of people.
+    /// Settings of the computation that infers the belief, which are no properties of people.
     pub inference: InferenceSettings,
 }
 
@@ -36,31 +36,31 @@ pub struct HumanModel {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AdaptModel {
-    /// Whether it learns how often the person slips.
+    /// Whether the estimate learns how often the person slips.
     pub lapse: bool,
 }
 
 impl AdaptModel {
-    /// Whether nothing is adapted. Files and headers leave it out then.
+    /// Whether nothing is adapted to the person, in which case files and headers leave this table out.
     pub(super) fn is_off(&self) -> bool {
         *self == AdaptModel::default()
     }
 }
 
-/// The human's belief at the start of a trial.
+/// The human's belief at the start of a trial (prior).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PriorModel {
     /// Expected probability of a location's true content; the remaining probability is spread evenly over the other
     /// contents.
     pub location_truth: f64,
-    /// Precision (sum of the alphas) of a location's Dirichlet.
+    /// Precision (sum of the alphas) of the Dirichlet about a location's content.
     pub location_precision: f64,
     /// Expected probability of a dish's true recipe.
     pub recipe_truth: f64,
     /// Share of the remaining probability that goes to variants which look like the true recipe, where there are any.
     pub recipe_look_alike: f64,
-    /// Precision of a recipe's Dirichlet: small, since people are certain of one variant.
+    /// Precision (sum of the alphas) of the Dirichlet about a recipe: small, since people are certain of one variant.
     pub recipe_precision: f64,
 }
 
@@ -76,11 +76,11 @@ impl Default for PriorModel {
     }
 }
 
-/// Range of confidence over which a gaze sample turns from unknown to known.
+/// Range of confidence over which the time of a gaze sample turns from unknown to known.
 pub const CONFIDENCE_RAMP: f64 = 0.4;
 
-/// Perception as a reading process: a location near the gaze is read at a rate that falls with its distance from the
-/// gaze.
+/// Perception as a reading process: a location near the gaze is read at a rate that falls with the location's distance
+/// from the gaze.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PerceptionModel {
@@ -90,18 +90,18 @@ pub struct PerceptionModel {
     pub radius_deg: f64,
     /// Distance from the eyes to the display, in metres.
     pub viewing_distance_m: f64,
-    /// Probability that a reading gives a look-alike of the true content.
+    /// Probability that a reading gives a look-alike of the true content instead of it.
     pub look_alike: f64,
     /// Probability that a reading gives any other wrong content.
     pub anything: f64,
-    /// Confidence at which half of a gaze sample's time counts as known; the share rises linearly over
+    /// Confidence at which half of a gaze sample's time counts as known; the share that counts rises linearly over
     /// [`CONFIDENCE_RAMP`].
     pub min_confidence: f64,
     /// Length of the history of displayed states, in seconds; gaze samples taken earlier are not used.
     pub history_s: f64,
     /// Longest time that one gaze sample covers, in seconds.
     pub max_sample_s: f64,
-    /// A look ends once the gaze has been elsewhere for this long, in seconds.
+    /// Time for which the gaze has to be elsewhere until a look at a location ends, in seconds.
     pub look_ends_s: f64,
 }
 
@@ -122,7 +122,7 @@ impl Default for PerceptionModel {
 }
 
 impl PerceptionModel {
-    /// The radius of the area around the fixation on the display, in metres.
+    /// Radius, on the display, of the area around the fixation that is read, in metres.
     pub fn radius_m(&self) -> f64 {
         self.viewing_distance_m * self.radius_deg.to_radians().tan()
     }
@@ -134,7 +134,7 @@ impl PerceptionModel {
         if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) }
     }
 
-    /// The rate of reading a location, as a function of distance and confidence.
+    /// The rate of reading a location as a function of distance and confidence.
     pub fn reading_rate(&self) -> ReadingRate {
         self.rate_of(self.reading_rate_hz)
     }
@@ -145,25 +145,25 @@ impl PerceptionModel {
     }
 }
 
-/// Plausible looking: where people look, in rates. The belief filter uses it while the gaze is unknown, the planner in
-/// its rollouts.
+/// Plausible looking: where people look, in rates. The belief filter uses these rates while the gaze is unknown, the
+/// planner in its rollouts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LookingModel {
     /// Looks per second at each place that the next press needs; before an item is fetched, also at the robot's hand,
-    /// which may be bringing it. Measured on unassisted simulated participants: 1.1 and 0.7.
+    /// which may be bringing the item. Measured on unassisted simulated participants: 1.1 and 0.7.
     pub looks_hz: f64,
-    /// Looks per second at each other place. Unassisted simulated participants look 0.25 to 0.4 times a second at what
-    /// has changed more than a second ago and was not seen since.
+    /// Looks per second at each other place. Unassisted simulated participants look 0.25 to 0.4 times a second at a
+    /// place that has changed more than a second ago and was not seen since.
     pub other_looks_hz: f64,
-    /// Share of the changes by others that attract the gaze at once. Of simulated participants, beyond those looks: 0.3
-    /// at the robot's hand and at places, 0.4 at orders.
+    /// Share of the changes by others that attract the gaze at once. Of simulated participants, beyond the looks above:
+    /// 0.3 at the robot's hand and at places, 0.4 at orders.
     pub capture: f64,
     /// Looks per second at each place while the eye tracker does not find the display in its view, which means that the
     /// head is turned away.
     pub display_lost_looks_hz: f64,
-    /// Time without known gaze that counts as a blink, in seconds: nothing is read in it, and it does not count as
-    /// unknown.
+    /// Time without known gaze that counts as a blink, in seconds: nothing is read during a blink, and its time does
+    /// not count as unknown.
     pub blink_s: f64,
 }
 
@@ -173,28 +173,28 @@ impl Default for LookingModel {
     }
 }
 
-/// The rate of reading a location, with precomputed constants, because every gaze sample needs it.
+/// The rate of reading a location, with precomputed constants, because every gaze sample needs the rate.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadingRate {
-    /// Readings per second at distance 0 and full confidence.
+    /// Readings per second at distance 0 and with full confidence.
     full_hz: f64,
     /// 2 r^2 with the reading radius r, in square metres.
     spread_m2: f64,
 }
 
 impl ReadingRate {
-    /// Readings per second of a location whose area is `distance_m` metres away from the gaze.
+    /// Readings per second of a location whose area is `distance_m` metres away from the point of gaze.
     #[inline]
     pub fn at(&self, distance_m: f64, confidence: f64) -> f64 {
         self.full_hz * (-distance_m * distance_m / self.spread_m2).exp() * confidence
     }
 }
 
-/// Changes of the human's belief without new evidence.
+/// Transition model: how the human's belief changes without new evidence.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransitionModel {
-    /// Half-life with which a recipe belief decays to its prior, in seconds.
+    /// Half-life with which a belief about a recipe decays to its prior, in seconds.
     pub recipe_half_life_s: f64,
     /// Share of the robot's unseen presses whose consequences the human infers; the other presses leave the belief
     /// unchanged. The default is fitted to simulated participants, who mostly keep believing what they last saw.
@@ -207,22 +207,22 @@ impl Default for TransitionModel {
     }
 }
 
-/// How the belief is inferred: from which evidence, and the sample sizes of the inference from one press.
+/// Settings of the inference of the belief: from which evidence, and with which sample sizes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct InferenceSettings {
-    /// Number of belief samples drawn from the estimate.
+    /// Number of belief samples drawn from the estimate at a press.
     pub beliefs: usize,
     /// Number of worlds (state and recipes) drawn from each belief sample.
     pub states: usize,
-    /// The number of belief samples is doubled while the effective sample size is below this.
+    /// Effective sample size below which the number of belief samples is doubled.
     pub min_effective: f64,
     /// Largest number of belief samples in an update by a press.
     pub max_beliefs: usize,
-    /// Number of worlds from which a press of the robot is predicted.
+    /// Number of worlds from which the effect of a robot press on the belief is predicted.
     pub predictions: usize,
-    /// Whether waiting is evidence: a human who waits believes that no press is useful now; one who presses believes
-    /// that some press is.
+    /// Whether waiting is evidence: a human who waits believes that no press is useful now; a human who presses
+    /// believes that some press is.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub waiting: bool,
 }
@@ -241,8 +241,8 @@ impl Default for InferenceSettings {
 }
 
 impl HumanModel {
-    /// The first parameters that contradict each other: the path of one of them in a session file, what was found, and
-    /// what would be right. The ranges of single parameters are in [`crate::session::ranges`].
+    /// The first parameters that contradict each other: the path of one of these parameters in a session file, what was
+    /// found, and what would be right. The ranges of single parameters are in [`crate::session::ranges`].
     pub fn fault(&self) -> Option<(&'static str, String, &'static str)> {
         let PerceptionModel { look_alike, anything, .. } = self.perception;
         let found = || format!("anything = {anything}, look_alike = {look_alike}");

@@ -1,4 +1,4 @@
-//! Observations: the evidence from which the belief filter updates its estimate, one at a time.
+//! Observations: the evidence by which the belief filter updates its estimate, one observation at a time.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
@@ -7,24 +7,24 @@ use crate::kitchen::{ButtonId, LocationId, Press, State};
 /// Largest number of presses that the display proposes at a time.
 pub const MOST_PROPOSED: usize = 5;
 
-/// Presses of the human that the display proposes, the next one first; by default none.
+/// Presses of the human that the display proposes, the next one first; none by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ProposedPresses([Option<ButtonId>; MOST_PROPOSED]);
 
 impl ProposedPresses {
-    /// The first [`MOST_PROPOSED`] of these presses.
+    /// A proposal with the first [`MOST_PROPOSED`] of these presses.
     pub fn new(presses: impl IntoIterator<Item = ButtonId>) -> ProposedPresses {
         let mut all = ProposedPresses::default();
         all.0.iter_mut().zip(presses).for_each(|(place, press)| *place = Some(press));
         all
     }
 
-    /// The press that the display proposes next, if any.
+    /// The press that the display proposes next; `None` without a proposal.
     pub fn next(&self) -> Option<ButtonId> {
         self.0[0]
     }
 
-    /// Accounts for a press of the human: the proposal moves on if the press was proposed, and ends if it was not.
+    /// Accounts for a press of the human: the proposal moves on if it proposed this press, and ends otherwise.
     pub fn pressed(&mut self, button: ButtonId) {
         match self.next() == Some(button) {
             true => {
@@ -45,12 +45,12 @@ pub struct Observation {
     pub what: ObservedEvidence,
 }
 
-/// Kinds of evidence about the human's belief. A state here is the true state, which the display shows.
+/// Kinds of evidence about the human's belief. A `state` in them is the true state, which the display shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ObservedEvidence {
     /// The trial starts; the human knows the state of the kitchen.
     Started {
-        /// The state of the kitchen at the start.
+        /// The state of the kitchen at the start of the trial.
         state: State,
     },
     /// A gaze sample, taken by the tracker at this session time.
@@ -74,29 +74,29 @@ pub enum ObservedEvidence {
         /// The location that the signal is about.
         location: LocationId,
     },
-    /// The signal leaves the display. Where signals take no time, it makes no difference.
+    /// The signal leaves the display. Where signals take no time to be read, this event makes no difference.
     SignalOver,
     /// The display proposes presses. A proposal reveals nothing about contents and recipes; it changes what the next
     /// presses reveal about beliefs.
     Proposed(ProposedPresses),
     /// The human has not pressed for longer than usual.
     Waited {
-        /// Share of the human's own intervals between presses that are longer.
+        /// Share of the human's own intervals between presses that are longer than the present silence.
         longer: f64,
     },
     /// The trial is paused: nothing is read or forgotten until it resumes.
     Paused,
     /// The trial resumes after a pause.
     Resumed,
-    /// The task is frozen for a probe, and the kitchen is off the display.
+    /// The task is frozen for a probe, and the kitchen is not on the display.
     Frozen,
     /// The task continues where it was frozen: nothing was seen and nothing forgotten meanwhile.
     Thawed {
-        /// For how long the task stood still.
+        /// Duration for which the task stood still.
         by: SessionTime,
-        /// Bit set of the locations about which questions were asked.
+        /// Bit set of the locations about which the probe asked questions.
         asked: u32,
-        /// Probability that the human looks at such a location because of the question.
+        /// Probability that the human looks at a location because a question was about it.
         teaches: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! The estimate of the human's belief in recordings: rounded numbers, and names of values.
+//! The estimate of the human's belief as recordings contain it: rounded numbers, and names of values.
 
 use std::collections::BTreeMap;
 
@@ -14,9 +14,9 @@ use crate::kitchen::{AspectId, Kitchen, State, StateAspect};
 pub struct RecordedEstimate {
     /// Sequence number of the press in the log.
     pub press: u64,
-    /// ln p(press) under the estimate, in nats.
+    /// ln p(press) under the estimate before the press, in nats.
     pub log_p: f64,
-    /// Effective sample size of the belief samples.
+    /// Effective sample size of the belief samples by which the press was evaluated.
     pub effective: f64,
     /// The estimated belief about each state aspect, in the order of the kitchen's aspects.
     pub aspects: Vec<AspectEstimate>,
@@ -29,11 +29,11 @@ pub struct AspectEstimate {
     pub aspect: String,
     /// Name of the value with the highest expected probability.
     pub believes: String,
-    /// Expected probability of the true value.
+    /// Expected probability that the belief gives to the true value.
     pub p_truth: f64,
-    /// The precision of the Dirichlet: the sum of its alphas.
+    /// The precision of the aspect's Dirichlet: the sum of its alphas.
     pub precision: f64,
-    /// Expected probability of every value with at least [`WORTH_TELLING`].
+    /// Expected probability of every value that has at least [`WORTH_TELLING`].
     pub values: BTreeMap<String, f64>,
 }
 

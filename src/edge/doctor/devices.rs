@@ -94,7 +94,7 @@ pub(super) fn lsl(spec: &SessionSpec) -> PreflightCheck {
             PreflightCheck::ok("lsl", format!("liblsl {:.2} can be loaded", f64::from(library.version) / 100.0))
         }
         Err(error) => {
-            // Only the first part of the error text is shown, since texts of the operating system's loader are long.
+            // The error text is put on one line, since the operating system's loader writes long texts.
             missing(spec.uses_lsl(), "lsl", printable(&error.to_string()).into_owned(), "[lsl]", error.remedy())
         }
     }

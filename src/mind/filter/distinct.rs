@@ -1,18 +1,18 @@
-//! The distinct worlds among all draws for a press of the human, each with the costs to go of the human's decision,
-//! computed once.
+//! The distinct worlds among all draws for a press of the human, each with the costs to go of the human's decision in
+//! that world, computed once.
 
 use crate::base::rng::mix;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity, MAX_BUTTONS};
 use crate::kitchen::{Agent, World};
 
-/// A world's costs to go are computed with [`Fidelity::PlanBound`] if it has at least this share of all draws, or of
-/// the posterior weight; else with [`Fidelity::LowerBound`].
+/// A world's costs to go are computed with [`Fidelity::PlanBound`] if the world has at least this share of all draws,
+/// or of the posterior weight; else with [`Fidelity::LowerBound`].
 const COUNTS: f64 = 0.01;
 
-/// Number of worlds by which prefetching is ahead of the computation.
+/// Number of worlds by which prefetching from memory is ahead of the computation.
 const AHEAD: usize = 4;
 
-/// Distinct worlds with their numbers of draws.
+/// Distinct worlds with the number of draws of each.
 #[derive(Clone, Debug, Default)]
 pub struct DistinctWorlds {
     known: Vec<RatedWorld>,
@@ -24,21 +24,21 @@ pub struct DistinctWorlds {
 struct RatedWorld {
     world: World,
     draws: u32,
-    /// Costs to go of the world, once computed.
+    /// Costs to go of the decision in the world; `None` until they are computed.
     costs: Option<WorldCosts>,
 }
 
-/// The costs to go of the human's decision in a world.
+/// The costs to go of the human's decision in one world.
 #[derive(Clone, Copy, Debug)]
 struct WorldCosts {
     here: u8,
-    /// Cost to go after each button of the human.
+    /// Cost to go after a press of each button of the human.
     after: [u8; MAX_BUTTONS],
     fidelity: Fidelity,
 }
 
 impl DistinctWorlds {
-    /// Removes all worlds and reserves slots for `draws` draws.
+    /// Removes all worlds and reserves hash slots for `draws` draws.
     pub fn clear(&mut self, draws: usize) {
         self.known.clear();
         self.slots.clear();
@@ -72,7 +72,7 @@ impl DistinctWorlds {
         }
     }
 
-    /// Computes the costs to go of all worlds that have none yet; `draws` is the total number of draws.
+    /// Computes the costs to go of all worlds for which they are missing; `draws` is the total number of draws.
     pub fn rate(&mut self, cost: &mut CostToGo, draws: usize) {
         let fidelity = |rated: &RatedWorld| {
             if f64::from(rated.draws) >= COUNTS * draws as f64 { Fidelity::PlanBound } else { Fidelity::LowerBound }
@@ -90,7 +90,7 @@ impl DistinctWorlds {
 
     /// Recomputes costs with [`Fidelity::PlanBound`] for worlds that have lower bounds only and whose posterior weight
     /// (`weights` by world, with total `sum`) is now relevant: a lower bound that is one press too low would be strong
-    /// but wrong evidence. Returns whether there were any.
+    /// but wrong evidence. Returns whether there were such worlds.
     pub fn rate_again(&mut self, cost: &mut CostToGo, weights: &[f64], sum: f64) -> bool {
         let mut any = false;
         for (rated, &weight) in self.known.iter_mut().zip(weights) {
@@ -120,7 +120,7 @@ impl DistinctWorlds {
         self.known[index as usize].costs.as_ref().map_or(&UNKNOWN, |costs| &costs.after)
     }
 
-    /// Cost to go of a world whose costs have been computed.
+    /// Cost to go before any press in a world whose costs have been computed.
     #[inline]
     pub fn here(&self, index: u32) -> u8 {
         self.known[index as usize].costs.map_or(0, |costs| costs.here)

@@ -3,8 +3,8 @@
 //! p(a | b) is a softmax over expected costs to go, so the posterior has no closed form. Belief samples represent the
 //! prior, each by the worlds drawn from it (see [`super::urn`]). The posterior of an aspect is the mixture of
 //! Dir(alpha + n_j) with the weights w_j, collapsed by its mean and second moment. As a control variate, the moments
-//! under equal weights are subtracted and the prior's exact moments are added, so that an uninformative press leaves the
-//! estimate unchanged.
+//! under equal weights are subtracted and the prior's exact moments are added, so that an uninformative press leaves
+//! the estimate unchanged.
 
 use rand::RngExt;
 
@@ -23,7 +23,7 @@ use super::look_news::{SampleLooks, UnseenLooks, ValueFromLook};
 use super::moments::MixtureMoments;
 use super::urn::PolyaUrn;
 
-/// Share of the first draws of a recipe that is spread evenly over its variants (importance sampling), so that
+/// Share of the first draws of a recipe that is spread evenly over the recipe's variants (importance sampling), so that
 /// improbable variants get samples.
 const SPREAD: f64 = 0.4;
 /// Marks an aspect that is not drawn because the decision does not depend on it.
@@ -34,14 +34,14 @@ pub const UNDRAWN: u8 = u8::MAX;
 pub struct PressEvidence {
     /// ln p(a) of the pressed button, given that one is pressed, under the estimate before the press, in nats.
     pub log_p: f64,
-    /// Number of belief samples drawn.
+    /// Number of belief samples that were drawn for the press.
     pub beliefs: usize,
-    /// Effective sample size: 1 / sum of squared normalised weights.
+    /// Effective sample size of the belief samples: 1 / sum of squared normalised weights.
     pub effective: f64,
 }
 
-/// Draws belief samples and weights them by the likelihood of the human's action; its buffers are reused from press to
-/// press.
+/// Draws belief samples and weights them by the likelihood of the human's action; the sampler's buffers are reused from
+/// press to press.
 #[derive(Clone, Debug, Default)]
 pub struct BeliefSampler {
     pub(super) urns: Vec<PolyaUrn>,
@@ -59,24 +59,24 @@ pub struct BeliefSampler {
     /// Weight of each belief sample before and after multiplication with its likelihood p(a | belief).
     pub(super) priors: Vec<f64>,
     pub(super) posteriors: Vec<f64>,
-    /// Parts of each belief sample's likelihood of the press, where the lapse is learned.
+    /// Parts of each belief sample's likelihood of the press (with and without a slip), where the lapse is learned.
     parts: Vec<PressParts>,
-    /// Prior weight of each belief sample, where waiting is evidence multiplied by the probability that the human
+    /// Prior weight of each belief sample; where waiting is evidence, multiplied by the probability that the human
     /// presses at all.
     pressing: Vec<f64>,
     pub(super) worlds: DistinctWorlds,
-    /// The distinct worlds of the belief samples, in consecutive ranges, one range per sample.
+    /// The distinct worlds of all belief samples, in consecutive ranges, one range per sample.
     pub(super) runs: Vec<Run>,
-    /// The distinct draws of the present belief sample.
+    /// The groups of equal draws in the present belief sample.
     alike: Vec<Alike>,
     /// The values of the aspects with several values in a belief sample, by draw.
     keys: Vec<Key>,
-    /// Posterior weight of each world.
+    /// Posterior weight of each distinct world.
     world_weights: Vec<f64>,
-    /// What each belief sample has learned from looks at times of unknown gaze, if there were any.
+    /// What each belief sample has learned from looks at times of unknown gaze; empty without such times.
     pub(super) looks: Vec<SampleLooks>,
     pub(super) news: Vec<ValueFromLook>,
-    /// Systematic sampling of readings: by location, and last of the signal, sum of the probabilities so far.
+    /// Sums of probabilities for systematic sampling of readings: by location, and last for the signal.
     pub(super) read_sums: Vec<f64>,
 }
 
@@ -99,7 +99,7 @@ impl Sample {
     }
 }
 
-/// The draws of one belief sample that give the same world: index of the first, and their number.
+/// The draws of one belief sample that give the same world: index of the first draw, and number of draws.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
     pub(super) world: u32,
@@ -109,10 +109,10 @@ pub(super) struct Run {
 
 /// The values of up to 32 aspects, one byte each.
 type Key = [u64; 4];
-/// Number of values in one part of a key.
+/// Number of values in one of the four parts of a key.
 const KEY_PART: usize = (u64::BITS / u8::BITS) as usize;
 
-/// The equal draws of one belief sample: their values, index of the first, and their number.
+/// The equal draws of one belief sample: their values, the index of the first draw, and the number of draws.
 #[derive(Clone, Copy, Debug)]
 struct Alike {
     key: Key,
@@ -130,7 +130,7 @@ impl BeliefSampler {
     }
 
     /// Updates the estimate by the likelihood of an action of the human, and by the possible looks at times of unknown
-    /// gaze before it.
+    /// gaze before the action.
     pub fn weigh(
         &mut self,
         model: &EvidenceModel,
@@ -164,7 +164,7 @@ impl BeliefSampler {
         }
     }
 
-    /// Prepares urns and buffers for samples of this belief.
+    /// Prepares urns (samplers of values) and buffers for samples of this belief.
     pub(super) fn begin(
         &mut self,
         model: &EvidenceModel,
@@ -222,7 +222,7 @@ impl BeliefSampler {
         let (mut mixed, mut counting) = (0, 0);
         let mut prior = 1.0;
         for (aspect, urn) in self.urns.iter().enumerate() {
-            // A decision depends on the recipes of ordered dishes only.
+            // A decision depends only on the recipes of dishes that are ordered.
             if aspect >= kitchen.locations.len() && counting & 1 << aspect == 0 {
                 self.firsts.push(UNDRAWN);
                 continue;
@@ -266,7 +266,7 @@ impl BeliefSampler {
         }
     }
 
-    /// Groups the draws of a belief sample by equality.
+    /// Groups the draws of a belief sample by equality of their values.
     fn tell_apart(&mut self, states: usize, mixed: u32, rows: usize) {
         self.alike.clear();
         if mixed == 0 {
@@ -317,12 +317,12 @@ impl BeliefSampler {
         }
     }
 
-    /// Cost to go of the present state, summed over the draws of a belief sample.
+    /// Cost to go of the present state, summed over the draws of one belief sample.
     fn sum_here(&self, sample: &Sample) -> u32 {
         self.runs_of(sample).iter().map(|run| run.draws * u32::from(self.worlds.here(run.world))).sum()
     }
 
-    /// Cost to go after each button of the human, summed over the draws of a belief sample.
+    /// Cost to go after each button of the human, summed over the draws of one belief sample.
     #[inline]
     pub(super) fn sum_costs<'a>(
         &self,
@@ -344,7 +344,7 @@ impl BeliefSampler {
     }
 
     /// Computes more exact costs to go for worlds whose posterior weight has become relevant; returns whether there
-    /// were any.
+    /// were such worlds.
     fn rate_again(&mut self, cost: &mut CostToGo, states: usize) -> bool {
         self.world_weights.clear();
         self.world_weights.resize(self.worlds.len(), 0.0);
@@ -357,7 +357,7 @@ impl BeliefSampler {
         self.worlds.rate_again(cost, &self.world_weights, sum)
     }
 
-    /// Expected parts of the last press's likelihood, under the estimate before it.
+    /// Expected parts of the last press's likelihood, under the estimate before that press.
     pub fn expected_parts(&self) -> PressParts {
         let before: f64 = self.pressing.iter().sum();
         let mean = |part: fn(&PressParts) -> f64| {
@@ -376,7 +376,7 @@ impl BeliefSampler {
         }
     }
 
-    /// Projects the weighted samples onto a product of Dirichlets.
+    /// Projects the weighted belief samples onto a product of Dirichlets.
     fn collapse(&self, belief: &mut DirichletBelief, states: usize) {
         let (before, total): (f64, f64) = (self.priors.iter().sum(), self.posteriors.iter().sum());
         let mut all: Vec<MixtureMoments> = belief.aspects.iter().map(MixtureMoments::from_prior).collect();
@@ -407,7 +407,7 @@ impl BeliefSampler {
     }
 }
 
-/// For each value of an order, the bit set of recipe aspects on which the decision depends.
+/// For each value of an order, the bit set of recipe aspects on which the human's decision depends.
 fn wants(kitchen: &Kitchen, order: LocationId) -> Vec<u32> {
     let wanted = |&code: &u8| match OrderContent::from_code(code) {
         OrderContent::Dish(dish) => 1 << kitchen.aspect_of_dish(dish).index(),

@@ -10,10 +10,10 @@ pub struct EvidenceModel<'a> {
     pub kitchen: &'a Kitchen,
     /// The human's choice model.
     pub choice: &'a ChoiceModel,
-    /// Sample sizes of the inference, and which evidence it uses.
+    /// Sample sizes of the inference, and settings for which evidence the inference uses.
     pub inference: &'a InferenceSettings,
     /// For each button of the human, the bit set of locations at which the human looks before the press.
     pub watched: &'a [u32],
-    /// The expected lapse of this person; `None` where it is that of the choice model.
+    /// The expected lapse (share of slips) of this person; `None`: the lapse of the choice model.
     pub lapse: Option<f64>,
 }

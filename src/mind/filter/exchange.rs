@@ -8,42 +8,43 @@ use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use super::gamma::DirichletSampler;
 use super::own_press::DOUBT;
 
-/// Effect of a press of a location's button, for given contents of hand and location.
+/// Effect of a press of a location's button, given the contents of hand and location.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
     Nothing,
     PickUp,
     PutDown,
-    /// The items are stacked: the location holds this value afterwards.
+    /// The items are stacked: the location holds the stack with this value afterwards.
     Stack(usize),
 }
 
-/// A location's button: classes ("kinds") of contents that the button treats alike in hand and location, and the effect
-/// for each pair.
+/// A location's button: the classes ("kinds") of contents that the button treats alike in hand and location, and the
+/// effect of a press for each pair of kinds.
 #[derive(Clone, Debug)]
 pub struct ExchangeUpdate {
     hand: Side,
     location: Side,
-    /// Effect by values: `[hand value * number of location values + location value]`.
+    /// Effect of a press by values: `[hand value * number of location values + location value]`.
     outcomes: Vec<Outcome>,
-    /// Effect by kinds of contents, in the same layout; which stack results is not distinguished.
+    /// Effect of a press by kinds of contents, in the same layout; kinds do not say which stack results.
     by_kind: Vec<Outcome>,
 }
 
-/// One of the two aspects that the press involves: the content of the hand, or of the location.
+/// One of the two state aspects that the press involves: the content of the hand, or of the location.
 #[derive(Clone, Debug)]
 struct Side {
     aspect: AspectId,
     empty: usize,
-    /// Kind of each value, and number of kinds.
+    /// Kind of each value of the aspect, and number of kinds.
     kind_of: Vec<usize>,
     kinds: usize,
-    /// For each value, the same content's value on the other side, where that side can hold it.
+    /// For each value, the same content's value on the other side (hand or location); `None` if that side cannot hold
+    /// it.
     across: Vec<Option<usize>>,
 }
 
 impl ExchangeUpdate {
-    /// The human's button of a location.
+    /// The update for the human's button of this location.
     pub fn new(kitchen: &Kitchen, location: LocationId) -> ExchangeUpdate {
         let hand_at = kitchen.hands[Agent::Human.index()];
         let aspects = [AspectId::of_location(hand_at), AspectId::of_location(location)];
@@ -85,7 +86,7 @@ impl ExchangeUpdate {
         ExchangeUpdate { hand, location, outcomes, by_kind }
     }
 
-    /// Updates the estimate by the human's press of this button.
+    /// Updates the estimate by the human's press of the location's button.
     pub fn learn(&self, belief: &mut DirichletBelief, effective: bool, draws: usize, random: &mut Stream) {
         let sides = [&self.hand, &self.location].map(|side| Parts::from_prior(belief.aspect(side.aspect), side));
         let shares = self.shares(&sides, effective, draws, random);
@@ -158,7 +159,7 @@ impl ExchangeUpdate {
     }
 }
 
-/// Classifies `count` values by `trait_of`: the kind of each value, and the first value of each kind.
+/// Classifies `count` values by the function `trait_of`: the kind of each value, and the first value of each kind.
 fn kinds<T: PartialEq>(count: usize, trait_of: impl Fn(usize) -> T) -> (Vec<usize>, Vec<usize>) {
     let mut known: Vec<T> = Vec::new();
     let (mut kind_of, mut firsts) = (Vec::with_capacity(count), Vec::new());
@@ -179,7 +180,7 @@ fn kinds<T: PartialEq>(count: usize, trait_of: impl Fn(usize) -> T) -> (Vec<usiz
 struct Parts<'a> {
     side: &'a Side,
     belief: &'a Dirichlet,
-    /// Expected probabilities and alphas of the kinds of contents.
+    /// Expected probability and alpha of each kind of content.
     means: Vec<f64>,
     alphas: Vec<f64>,
     /// Pooled second moment of the distribution within each kind.
@@ -207,7 +208,7 @@ impl<'a> Parts<'a> {
         kinds.filter(move |(_, other)| **other == kind).map(|(value, _)| value)
     }
 
-    /// Expected probability of a value, given its kind.
+    /// Expected probability of a value, given that its kind is the case.
     fn inner(&self, value: usize) -> f64 {
         self.belief.mean()[value] / self.means[self.side.kind_of[value]]
     }
@@ -232,9 +233,9 @@ impl<'a> Parts<'a> {
 struct Shares {
     draws: f64,
     of_pairs: Vec<[f64; 2]>,
-    /// Probability that the hand, and that the location, is empty afterwards.
+    /// Probability that the hand, and that the location, is empty after the press.
     emptied: [[f64; 2]; 2],
-    /// Change of the prior moments, by side (hand, location) and kind.
+    /// Change of the prior moments of probabilities, by side (hand, location) and kind.
     change: [Vec<[f64; 2]>; 2],
     /// Probability in one draw, by side (hand, location) and kind.
     sums: [Vec<f64>; 2],
@@ -288,7 +289,7 @@ fn add(moments: &mut [f64; 2], share: f64) {
     moments[1] += share * share;
 }
 
-/// Moments of a mixture, accumulated part by part.
+/// Mean and second moment of a mixture of distributions, accumulated part by part.
 struct Mixture {
     mean: Vec<f64>,
     second: f64,
@@ -304,7 +305,7 @@ impl Mixture {
         self.second += share[1];
     }
 
-    /// Adds the distribution within one kind of the other side.
+    /// Adds to the mixture the distribution within one kind of the other side.
     fn add_part(&mut self, share: [f64; 2], other: &Parts, kind: usize) {
         self.second += share[1] * other.seconds[kind];
         for value in other.of_kind(kind) {

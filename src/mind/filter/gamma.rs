@@ -6,9 +6,9 @@ use rand_distr::{Distribution, Gamma};
 use crate::base::rng::Stream;
 
 /// Sampler of one Dirichlet. Gamma variates are drawn as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a); Marsaglia and
-/// Tsang 2000), since those with small alphas would underflow.
+/// Tsang 2000), since variates with small alphas would underflow.
 pub struct DirichletSampler {
-    /// Distribution Gamma(a + 1) and a itself, by component.
+    /// For each component, the distribution Gamma(a + 1), and the parameter a itself.
     of: Vec<(Option<Gamma<f64>>, f64)>,
 }
 

@@ -6,16 +6,17 @@ use crate::kitchen::ButtonId;
 /// proposes may be made because of the proposal, which is equally likely under any belief.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PressMixture {
-    /// The pressed button.
+    /// The button that the human pressed.
     pub button: ButtonId,
-    /// Probability that the human presses the button because it is proposed.
+    /// Probability that the human presses the button because the display proposes it.
     pub proposed: f64,
-    /// Probability that the human presses a button of its own choice.
+    /// Probability that the human follows a choice of its own rather than a proposal.
     pub chosen: f64,
 }
 
 impl PressMixture {
-    /// A press while `proposed` is proposed, by a human who makes proposed presses with the probability `follows`.
+    /// A press of `button` while the display proposes `proposed`, by a human who makes proposed presses with the
+    /// probability `follows`.
     pub fn new(button: ButtonId, proposed: Option<ButtonId>, follows: f64) -> PressMixture {
         match proposed {
             None => PressMixture { button, proposed: 0.0, chosen: 1.0 },
@@ -26,7 +27,7 @@ impl PressMixture {
         }
     }
 
-    /// p(a | belief), from the probability that a human with the belief chooses the button.
+    /// p(a | belief), from the probability `choice` that a human with the belief chooses the button.
     #[inline]
     pub fn likelihood(&self, choice: f64) -> f64 {
         self.proposed + self.chosen * choice
@@ -41,7 +42,7 @@ pub enum HumanAction {
     /// The human has not pressed for longer than usual. Likelihood: l + (1 - l) p(wait | b), where l is the share of
     /// the human's intervals between presses that are longer: the human still thinks, or has decided to wait.
     Waits {
-        /// Share of the human's intervals between presses that are longer.
+        /// Share of the human's intervals between presses that are longer than the present silence.
         longer: f64,
     },
 }

@@ -47,8 +47,8 @@ use serving::ServingUpdate;
 use signals_so_far::SignalsSoFar;
 use unknown_gaze::UnknownGazePeriod;
 
-/// How the human's press of a button changes the belief: it involves one location, or several that jointly determine
-/// the effect of the press.
+/// How the human's press of a button changes the belief: the press involves one location, or several that jointly
+/// determine its effect.
 #[derive(Clone, Debug)]
 enum Lesson {
     Alone,
@@ -63,7 +63,7 @@ pub struct BeliefFilter {
     model: HumanModel,
     seed: u64,
     belief: DirichletBelief,
-    /// The prior to which beliefs about recipes decay.
+    /// The prior distribution to which beliefs about recipes decay.
     prior: DirichletBelief,
     reader: GazeBeliefUpdate,
     presence: GazeAvailability,
@@ -78,24 +78,24 @@ pub struct BeliefFilter {
     lessons: Vec<Lesson>,
     sampler: BeliefSampler,
     shown: State,
-    /// Number of presses of both agents so far. It seeds the random stream of an update, so that other events in a log
-    /// do not change the estimate.
+    /// Number of presses of both agents so far. The number seeds the random stream of an update, so that other events
+    /// in a log do not change the estimate.
     presses: u64,
-    /// Time up to which forgetting has been applied; `None` while the trial is paused.
+    /// Time up to which forgetting of recipes has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
     /// Time at which the task was frozen for a probe, as long as it stands still.
     frozen: Option<SessionTime>,
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
-    /// Signals that take time to be read.
+    /// Signals of the trial, as far as they take time to be read.
     signals: SignalsSoFar,
-    /// How often the person slips, where that is learned.
+    /// How often this person slips, where the model learns that.
     lapse: LapsePosterior,
     evidence: Option<PressEvidence>,
 }
 
 impl BeliefFilter {
-    /// An estimate before the trial's start.
+    /// A filter with the estimate before the trial's start.
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel, seed: u64) -> BeliefFilter {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
@@ -140,7 +140,7 @@ impl BeliefFilter {
         self.evidence
     }
 
-    /// The share of presses that slip: as far as it has been learned in this trial, or the human model's.
+    /// The expected share of presses that slip: as learned in this trial, or else the human model's.
     pub fn lapse(&self) -> f64 {
         if self.model.adapt.lapse { self.lapse.expected() } else { self.model.decision.lapse }
     }
@@ -174,7 +174,7 @@ impl BeliefFilter {
         (self.needs, self.stretch) = (None, None);
     }
 
-    /// Updates the estimate with an event.
+    /// Updates the estimate with an event's evidence at the session time `now`.
     fn update(&mut self, now: SessionTime, what: &ObservedEvidence, cost: &mut CostToGo) {
         match *what {
             ObservedEvidence::Started { state } => {
@@ -218,8 +218,8 @@ impl BeliefFilter {
         }
     }
 
-    /// Accounts for unknown gaze up to `now`. The estimate before a press includes it; [`BeliefFilter::observe`] does
-    /// the same first, so calling it changes no later estimate.
+    /// Accounts for unknown gaze up to `now`, which the estimate before a press includes; [`BeliefFilter::observe`]
+    /// does the same first, so a call of this function changes no later estimate.
     pub fn advance(&mut self, now: SessionTime, cost: &mut CostToGo) {
         let now = self.frozen.unwrap_or(now);
         if self.forgot.is_some() {
@@ -228,7 +228,7 @@ impl BeliefFilter {
         }
     }
 
-    /// The estimate at `now`, with the unknown gaze and the forgetting since the last event. The call changes no later
+    /// The estimate at `now`, including unknown gaze and forgetting since the last event. The call changes no later
     /// estimate.
     pub fn at(&self, now: SessionTime, cost: &mut CostToGo) -> DirichletBelief {
         let mut filter = self.clone();
@@ -239,7 +239,7 @@ impl BeliefFilter {
     }
 
     /// Continues after a freeze probe of this duration: all times are shifted, so that the estimate is as if the task
-    /// had not stood still, except for looks at the locations that the questions were about.
+    /// had not stood still, except for looks at locations that the probe's questions were about.
     fn thaw(&mut self, by: SessionTime, asked: u32, teaches: f64) {
         self.frozen = None;
         self.forgot = self.forgot.map(|at| at + by);
@@ -317,7 +317,7 @@ impl BeliefFilter {
         self.sampler.needs(&model, cost, &self.belief, &mut random)
     }
 
-    /// Accounts for changes by others that attract the human's gaze, where the gaze is unknown.
+    /// Accounts for changes by others that attract the human's gaze while the gaze is unknown.
     fn see_changes(&mut self, now: SessionTime, after: State) {
         let unknown = if self.forgot.is_some() { self.presence.unknown_share(now) } else { 0.0 };
         let seen = self.model.looking.capture * unknown;
@@ -333,7 +333,7 @@ impl BeliefFilter {
         }
     }
 
-    /// Updates the estimate by the likelihood of a press, with the possible looks at unknown gaze before it.
+    /// Updates the estimate by the likelihood of a press, with the possible looks at unknown gaze before the press.
     fn weigh_press(&mut self, press: PressMixture, cost: &mut CostToGo, random: &mut Stream) -> PressEvidence {
         let stretch = self.stretch.take();
         let signal = stretch.as_ref().and_then(|stretch| self.unseen_signal(stretch.signal_hazard));
@@ -361,7 +361,7 @@ impl BeliefFilter {
         evidence
     }
 
-    /// Updates the estimate by the likelihood of having waited.
+    /// Updates the estimate by the likelihood that the human has waited so long.
     fn weigh_waiting(&mut self, longer: f64, cost: &mut CostToGo) {
         let mut random = stream(self.seed, "waiting", self.presses);
         let (kitchen, choice, watched, lapse) = (&*self.kitchen, &self.choice, &self.watched[..], None);

@@ -1,5 +1,5 @@
-//! Accumulation of weighted belief samples of one aspect, and their projection onto a Dirichlet by mean and second
-//! moment.
+//! Accumulation of weighted belief samples of one state aspect, and their projection onto a Dirichlet by mean and
+//! second moment.
 
 use super::urn::PolyaUrn;
 use crate::mind::dirichlet::Dirichlet;
@@ -11,12 +11,12 @@ pub struct MixtureMoments<'a> {
     mean: Vec<f64>,
     second: f64,
     square: f64,
-    /// Weight of the prior's mean, added at the end.
+    /// Weight of the prior's mean, which is added at the end.
     share: f64,
     /// Total weight of the belief samples whose draws all have the same value, by value; the last entry is for samples
     /// in which the aspect was not drawn.
     pure: Vec<f64>,
-    /// Distinct values of one belief sample with their counts.
+    /// Distinct values of one belief sample, each with its number of draws.
     counts: Vec<(u8, u32)>,
 }
 
@@ -29,8 +29,8 @@ impl MixtureMoments<'_> {
         MixtureMoments { prior, mean, second: prior.second(), square, share: 0.0, pure, counts: Vec::new() }
     }
 
-    /// Adds Dir(alpha + counts of the drawn values) with this weight; `draws` is the number of draws. All weights sum
-    /// to 0.
+    /// Adds Dir(alpha + counts of the drawn values) with this weight; `draws` is the number of draws. The weights of
+    /// all added distributions sum to 0.
     pub fn add(&mut self, drawn: impl Iterator<Item = (u8, u32)>, draws: usize, weight: f64) {
         self.counts.clear();
         for (value, times) in drawn {
@@ -52,7 +52,7 @@ impl MixtureMoments<'_> {
     }
 
     /// Adds a belief sample whose draws all have one value (or were not drawn): such samples are summed first and added
-    /// at the end.
+    /// to the moments at the end.
     #[inline]
     pub fn add_later(&mut self, value: u8, weight: f64) {
         let last = self.pure.len() - 1;
@@ -79,14 +79,14 @@ impl MixtureMoments<'_> {
 
     fn add_moments(&mut self, weight: f64, size: f64, cross: f64, squares: f64) {
         let precision = self.prior.precision();
-        // The contribution of the prior's alphas. It cancels where all samples have the same number of draws.
+        // The contribution of the prior's alphas, which cancels where all samples have the same number of draws.
         self.share += weight * precision / size;
         let second = precision * precision * self.square + 2.0 * precision * cross + squares + size;
         self.second += weight * second / (size * (size + 1.0));
     }
 
     /// The Dirichlet with the accumulated moments. A gain of the value that represents the improbable values (tail)
-    /// belongs to that value alone; a loss is shared by the whole tail in proportion.
+    /// belongs to that value alone; a loss is shared by the whole tail in proportion to the probabilities.
     pub fn collapsed(mut self, draws: usize, stand_in: Option<usize>) -> Dirichlet {
         for value in 0..self.pure.len() {
             if self.pure[value] != 0.0 {

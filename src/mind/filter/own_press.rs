@@ -1,11 +1,11 @@
-//! The update of the estimate by the human's own press: the human knows which button it pressed and whether the press
+//! The update of the estimate by the human's own press: the human knows which button was pressed and whether the press
 //! was effective.
 //!
-//! The belief is conditioned on effective or ineffective, then transformed by the rules. Where one location determines
-//! the effect, the update is exact: a Dirichlet restricted to some of its values is a Dirichlet with their alphas.
-//! Where hand and location (see [`super::exchange`]) or plate, order and recipe (see [`super::serving`]) determine it
-//! jointly, only the probabilities of classes of contents that the rules treat alike are sampled; the distribution
-//! within a class is independent of them and stays exact.
+//! The belief is conditioned on effective or ineffective, then transformed by the kitchen's rules. Where one location
+//! determines the effect, the update is exact: a Dirichlet restricted to some of its values is a Dirichlet with their
+//! alphas. Where hand and location (see [`super::exchange`]) or plate, order and recipe (see [`super::serving`])
+//! determine the effect jointly, only the probabilities of classes of contents that the rules treat alike are sampled;
+//! the distribution within a class is independent of these probabilities and stays exact.
 
 use crate::kitchen::{Agent, AspectId, ButtonAction, ContentId, Kitchen};
 use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
@@ -14,7 +14,7 @@ use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 /// impossible in a draw still gives a proper distribution.
 pub const DOUBT: f64 = 1e-6;
 
-/// Restricts a Dirichlet to the values with `keep`, then maps each value by `becomes` (exact).
+/// Restricts a Dirichlet to the values for which `keep` holds, then maps each value by `becomes` (exact).
 fn restrict(dirichlet: &Dirichlet, keep: impl Fn(usize) -> bool, becomes: impl Fn(usize) -> usize) -> Dirichlet {
     let mut mean = vec![0.0; dirichlet.mean().len()];
     let mut kept = 0.0;
@@ -28,7 +28,7 @@ fn restrict(dirichlet: &Dirichlet, keep: impl Fn(usize) -> bool, becomes: impl F
     }
 }
 
-/// Updates the estimate by a press whose effect depends on one location; returns whether the press is of that kind.
+/// Updates the estimate by a press whose effect depends on one location; returns whether the press is of this kind.
 pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: ButtonAction, effective: bool) -> bool {
     let hand = AspectId::of_location(kitchen.hands[Agent::Human.index()]);
     let empty = value_of(kitchen, hand, ContentId::EMPTY);
@@ -42,8 +42,8 @@ pub fn learn_alone(kitchen: &Kitchen, belief: &mut DirichletBelief, action: Butt
             };
         }
         ButtonAction::Trash => {
-            // The hand is empty afterwards: an effective press emptied it, and before an ineffective one it was empty
-            // already.
+            // The hand is empty afterwards: an effective press emptied the hand, and before an ineffective press it was
+            // empty already.
             let of_hand = &mut belief.aspects[hand.index()];
             *of_hand = restrict(of_hand, |_| true, |_| empty);
         }

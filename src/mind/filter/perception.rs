@@ -7,6 +7,7 @@
 //! and `survived` the probability that it has not been read since. The weight of m0 in the present belief is 1 - unread
 //! (1 - survived); the remaining weight is on the content that was read. Each sample moves a further share of m0 to
 //! that content. Mean and second moment are exact.
+//! that content. Mean and second moment are exact.
 
 use std::collections::VecDeque;
 
@@ -16,17 +17,17 @@ use crate::kitchen::{AspectId, ContentId, DishId, Kitchen, LocationId, LocationK
 use crate::mind::dirichlet::DirichletBelief;
 use crate::mind::model::{PerceptionModel, ReadingRate};
 
-/// The gaze counts as being elsewhere where the reading rate of a location is below this share of the full rate.
+/// Share of the full reading rate below which the gaze counts as being elsewhere than at a location.
 const ELSEWHERE: f64 = 0.1;
-/// Contents that are read with a smaller probability are ignored.
+/// Contents that would be read with a smaller probability than this are ignored.
 pub const NEGLIGIBLE: f64 = 1e-9;
 
-/// A look at a location: consecutive gaze samples near it.
+/// A look at a location: consecutive gaze samples near the location.
 #[derive(Clone, Copy, Debug)]
 struct Look {
     /// Probability that the location had not been read in this look up to the last event other than a gaze sample.
     unread: f64,
-    /// Probability that the location has not been read since that event.
+    /// Probability that the location has not been read since that last event.
     survived: f64,
     /// Code of the content that the display showed at the last sample of the look.
     code: u8,
@@ -44,19 +45,19 @@ impl Look {
     }
 }
 
-/// Updates the estimate with gaze samples.
+/// The update of the estimate by gaze samples, with looks and the display's history.
 #[derive(Clone, Debug)]
 pub struct GazeBeliefUpdate {
-    /// Confusion matrix of each location: by true value, the probability of reading each value.
+    /// Confusion matrix of each location: for each true value, the probability of reading each value.
     confusions: Vec<Vec<Vec<f64>>>,
     rate: ReadingRate,
     looks: Vec<Look>,
-    /// Recent states of the display, each with the time at which it appeared.
+    /// Recent states of the display, each with the session time at which the state appeared.
     shown: VecDeque<(SessionTime, State)>,
 }
 
 impl GazeBeliefUpdate {
-    /// A reader at the start of a trial, before the first sample.
+    /// The gaze update at the start of a trial, before the first gaze sample.
     pub fn new(kitchen: &Kitchen, model: &PerceptionModel) -> GazeBeliefUpdate {
         let of_location = |index: usize| {
             let values = kitchen.aspects[index].values.len();
@@ -90,13 +91,13 @@ impl GazeBeliefUpdate {
         self.shown.iter_mut().for_each(|(since, _)| *since = *since + by);
     }
 
-    /// Distribution of the value read at a location while the display shows `state`; empty if it has no value there.
+    /// Distribution of the value read at a location while the display shows `state`; empty if no value is shown there.
     pub fn reading(&self, kitchen: &Kitchen, location: LocationId, state: State) -> &[f64] {
         let value = kitchen.aspects[location.index()].index_of(state.code(location));
         value.map_or(&[], |value| &self.confusions[location.index()][value])
     }
 
-    /// State of the display at `time`; `None` if that time is before the stored history.
+    /// State that the display showed at `time`; `None` if that time is before the stored history.
     fn shown_at(&self, time: SessionTime) -> Option<State> {
         self.shown.iter().rev().find(|(since, _)| *since <= time).map(|(_, state)| *state)
     }
@@ -112,7 +113,7 @@ impl GazeBeliefUpdate {
         taken: SessionTime,
         known_s: f64,
     ) {
-        // These comparisons are false for NaN.
+        // A point that is NaN is not on the display: these comparisons are false for NaN.
         let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
         let is_usable = on_display && known_s > 0.0;
         let Some(state) = self.shown_at(taken).filter(|_| is_usable) else { return };
@@ -139,7 +140,7 @@ impl GazeBeliefUpdate {
     }
 }
 
-/// Probabilities of reading each value of a location's aspect, given that `value` is displayed.
+/// Probabilities of reading each value of a location's aspect, given that `value` is displayed there.
 fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, value: usize) -> Vec<f64> {
     let aspect = &kitchen.aspects[location.index()];
     let alike: Vec<usize> = look_alike_codes(kitchen, location, aspect.values[value])
@@ -159,7 +160,7 @@ fn confusion(kitchen: &Kitchen, model: &PerceptionModel, location: LocationId, v
     (0..aspect.values.len()).map(chance).collect()
 }
 
-/// Codes of the look-alikes of a content or, at an order, of its dish.
+/// Codes of the contents that look like a content or, at an order, of the dishes that look like the ordered one.
 fn look_alike_codes(kitchen: &Kitchen, location: LocationId, code: u8) -> Vec<u8> {
     if kitchen.location(location).kind != LocationKind::Order {
         return kitchen.content(ContentId(code)).look_alikes.iter().map(|alike| alike.0).collect();

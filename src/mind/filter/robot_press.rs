@@ -1,9 +1,9 @@
 //! The update of the estimate by a robot's press: the human notices that the robot pressed a button, but not which one.
 //!
-//! Worlds are drawn from the estimate. For each, the robot's task policy gives the possible presses and the rules give
-//! their results. This defines a transition kernel T over the values of every aspect. The belief b becomes b T; its
-//! mean is m T and, since b is Dirichlet with precision A, S' = (A sum_w m'_w^2 + sum_v m_v sum_w T_vw^2) / (A + 1).
-//! Values that no press changes are not affected.
+//! Worlds are drawn from the estimate. For each world, the robot's task policy gives the possible presses and the rules
+//! give their results. This defines a transition kernel T over the values of every aspect. The belief b becomes b T;
+//! its mean is m T and, since b is Dirichlet with precision A, S' = (A sum_w m'_w^2 + sum_v m_v sum_w T_vw^2) / (A +
+//! 1). Values that no press changes are not affected.
 
 use crate::base::rng::Stream;
 use crate::kitchen::cost_to_go::{CostToGo, Fidelity};
@@ -14,10 +14,10 @@ use crate::robot::policy;
 
 use super::urn::PolyaUrn;
 
-/// Worlds with a smaller share of the draws use lower bounds instead of plans for their costs to go.
+/// Share of the draws below which a world's costs to go are computed by lower bounds instead of plans.
 const COUNTS: f64 = 0.05;
 
-/// One transition of an aspect's value to another, with its weight.
+/// One transition of an aspect's value to another value, with the weight of the transition.
 #[derive(Clone, Copy, Debug)]
 struct Flow {
     aspect: usize,
@@ -77,12 +77,12 @@ fn note_changes(kitchen: &Kitchen, before: State, after: State, weight: f64, flo
     }
 }
 
-/// The estimate of an aspect after the transition kernel, which is given by the transitions `flows` and by how often
-/// each value was drawn.
+/// The estimate of an aspect after applying the transition kernel, which is given by the transitions `flows` and by how
+/// often each value was drawn.
 fn moved(dirichlet: &Dirichlet, flows: &[Flow], occurred: &[f64]) -> Dirichlet {
     let (old, precision) = (dirichlet.mean(), dirichlet.precision());
     let mut mean = old.to_vec();
-    // By value: the probability of staying, and the sum over target values of T^2.
+    // For each value: the probability of staying, and the sum over target values of T^2.
     let mut stays = vec![1.0; old.len()];
     let mut squares = vec![0.0; old.len()];
     for flow in flows {
@@ -98,7 +98,7 @@ fn moved(dirichlet: &Dirichlet, flows: &[Flow], occurred: &[f64]) -> Dirichlet {
     Dirichlet::of_moments(mean, (precision * square + spread) / (precision + 1.0))
 }
 
-/// Worlds drawn from the expected belief by stratified sampling; a world's weight is its number of draws.
+/// Worlds drawn from the expected belief by stratified sampling; the weight of a world is its number of draws.
 fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut Stream) -> WeightedWorlds {
     let mut worlds = vec![World::empty(kitchen); draws];
     let mut values = vec![0; draws];
@@ -127,7 +127,7 @@ fn draw(kitchen: &Kitchen, belief: &DirichletBelief, draws: usize, random: &mut 
     together
 }
 
-/// Whether an active order shows this content.
+/// Whether any active order shows this content.
 fn is_wanted(kitchen: &Kitchen, state: State, content: OrderContent) -> bool {
     kitchen.orders.iter().any(|&order| state.order(order) == content)
 }

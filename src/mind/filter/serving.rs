@@ -13,10 +13,10 @@ use crate::mind::dirichlet::{Dirichlet, DirichletBelief};
 use super::gamma::DirichletSampler;
 use super::own_press::DOUBT;
 
-/// Dishes with a smaller expected probability of being ordered are ignored.
+/// Expected probability of being ordered below which a dish is ignored.
 const NEGLIGIBLE: f64 = 1e-4;
 
-/// The button that serves an order, with the aspects on which its effect depends.
+/// The button that serves an order, with the state aspects on which the button's effect depends.
 #[derive(Clone, Debug)]
 pub struct ServingUpdate {
     order: AspectId,
@@ -26,24 +26,24 @@ pub struct ServingUpdate {
     dishes: Vec<Served>,
 }
 
-/// The values of the order's and the plate's aspect that belong to one dish.
+/// The values of the order's and of the plate's aspect that belong to one dish.
 #[derive(Clone, Debug)]
 struct Served {
-    /// Value of the order's aspect for this dish.
+    /// Value of the order's aspect when the order wants this dish.
     ordered: usize,
     recipe: AspectId,
-    /// Value of the plate's aspect for each variant of the dish's recipe.
+    /// Value of the plate's aspect for each variant of this dish's recipe; `None` if the plate cannot hold the variant.
     on_plate: Vec<Option<usize>>,
 }
 
-/// Change of the moments of one aspect by conditioning, accumulated over draws.
+/// Change of the moments of one state aspect by conditioning, accumulated over draws.
 struct Tally {
     mean: Vec<f64>,
     second: f64,
 }
 
 impl ServingUpdate {
-    /// The human's button that serves this order.
+    /// The update for the human's button that serves this order.
     pub fn new(kitchen: &Kitchen, order: LocationId) -> ServingUpdate {
         let (order, plate) = (AspectId::of_location(order), AspectId::of_location(kitchen.plate));
         let [ordered, on_plate] = [order, plate].map(|aspect| &kitchen.aspects[aspect.index()]);
@@ -59,7 +59,7 @@ impl ServingUpdate {
         ServingUpdate { order, plate, served, empty: on_plate.index_of(0).unwrap_or(0), dishes: dishes.collect() }
     }
 
-    /// Updates the estimate by a press of this serve button.
+    /// Updates the estimate by a press of the order's serve button.
     pub fn learn(&self, belief: &mut DirichletBelief, effective: bool, draws: usize, random: &mut Stream) {
         let expected = belief.aspect(self.order).mean();
         let dishes: Vec<&Served> = self.dishes.iter().filter(|dish| expected[dish.ordered] >= NEGLIGIBLE).collect();
@@ -93,8 +93,8 @@ impl ServingUpdate {
     }
 }
 
-/// The draws of order, plate and recipes conditioned on an effective or ineffective press; `None` if its probability is
-/// 0.
+/// The draws of order, plate and recipes conditioned on an effective or ineffective press; `None` if that has
+/// probability 0.
 fn condition(dishes: &[&Served], draws: &[Draw], effective: bool) -> Option<Vec<Vec<f64>>> {
     let (order, plate) = (&draws[0].now, &draws[1].now);
     let place = |value: Option<usize>| value.map(|value| draws[1].part_of[value]);
@@ -127,7 +127,7 @@ fn condition(dishes: &[&Served], draws: &[Draw], effective: bool) -> Option<Vec<
         let is_wanted = order[dish.ordered];
         after[0][dish.ordered] = is_wanted * of(each[index]) / total;
         let recipe = &draws[index + 2].now;
-        // Where another dish is ordered, the press carries no information about this recipe.
+        // Where another dish is ordered, the press carries no information about this dish's recipe.
         let elsewhere = 1.0 - is_wanted * of(each[index]) / total;
         for (variant, r) in recipe.iter().enumerate() {
             after[index + 2][variant] = elsewhere * r + is_wanted * r * of(fits(index, variant)) / total;
@@ -145,7 +145,7 @@ fn condition(dishes: &[&Served], draws: &[Draw], effective: bool) -> Option<Vec<
 /// Repeated draws of a categorical distribution from a Dirichlet, with some values merged into classes.
 struct Draw {
     aspect: AspectId,
-    /// Class to which each value belongs.
+    /// Class to which each value of the aspect belongs.
     part_of: Vec<usize>,
     means: Vec<f64>,
     precision: f64,
@@ -153,7 +153,7 @@ struct Draw {
     now: Vec<f64>,
 }
 
-/// The sampler of a Dirichlet with these means; a class may be empty.
+/// The sampler of a Dirichlet with these means of classes; a class may be empty.
 fn gammas(means: &[f64], precision: f64) -> DirichletSampler {
     let alphas: Vec<f64> = means.iter().map(|mean| (precision * mean).max(f64::MIN_POSITIVE)).collect();
     DirichletSampler::new(&alphas)

@@ -1,4 +1,4 @@
-//! The signals of a trial as the estimate follows them: the one on the display, and how many were read.
+//! The signals of a trial as the estimate follows them: the signal on the display, and how many signals were read.
 
 use crate::base::time::SessionTime;
 use crate::kitchen::{AspectId, Kitchen, LocationId, LocationKind, State};
@@ -8,20 +8,20 @@ use crate::mind::signal_model::SignalModel;
 /// A signal on the display.
 #[derive(Clone, Debug)]
 pub struct StandingSignal {
-    /// The location that it is about.
+    /// The location that the signal is about.
     pub location: LocationId,
-    /// The aspects that it makes certain once it is read.
+    /// The state aspects of which the human becomes certain by reading the signal.
     pub aspects: Vec<AspectId>,
-    /// Session time at which it was shown.
+    /// Session time at which the signal was shown.
     pub since: SessionTime,
-    /// Probability that it is noticed.
+    /// Probability that the participant notices the signal.
     pub noticed: f64,
-    /// Probability that it has not been read yet.
+    /// Probability that the signal has not been read yet.
     pub unread: f64,
 }
 
 impl StandingSignal {
-    /// Makes its aspects certain with the probability `share`.
+    /// Makes the estimate certain of the signal's aspects with the probability `share`.
     pub fn teach(
         &self,
         kitchen: &Kitchen,
@@ -41,31 +41,31 @@ impl StandingSignal {
 /// A signal that has left the display.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignalOver {
-    /// The location that it was about.
+    /// The location that the signal was about.
     pub location: LocationId,
-    /// Probability that it was read.
+    /// Probability that the signal was read before it left the display.
     pub read: f64,
 }
 
 /// The signals of a trial, as far as they take time to be read.
 #[derive(Clone, Debug, Default)]
 pub struct SignalsSoFar {
-    /// The signal on the display.
+    /// The signal that is on the display now.
     pub standing: Option<StandingSignal>,
-    /// The last one that has left the display, until it is taken.
+    /// The last signal that has left the display, until the belief filter's function `take_signal_over` takes it.
     pub over: Option<SignalOver>,
-    /// Expected number of signals that were read, and number of signals that are over.
+    /// Expected number of signals that were read, and number of signals that have left the display.
     read: f64,
     shown: f64,
 }
 
 impl SignalsSoFar {
-    /// Moves all times on, because the task stood still.
+    /// Moves the signal's times on by a duration for which the task stood still.
     pub fn postpone(&mut self, by: SessionTime) {
         self.standing.iter_mut().for_each(|standing| standing.since = standing.since + by);
     }
 
-    /// The signal leaves the display.
+    /// The signal on the display leaves the display.
     pub fn end(&mut self) {
         if let Some(StandingSignal { location, unread, .. }) = self.standing.take() {
             (self.read, self.shown) = (self.read + 1.0 - unread, self.shown + 1.0);

@@ -1,12 +1,14 @@
-//! The signal that stands on the display: whether it has been read is a part of the estimate.
+//! The signal on the display: whether the participant has read it is a part of the estimate.
 //!
-//! While the gaze is known, the signal is read as a location is: at a rate that falls with the distance of the gaze from its place. While the
-//! gaze is unknown, it draws the eye with a hazard that over all time gives the probability that it is noticed (see [`crate::mind::signal_model::SignalModel`]). So a
-//! known gaze elsewhere for all of the signal's time is evidence that it was missed. Reading it makes its aspects certain; to read it
-//! once more changes nothing. A press of the human draws the readings in the unknown time since the last event anew, see
-//! [`super::unseen_looks`].
+//! While the gaze is known, the signal is read as a location is: at a rate that falls with the distance of the gaze
+//! from the signal's place. While the gaze is unknown, the signal draws the eye with a hazard that over all time gives
+//! the probability that it is noticed (see [`crate::mind::signal_model::SignalModel`]). So a gaze that is known to be
+//! elsewhere for all of the signal's time is evidence that the signal was missed. Reading the signal makes the signal's
+//! aspects certain; reading it once more changes nothing. A press of the human draws the readings in the unknown time
+//! since the last event anew, see [`super::unseen_looks`].
 //!
-//! What was read and what was missed tells how often this person notices signals: the counts of a Beta distribution.
+//! From signals that were read or missed, the filter learns how often this person notices signals: the counts of a Beta
+//! distribution.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
@@ -22,12 +24,12 @@ use super::perception::NEGLIGIBLE;
 use super::signals_so_far::{SignalOver, StandingSignal};
 
 impl BeliefFilter {
-    /// The signal that has left the display since the last call, if one has.
+    /// The signal that has left the display since the last call of this function; `None` if none has.
     pub fn take_signal_over(&mut self) -> Option<SignalOver> {
         self.signals.over.take()
     }
 
-    /// How a signal that is shown now will be read.
+    /// The forecast of how a signal that is shown now will be read.
     pub fn forecast(&self) -> SignalForecast {
         let model = &self.model.signal;
         if !model.takes_time() {
@@ -38,8 +40,8 @@ impl BeliefFilter {
         SignalForecast { recipe, highlight, delay_s: model.delay_s }
     }
 
-    /// An estimate in which the signal on the display has been read as far as it is to be expected: advice must not be given twice because
-    /// the first has not been read yet.
+    /// An estimate in which the signal on the display has been read as far as is to be expected: the same advice must
+    /// not be given twice because the first signal has not been read yet.
     pub fn foreseen(&self, now: SessionTime, mut belief: DirichletBelief) -> DirichletBelief {
         if let Some(standing) = &self.signals.standing {
             let passed_s = now.secs_since(standing.since);
@@ -49,7 +51,8 @@ impl BeliefFilter {
         belief
     }
 
-    /// A signal is shown. Where signals take no time, it makes its aspects certain with the probability that it is noticed.
+    /// A signal is shown. Where signals take no time to be read, the estimate becomes certain of the signal's aspects
+    /// with the probability that the signal is noticed.
     pub(super) fn told(&mut self, now: SessionTime, location: LocationId) {
         let kind = self.kitchen.location(location).kind;
         let mut aspects = vec![AspectId::of_location(location)];
@@ -66,7 +69,7 @@ impl BeliefFilter {
         standing.teach(&self.kitchen, self.shown, &self.model.signal, noticed, &mut self.belief);
     }
 
-    /// Proposed presses take the place of the signal on the display.
+    /// Proposed presses replace the signal on the display.
     pub(super) fn replace_signal(&mut self, now: SessionTime, cost: &mut CostToGo) {
         if self.signals.standing.is_some() {
             self.advance(now, cost);
@@ -83,11 +86,11 @@ impl BeliefFilter {
         }
     }
 
-    /// Reads the signal on the display in a sample whose gaze is known for `known_s` seconds.
+    /// Lets the signal on the display be read in a gaze sample whose gaze is known for `known_s` seconds.
     pub(super) fn read_signal_by_gaze(&mut self, sample: &GazeSample, taken: SessionTime, known_s: f64) {
         let Some(standing) = &self.signals.standing else { return };
         let HumanModel { perception, signal, .. } = &self.model;
-        // NaN fails these comparisons.
+        // A point that is NaN is not on the display: these comparisons are false for NaN.
         let on_display = (0.0..=1.0).contains(&sample.x) && (0.0..=1.0).contains(&sample.y);
         if !on_display || taken < standing.since {
             return;
@@ -102,7 +105,8 @@ impl BeliefFilter {
         }
     }
 
-    /// The signal on the display may draw the eye in `seconds` of unknown gaze that end at `until`. Returns the hazard.
+    /// The signal on the display may draw the eye in `seconds` of unknown gaze that end at `until`. Returns the hazard
+    /// of being read in that time.
     pub(super) fn read_signal_unseen(&mut self, seconds: f64, until: SessionTime) -> f64 {
         let Some(standing) = self.signals.standing.as_ref().filter(|_| self.presence.display_in_view) else {
             return 0.0;
@@ -127,7 +131,8 @@ impl BeliefFilter {
         Some(UnseenSignal { chance: -(-hazard).exp_m1(), readings })
     }
 
-    /// Corrects the probability that the signal on the display was read in unknown time with this hazard: `read` is what a press says.
+    /// Corrects the probability that the signal on the display was read in unknown time with this hazard: `read` is the
+    /// probability of reading after a press as evidence.
     pub(super) fn correct_reading(&mut self, hazard: f64, read: f64) {
         if let Some(standing) = &mut self.signals.standing {
             standing.unread *= hazard.exp() * (1.0 - read);

@@ -1,12 +1,12 @@
-//! The update of the estimate by time in which the gaze is unknown: perception is marginalised over plausible looking,
-//! in closed form.
+//! The update of the estimate by time in which the gaze is unknown: the effect of perception is averaged (marginalised)
+//! over plausible looking, in closed form.
 //!
 //! In a time dt location i is looked at with hazard h_i = dt (l0 + (ln - l0) n_i): l0 and ln are the rates of looks at
 //! a place that the next press does not need, and at one that it needs (those of the looking model); n_i is the
-//! probability that the next press needs it, computed once after each event, and only where gaze is unknown. The aspect
-//! learns the displayed content, with the confusions of any reading, with probability 1 - exp(-h_i). Hazards add up, so
-//! it makes no difference how a gap is divided. A press of the human draws the looks since the last event anew, see
-//! [`super::unseen_looks`].
+//! probability that the next press needs the place, computed once after each event, and only where gaze is unknown. The
+//! aspect learns the displayed content, with the confusions of any reading, with probability 1 - exp(-h_i). Hazards add
+//! up, so it makes no difference how a gap is divided. A press of the human draws the looks since the last event anew,
+//! see [`super::unseen_looks`].
 
 use crate::kitchen::{Agent, ButtonId, Kitchen};
 use crate::mind::dirichlet::Dirichlet;
@@ -14,17 +14,17 @@ use crate::mind::dirichlet::Dirichlet;
 /// A time of unknown gaze since the last event or known gaze.
 #[derive(Clone, Debug)]
 pub struct UnknownGazePeriod {
-    /// Beliefs about all aspects at its beginning, apart from what has been forgotten since.
+    /// Beliefs about all aspects at the beginning of the unknown gaze, apart from what has been forgotten since.
     pub before: Vec<Dirichlet>,
-    /// By location: expected number of looks without need, and the additional number if the next press certainly needs
-    /// the location.
+    /// By location: expected number of looks if the next press does not need the location, and the additional number if
+    /// it certainly does.
     pub hazards: Vec<[f64; 2]>,
-    /// Hazard of having read the signal on the display.
+    /// Hazard that the signal on the display was read: the expected number of its readings in the unknown gaze.
     pub signal_hazard: f64,
 }
 
-/// For each button of the human, the bit set of locations at which the human looks before the press, without the own
-/// hand.
+/// For each button of the human, the bit set of locations at which the human looks before the press, without the
+/// human's own hand.
 pub fn watched(kitchen: &Kitchen) -> Vec<u32> {
     let own_hand = kitchen.hands[Agent::Human.index()];
     let bits = |button| {

@@ -1,9 +1,9 @@
-//! Looks at times of unknown gaze, drawn for each belief sample: a person then looks at what the own next press needs.
-//! Therefore a press reveals where the person looked: an error is evidence of not having looked.
+//! Looks at times of unknown gaze, drawn for each belief sample: a person then looks at what the person's next press
+//! needs. Therefore a press reveals where the person looked: an error is evidence of not having looked.
 //!
 //! For belief sample j the need of location i is n_ij = sum over buttons of p(a | b_j) [i is looked at before a]. The
-//! sample has read the location with probability 1 - exp(-h_ij), where h_ij is linear in n_ij; it then believes what
-//! was read with certainty.
+//! sample has read the location with probability 1 - exp(-h_ij), where the hazard h_ij is linear in n_ij; the sample
+//! then is certain of what was read.
 
 use crate::base::bits::ones;
 use crate::base::rng::Stream;
@@ -18,7 +18,7 @@ use super::evidence_model::EvidenceModel;
 use super::look_news::{SampleLooks, UnseenLooks, UnseenSignal, ValueFromLook};
 
 impl BeliefSampler {
-    /// The probability that the human looks at each location before its next press, averaged over belief samples.
+    /// The probability that the human looks at each location before the next press, averaged over belief samples.
     pub fn needs(
         &mut self,
         model: &EvidenceModel,
@@ -37,7 +37,7 @@ impl BeliefSampler {
         sums[..model.kitchen.locations.len()].iter().map(|sum| sum / total).collect()
     }
 
-    /// The probability that the human of one belief sample looks at each location before its next press.
+    /// The probability that a human with one sample's belief looks at each location before the next press.
     fn needs_of(&self, model: &EvidenceModel, sample: usize) -> [f64; MAX_LOCATIONS] {
         let mut sums = [0u32; MAX_BUTTONS];
         let mut needs = [0.0; MAX_LOCATIONS];
@@ -48,8 +48,8 @@ impl BeliefSampler {
         needs
     }
 
-    /// Draws looks for the belief samples from index `from` on, and moves the samples to the worlds in which they then
-    /// believe.
+    /// Draws looks for the belief samples from index `from` on, and moves the samples to the worlds in which they
+    /// believe after these looks.
     pub fn look(&mut self, model: &EvidenceModel, looks: &UnseenLooks, from: usize, random: &mut Stream) {
         let aspects = self.urns.len();
         for index in from..self.samples.len() {
@@ -60,7 +60,7 @@ impl BeliefSampler {
                 let chance = -(-(base + extra * needs[location])).exp_m1();
                 if self.is_read(location, chance) && !reading.is_empty() {
                     let value = value_at(reading, random.random::<f64>());
-                    // What the signal has told is certain already.
+                    // What the sample has learned from the signal is certain already, so a look teaches nothing more.
                     if self.news[begin..].iter().all(|news| news.aspect != location) {
                         self.news.push(ValueFromLook { aspect: location, value, is_read: true });
                     }
@@ -84,15 +84,15 @@ impl BeliefSampler {
         }
     }
 
-    /// Whether the next belief sample has read a location, or the signal, of this probability. Systematic sampling: over all samples
-    /// the number of readings differs from its expectation by less than 1.
+    /// Whether the next belief sample has read a location, or the signal, that is read with this probability.
+    /// Systematic sampling: over all samples the number of readings differs from its expectation by less than 1.
     fn is_read(&mut self, what: usize, chance: f64) -> bool {
         let before = self.read_sums[what];
         self.read_sums[what] += chance;
         self.read_sums[what].floor() > before.floor()
     }
 
-    /// Lets the next belief sample read the signal on the display, or miss it; returns whether it has read it.
+    /// Lets the next belief sample read the signal on the display, or miss it; returns whether the sample has read it.
     fn hear(&mut self, signal: &UnseenSignal, random: &mut Stream) -> bool {
         let is_read = self.is_read(self.read_sums.len() - 1, signal.chance);
         for (aspect, reading) in signal.readings.iter().filter(|_| is_read) {
@@ -111,7 +111,7 @@ impl BeliefSampler {
         read.map(|(weight, _)| weight).sum::<f64>() / self.posteriors.iter().sum::<f64>()
     }
 
-    /// Replaces the worlds of a belief sample by those with the values that looks have taught it.
+    /// Replaces the worlds of a belief sample by worlds with the values that the sample has learned from looks.
     fn believe_news(&mut self, model: &EvidenceModel, sample: usize, [begin, end]: [usize; 2]) {
         let [first, last] = self.samples[sample].runs;
         for run in &mut self.runs[first..last] {
@@ -123,14 +123,14 @@ impl BeliefSampler {
         }
     }
 
-    /// What a belief sample has learned from looks, if looks were drawn.
+    /// What a belief sample has learned from looks; nothing if no looks were drawn.
     pub fn news_of(&self, sample: usize) -> (u32, &[ValueFromLook]) {
         let looks = self.looks.get(sample).copied().unwrap_or_default();
         (looks.changed, &self.news[looks.news[0]..looks.news[1]])
     }
 }
 
-/// The value at a point, from 0 to 1, of the cumulative distribution.
+/// The value at a point, from 0 to 1, of a cumulative distribution.
 fn value_at(distribution: &[f64], point: f64) -> u8 {
     let mut left = point;
     let reached = distribution.iter().position(|p| {

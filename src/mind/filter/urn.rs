@@ -1,31 +1,31 @@
 //! Polya urns: draws from a categorical distribution that is itself a draw from a Dirichlet, without drawing that
-//! distribution.
+//! categorical distribution.
 //!
-//! The first draw follows the Dirichlet's mean; the n-th repeats one of the previous draws with probability (n - 1) /
-//! (A + n - 1). Given the draws, the distribution is Dir(alpha + counts) (Blackwell and MacQueen 1973).
+//! The first draw follows the Dirichlet's mean; the n-th draw repeats one of the previous draws with the probability
+//! (n - 1) / (A + n - 1). Given the draws, the distribution is Dir(alpha + counts) (Blackwell and MacQueen 1973).
 
 use rand::RngExt;
 
 use crate::base::rng::Stream;
 use crate::mind::dirichlet::Dirichlet;
 
-/// In aspects with at least [`MANY`] values, the values with a smaller expected probability form the tail, which one of
-/// them represents.
+/// In aspects with at least [`MANY`] values, the values with a smaller expected probability than this form the tail,
+/// which one of them represents.
 const TAIL: f64 = 0.01;
 const MANY: usize = 8;
 
-/// The Polya urn of one state aspect. Its improbable values (tail) are represented by one of them, drawn anew for every
+/// The Polya urn of one state aspect. One of the improbable values (the tail) represents the tail, drawn anew for every
 /// urn in proportion to the probabilities: over time every value is used, while each press evaluates few improbable
 /// worlds.
 #[derive(Clone, Debug, Default)]
 pub struct PolyaUrn {
-    /// The value that represents the tail.
+    /// The value that represents the tail of improbable values; `None` without a tail.
     stand_in: Option<u8>,
-    /// Values in decreasing order of probability, with their cumulative probability.
+    /// Values in decreasing order of probability, with cumulative probabilities.
     order: Vec<(u8, f64)>,
-    /// Values with cumulative probability for first draws, where they are not drawn from the mean.
+    /// Values with cumulative probabilities for first draws, where first draws are not drawn from the mean.
     proposal: Vec<(u8, f64)>,
-    /// `stays[k]`: probability that none of the draws 1 to k is new (draw 0 is the first).
+    /// `stays[k]`: probability that each of the draws 1 to k repeats an earlier draw (draw 0 is the first).
     stays: Vec<f64>,
 }
 
@@ -63,7 +63,7 @@ impl PolyaUrn {
         }
     }
 
-    /// The value that represents the tail, if there is a tail.
+    /// The value that represents the tail of improbable values; `None` without a tail.
     pub fn stand_in(&self) -> Option<usize> {
         self.stand_in.map(usize::from)
     }
@@ -73,21 +73,21 @@ impl PolyaUrn {
         mean.len() > MANY && mean[value] < TAIL
     }
 
-    /// The value at a point of the cumulative mean, from 0 to 1.
+    /// The value at a point, from 0 to 1, of the cumulative mean.
     #[inline]
     fn value_at(&self, point: f64) -> u8 {
         let reached = self.order.iter().find(|(_, sum)| point < *sum);
         reached.or(self.order.last()).map_or(0, |(value, _)| *value)
     }
 
-    /// A first draw, from the Dirichlet's mean.
+    /// A first draw of a value, from the Dirichlet's mean.
     #[inline]
     pub fn draw(&self, random: &mut Stream) -> u8 {
         self.value_at(random.random::<f64>())
     }
 
-    /// Makes first draws come from a mixture: from all values evenly with probability `share`, else from the mean.
-    /// Returns the importance weight of a draw, by value.
+    /// Makes first draws come from a mixture: evenly from all values with probability `share`, else from the mean.
+    /// Returns the importance weight of a draw of each value.
     pub fn spread(&mut self, share: f64) -> Vec<f64> {
         let values = self.order.iter().map(|(value, _)| usize::from(*value) + 1).max().unwrap_or(0);
         let mut counts = vec![1.0; values];
@@ -103,8 +103,8 @@ impl PolyaUrn {
         counts
     }
 
-    /// First draws of many samples by stratified sampling from the mean (or the mixture of [`PolyaUrn::spread`]), in
-    /// random order.
+    /// First draws for many samples by stratified sampling from the mean (or from the mixture of [`PolyaUrn::spread`]),
+    /// in random order.
     pub fn first_draws(&self, random: &mut Stream, out: &mut [u8]) {
         let from = if self.proposal.is_empty() { &self.order } else { &self.proposal };
         let step = 1.0 / out.len() as f64;
@@ -122,8 +122,8 @@ impl PolyaUrn {
         }
     }
 
-    /// Fills `drawn` with the draws that follow the first one. Returns true if all draws are equal; the content of
-    /// `drawn` is then undefined.
+    /// Fills `drawn` with the draws that follow the first one. Returns true if all draws are equal; then the content of
+    /// `drawn` is undefined.
     #[inline]
     pub fn draw_on(&self, random: &mut Stream, first: u8, drawn: &mut [u8]) -> bool {
         let mut next_new = self.next_new(random, 0);
@@ -151,7 +151,7 @@ impl PolyaUrn {
         false
     }
 
-    /// Index of the next draw after `after` that does not repeat a previous one.
+    /// Index of the next draw after draw `after` that does not repeat a previous draw.
     #[inline]
     fn next_new(&self, random: &mut Stream, after: usize) -> usize {
         let limit = random.random::<f64>() * self.stays[after];

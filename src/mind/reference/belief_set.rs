@@ -21,14 +21,14 @@ use crate::mind::lapse_posterior::{LAPSES, MOST_LAPSE};
 use crate::mind::model::HumanModel;
 use crate::mind::observation::{Observation, ObservedEvidence, ProposedPresses};
 
-/// A set of explicit beliefs (particles), with the model and state that they share.
+/// A set of explicit beliefs (particles), with the model and state that all of them share.
 #[derive(Clone, Debug)]
 pub struct ParticleSet {
     kitchen: Arc<Kitchen>,
     model: HumanModel,
-    /// The prior: the belief at the start, to which beliefs about recipes decay.
+    /// The prior: distribution of the belief at the start, to which beliefs about recipes decay.
     pub prior: DirichletBelief,
-    /// Distribution that replaces a belief after an observation that was impossible under it.
+    /// Distribution that replaces a belief after an observation that was impossible under that belief.
     pub doubt: DirichletBelief,
     /// The explicit beliefs of the set.
     pub of: Vec<Particle>,
@@ -40,18 +40,18 @@ pub struct ParticleSet {
     /// Where the human of each belief looks while the gaze is unknown, once it has been computed after the last event.
     unseen: Option<PlausibleLooks>,
     shown: State,
-    /// Time up to which forgetting has been applied; `None` while the trial is paused.
+    /// Time up to which forgetting of recipes has been applied; `None` while the trial is paused.
     forgot: Option<SessionTime>,
     /// The presses that the display proposes until the human presses something else.
     proposed: ProposedPresses,
-    /// Signals that take time to be read.
+    /// Signals of the trial, as far as they take time to be read.
     signals: PlainSignals,
-    /// Lapses of this person with their probabilities.
+    /// Possible lapses (shares of slips) of this person with their probabilities.
     pub lapses: Vec<(f64, f64)>,
 }
 
 impl ParticleSet {
-    /// An empty set, before the trial's start.
+    /// An empty set of beliefs, before the trial's start.
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel) -> ParticleSet {
         let shown = kitchen.empty_state();
         let prior = DirichletBelief::prior(&kitchen, &model.prior, shown);
@@ -95,7 +95,7 @@ impl ParticleSet {
         (self.of, self.unseen) = (people, None);
     }
 
-    /// Lets the human of every belief look, as its next press needs, in the time of unknown gaze up to `now`.
+    /// Lets the human of every belief look, as the human's next press needs, in the time of unknown gaze up to `now`.
     pub fn advance(&mut self, now: SessionTime, cost: &mut CostToGo, random: &mut Stream) {
         if self.forgot.is_some() {
             let seconds = self.presence.pass(now);
@@ -135,7 +135,7 @@ impl ParticleSet {
         }
     }
 
-    /// Accounts for a change by others that attracts the gaze, where the gaze is unknown.
+    /// Accounts for a change by others that attracts the gaze while the gaze is unknown.
     fn see_changes(&mut self, now: SessionTime, after: State, random: &mut Stream) {
         if self.forgot.is_some() && self.presence.display_in_view {
             let seen = self.model.looking.capture * self.presence.unknown_share(now);
@@ -143,8 +143,8 @@ impl ParticleSet {
         }
     }
 
-    /// Updates every belief with an event. Returns for each belief the likelihood of a press of the human, or of its
-    /// waiting; else 1.
+    /// Updates every belief with an event. Returns for each belief the likelihood of the human's press, or of the
+    /// human's waiting; 1 for other events.
     pub fn experience(&mut self, observation: &Observation, cost: &mut CostToGo, random: &mut Stream) -> Vec<f64> {
         let now = observation.time;
         if let ObservedEvidence::Gaze { sample, taken } = observation.what {
@@ -245,7 +245,7 @@ impl ParticleSet {
         let doubt: Vec<Vec<f64>> = self.doubt.aspects.iter().map(|aspect| aspect.mean().to_vec()).collect();
         let (decision, inference) = (&self.model.decision, &self.model.inference);
         let follows = self.model.signal.follows;
-        // The human makes a proposed press because of the proposal, or chooses it like any other.
+        // The human makes a proposed press because of the proposal, or chooses the press like any other.
         let [proposed, chosen] = match self.proposed.next() {
             None => [0.0, 1.0],
             Some(other) => [if other == button { follows } else { 0.0 }, 1.0 - follows],
@@ -259,7 +259,7 @@ impl ParticleSet {
             let (here, after) = person.prospects(&self.kitchen, cost, inference.states, random);
             let presses = if inference.waiting { 1.0 - wait_chance(decision, here, &after) } else { 1.0 };
             self.pressing.push(presses);
-            // p(a | b) for each lapse, alone the human model's where it is not learned.
+            // p(a | b) for each possible lapse; only for the human model's lapse where the lapse is not learned.
             for ((lapse, p), likelihood) in self.lapses.iter().zip(&mut likelihoods) {
                 let decision = ChoiceParameters { lapse: *lapse, ..decision.clone() };
                 let pressed = proposed + chosen * press_chances(&self.kitchen, &decision, &after)[button.index()];
@@ -340,7 +340,7 @@ impl ParticleSet {
     }
 }
 
-/// The lapses that a person may have, with their probabilities before the first press.
+/// The lapses (shares of slips) that a person may have, with their probabilities before the first press.
 fn lapses(model: &HumanModel) -> Vec<(f64, f64)> {
     let own = model.decision.lapse;
     match model.adapt.lapse {

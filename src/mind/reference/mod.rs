@@ -3,9 +3,10 @@
 //! policy, the cost to go, and the accounting of known and unknown gaze time.
 //!
 //! A set of explicit beliefs is drawn from the Dirichlets, every component by a gamma variate. Each event updates every
-//! belief by the human model ([`person`]); a press of the human weights them by p(a | b). Then they are projected onto
-//! Dirichlets by moment matching, and drawn anew. Gaze samples update the explicit beliefs as well; several in a row
-//! are projected together, which is equivalent, since they change first and second moments linearly.
+//! belief by the human model ([`person`]); a press of the human weights the beliefs by p(a | b). Then the beliefs are
+//! projected onto Dirichlets by moment matching, and drawn anew. Gaze samples update the explicit beliefs as well;
+//! several samples in a row are projected together, which is equivalent, since they change first and second moments
+//! linearly.
 
 pub mod belief_set;
 pub mod person;
@@ -26,15 +27,15 @@ use crate::base::rng::{Stream, stream};
 use crate::kitchen::cost_to_go::CostToGo;
 use crate::kitchen::{Agent, Kitchen};
 
-/// The estimator of the human's belief without optimisations, to check the fast one.
+/// The reference estimator of the human's belief without optimisations, to check the optimised filter.
 #[derive(Clone, Debug)]
 pub struct ReferenceFilter {
     kitchen: Arc<Kitchen>,
-    /// Number of belief samples.
+    /// Number of belief samples that the filter draws.
     beliefs: usize,
     seed: u64,
     people: ParticleSet,
-    /// Number of observations so far.
+    /// Number of observations so far, which seeds the random stream.
     observed: u64,
     /// Whether gaze samples have updated the beliefs since they were last drawn.
     looked: bool,
@@ -42,7 +43,7 @@ pub struct ReferenceFilter {
 }
 
 impl ReferenceFilter {
-    /// An estimate before the trial's start.
+    /// A reference filter with the estimate before the trial's start.
     pub fn new(kitchen: Arc<Kitchen>, model: HumanModel, seed: u64) -> ReferenceFilter {
         let beliefs = model.inference.beliefs;
         ReferenceFilter {
@@ -64,7 +65,7 @@ impl ReferenceFilter {
         }
     }
 
-    /// ln p of the last press of the human, given that a button is pressed, under the estimate before it, in nats.
+    /// ln p of the human's last press, given that a button is pressed, under the estimate before that press, in nats.
     pub fn log_p(&self) -> Option<f64> {
         self.log_p
     }
@@ -97,7 +98,7 @@ impl ReferenceFilter {
         }
     }
 
-    /// Projects the explicit beliefs onto Dirichlets.
+    /// Projects the weighted explicit beliefs onto Dirichlets.
     fn project(&mut self, weights: &[f64], random: &mut Stream) {
         if !self.people.of.is_empty() {
             let estimate = self.people.projected(weights);
@@ -106,8 +107,8 @@ impl ReferenceFilter {
         }
     }
 
-    /// Draws all explicit beliefs anew; the number of beliefs that have read each location in the present look is preserved, and the share that
-    /// has read the signal on the display.
+    /// Draws all explicit beliefs anew; the number of beliefs that have read each location in the present look is
+    /// preserved, and so is the share that has read the signal on the display.
     fn draw(&mut self, estimate: &DirichletBelief, with_signal: f64, random: &mut Stream) {
         let count = self.people.of.len() as f64;
         let read = |index: usize| self.people.of.iter().filter(|person| person.read[index]).count() as f64 / count;

@@ -19,17 +19,17 @@ use crate::robot::policy;
 /// Share of the fallback distribution in every belief, so that an observation with probability 0 still leaves a proper
 /// distribution.
 pub const DOUBT: f64 = 1e-6;
-/// Enumerations of all worlds ignore values with a smaller probability.
+/// Probability below which enumerations of all worlds ignore a value.
 const NEGLIGIBLE: f64 = 1e-4;
 
 /// An explicit belief of a human: for every state aspect, the probabilities of its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Particle {
-    /// For every aspect the probabilities of its values, in the kitchen's order.
+    /// For every state aspect the probabilities of its values, in the kitchen's order.
     pub of: Vec<Vec<f64>>,
     /// Whether each location has been read in the present look.
     pub read: Vec<bool>,
-    /// Whether it has read the signal on the display.
+    /// Whether the human with this belief has read the signal on the display.
     pub read_signal: bool,
 }
 
@@ -45,7 +45,7 @@ pub struct PossibleWorld {
 }
 
 impl Particle {
-    /// A belief drawn from an estimate, every component by a gamma variate.
+    /// A belief drawn from an estimate; every component is drawn by a gamma variate.
     pub fn draw(kitchen: &Kitchen, estimate: &DirichletBelief, random: &mut Stream) -> Particle {
         let of = estimate.aspects.iter().map(|dirichlet| draw(dirichlet, random)).collect();
         Particle { of, read: vec![false; kitchen.locations.len()], read_signal: false }
@@ -74,7 +74,7 @@ impl Particle {
         of[value] = 1.0;
     }
 
-    /// Applies forgetting: with probability `lost` a recipe belief is drawn anew from the prior.
+    /// Applies forgetting: with probability `lost` the belief about a recipe is drawn anew from the prior.
     pub fn forget(&mut self, kitchen: &Kitchen, prior: &DirichletBelief, lost: f64, random: &mut Stream) {
         for (index, aspect) in kitchen.aspects.iter().enumerate() {
             if matches!(aspect.kind, AspectKind::Recipe(_)) && random.random::<f64>() < lost {
@@ -83,7 +83,7 @@ impl Particle {
         }
     }
 
-    /// Moves the probability of "served" to "none" for an order.
+    /// Moves the probability of "served" to "none" in the belief about an order.
     pub fn expect_cleared(&mut self, kitchen: &Kitchen, order: LocationId) {
         let aspect = &kitchen.aspects[order.index()];
         let [served, none] = [OrderContent::Served, OrderContent::None].map(|what| aspect.index_of(what.code()));
@@ -93,8 +93,8 @@ impl Particle {
         }
     }
 
-    /// E_b[C(s)], and E_b[C(s')] after every button of the human, over worlds drawn from the belief, or over all worlds
-    /// where there are few.
+    /// E_b[C(s)], and E_b[C(s')] after every button of the human: expected costs to go over worlds drawn from the
+    /// belief, or over all worlds where there are few.
     pub fn prospects(
         &self,
         kitchen: &Kitchen,
@@ -138,7 +138,7 @@ impl Particle {
             ButtonAction::Process(process) => vec![kitchen.processes[usize::from(process)].place.unwrap_or(hand)],
             ButtonAction::Serve(order) => vec![order, kitchen.plate],
         };
-        // The hand is empty after "trash" in both cases (effective or not), and full after "take".
+        // The hand is empty after "trash" whether the press was effective or not, and full after "take".
         let doubtful = |index: usize| -> Vec<f64> {
             self.of[index].iter().zip(&expected[index]).map(|(p, m)| (1.0 - DOUBT) * p + DOUBT * m).collect()
         };
@@ -167,7 +167,7 @@ impl Particle {
             for recipe in kitchen.locations.len()..kitchen.aspects.len() {
                 match dish.filter(|(aspect, _)| aspect.index() == recipe) {
                     Some((_, variant)) => after[recipe][variant] += way.p,
-                    // Where another dish is ordered, the press carries no information about this recipe.
+                    // Where another dish is ordered, the press carries no information about this dish's recipe.
                     None => after[recipe].iter_mut().zip(&before[recipe]).for_each(|(sum, p)| *sum += way.p * p),
                 }
             }
@@ -219,7 +219,7 @@ impl Particle {
         }
     }
 
-    /// The worlds of this belief: all of them if there are at most `draws`, else `draws` samples.
+    /// The worlds of this belief: all possible worlds if there are at most `draws`, else `draws` samples.
     pub fn ways(&self, kitchen: &Kitchen, draws: usize, random: &mut Stream) -> Vec<PossibleWorld> {
         let count = self.of.iter().map(|values| values.iter().filter(|p| **p > NEGLIGIBLE).count());
         let count = count.fold(1usize, |product, values| product.saturating_mul(values));
@@ -251,7 +251,7 @@ impl Particle {
     }
 }
 
-/// Enumerates all contents of hand and location.
+/// Enumerates all pairs of contents of hand and location.
 fn each_exchange(
     kitchen: &Kitchen,
     belief: &[Vec<f64>],
@@ -272,7 +272,7 @@ fn each_exchange(
     ways.into_iter().for_each(|way| outcome(way, None));
 }
 
-/// Enumerates all dishes of the order, contents of the plate, and recipes of the ordered dish.
+/// Enumerates all combinations of the order's dish, the plate's content, and the recipe of the ordered dish.
 fn each_serving(
     kitchen: &Kitchen,
     belief: &[Vec<f64>],
@@ -310,7 +310,7 @@ fn each_recipe(
     }
 }
 
-/// p(a | b) of every button, given that one is pressed, from the expected cost to go after each.
+/// p(a | b) of every button, given that a button is pressed, from the expected cost to go after each button.
 pub fn press_chances(kitchen: &Kitchen, model: &ChoiceParameters, expected: &[f64]) -> Vec<f64> {
     let least = expected.iter().copied().fold(f64::INFINITY, f64::min);
     let weights: Vec<f64> = expected.iter().map(|after| (-model.tau * (after - least)).exp()).collect();
@@ -328,7 +328,7 @@ pub fn press_chances(kitchen: &Kitchen, model: &ChoiceParameters, expected: &[f6
     chances
 }
 
-/// p(wait | b), from the expected cost to go of the present state and after each button.
+/// p(wait | b), from the expected cost to go of the present state and of the state after each button.
 pub fn wait_chance(model: &ChoiceParameters, here: f64, after: &[f64]) -> f64 {
     let weight = |q: f64| (model.tau * (q + here)).exp();
     let wait = weight(-(here + model.wait_cost));
@@ -346,8 +346,8 @@ pub fn pick(weights: &[f64], random: &mut Stream) -> usize {
     reached.unwrap_or(weights.len() - 1)
 }
 
-/// A draw from a Dirichlet by gamma variates, as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a)), since those with small
-/// alphas would underflow.
+/// A draw from a Dirichlet by gamma variates, as logarithms (Gamma(a) = Gamma(a + 1) U^(1/a)), since variates with
+/// small alphas would underflow.
 pub fn draw(dirichlet: &Dirichlet, random: &mut Stream) -> Vec<f64> {
     let log = |value: usize, random: &mut Stream| {
         let alpha = dirichlet.alpha(value);

@@ -1,4 +1,4 @@
-//! Looks while the gaze is unknown, for each explicit belief: the human looks at what the own next press needs.
+//! Looks while the gaze is unknown, for each explicit belief: the human looks at what the human's next press needs.
 
 use rand::RngExt;
 
@@ -16,7 +16,8 @@ pub struct PlausibleLooks {
 }
 
 impl PlausibleLooks {
-    /// Computes the needs of every belief from the press probabilities under that belief.
+    /// Computes which locations the human of every belief needs to look at, from the press probabilities under that
+    /// belief.
     pub fn before(
         kitchen: &Kitchen,
         model: &HumanModel,
@@ -38,8 +39,8 @@ impl PlausibleLooks {
         PlausibleLooks { needs: people.iter().map(&mut needs_of).collect() }
     }
 
-    /// Draws looks for every belief at a display that shows `state`. `looks` are the expected looks at a location:
-    /// without need, and if the next press certainly needs it.
+    /// Draws looks for every belief at a display that shows `state`. `looks` are the expected looks at a location: if
+    /// the next press does not need the location, and if it certainly does.
     pub fn look(
         &self,
         kitchen: &Kitchen,
@@ -83,8 +84,8 @@ pub fn see_changes(
     }
 }
 
-/// Draws for every belief looks at each location of a bit set, which shows the state's content, with probability
-/// `looks`.
+/// Draws for every belief looks at each location of a bit set, with probability `looks`; a look reads the content that
+/// the state has there.
 pub fn asked(
     kitchen: &Kitchen,
     model: &HumanModel,
@@ -102,7 +103,7 @@ pub fn asked(
     }
 }
 
-/// Makes a belief certain of what is read at a location.
+/// Makes a belief certain of the content that is read at a location.
 fn read(
     kitchen: &Kitchen,
     model: &HumanModel,

@@ -1,12 +1,12 @@
 //! The effect of a gaze sample at each location: the probability that the location is read, and the distribution of the
-//! value read.
+//! value that is read.
 
 use crate::base::time::SessionTime;
 use crate::gaze::GazeSample;
 use crate::kitchen::{ContentId, DishId, Kitchen, LocationId, LocationKind, OrderContent, State};
 use crate::mind::model::PerceptionModel;
 
-/// The gaze counts as being elsewhere where the reading rate of a location is below this share of the full rate.
+/// Share of the full reading rate below which the gaze counts as being elsewhere than at a location.
 const ELSEWHERE: f64 = 0.1;
 
 /// The effect of a gaze sample at one location.
@@ -18,14 +18,14 @@ pub struct LocationReading {
     pub begins: bool,
     /// Probability that the location is read by this sample, given that it was not yet read in this look.
     pub chance: f64,
-    /// Distribution of the value that is read.
+    /// Distribution of the value that is read at the location.
     pub reading: Vec<f64>,
 }
 
 /// Tracks looks at locations and the recent states of the display.
 #[derive(Clone, Debug, Default)]
 pub struct LookTracker {
-    /// Recent states of the display, each with the time at which it appeared.
+    /// Recent states of the display, each with the session time at which the state appeared.
     shown: Vec<(SessionTime, State)>,
     /// By location, the code of the content that is displayed in the present look, and the time of the look's last
     /// sample.
@@ -79,11 +79,11 @@ impl LookTracker {
         glances
     }
 
-    /// State of the display at `time`; `None` if that time is before the stored history.
+    /// State that the display showed at `time`; `None` if that time is before the stored history.
     fn shown_at(&self, time: SessionTime, history_s: f64) -> Option<State> {
         let newest = self.shown.last().map(|(since, _)| *since)?;
         let (at, (_, state)) = self.shown.iter().enumerate().rev().find(|(_, (since, _))| *since <= time)?;
-        // A state is stored until its successor is older than the history.
+        // A state of the display is stored until its successor is older than the history.
         let is_known = self.shown.get(at + 1).is_none_or(|(until, _)| newest.secs_since(*until) <= history_s);
         is_known.then_some(*state)
     }

@@ -1,4 +1,4 @@
-//! The signal on the display, belief by belief: each reads it or misses it.
+//! The signal on the display, followed for each explicit belief: the human of a belief reads the signal or misses it.
 
 use rand::RngExt;
 
@@ -18,16 +18,16 @@ struct ShownContent {
     noticed: f64,
 }
 
-/// The signal on the display, and what became of the earlier ones of the trial.
+/// The signal on the display, and how many earlier signals of the trial were read.
 #[derive(Clone, Debug, Default)]
 pub struct PlainSignals {
     shown: Option<ShownContent>,
-    /// Expected number of signals read, and number of signals over.
+    /// Expected number of signals that were read, and number of signals that have left the display.
     counts: [f64; 2],
 }
 
 impl PlainSignals {
-    /// A signal takes the place of the one before it, which `read` of the beliefs have read.
+    /// A signal takes the place of the one before it, which the share `read` of the beliefs has read.
     pub fn show(
         &mut self,
         kitchen: &Kitchen,
@@ -48,14 +48,14 @@ impl PlainSignals {
         self.shown = Some(ShownContent { location, aspects, since: now, noticed });
     }
 
-    /// The signal, which `read` of the beliefs have read, leaves the display.
+    /// The signal, which the share `read` of the beliefs has read, leaves the display.
     pub fn end(&mut self, read: f64) {
         if self.shown.take().is_some() {
             self.counts = [self.counts[0] + read, self.counts[1] + 1.0];
         }
     }
 
-    /// Lets every belief read the signal in a sample whose gaze is known for `known_s` seconds.
+    /// Lets every belief read the signal in a gaze sample whose gaze is known for `known_s` seconds.
     pub fn look(
         &self,
         kitchen: &Kitchen,
@@ -75,7 +75,7 @@ impl PlainSignals {
         shown.read(kitchen, model, people, 1.0 - (-rate_hz * known_s).exp(), state, random);
     }
 
-    /// Lets every belief notice the signal, or not, in `seconds` of unknown gaze up to `until`.
+    /// Lets the human of every belief notice the signal, or not, in `seconds` of unknown gaze up to `until`.
     pub fn look_unseen(
         &self,
         kitchen: &Kitchen,
@@ -86,8 +86,8 @@ impl PlainSignals {
         random: &mut Stream,
     ) {
         let Some(shown) = &self.shown else { return };
-        // The share of those who notice it that has read it t seconds after its beginning is 1 - exp(-L (1 - exp(-t / delay))) for
-        // exp(-L) = 1 - noticed.
+        // Of those who notice the signal, the share that has read it t seconds after its beginning is 1 - exp(-L (1 -
+        // exp(-t / delay))) for exp(-L) = 1 - noticed.
         let most = -(1.0 - shown.noticed.min(0.999)).ln();
         let hazard = |time_s: f64| most * (1.0 - (-time_s.max(0.0) / model.signal.delay_s).exp());
         let until_s = until.secs_since(shown.since);
@@ -97,7 +97,7 @@ impl PlainSignals {
 }
 
 impl ShownContent {
-    /// Each belief reads the signal with the probability `chance`.
+    /// Lets the human of each belief read the signal with the probability `chance`.
     fn read(
         &self,
         kitchen: &Kitchen,
